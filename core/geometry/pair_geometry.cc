@@ -1,0 +1,55 @@
+#include "core/geometry/pair_geometry.h"
+
+#include <cmath>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_format.h"
+
+namespace ballpiston {
+
+double Lambda(double rho) {
+  // The factors are exact or correctly rounded; 4 rho^2 - 1 would lose all digits at rho -> 1/2.
+  return std::sqrt((2 * rho - 1) * (2 * rho + 1));
+}
+
+double PairDeltaBound(double rho) {
+  // (1 - lambda)/2 times (1 + lambda)/(1 + lambda); the fused product keeps 1 - 2 rho^2 exact to
+  // an ulp where the cell vanishes.
+  return std::fma(-2 * rho, rho, 1) / (1 + Lambda(rho));
+}
+
+double GasDeltaBound(double rho) {
+  // Likewise: (rho^2/2 - lambda^2/4)/(rho/sqrt(2) + lambda/2), with numerator (1 - 2 rho^2)/4.
+  return std::fma(-2 * rho, rho, 1) / (2 * (rho * M_SQRT2 + Lambda(rho)));
+}
+
+absl::Status ValidateRho(double rho) {
+  if (rho > kMinRho && rho < kMaxRho) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "rho is %.17g; permitted: 1/2 < rho < 1/sqrt(2) (%.17g)", rho, kMaxRho));
+}
+
+absl::Status ValidatePairDelta(double rho, double delta) {
+  const double bound = PairDeltaBound(rho);
+  if (delta > 0 && delta <= bound) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("delta is %.17g; permitted at rho = %.17g: 0 < delta <= (1 - lambda)/2 = "
+                      "%.17g, the bound of a ball-piston pair",
+                      delta, rho, bound));
+}
+
+absl::StatusOr<PairGeometry> PairGeometry::Create(double rho, double delta) {
+  if (absl::Status status = ValidateRho(rho); !status.ok()) return status;
+  if (absl::Status status = ValidatePairDelta(rho, delta); !status.ok()) return status;
+  return PairGeometry(rho, delta);
+}
+
+PairGeometry::PairGeometry(double rho, double delta)
+    : rho_(rho),
+      delta_(delta),
+      lambda_(Lambda(rho)),
+      tip_(PairDeltaBound(rho)),
+      piston_left_(tip_ - delta),
+      piston_right_(0.5 + lambda_ / 2 + delta) {}
+
+}  // namespace ballpiston

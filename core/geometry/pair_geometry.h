@@ -1,0 +1,65 @@
+// The ball-piston pair's geometry: a validated (rho, delta) and the lengths that follow from it.
+//
+// Unit cell [-1/2, 1/2]^2 with discs of radius rho at its corners; the ball lives between them.
+// lambda = sqrt(4 rho^2 - 1) is the length of the interval between two intersections of
+// neighbouring discs, so the cell's right tip lies at (1/2 - lambda/2, 0). The piston, a vertical
+// segment of height eta, moves in [1/2 - lambda/2 - delta, 1/2 + lambda/2 + delta].
+//
+// Two bounds on delta. Where a pair stands alone the closed forms hold up to (1 - lambda)/2, where
+// the piston reaches the cell's middle. In a gas no two pistons may overlap, which is the paper's
+// bound rho/sqrt(2) - lambda/2 (its eq. x1x2x3 and the footnote before it).
+//
+// Lengths in cells. All members are accurate to a few ulps for every rho and delta in the domain.
+// Immutable, so safe to share between threads.
+#ifndef BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
+#define BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston {
+
+// Domain of the disc radius, both ends excluded: the cell's tips become cusps at 1/2, the cell
+// vanishes at 1/sqrt(2).
+inline constexpr double kMinRho = 0.5;
+inline constexpr double kMaxRho = 0.70710678118654752440;
+
+// sqrt(4 rho^2 - 1). Domain: kMinRho < rho < kMaxRho.
+double Lambda(double rho);
+
+// (1 - lambda)/2, the largest delta of a pair. Same domain.
+double PairDeltaBound(double rho);
+
+// rho/sqrt(2) - lambda/2, which delta of a gas has to stay below. Same domain.
+double GasDeltaBound(double rho);
+
+class PairGeometry {
+ public:
+  // INVALID_ARGUMENT, with name, value and permitted range, unless kMinRho < rho < kMaxRho and
+  // 0 < delta <= PairDeltaBound(rho).
+  static absl::StatusOr<PairGeometry> Create(double rho, double delta);
+
+  double rho() const { return rho_; }
+  double delta() const { return delta_; }
+  double lambda() const { return lambda_; }
+  double tip() const { return tip_; }                    // x of the cell's right tip
+  double piston_left() const { return piston_left_; }    // leftmost position of the piston
+  double piston_right() const { return piston_right_; }  // rightmost position of the piston
+
+ private:
+  PairGeometry(double rho, double delta);
+
+  double rho_;
+  double delta_;
+  double lambda_;
+  double tip_;
+  double piston_left_;
+  double piston_right_;
+};
+
+// OK, or the message Create would fail with: for callers that collect every violation.
+absl::Status ValidateRho(double rho);
+absl::Status ValidatePairDelta(double rho, double delta);  // rho has to be valid
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
