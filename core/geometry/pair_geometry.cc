@@ -25,8 +25,8 @@ double GasDeltaBound(double rho) {
 
 absl::Status ValidateRho(double rho) {
   if (rho > kMinRho && rho < kMaxRho) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrFormat(
-      "rho is %.17g; permitted: 1/2 < rho < 1/sqrt(2) (%.17g)", rho, kMaxRho));
+  return absl::InvalidArgumentError(
+      absl::StrFormat("rho is %.17g; permitted: 1/2 < rho < 1/sqrt(2) (%.17g)", rho, kMaxRho));
 }
 
 absl::Status ValidatePairDelta(double rho, double delta) {
@@ -36,6 +36,12 @@ absl::Status ValidatePairDelta(double rho, double delta) {
       absl::StrFormat("delta is %.17g; permitted at rho = %.17g: 0 < delta <= (1 - lambda)/2 = "
                       "%.17g, the bound of a ball-piston pair",
                       delta, rho, bound));
+}
+
+absl::Status ValidateSomeDelta(double delta) {
+  if (delta > 0 && delta < 0.5) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("delta is %.17g; permitted: 0 < delta <= (1 - lambda)/2 < 1/2", delta));
 }
 
 absl::StatusOr<PairGeometry> PairGeometry::Create(double rho, double delta) {

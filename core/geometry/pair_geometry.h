@@ -59,6 +59,7 @@ class PairGeometry {
 // OK, or the message Create would fail with: for callers that collect every violation.
 absl::Status ValidateRho(double rho);
 absl::Status ValidatePairDelta(double rho, double delta);  // rho has to be valid
+absl::Status ValidateSomeDelta(double delta);  // whether some rho permits it: 0 < delta < 1/2
 
 }  // namespace ballpiston
 

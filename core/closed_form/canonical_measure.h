@@ -1,0 +1,33 @@
+// The canonical distribution of a pair's energies, and the averages of the kernel's moments.
+//
+//   P(eb, ep) = beta^(3/2)/sqrt(pi ep) exp(-beta (eb + ep))               eq. canmeasure
+//   <f> = beta^2/2 <(eb - ep) j> = beta^2/2 <h> = 1/sqrt(2 pi beta)       eq. nucanavg
+//
+// Symbols: beta inverse temperature; eb, ep energies of ball and piston (a Gamma(1) and a
+// Gamma(1/2) variable). Units: P per energy^2; averages in |dG_bp|/|G| times energy^(1/2) for <f>,
+// energy^(5/2) for the other two. Domain: beta > 0, eb >= 0, ep >= 0 (P is infinite at ep = 0).
+//
+// Properties, each with the test that bears its name:
+//   1. DensityIntegratesToOne.
+//   2. AveragesAreThoseOfTheMoments: of kernel_moments.h over P.
+//   3. AveragesSatisfyTheIdentities of eq. nucanavg.
+//
+// Pure functions: safe from any thread.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
+#define BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
+
+namespace ballpiston {
+
+double CanonicalDensity(double beta, double eb, double ep);
+
+struct CanonicalAverages {
+  double mean_f;
+  double mean_energy_current;  // <(eb - ep) j>
+  double mean_h;
+};
+
+CanonicalAverages AveragesAt(double beta);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_

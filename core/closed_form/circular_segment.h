@@ -1,0 +1,33 @@
+// The circular segment: what a chord cuts off a disc.
+//
+//   segment = r^2 (theta - sin theta)/2,   theta = 2 arcsin(chord/(2 r))
+//
+// The printed closed forms contain this difference in disguise (a trapezium minus a sector), where
+// it loses every digit on short arcs. Here it is formed on its own.
+//
+// Domain: 0 <= angle <= 2 pi; 0 <= chord <= 2 radius, radius > 0.
+//
+// Properties, each with the test that bears its name:
+//   1. AngleMinusSineIsAccurate to kAngleMinusSineRelativeError, until angle^3 underflows.
+//   2. ChordAngleInvertsTheChord: chord = 2 r sin(angle/2).
+//
+// Pure functions: safe from any thread.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_
+#define BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_
+
+namespace ballpiston {
+
+inline constexpr double kAngleMinusSineRelativeError = 2e-15;
+
+// angle - sin(angle).
+double AngleMinusSine(double angle);
+
+// Angle at the centre that a chord subtends, in [0, pi].
+double ChordAngle(double radius, double chord);
+
+// Area between the arc of that angle and its chord.
+double SegmentArea(double radius, double angle);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_CIRCULAR_SEGMENT_H_

@@ -1,0 +1,30 @@
+// The rate of ball-piston collisions at a given piston energy.
+//
+//   phi(ep) = tau_bp nu_bp(ep)               eq. numft, the same for every geometry
+//   tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi    eqs. taubpmftep, cnuep; exact for every delta
+//
+// Symbols: ep energy of the piston, total energy 1/2. phi has no dimension, times are in cells over
+// unit speed. Domain: ep in [0, 1/2], every PairGeometry.
+//
+// Properties, each with the test that bears its name:
+//   1. AccurateAtRandomEnergies: relative error below kConditionalRateRelativeError.
+//   2. PhiIsContinuousAndIncreasing, from sqrt(8)/pi through phi(1/4) = 1 to sqrt(2).
+//   3. AveragesToTheUnconditionalRate: int phi dep/sqrt(2 ep) = 1, eq. intcnuep.
+//
+// Pure functions: safe from any thread.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_
+#define BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_
+
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+inline constexpr double kConditionalRateRelativeError = 1e-15;
+
+double Phi(double ep);
+
+double ConditionalMeanFreeTime(const PairGeometry& geometry, double ep);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_CONDITIONAL_RATE_H_

@@ -1,0 +1,68 @@
+// The equilibrium law of the velocities with which ball and piston meet, at a given piston energy:
+// what the first-hit histograms are compared with.
+//
+//   h(alpha, sigma) = (sqrt(eb) cos alpha - sigma sqrt(ep))_+/N      eq. falpha with n = 1
+//   N = 4 pi f(eb, ep)                                               eqs. cnuep, intkernelnuf
+//
+// Symbols: alpha in [-pi, pi] is the direction of the ball's velocity, 0 towards the piston;
+// sigma = +1 or -1 is the sign of the piston's, +1 away from the ball. eb = 1/2 - ep. Both before
+// the collision is resolved (the outgoing law is this one seen backwards: v -> -v).
+//
+// For each sigma alpha is confined to |alpha| < AlphaMax(sigma): to cos alpha > sigma sqrt(ep/eb).
+// From ep = 1/4 on, the piston is the faster one: sigma = +1 never meets the ball, and for
+// sigma = -1 every alpha is allowed.
+//
+// Domain: ep in [0, 1/2], sigma = +-1, -pi <= a0 <= a1 <= pi. Probabilities are per unit angle for
+// Density and pure numbers else.
+//
+// Properties, each with the test that bears its name:
+//   1. BinProbabilityIsTheIntegralOfTheDensity, with no cancellation on narrow bins nor next to
+//      AlphaMax.
+//   2. NothingOutsideOfTheAllowedInterval counts in a bin that reaches beyond it.
+//   3. ProbabilitiesSumToOne over sigma, and to SigmaProbability over a partition of alpha.
+//   4. MeansAreThoseOfTheDensity: MeanCosAlpha = sqrt(eb)/(4 f), MeanSigma = -sqrt(ep)/(2 f).
+//   5. PistonAtRestIsHitAlikeOnBothSigns (ep = 0), BallAtRestHasNoDirection (ep = 1/2).
+//   6. ContinuousWhereBallAndPistonAreEquallyFast (ep = 1/4).
+//
+// The error bound of a bin is relative and counts AlphaMax, a double, as exact: on a bin of width w
+// at the edge, its rounding is 1e-16/w of the probability.
+//
+// Immutable: safe to share between threads.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_
+#define BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_
+
+namespace ballpiston {
+
+inline constexpr double kIngoingLawRelativeError = 2e-14;
+
+class IngoingLaw {
+ public:
+  explicit IngoingLaw(double ep);
+
+  // Half-width of the allowed interval of alpha: 0 if none is, pi if all are.
+  double AlphaMax(int sigma) const { return sigma > 0 ? alpha_max_plus_ : alpha_max_minus_; }
+
+  double Density(int sigma, double alpha) const;
+  double BinProbability(int sigma, double a0, double a1) const;
+  double SigmaProbability(int sigma) const {
+    return BinProbability(sigma, -AlphaMax(sigma), AlphaMax(sigma));
+  }
+
+  double MeanCosAlpha() const { return mean_cos_alpha_; }
+  double MeanSigma() const { return mean_sigma_; }
+
+ private:
+  double Unnormalised(int sigma, double alpha) const;
+
+  double ball_;    // sqrt(eb)
+  double excess_;  // (sqrt(ep) - sqrt(eb))_+
+  double alpha_max_plus_;
+  double alpha_max_minus_;
+  double normalisation_;  // N
+  double mean_cos_alpha_;
+  double mean_sigma_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_

@@ -1,0 +1,34 @@
+// The stochastic kernel: rate density of a collision that leaves the piston with energy ep_out.
+//
+//   W(eb, ep -> ep_out) = max(sqrt ep_out, sqrt ep)/(2 pi sqrt(ep_out (eb - ep_out)))   eq. kernel
+//
+// for ep_out < eb, else 0: all the piston gets is the ball's normal part.
+//
+// Symbols: eb and ep are the energies of ball and piston before the collision. Units: |dG_bp|/|G|
+// over energy^(1/2), per unit of ep_out. Domain: eb, ep, ep_out >= 0, finite. At ep_out = 0 < ep
+// the density is infinite (and integrable). PairKernel is the same at total energy 1/2,
+// eb = 1/2 - ep, with ep and ep_out in [0, 1/2].
+//
+// Properties, each with the test that bears its name:
+//   1. AccurateAtRandomEnergies: relative error below kKernelRelativeError; and for PairKernel
+//      AccurateWhereTheBallIsLeftWithLittle, ep + ep_out -> 1/2.
+//   2. DetailedBalance: W(eb, ep -> ep_out)/sqrt(ep) is symmetric in ep and ep_out at fixed total
+//      energy, 1/sqrt(ep) being the microcanonical density.
+//   3. IntegratesToItsMoments: with weights 1, zeta, zeta^2, zeta = ep_out - ep, to the f, j, h of
+//      kernel_moments.h.
+//
+// Pure functions: safe from any thread.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_
+#define BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_
+
+namespace ballpiston {
+
+inline constexpr double kKernelRelativeError = 1e-15;
+
+double Kernel(double eb, double ep, double ep_out);
+
+double PairKernel(double ep, double ep_out);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_KERNEL_H_

@@ -1,0 +1,11 @@
+// The version of the numbers: raised whenever the same specification may give other bits.
+#ifndef BALLPISTON_CORE_ENGINE_VERSION_H_
+#define BALLPISTON_CORE_ENGINE_VERSION_H_
+
+namespace ballpiston {
+
+inline constexpr char kEngineVersion[] = "0.1.0";
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENGINE_VERSION_H_

@@ -1,0 +1,34 @@
+// How a point's samples are cut into blocks.
+//
+// The block size follows from the target and the predicted cost of a sample alone, never from
+// threads or machines: some 2^20 events a block, so that a block takes about 0.05 to 0.1 s; a
+// power of two, so that a rounding difference in the prediction does not change the plan; small
+// enough that a point has at least kMinBlocks of them, so that errors can be taken between blocks.
+#ifndef BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
+#define BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "core/experiment/ensemble_spec.h"
+
+namespace ballpiston {
+
+inline constexpr uint64_t kMinBlocks = 64;
+
+struct BlockPlan {
+  uint64_t samples = 0;     // in all; with a tolerance the most that will be computed
+  uint64_t block_size = 1;  // samples in each block but the last
+  std::optional<double> tolerance = {};
+  double events_per_sample = 1;  // predicted cost
+
+  uint64_t Blocks() const { return (samples + block_size - 1) / block_size; }
+  uint64_t FirstSample(uint64_t block) const { return block * block_size; }
+  uint64_t SamplesIn(uint64_t block) const;
+};
+
+BlockPlan PlanBlocks(const Target& target, double events_per_sample);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_

@@ -1,0 +1,111 @@
+#include "core/experiment/first_hit.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/closed_form/conditional_rate.h"
+#include "core/experiment/point_stream.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr int kSigmas[] = {-1, +1};  // by index of the histogram
+
+void Record(const Return& hit, BlockResult* result) {
+  ++result->samples;
+  result->moments[0].Add(hit.time);
+  result->moments[1].Add(hit.direction.x());
+  result->moments[2].Add(hit.sigma);
+  // With epsilon >= 1/4 an approaching piston always moves to the left; rounding may not add a law.
+  const size_t index = hit.sigma > 0 && result->histograms.size() > 1 ? 1 : 0;
+  result->histograms[index].Add(std::atan2(hit.direction.y(), hit.direction.x()));
+}
+
+KlDivergence RelativeEntropyTo(const std::vector<SignedHistogram>& histograms) {
+  std::vector<uint64_t> counts;
+  std::vector<double> probabilities;
+  for (const SignedHistogram& h : histograms) {
+    counts.insert(counts.end(), h.histogram.counts.begin(), h.histogram.counts.end());
+    probabilities.insert(probabilities.end(), h.expected_probabilities.begin(),
+                         h.expected_probabilities.end());
+  }
+  return RelativeEntropy(counts, probabilities);
+}
+
+Estimate Mean(std::string name, const Moments& moments) {
+  return {
+      .name = std::move(name), .value = moments.mean, .standard_error = moments.StandardError()};
+}
+
+}  // namespace
+
+FirstHitExperiment::FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point,
+                                       const PairGeometry& geometry)
+    : PointExperiment(point, PlanBlocks(spec.target, EventsPerReturn(geometry, *point.epsilon))),
+      orbit_(geometry, *point.epsilon, *point.exponent),
+      equilibrium_(*point.epsilon),
+      exact_time_(ConditionalMeanFreeTime(geometry, *point.epsilon)),
+      seed_(spec.seed),
+      stream_(PointStream(spec.experiment, point)) {}
+
+BlockResult FirstHitExperiment::EmptyResult() const {
+  BlockResult result;
+  result.moments.resize(3);
+  for (const int sigma : kSigmas) {
+    const double half_width = equilibrium_.AlphaMax(sigma);
+    if (half_width == 0) continue;
+    result.histograms.push_back(Histogram::OfBins(-half_width, half_width, kIngoingBins));
+  }
+  return result;
+}
+
+std::optional<BlockResult> FirstHitExperiment::RunBlock(uint64_t block,
+                                                        std::stop_token stop) const {
+  BlockResult result = EmptyResult();
+  const uint64_t first = plan().FirstSample(block);
+  for (uint64_t i = 0; i < plan().SamplesIn(block); ++i) {
+    const auto hit = orbit_.Run(CounterRandom(seed_, stream_, first + i), stop);
+    if (!hit) return std::nullopt;
+    result.health.Merge(hit->health);
+    if (hit->health.escapes == 0) Record(*hit, &result);
+  }
+  return result;
+}
+
+std::vector<SignedHistogram> FirstHitExperiment::LabelledHistograms(
+    const BlockResult& merged) const {
+  std::vector<SignedHistogram> labelled;
+  for (size_t i = 0; i < merged.histograms.size(); ++i) {
+    const Histogram& histogram = merged.histograms[i];
+    std::vector<double> expected(histogram.counts.size());
+    for (size_t bin = 0; bin < expected.size(); ++bin) {
+      expected[bin] =
+          equilibrium_.BinProbability(kSigmas[i], histogram.Edge(bin), histogram.Edge(bin + 1));
+    }
+    labelled.push_back({"alpha", kSigmas[i], histogram, std::move(expected)});
+  }
+  return labelled;
+}
+
+PointSummary FirstHitExperiment::Summarize(const BlockResult& merged) const {
+  PointSummary summary = {.samples = merged.samples, .health = merged.health};
+  summary.estimates.push_back(Mean("mean_hit_time", merged.moments[0]));
+  summary.estimates.push_back(Mean("mean_cos_alpha", merged.moments[1]));
+  summary.estimates.push_back(Mean("mean_sigma", merged.moments[2]));
+  if (parameters().exponent == 1) {
+    summary.estimates[0].exact = exact_time_;
+    summary.estimates[1].exact = equilibrium_.MeanCosAlpha();
+    summary.estimates[2].exact = equilibrium_.MeanSigma();
+  }
+  if (const auto variation = merged.moments[0].CoefficientOfVariation()) {
+    summary.estimates.push_back(
+        {.name = "coefficient_of_variation",
+         .value = *variation,
+         .standard_error = merged.moments[0].CoefficientOfVariationError()});
+  }
+  summary.histograms = LabelledHistograms(merged);
+  if (merged.samples > 0) summary.kl_divergence = RelativeEntropyTo(summary.histograms);
+  return summary;
+}
+
+}  // namespace ballpiston

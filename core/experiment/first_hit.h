@@ -1,0 +1,41 @@
+// The paper's numerical test of the Markov property: start uniform on the collision surface with
+// an outgoing law h^(n), and record the ingoing (alpha, sigma) of the first ball-piston collision.
+//
+// Moments: [0] hit time, [1] cos(alpha), [2] sigma. Histograms of alpha, 1000 bins over the
+// interval allowed to each sign of the piston's velocity: [0] sigma = -1, [1] sigma = +1 (only for
+// epsilon < 1/4). Their relative entropy to h^(1) is the paper's eq. kld. For n = 1 everything is
+// stationary at every delta, and the exact values are given.
+#ifndef BALLPISTON_CORE_EXPERIMENT_FIRST_HIT_H_
+#define BALLPISTON_CORE_EXPERIMENT_FIRST_HIT_H_
+
+#include "core/closed_form/ingoing_law.h"
+#include "core/experiment/point_experiment.h"
+#include "core/experiment/return_orbit.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+inline constexpr size_t kIngoingBins = 1000;
+
+class FirstHitExperiment : public PointExperiment {
+ public:
+  FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point,
+                     const PairGeometry& geometry);
+
+  std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  PointSummary Summarize(const BlockResult& merged) const override;
+
+ private:
+  BlockResult EmptyResult() const;
+  std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const;
+
+  ReturnOrbit orbit_;
+  IngoingLaw equilibrium_;
+  double exact_time_;
+  uint64_t seed_;
+  uint64_t stream_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_FIRST_HIT_H_

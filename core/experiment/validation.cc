@@ -1,0 +1,159 @@
+// Everything that can be wrong with a specification, field by field.
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/experiment/ensemble_spec.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+namespace {
+
+using Found = std::vector<FieldViolation>;
+
+struct Needs {
+  bool epsilon;
+  bool exponent;
+};
+
+Needs GridOf(Experiment experiment) {
+  return {.epsilon = experiment != Experiment::kEquilibrium,
+          .exponent = experiment == Experiment::kFirstHit};
+}
+
+std::string At(absl::string_view list, size_t i) { return absl::StrFormat("grid.%s[%d]", list, i); }
+
+void CheckUse(Experiment experiment, absl::string_view list, bool used, size_t size, Found* found) {
+  if (used && size == 0) {
+    found->push_back({absl::StrCat("grid.", list),
+                      absl::StrCat("is empty; ", Name(experiment), " needs at least one value")});
+  }
+  if (!used && size != 0) {
+    found->push_back({absl::StrCat("grid.", list),
+                      absl::StrCat("has ", size, " values; ", Name(experiment), " takes none")});
+  }
+}
+
+void CheckRange(absl::string_view list, const std::vector<double>& values, double lower,
+                double upper, Found* found) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (values[i] >= lower && values[i] <= upper) continue;
+    found->push_back({At(list, i), absl::StrFormat("%s is %.17g; permitted: [%g, %g]", list,
+                                                   values[i], lower, upper)});
+  }
+}
+
+void CheckGeometry(const Grid& grid, Found* found) {
+  // The largest valid rho has the smallest bound, so it decides for every delta.
+  double largest = 0;
+  for (size_t i = 0; i < grid.rho.size(); ++i) {
+    const absl::Status status = ValidateRho(grid.rho[i]);
+    if (status.ok()) largest = std::fmax(largest, grid.rho[i]);
+    if (!status.ok()) found->push_back({At("rho", i), std::string(status.message())});
+  }
+  for (size_t i = 0; i < grid.delta.size(); ++i) {
+    const absl::Status status =
+        largest > 0 ? ValidatePairDelta(largest, grid.delta[i]) : ValidateSomeDelta(grid.delta[i]);
+    if (!status.ok()) found->push_back({At("delta", i), std::string(status.message())});
+  }
+}
+
+double PointsAskedFor(const Grid& grid) {
+  double points = 1;
+  for (const size_t size :
+       {grid.rho.size(), grid.delta.size(), grid.epsilon.size(), grid.exponent.size()}) {
+    if (size != 0) points *= static_cast<double>(size);
+  }
+  return points;
+}
+
+void CheckPointCount(const Grid& grid, Found* found) {
+  const double points = PointsAskedFor(grid);
+  if (points <= static_cast<double>(kMaxPoints)) return;
+  found->push_back(
+      {"grid", absl::StrFormat("has %.0f points; permitted: 1 to %d", points, kMaxPoints)});
+}
+
+void CheckGrid(const EnsembleSpec& spec, Found* found) {
+  const Needs needs = GridOf(spec.experiment);
+  CheckUse(spec.experiment, "rho", true, spec.grid.rho.size(), found);
+  CheckUse(spec.experiment, "delta", true, spec.grid.delta.size(), found);
+  CheckUse(spec.experiment, "epsilon", needs.epsilon, spec.grid.epsilon.size(), found);
+  CheckUse(spec.experiment, "exponent", needs.exponent, spec.grid.exponent.size(), found);
+  CheckUse(spec.experiment, "cells", false, spec.grid.cells.size(), found);
+  CheckPointCount(spec.grid, found);
+}
+
+void CheckValues(const Grid& grid, Found* found) {
+  if (PointsAskedFor(grid) > static_cast<double>(kMaxPoints)) return;  // said already
+  CheckGeometry(grid, found);
+  CheckRange("epsilon", grid.epsilon, 0, 0.5, found);
+  CheckRange("exponent", grid.exponent, 0, kMaxExponent, found);
+}
+
+void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Found* found) {
+  if (!count || (*count >= 1 && *count <= kMaxSamples)) return;
+  found->push_back({absl::StrCat("target.", field),
+                    absl::StrFormat("is %d; permitted: 1 to %d", *count, kMaxSamples)});
+}
+
+void CheckTargetKind(const EnsembleSpec& spec, Found* found) {
+  const bool counts_collisions = spec.experiment == Experiment::kEquilibrium;
+  if (counts_collisions && spec.target.samples) {
+    found->push_back({"target.samples", "equilibrium counts collisions; use target.collisions"});
+  }
+  if (!counts_collisions && spec.target.collisions) {
+    found->push_back({"target.collisions",
+                      absl::StrCat(Name(spec.experiment), " counts samples; use target.samples")});
+  }
+}
+
+void CheckTarget(const EnsembleSpec& spec, Found* found) {
+  const Target& target = spec.target;
+  const int kinds = target.samples.has_value() + target.collisions.has_value() +
+                    target.tolerance.has_value() + target.budget_seconds.has_value();
+  if (kinds > 1) found->push_back({"target", "more than one kind is set; permitted: one"});
+  CheckTargetKind(spec, found);
+  CheckCount("samples", target.samples, found);
+  CheckCount("collisions", target.collisions, found);
+  if (target.tolerance && !(*target.tolerance > 0 && *target.tolerance < 1)) {
+    found->push_back({"target.tolerance", absl::StrFormat("is %.17g; permitted: 0 < tolerance < 1",
+                                                          *target.tolerance)});
+  }
+  if (target.budget_seconds) {
+    found->push_back({"target.budget",
+                      "not offered by this version; permitted: samples, collisions, tolerance"});
+  }
+}
+
+void CheckModel(const EnsembleSpec& spec, Found* found) {
+  if (spec.model != Model::kAuto && spec.model != Model::kBilliardReference) {
+    found->push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
+                                            Name(spec.experiment),
+                                            " in this version; permitted: auto, "
+                                            "billiard_reference")});
+  }
+  if (spec.precision != Precision::kDouble) {
+    found->push_back({"precision", absl::StrCat("is ", Name(spec.precision),
+                                                "; permitted with billiard_reference: double")});
+  }
+}
+
+}  // namespace
+
+std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
+  Found found;
+  if (spec.experiment == Experiment::kUnspecified) {
+    found.push_back({"experiment",
+                     "is missing; permitted: equilibrium, conditional-mean-free-time, first-hit"});
+  } else {
+    CheckGrid(spec, &found);
+    CheckTarget(spec, &found);
+    CheckModel(spec, &found);
+  }
+  CheckValues(spec.grid, &found);
+  return found;
+}
+
+}  // namespace ballpiston

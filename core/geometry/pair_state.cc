@@ -1,0 +1,18 @@
+#include "core/geometry/pair_state.h"
+
+#include <cmath>
+
+namespace ballpiston {
+
+double EnergyError(const PairState& state) {
+  const double ball = state.ball_speed * state.ball_speed * state.direction.squaredNorm();
+  return std::fabs(ball + state.piston_velocity * state.piston_velocity - 1);
+}
+
+bool InsideCell(const PairGeometry& geometry, const Eigen::Vector2d& position, double slack) {
+  // Of the four corners' discs the one in the ball's own quadrant is nearest.
+  const double dx = 0.5 - std::fabs(position.x()), dy = 0.5 - std::fabs(position.y());
+  return dx >= 0 && dy >= 0 && std::hypot(dx, dy) >= geometry.rho() - slack;
+}
+
+}  // namespace ballpiston

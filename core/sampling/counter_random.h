@@ -1,0 +1,46 @@
+// Uniform random numbers as a pure function of (seed, stream, sample, draw).
+//
+// Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4). So a
+// sample's numbers do not depend on who computes it, when, or what was computed before.
+//   seed    the user's.
+//   stream  tells apart what must be independent under one seed, e.g. the points of a grid.
+//   sample  index of the sample within the stream.
+// One object is one sample's sequence of draws; not for sharing between threads.
+#ifndef BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
+#define BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
+
+#include <Random123/philox.h>
+
+#include <cstdint>
+
+namespace ballpiston {
+
+class CounterRandom {
+ public:
+  CounterRandom(uint64_t seed, uint64_t stream, uint64_t sample)
+      : key_{{seed, stream}}, counter_{{sample, 0, 0, 0}} {}
+
+  uint64_t Bits() {
+    if (used_ == 4) Refill();
+    return block_[used_++];
+  }
+
+  // In the open interval (0, 1): the midpoints of 2^52 equal cells, each exact in double.
+  double Uniform() { return (static_cast<double>(Bits() >> 12) + 0.5) * 0x1p-52; }
+
+ private:
+  void Refill() {
+    block_ = r123::Philox4x64()(counter_, key_);
+    ++counter_[1];
+    used_ = 0;
+  }
+
+  r123::Philox4x64::key_type key_;
+  r123::Philox4x64::ctr_type counter_;
+  r123::Philox4x64::ctr_type block_ = {};
+  unsigned used_ = 4;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_

@@ -1,0 +1,52 @@
+#include "core/sampling/invariant_measure.h"
+
+#include <cmath>
+
+#include "core/sampling/collision_surface.h"
+#include "core/sampling/direction.h"
+
+namespace ballpiston {
+namespace {
+
+PairState WithVelocity(const Eigen::Vector2d& position, double piston, double v1, double v2,
+                       double v3) {
+  const double speed = std::sqrt(v1 * v1 + v2 * v2);
+  PairState state = {
+      .position = position, .ball_speed = speed, .piston = piston, .piston_velocity = v3};
+  if (speed > 0) state.direction = {v1 / speed, v2 / speed};
+  return state;
+}
+
+}  // namespace
+
+PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random) {
+  const double half_width = geometry.tip();
+  const double stroke = geometry.piston_right() - geometry.piston_left();
+  for (;;) {
+    const Eigen::Vector2d ball = {(2 * random.Uniform() - 1) * half_width,
+                                  (2 * random.Uniform() - 1) * half_width};
+    const double piston = geometry.piston_left() + stroke * random.Uniform();
+    if (!InsideCell(geometry, ball) || ball.x() >= piston) continue;
+    // Archimedes: a coordinate of a uniform point of the sphere is uniform.
+    const double v3 = 2 * random.Uniform() - 1;
+    return {.position = ball,
+            .direction = UniformDirection(random),
+            .ball_speed = std::sqrt((1 - v3) * (1 + v3)),
+            .piston = piston,
+            .piston_velocity = v3};
+  }
+}
+
+PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random) {
+  const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry, random);
+  // The cosine law: the normal component's square is uniform, the tangential part has a uniform
+  // direction in the plane spanned by (0, 1, 0) and (1, 0, 1)/sqrt(2).
+  const double square = random.Uniform();
+  const Eigen::Vector2d tangential = UniformDirection(random) * std::sqrt(1 - square);
+  const double normal = std::sqrt(square);
+  const double v1 = (tangential.y() - normal) * M_SQRT1_2;
+  const double v3 = (tangential.y() + normal) * M_SQRT1_2;
+  return WithVelocity(ball, ball.x(), v1, tangential.x(), v3);
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,21 @@
+// Pairs in equilibrium at total energy 1/2: the flow's invariant measure mu (uniform on Gamma times
+// the unit sphere of velocities) and the return map's measure nu_bp (uniform on the collision
+// surface, velocity density v.n over the outgoing hemisphere, n = (-1, 0, 1)/sqrt(2); eq. cnu).
+#ifndef BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_
+#define BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_
+
+#include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+// From mu: anywhere in the flow's phase space.
+PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random);
+
+// From nu_bp: just after a ball-piston collision.
+PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_SAMPLING_INVARIANT_MEASURE_H_

@@ -1,0 +1,39 @@
+// The outgoing laws h^(n) of the paper's eq. falpha: after a ball-piston collision at fixed
+// energies, the ball's angle alpha and the sign sigma of the piston's velocity have density
+//   proportional to (sigma sqrt(ep) - sqrt(eb) cos alpha)_+^n,   eb = 1/2 - ep,
+// which is the paper's ingoing form seen backwards in time. n = 1 is the invariant law, n = 0 is
+// uniform on what separates. Any real n in [0, kMaxExponent].
+//
+// Sampled exactly, by rejection against the uniform law; for n -> 1000 some 1 in 100 is accepted.
+#ifndef BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
+#define BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
+
+#include <Eigen/Core>
+
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+struct SignedDirection {
+  Eigen::Vector2d ball;  // (cos alpha, sin alpha)
+  int sigma = 1;         // +1 or -1
+};
+
+class OutgoingLaw {
+ public:
+  // 0 <= epsilon <= 1/2, 0 <= exponent.
+  OutgoingLaw(double epsilon, double exponent);
+
+  SignedDirection Draw(CounterRandom& random) const;
+
+ private:
+  double Weight(double base) const;  // base^n, for 0 < base <= 1
+
+  double ball_;    // sqrt(eb)/(sqrt(eb) + sqrt(ep))
+  double piston_;  // sqrt(ep)/(sqrt(eb) + sqrt(ep))
+  double exponent_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_

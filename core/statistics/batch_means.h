@@ -1,0 +1,39 @@
+// A ratio of two sums from a correlated series, with an honest error: batch means.
+//
+// The series is cut into batches; each contributes the sums (numerator, denominator) over it, e.g.
+// (time elapsed, collisions counted). The ratio is that of the totals, its standard error follows
+// from the scatter of numerator - ratio * denominator between batches, which is free of bias if
+// batches are independent or long compared with the correlation time. Batches of unequal length
+// are weighted as they should be. Properties, each with a test of its name:
+//   1. MergeEqualsSinglePass, to rounding.  2. MergeWithEmptyIsIdentity, bit for bit.
+//   3. ErrorOfIndependentTermsIsTheirs: batches of single independent terms give the usual error.
+#ifndef BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
+#define BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
+
+#include <cstdint>
+#include <optional>
+
+namespace ballpiston {
+
+struct BatchMeans {
+  uint64_t batches = 0;
+  double mean_numerator = 0;
+  double mean_denominator = 0;
+  double c_nn = 0;  // sums of products of deviations from the means
+  double c_nd = 0;
+  double c_dd = 0;
+
+  void Add(double numerator, double denominator);  // one batch
+  void Merge(const BatchMeans& other);
+
+  // Requires a batch and a denominator other than 0.
+  std::optional<double> Ratio() const;
+  // Requires two batches as well.
+  std::optional<double> StandardError() const;
+
+  friend bool operator==(const BatchMeans&, const BatchMeans&) = default;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_

@@ -1,0 +1,34 @@
+// Counts in equal bins over [lower, upper].
+//
+// Values at or beyond an end count in the bin at that end: a rounded value may leave its interval
+// by an ulp, and no sample may be lost. Property, with a test of its name:
+//   1. MergeAddsCounts: exactly, in any order.
+#ifndef BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_
+#define BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ballpiston {
+
+struct Histogram {
+  double lower = 0;
+  double upper = 0;
+  std::vector<uint64_t> counts;
+
+  static Histogram OfBins(double lower, double upper, size_t bins);
+
+  void Add(double x);
+  // Requires the same bins on both sides.
+  void Merge(const Histogram& other);
+
+  uint64_t Total() const;
+  double Edge(size_t bin) const;  // lower edge of a bin; Edge(bins) is `upper`
+
+  friend bool operator==(const Histogram&, const Histogram&) = default;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_STATISTICS_HISTOGRAM_H_

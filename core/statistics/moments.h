@@ -1,0 +1,40 @@
+// The first four central moments of a sample, accumulated in one pass.
+//
+// Sums of powers of deviations from the running mean (Pebay's updates), so that neither a large
+// mean nor many samples cancel digits. Properties, each with a test of its name:
+//   1. MergeEqualsSinglePass: merging parts gives the moments of the whole, to rounding.
+//   2. MergeWithEmptyIsIdentity: bit for bit, on either side.
+// Merging the same parts in the same order gives the same bits anywhere.
+#ifndef BALLPISTON_CORE_STATISTICS_MOMENTS_H_
+#define BALLPISTON_CORE_STATISTICS_MOMENTS_H_
+
+#include <cstdint>
+#include <optional>
+
+namespace ballpiston {
+
+struct Moments {
+  uint64_t count = 0;
+  double mean = 0;
+  double m2 = 0;  // sum of (x - mean)^2, and so on
+  double m3 = 0;
+  double m4 = 0;
+
+  void Add(double x);
+  void Merge(const Moments& other);
+
+  // Unbiased. Requires two samples.
+  std::optional<double> Variance() const;
+  // Of the mean. Requires two samples.
+  std::optional<double> StandardError() const;
+  // Standard deviation over mean. Requires two samples and a mean other than 0.
+  std::optional<double> CoefficientOfVariation() const;
+  // Of the coefficient of variation, to first order in 1/count (delta method).
+  std::optional<double> CoefficientOfVariationError() const;
+
+  friend bool operator==(const Moments&, const Moments&) = default;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_STATISTICS_MOMENTS_H_

@@ -1,0 +1,45 @@
+#include "core/closed_form/circular_segment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gtest/gtest.h"
+#include "tests/oracle/quad_precision.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Quad;
+
+TEST(CircularSegment, AngleMinusSineIsAccurate) {
+  double worst = 0;
+  // From 1e-8, where the quadruple difference has 18 digits left.
+  for (double angle = 1e-8; angle < 2 * std::numbers::pi; angle *= 1.01) {
+    const double error =
+        oracle::RelativeError(AngleMinusSine(angle), Quad{angle} - oracle::Sin(Quad{angle}));
+    worst = std::max(worst, error);
+  }
+  EXPECT_LE(worst, kAngleMinusSineRelativeError);
+}
+
+TEST(CircularSegment, AngleMinusSineOfATinyAngleIsItsCube) {
+  EXPECT_EQ(AngleMinusSine(0), 0);
+  // One rounding of the cube and one of the quotient.
+  EXPECT_NEAR(AngleMinusSine(1e-50), 1e-150 / 6, 1e-165);
+}
+
+TEST(CircularSegment, ChordAngleInvertsTheChord) {
+  for (double angle = 1e-9; angle < 3; angle *= 1.1) {
+    // The arcsine's slope at angle = 3 amplifies an ulp by 1/cos(1.5) = 14.
+    EXPECT_NEAR(ChordAngle(0.7, 2 * 0.7 * std::sin(angle / 2)) / angle, 1, 1e-14);
+  }
+}
+
+TEST(CircularSegment, SegmentsOfAHalfAndAWholeDisc) {
+  EXPECT_DOUBLE_EQ(SegmentArea(0.6, std::numbers::pi), 0.18 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(SegmentArea(0.6, 2 * std::numbers::pi), 0.36 * std::numbers::pi);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,78 @@
+#include "core/closed_form/conditional_rate.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/closed_form/mean_free_time.h"
+#include "core/geometry/pair_geometry.h"
+#include "gtest/gtest.h"
+#include "tests/oracle/gauss_legendre.h"
+#include "tests/oracle/printed_formulas.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Quad;
+
+double ErrorOfPhi(double ep) {
+  const Quad eb = Quad{1} / 2 - Quad{ep};
+  return oracle::RelativeError(Phi(ep),
+                               4 * oracle::CollisionRateAsPrinted(eb, Quad{ep}, oracle::QuadPi()));
+}
+
+TEST(ConditionalRate, AccurateAtRandomEnergies) {
+  std::mt19937_64 random(20240604);
+  std::uniform_real_distribution<double> exponent(-14, 0);
+  for (int i = 0; i < 500; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    for (double ep : {small, 0.5 - small, 0.25 + small / 2, 0.25 - small / 2}) {
+      EXPECT_LE(ErrorOfPhi(ep), kConditionalRateRelativeError) << ep;
+    }
+  }
+}
+
+TEST(ConditionalRate, EndsOfTheEnergyRange) {
+  EXPECT_DOUBLE_EQ(Phi(0), std::sqrt(8) / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(Phi(1e-300), Phi(0));
+  EXPECT_DOUBLE_EQ(Phi(0.5), std::numbers::sqrt2);
+}
+
+TEST(ConditionalRate, PhiIsContinuousAndIncreasing) {
+  EXPECT_EQ(Phi(0.25), 1);
+  EXPECT_NEAR(Phi(std::nextafter(0.25, 0.0)), 1, 4e-16);
+  EXPECT_NEAR(Phi(std::nextafter(0.25, 1.0)), 1, 4e-16);
+  // The slope of phi at 1/4 is 2.
+  EXPECT_NEAR(Phi(0.25 - 1e-10), 1 - 2e-10, 1e-14);
+  EXPECT_NEAR(Phi(0.25 + 1e-10), 1 + 2e-10, 1e-14);
+  for (double ep = 0; ep < 0.499; ep += 0.001) EXPECT_LT(Phi(ep), Phi(ep + 0.001)) << ep;
+}
+
+// Eq. intcnuep. With ep = u^2/2 the weight becomes du; the cut at ep = 1/4 lies at u = 1/sqrt(2),
+// where phi has a kink (d^(3/2)) that u = u* - v^2 makes smooth.
+TEST(ConditionalRate, AveragesToTheUnconditionalRate) {
+  const double cut = std::sqrt(0.5);
+  const auto phi = [](double u) { return Phi(u * u / 2); };
+  const Quad below = oracle::Integrate(
+      [&](Quad v) {
+        const double w = static_cast<double>(v);
+        return 2 * w * phi(cut - w * w);
+      },
+      0, std::sqrt(cut));
+  const Quad above = oracle::Integrate([&](Quad u) { return phi(static_cast<double>(u)); }, cut, 1);
+  // Rounding of phi in double is all that is left.
+  EXPECT_NEAR(static_cast<double>(below + above), 1, 1e-14);
+}
+
+TEST(ConditionalRate, ConditionalMeanFreeTimeIsTauOverPhi) {
+  const auto geometry = PairGeometry::Create(0.529561127988977, 0.1);
+  ASSERT_TRUE(geometry.ok());
+  const double tau = MeanFreeTimesOf(*geometry).ball_piston;
+  for (double ep : {0.0, 1e-300, 0.125, 0.25, 0.375, 0.5}) {
+    EXPECT_DOUBLE_EQ(ConditionalMeanFreeTime(*geometry, ep) * Phi(ep), tau);
+  }
+  EXPECT_LT(ConditionalMeanFreeTime(*geometry, 0.5), ConditionalMeanFreeTime(*geometry, 0));
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,181 @@
+#include "core/closed_form/ingoing_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "gtest/gtest.h"
+#include "tests/oracle/gauss_legendre.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Quad;
+using oracle::QuadPi;
+using oracle::RelativeError;
+using oracle::Sqrt;
+
+constexpr double kEnergies[] = {0.0,          1e-300, 1e-16, 1e-8,         1.0 / 3200,
+                                0.01,         0.125,  0.249, 0.2499999999, 0.25,
+                                0.2500000001, 0.251,  0.375, 0.49,         0.5};
+
+// eq. falpha with n = 1, not normalised.
+Quad Weight(double ep, int sigma, Quad alpha) {
+  const Quad value = Sqrt(Quad{1} / 2 - Quad{ep}) * oracle::Cos(alpha) - sigma * Sqrt(Quad{ep});
+  return value > 0 ? value : Quad{0};
+}
+
+Quad Edge(double ep, int sigma) {
+  if (ep >= 0.25) return sigma > 0 ? Quad{0} : QuadPi();
+  const Quad ratio = Sqrt(Quad{ep} / (Quad{1} / 2 - Quad{ep}));
+  return QuadPi() / 2 - sigma * oracle::Asin(ratio);
+}
+
+// Integral of g(alpha, sigma) times the weight over both signs.
+template <typename Function>
+Quad OverTheCircle(double ep, Function g) {
+  Quad sum = 0;
+  for (int sigma : {1, -1}) {
+    const Quad edge = Edge(ep, sigma);
+    sum +=
+        oracle::Integrate([&](Quad a) { return g(a, sigma) * Weight(ep, sigma, a); }, -edge, edge);
+  }
+  return sum;
+}
+
+Quad Norm(double ep) {
+  return OverTheCircle(ep, [](Quad, int) { return 1; });
+}
+
+TEST(IngoingLaw, AllowedIntervals) {
+  for (double ep : kEnergies) {
+    const IngoingLaw law(ep);
+    for (int sigma : {1, -1}) {
+      EXPECT_LE(RelativeError(law.AlphaMax(sigma), Edge(ep, sigma)), 1e-15) << ep << " " << sigma;
+    }
+  }
+}
+
+TEST(IngoingLaw, BinProbabilityIsTheIntegralOfTheDensity) {
+  std::mt19937_64 random(20240609);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (double ep : kEnergies) {
+    const IngoingLaw law(ep);
+    const Quad norm = Norm(ep);
+    for (int sigma : {1, -1}) {
+      const double edge = law.AlphaMax(sigma);
+      for (int i = 0; i < 100; ++i) {
+        const double a0 = edge * (2 * unit(random) - 1);
+        const double a1 = a0 + (edge - a0) * unit(random);
+        const Quad exact =
+            oracle::Integrate([&](Quad a) { return Weight(ep, sigma, a); }, a0, a1) / norm;
+        // The oracle counts the true edge, the law its rounding: see the header.
+        const double from_edge = std::min(edge - std::abs((a0 + a1) / 2), edge);
+        const double tolerance =
+            kIngoingLawRelativeError + (edge > 0 ? 1e-15 * edge / from_edge : 0);
+        EXPECT_LE(RelativeError(law.BinProbability(sigma, a0, a1), exact), tolerance)
+            << ep << " " << sigma << " " << a0 << " " << a1;
+      }
+    }
+  }
+}
+
+TEST(IngoingLaw, NarrowBinIsDensityTimesWidth) {
+  for (double ep : {0.0, 0.125, 0.25, 0.375, 0.5}) {
+    const IngoingLaw law(ep);
+    for (double at : {-0.7, 0.0, 0.3}) {
+      const double end = at + 1e-9;
+      // Width in double as the bin has it; the density varies by 1e-9 over the bin.
+      EXPECT_NEAR(law.BinProbability(-1, at, end) / (end - at) / law.Density(-1, at), 1, 1e-8);
+    }
+  }
+}
+
+TEST(IngoingLaw, NothingOutsideOfTheAllowedInterval) {
+  const IngoingLaw law(0.125);
+  const double edge = law.AlphaMax(1);
+  EXPECT_EQ(law.BinProbability(1, edge, M_PI), 0);
+  EXPECT_EQ(law.BinProbability(1, -M_PI, -edge), 0);
+  EXPECT_EQ(law.Density(1, 1.01 * edge), 0);
+  EXPECT_EQ(law.BinProbability(1, -M_PI, M_PI), law.SigmaProbability(1));
+  EXPECT_EQ(IngoingLaw(0.25).SigmaProbability(1), 0);
+  EXPECT_EQ(IngoingLaw(0.4).SigmaProbability(1), 0);
+  EXPECT_EQ(IngoingLaw(0.4).BinProbability(1, -0.1, 0.1), 0);
+}
+
+TEST(IngoingLaw, ProbabilitiesSumToOne) {
+  for (double ep : kEnergies) {
+    const IngoingLaw law(ep);
+    EXPECT_NEAR(law.SigmaProbability(1) + law.SigmaProbability(-1), 1, 2e-15) << ep;
+    for (int sigma : {1, -1}) {
+      const double edge = law.AlphaMax(sigma);
+      double sum = 0;
+      for (int bin = 0; bin < 1000; ++bin) {
+        sum += law.BinProbability(sigma, edge * (bin - 500) / 500, edge * (bin - 499) / 500);
+      }
+      // A thousand roundings of a running sum.
+      EXPECT_NEAR(sum, law.SigmaProbability(sigma), 1e-13 * law.SigmaProbability(sigma)) << ep;
+    }
+  }
+}
+
+TEST(IngoingLaw, SigmaProbabilityIsTheIntegralOverAlpha) {
+  for (double ep : kEnergies) {
+    for (int sigma : {1, -1}) {
+      const Quad edge = Edge(ep, sigma);
+      const Quad exact =
+          oracle::Integrate([&](Quad a) { return Weight(ep, sigma, a); }, -edge, edge) / Norm(ep);
+      EXPECT_LE(RelativeError(IngoingLaw(ep).SigmaProbability(sigma), exact),
+                kIngoingLawRelativeError)
+          << ep << " " << sigma;
+    }
+  }
+}
+
+TEST(IngoingLaw, MeansAreThoseOfTheDensity) {
+  for (double ep : kEnergies) {
+    const IngoingLaw law(ep);
+    const Quad norm = Norm(ep);
+    const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return oracle::Cos(a); }) / norm;
+    const Quad sign = OverTheCircle(ep, [](Quad, int sigma) { return sigma; }) / norm;
+    // Absolute: both integrals cancel where they are small, the library's closed forms do not.
+    EXPECT_NEAR(law.MeanCosAlpha(), static_cast<double>(cosine), 1e-14) << ep;
+    EXPECT_NEAR(law.MeanSigma(), static_cast<double>(sign), 1e-14) << ep;
+  }
+}
+
+TEST(IngoingLaw, PistonAtRestIsHitAlikeOnBothSigns) {
+  const IngoingLaw law(0);
+  EXPECT_DOUBLE_EQ(law.AlphaMax(1), M_PI / 2);
+  EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI / 2);
+  EXPECT_DOUBLE_EQ(law.SigmaProbability(1), 0.5);
+  EXPECT_EQ(law.MeanSigma(), 0);
+  EXPECT_DOUBLE_EQ(law.MeanCosAlpha(), M_PI / 4);  // of (1/2) cos alpha on |alpha| < pi/2
+}
+
+TEST(IngoingLaw, BallAtRestHasNoDirection) {
+  const IngoingLaw law(0.5);
+  EXPECT_EQ(law.AlphaMax(1), 0);
+  EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI);
+  EXPECT_DOUBLE_EQ(law.BinProbability(-1, 1, 2), 1 / (2 * M_PI));
+  EXPECT_DOUBLE_EQ(law.Density(-1, M_PI), 1 / (2 * M_PI));
+  EXPECT_DOUBLE_EQ(law.SigmaProbability(-1), 1);
+  EXPECT_EQ(law.MeanCosAlpha(), 0);
+  EXPECT_DOUBLE_EQ(law.MeanSigma(), -1);
+}
+
+TEST(IngoingLaw, ContinuousWhereBallAndPistonAreEquallyFast) {
+  const IngoingLaw at(0.25);
+  for (double ep : {0.25 - 1e-12, 0.25 + 1e-12}) {
+    const IngoingLaw near(ep);
+    // AlphaMax moves as the square root of the distance, probabilities in proportion to it.
+    EXPECT_NEAR(near.AlphaMax(-1), at.AlphaMax(-1), 1e-5);
+    EXPECT_NEAR(near.BinProbability(-1, -0.3, 1.2), at.BinProbability(-1, -0.3, 1.2), 1e-11);
+    EXPECT_NEAR(near.SigmaProbability(1), 0, 1e-11);
+    EXPECT_NEAR(near.MeanCosAlpha(), 0.5, 1e-11);
+    EXPECT_NEAR(near.MeanSigma(), -1, 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,132 @@
+#include "core/closed_form/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/closed_form/kernel_moments.h"
+#include "gtest/gtest.h"
+#include "tests/oracle/gauss_legendre.h"
+#include "tests/oracle/printed_formulas.h"
+#include "tests/oracle/quad_precision.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Quad;
+using oracle::RelativeError;
+using oracle::Sqrt;
+
+Quad Positive(Quad x) { return x > 0 ? x : Quad{0}; }
+
+// The first form of eq. kernel: the sum over the piston's signs before and after.
+Quad KernelOverSigns(Quad eb, Quad ep, Quad ep_out) {
+  if (ep_out >= eb) return 0;
+  Quad sum = 0;
+  for (int before : {1, -1}) {
+    for (int after : {1, -1}) sum += Positive(after * Sqrt(ep_out) - before * Sqrt(ep));
+  }
+  return sum / (4 * oracle::QuadPi() * Sqrt(ep_out) * Sqrt(eb - ep_out));
+}
+
+TEST(Kernel, AccurateAtRandomEnergies) {
+  std::mt19937_64 random(20240607);
+  std::uniform_real_distribution<double> exponent(-14, 0);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    const double ep = i % 2 == 0 ? small : 0.5 - small;
+    const double out = 0.5 * unit(random);
+    EXPECT_LE(RelativeError(PairKernel(ep, out), KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out)),
+              kKernelRelativeError);
+    EXPECT_LE(RelativeError(Kernel(small, ep, out), KernelOverSigns(small, ep, out)),
+              kKernelRelativeError);
+  }
+}
+
+TEST(Kernel, AccurateWhereTheBallIsLeftWithLittle) {
+  double worst_printed = 0;
+  std::mt19937_64 random(20240608);
+  std::uniform_real_distribution<double> exponent(-17, -1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 5000; ++i) {
+    // Every third pair of energies close to (1/4, 1/4), where 1/2 - ep loses a bit.
+    const double ep =
+        i % 3 == 0 ? 0.25 - 0.25 * std::pow(10, exponent(random)) : 0.5 * unit(random);
+    const double out = (0.5 - ep) * (1 - std::pow(10, exponent(random)));
+    const Quad exact = KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out);
+    EXPECT_LE(RelativeError(PairKernel(ep, out), exact), kKernelRelativeError) << ep << " " << out;
+    const double printed = oracle::KernelAsPrinted(0.5 - ep, ep, out, M_PI);
+    worst_printed = std::max(worst_printed, RelativeError(printed, exact));
+  }
+  EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails
+  const double below = std::nextafter(0.25, 0.0);
+  EXPECT_LE(RelativeError(PairKernel(below, below),
+                          KernelOverSigns(Quad{1} / 2 - Quad{below}, below, below)),
+            kKernelRelativeError);
+}
+
+TEST(Kernel, VanishesBeyondTheBallsEnergy) {
+  EXPECT_EQ(Kernel(0.2, 0.3, 0.2), 0);
+  EXPECT_EQ(Kernel(0.2, 0.3, 0.21), 0);
+  EXPECT_EQ(PairKernel(0.1, 0.4), 0);
+  EXPECT_EQ(PairKernel(0.1, 0.45), 0);
+  EXPECT_EQ(PairKernel(0.5, 1e-12), 0);
+}
+
+TEST(Kernel, LimitsAtAPistonLeftAtRest) {
+  EXPECT_EQ(Kernel(0.3, 0.1, 0), std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 0), 1 / M_PI);
+  EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 1e-320), 1 / M_PI);
+}
+
+TEST(Kernel, DetailedBalance) {
+  for (double total : {0.5, 3.0}) {
+    for (double x : {1e-9, 0.1, 0.3, 0.7}) {
+      for (double y : {1e-5, 0.05, 0.25}) {
+        const double a = x * total;
+        const double b = y * total;
+        // Rounding of total - a, amplified by at most 20 in these points, and a few operations.
+        EXPECT_NEAR(
+            Kernel(total - a, a, b) / std::sqrt(a) / (Kernel(total - b, b, a) / std::sqrt(b)), 1,
+            1e-14);
+      }
+    }
+  }
+  for (double a : {1e-9, 0.1, 0.3}) {
+    EXPECT_NEAR(PairKernel(a, 0.19) / std::sqrt(a) / (PairKernel(0.19, a) / std::sqrt(0.19)), 1,
+                1e-15);
+  }
+}
+
+// Integral over ep_out of Kernel times (ep_out - ep)^n, with ep_out = eb sin^2 t.
+double Moment(int n, double eb, double ep) {
+  const auto integrand = [&](Quad t) {
+    const double sine = std::sin(static_cast<double>(t));
+    const double cosine = std::cos(static_cast<double>(t));
+    const double out = eb * sine * sine;
+    return std::pow(out - ep, n) * Kernel(eb, ep, out) * 2 * eb * sine * cosine;
+  };
+  const double end = M_PI / 2;
+  const double cut = ep < eb ? std::asin(std::sqrt(ep / eb)) : end;
+  return static_cast<double>(oracle::Integrate(integrand, 0, cut) +
+                             oracle::Integrate(integrand, cut, end));
+}
+
+TEST(Kernel, IntegratesToItsMoments) {
+  for (double eb : {0.01, 0.3, 0.5, 2.0}) {
+    for (double ep : {0.0, 1e-6, 0.05, 0.2, 0.5, 3.0}) {
+      const double scale = CollisionRate(eb, ep);
+      const double most = std::max(eb, ep);  // of |zeta|
+      // eb - ep_out loses digits towards t = pi/2: the last node has cos t = 2e-3, hence 1e-11
+      // there, with a weight of 1e-3.
+      EXPECT_NEAR(Moment(0, eb, ep), scale, 1e-12 * scale);
+      EXPECT_NEAR(Moment(1, eb, ep), EnergyCurrent(eb, ep), 1e-12 * scale * most);
+      EXPECT_NEAR(Moment(2, eb, ep), SquaredEnergyTransfer(eb, ep), 1e-12 * scale * most * most);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

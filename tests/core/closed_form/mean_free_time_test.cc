@@ -1,0 +1,84 @@
+#include "core/closed_form/mean_free_time.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/geometry/pair_geometry.h"
+#include "gtest/gtest.h"
+#include "tests/oracle/measures_by_quadrature.h"
+
+namespace ballpiston {
+namespace {
+
+using std::numbers::pi;
+using std::numbers::sqrt2;
+
+PairGeometry Geometry(double rho, double delta) {
+  const auto geometry = PairGeometry::Create(rho, delta);
+  EXPECT_TRUE(geometry.ok()) << geometry.status();
+  return *geometry;
+}
+
+TEST(MeanFreeTime, AccurateAtRandomGeometries) {
+  std::mt19937_64 random(20240603);
+  std::uniform_real_distribution<double> rho_exponent(-10, -0.01);
+  std::uniform_real_distribution<double> delta_exponent(-12, 0);
+  for (int i = 0; i < 100; ++i) {
+    const double rho = 0.5 + (kMaxRho - 0.5) * std::pow(10, rho_exponent(random));
+    const double delta = PairDeltaBound(rho) * std::pow(10, delta_exponent(random));
+    const MeanFreeTimes tau = MeanFreeTimesOf(Geometry(rho, delta));
+    const auto exact = oracle::MeasuresByQuadrature(rho, delta);
+    EXPECT_LE(oracle::RelativeError(tau.ball_piston, 4 * exact.volume / exact.area_ball_piston),
+              kMeanFreeTimeRelativeError);
+    EXPECT_LE(oracle::RelativeError(tau.ball_wall, 4 * exact.volume / exact.area_ball_wall),
+              kMeanFreeTimeRelativeError);
+    EXPECT_LE(oracle::RelativeError(tau.piston_wall, 4 * exact.volume / exact.area_piston_wall),
+              kMeanFreeTimeRelativeError);
+  }
+}
+
+TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
+  for (double rho : {0.501, 0.529561127988977, 0.6, 0.65, 0.7}) {
+    for (double fraction : {1e-3, 1e-6, 1e-9}) {
+      const double delta = fraction * PairDeltaBound(rho);
+      const double rate = 1 / (MeanFreeTimesOf(Geometry(rho, delta)).ball_piston * delta * delta);
+      // Leading correction: a few delta/lambda, the reason of the tolerance's second term.
+      EXPECT_NEAR(rate / RareLimitRate(rho), 1, 1e-13 + 4 * delta / Lambda(rho)) << rho;
+    }
+  }
+}
+
+TEST(MeanFreeTime, RareLimitRateIsOneOverTheCell) {
+  // Eq. taubpmftdelta as printed, where it does not cancel.
+  const double rho = 0.55;
+  const double l = Lambda(rho);
+  const double printed = 1 / (2 * sqrt2 * (1 - l - rho * rho * (pi - 4 * std::atan(l))));
+  EXPECT_NEAR(RareLimitRate(rho) / printed, 1, 1e-14);  // a tenfold cancellation in `printed`
+}
+
+// The footnote's two orders. Each is approached along rho - 1/2 and delta going to zero together,
+// with delta/lambda going to zero in the one and to infinity in the other.
+TEST(MeanFreeTime, DeltaFirstThenRhoGivesTheWedge) {
+  for (double gap : {1e-4, 1e-6, 1e-8}) {
+    const double rho = 0.5 + gap;
+    const double ratio = ScaledVolumeRatio(Geometry(rho, 1e-6 * Lambda(rho)));
+    // The cell at rho = 1/2 + gap is smaller by 4 gap/(1 - pi/4) in relative terms.
+    EXPECT_NEAR(ratio / kDeltaFirstScaledVolumeRatio, 1, 1e-5 + 20 * gap) << gap;
+  }
+  EXPECT_DOUBLE_EQ(kDeltaFirstScaledVolumeRatio, (4 - pi) / (4 * sqrt2));
+}
+
+TEST(MeanFreeTime, RhoFirstThenDeltaGivesTheCusp) {
+  const double rho = 0.5 + 1e-14;  // lambda = 2e-7
+  for (double delta : {0.1, 0.01, 1e-3}) {
+    const double ratio = ScaledVolumeRatio(Geometry(rho, delta));
+    // Corrections: the wedge's lambda/delta, and delta^2 from the volume and the arc's curvature.
+    const double tolerance = 2 * Lambda(rho) / delta + delta * delta;
+    EXPECT_NEAR(ratio / kRhoFirstScaledVolumeRatio, 1, tolerance) << delta;
+  }
+  EXPECT_DOUBLE_EQ(kRhoFirstScaledVolumeRatio, 3 * (4 - pi) / (4 * sqrt2));
+}
+
+}  // namespace
+}  // namespace ballpiston
