@@ -36,7 +36,7 @@ struct Event {
 
 class ReferenceFlow {
  public:
-  // A state inside Gamma; on its boundary it has to be outgoing.
+  // A state inside Gamma. On its boundary it may be about to leave: that is an event at time 0.
   ReferenceFlow(const PairGeometry& geometry, const PairState& state);
 
   // Moves to the next event. Reflections from walls are resolved. At a ball-piston collision the

@@ -1,7 +1,8 @@
 // The rate of ball-piston collisions at a given piston energy.
 //
 //   phi(ep) = tau_bp nu_bp(ep)               eq. numft, the same for every geometry
-//   tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi    eqs. taubpmftep, cnuep; exact for every delta
+//   tau_bp(ep) = 1/nu_bp(ep) = tau_bp/phi    eqs. taubpmftep, cnuep; exact for every delta,
+//                                            0 < ep < 1/2
 //
 // Symbols: ep energy of the piston, total energy 1/2. phi has no dimension, times are in cells over
 // unit speed. Domain: ep in [0, 1/2], every PairGeometry.
@@ -23,6 +24,9 @@ inline constexpr double kConditionalRateRelativeError = 1e-15;
 
 double Phi(double ep);
 
+// The mean time to return to the collision surface at fixed energies. At exactly ep = 0 and
+// ep = 1/2 one of the two rests, and what is never visited does not count (VolumesAtRest): there
+// the value is not the limit tau_bp/phi of its neighbours, and it is what an orbit shows.
 double ConditionalMeanFreeTime(const PairGeometry& geometry, double ep);
 
 }  // namespace ballpiston

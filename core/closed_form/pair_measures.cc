@@ -4,10 +4,7 @@
 //
 // Height. With a = lambda/2 + t the arc is at y = 1/2 - s, s = sqrt(rho^2 - a^2). From
 // rho^2 = (1 + lambda^2)/4 follows 1/4 - s^2 = t (t + lambda), hence
-//     y(t) = t (t + lambda)/(1/2 + s),    4 s^2 = (1 - 2 t)(1 + 2 t) - 4 t lambda .
-// In this form of s the first factor is exact for t > 1/4, which matters at the bound when
-// lambda -> 0: there s = lambda/2 is what remains. (It remains positive: the smallest lambda of a
-// double rho is 2.1e-8, its square four times the effect of rounding t.)
+//     y(t) = t (t + lambda)/(1/2 + s) .
 //
 // Area. The chord from (0, 0) to (t, y) has length c = hypot(t, y) and subtends D at the disc's
 // centre. What lies between axis and arc is the triangle t y/2 less the segment S between arc and
@@ -40,6 +37,7 @@
 #include <numbers>
 
 #include "core/closed_form/circular_segment.h"
+#include "core/geometry/cell_profile.h"
 
 namespace ballpiston {
 namespace {
@@ -58,15 +56,14 @@ TipArc ArcTo(double rho, double depth, double height) {
   return {height, chord, angle, SegmentArea(rho, angle)};
 }
 
-double HeightAt(double lambda, double depth) {
-  const double s = std::sqrt((1 - 2 * depth) * (1 + 2 * depth) - 4 * depth * lambda) / 2;
-  return depth * (depth + lambda) / (0.5 + s);
-}
-
 // P: area of the cell right of the given depth.
 double AreaBehind(const TipArc& arc, double depth) { return depth * arc.height - 2 * arc.segment; }
 
 TipArc QuarterArc(double rho, double bound) { return ArcTo(rho, bound, bound); }
+
+TipArc ReachableArc(const PairGeometry& g) {
+  return ArcTo(g.rho(), g.delta(), HalfHeight(g.lambda(), g.delta()));
+}
 
 // Q: integral of AreaBehind from 0 to delta.
 double HiddenVolume(const PairGeometry& g, const TipArc& arc) {
@@ -84,7 +81,7 @@ double CellArea(double rho) {
 }
 
 PairMeasures Measures(const PairGeometry& g) {
-  const TipArc arc = ArcTo(g.rho(), g.delta(), HeightAt(g.lambda(), g.delta()));
+  const TipArc arc = ReachableArc(g);
   const TipArc quarter = QuarterArc(g.rho(), g.tip());
   const double stroke = g.lambda() + 2 * g.delta();
   const double behind = AreaBehind(arc, g.delta());
@@ -97,6 +94,14 @@ PairMeasures Measures(const PairGeometry& g) {
       .area_ball_wall = g.rho() * (stroke * (4 * quarter.angle - arc.angle) + 2 * arc.height),
       .area_piston_wall = 2 * cell - behind,
   };
+}
+
+RestingVolumes VolumesAtRest(const PairGeometry& g) {
+  const TipArc arc = ReachableArc(g);
+  const double hidden = HiddenVolume(g, arc);
+  const double stroke = g.lambda() + 2 * g.delta();
+  return {.piston = g.delta() * CellArea(g.rho()) - hidden,
+          .ball = stroke * AreaBehind(arc, g.delta()) - hidden};
 }
 
 }  // namespace ballpiston

@@ -47,6 +47,16 @@ PairMeasures Measures(const PairGeometry& geometry);
 // Area of the ball's cell, eq. areax1x2. Domain: kMinRho < rho < kMaxRho.
 double CellArea(double rho);
 
+// What of |Gamma| can be reached at the two ends of the energy axis, where one of the two rests:
+// a resting piston is met only if it stands left of the cell's tip, a resting ball only if it lies
+// where the piston comes by. Both are less than |Gamma|.
+struct RestingVolumes {
+  double piston;  // epsilon = 0
+  double ball;    // epsilon = 1/2
+};
+
+RestingVolumes VolumesAtRest(const PairGeometry& geometry);
+
 }  // namespace ballpiston
 
 #endif  // BALLPISTON_CORE_CLOSED_FORM_PAIR_MEASURES_H_

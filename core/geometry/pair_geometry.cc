@@ -30,8 +30,9 @@ absl::Status ValidateRho(double rho) {
 }
 
 absl::Status ValidatePairDelta(double rho, double delta) {
+  // The computed bound may lie an ulp below the true one, which a user may have computed better.
   const double bound = PairDeltaBound(rho);
-  if (delta > 0 && delta <= bound) return absl::OkStatus();
+  if (delta > 0 && delta <= std::nextafter(bound, 1.0)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrFormat("delta is %.17g; permitted at rho = %.17g: 0 < delta <= (1 - lambda)/2 = "
                       "%.17g, the bound of a ball-piston pair",

@@ -35,7 +35,7 @@ double GasDeltaBound(double rho);
 class PairGeometry {
  public:
   // INVALID_ARGUMENT, with name, value and permitted range, unless kMinRho < rho < kMaxRho and
-  // 0 < delta <= PairDeltaBound(rho).
+  // 0 < delta <= PairDeltaBound(rho), give or take an ulp.
   static absl::StatusOr<PairGeometry> Create(double rho, double delta);
 
   double rho() const { return rho_; }

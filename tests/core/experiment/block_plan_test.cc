@@ -1,0 +1,49 @@
+#include "core/experiment/block_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace ballpiston {
+namespace {
+
+TEST(BlockPlan, CoversEverySampleOnce) {
+  for (const int64_t samples : {1, 2, 63, 64, 65, 1000, 1'000'003}) {
+    for (const double events : {1.0, 37.0, 1e4, 1e9}) {
+      const BlockPlan plan = PlanBlocks({.samples = samples}, events);
+      uint64_t covered = 0;
+      for (uint64_t block = 0; block < plan.Blocks(); ++block) {
+        ASSERT_EQ(plan.FirstSample(block), covered);
+        ASSERT_GE(plan.SamplesIn(block), 1u);
+        covered += plan.SamplesIn(block);
+      }
+      EXPECT_EQ(covered, static_cast<uint64_t>(samples));
+    }
+  }
+}
+
+TEST(BlockPlan, SizeIsAPowerOfTwoThatLeavesEnoughBlocks) {
+  for (const int64_t samples : {64, 1000, 1'000'003}) {
+    const BlockPlan plan = PlanBlocks({.collisions = samples}, 50);
+    EXPECT_TRUE(std::has_single_bit(plan.block_size));
+    EXPECT_GE(plan.Blocks(), kMinBlocks);
+  }
+}
+
+TEST(BlockPlan, ExpensiveSamplesMakeSmallBlocks) {
+  EXPECT_EQ(PlanBlocks({.samples = 1'000'000}, 1e9).block_size, 1u);
+  EXPECT_LE(PlanBlocks({.samples = 1'000'000'000}, 1000).block_size, 1024u);
+}
+
+TEST(BlockPlan, NoTargetAsksForTheDefault) {
+  EXPECT_EQ(PlanBlocks({}, 1).samples, static_cast<uint64_t>(kDefaultSamples));
+}
+
+TEST(BlockPlan, ToleranceMayGoOnToTheLargestCount) {
+  const BlockPlan plan = PlanBlocks({.tolerance = 0.01}, 100);
+  EXPECT_EQ(plan.samples, static_cast<uint64_t>(kMaxSamples));
+  EXPECT_EQ(plan.tolerance, 0.01);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,70 @@
+#include "core/sampling/invariant_measure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/closed_form/pair_measures.h"
+#include "core/statistics/moments.h"
+
+namespace ballpiston {
+namespace {
+
+PairGeometry Paper() { return *PairGeometry::Create(0.529561127988977, 0.2); }
+
+TEST(FlowMeasure, StatesAreLegalAndEnergiesAreBeta) {
+  const PairGeometry geometry = Paper();
+  CounterRandom random(4, 0, 0);
+  Moments u, u_squared;
+  for (int i = 0; i < 100'000; ++i) {
+    const PairState state = DrawFromFlowMeasure(geometry, random);
+    ASSERT_TRUE(InsideCell(geometry, state.position));
+    ASSERT_LT(state.position.x(), state.piston);
+    ASSERT_LE(EnergyError(state), 1e-15);
+    // ep has the law Beta(1/2, 1): u = sqrt(2 ep) is uniform on [0, 1].
+    u.Add(std::fabs(state.piston_velocity));
+    u_squared.Add(state.piston_velocity * state.piston_velocity);
+  }
+  EXPECT_NEAR(u.mean, 0.5, 5 * *u.StandardError());  // false alarms 1e-6 each
+  EXPECT_NEAR(u_squared.mean, 1.0 / 3, 5 * *u_squared.StandardError());
+}
+
+// The share of states whose piston is left of the cell's tip is (|G| - A (lambda + delta))/|G|.
+TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
+  const PairGeometry geometry = Paper();
+  const PairMeasures measures = Measures(geometry);
+  const double expected =
+      1 - measures.cell_area * (geometry.lambda() + geometry.delta()) / measures.volume;
+  CounterRandom random(5, 0, 0);
+  Moments left;
+  for (int i = 0; i < 200'000; ++i) {
+    left.Add(DrawFromFlowMeasure(geometry, random).piston < geometry.tip() ? 1 : 0);
+  }
+  EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
+}
+
+// Under nu_bp the normal component w = (v3 - v1)/sqrt(2) has density 2 w: mean 2/3; the tangential
+// ones are symmetric with mean square (1 - <w^2>)/2 = 1/4.
+TEST(CollisionMeasure, VelocityFollowsTheCosineLaw) {
+  const PairGeometry geometry = Paper();
+  CounterRandom random(6, 0, 0);
+  Moments normal, sum_squared, v2_squared, v2;
+  for (int i = 0; i < 200'000; ++i) {
+    const PairState state = DrawFromCollisionMeasure(geometry, random);
+    ASSERT_EQ(state.position.x(), state.piston);
+    ASSERT_LE(EnergyError(state), 2e-15);
+    const double v1 = state.ball_speed * state.direction.x(), v3 = state.piston_velocity;
+    ASSERT_GT(v3, v1);
+    normal.Add((v3 - v1) / M_SQRT2);
+    sum_squared.Add((v3 + v1) * (v3 + v1) / 2);
+    v2.Add(state.ball_speed * state.direction.y());
+    v2_squared.Add(std::pow(state.ball_speed * state.direction.y(), 2));
+  }
+  EXPECT_NEAR(normal.mean, 2.0 / 3, 5 * *normal.StandardError());
+  EXPECT_NEAR(sum_squared.mean, 0.25, 5 * *sum_squared.StandardError());
+  EXPECT_NEAR(v2_squared.mean, 0.25, 5 * *v2_squared.StandardError());
+  EXPECT_NEAR(v2.mean, 0, 5 * *v2.StandardError());
+}
+
+}  // namespace
+}  // namespace ballpiston
