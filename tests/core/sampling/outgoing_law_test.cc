@@ -16,9 +16,9 @@ struct Means {
 };
 
 // Of the law proportional to (sigma sqrt(ep) - sqrt(eb) cos a)_+^n, by the midpoint rule:
-// spectrally accurate for whole n >= 2, and good to 1e-6 with the kink (n = 1) or jump (n = 0).
+// spectrally accurate for whole n >= 2, and good to 1e-5 with the kink (n = 1) or jump (n = 0).
 Means Exact(double epsilon, double exponent) {
-  constexpr int kCells = 400'000;
+  constexpr int kCells = 40'000;
   const double ball = std::sqrt(0.5 - epsilon), piston = std::sqrt(epsilon);
   double total = 0;
   Means sums;

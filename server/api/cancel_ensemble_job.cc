@@ -1,0 +1,15 @@
+#include "server/api/methods.h"
+#include "server/api/request_check.h"
+
+namespace ballpiston::server {
+
+absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service,
+                                                  const v1::CancelEnsembleJobRequest& request) {
+  RequestCheck check;
+  const std::string id = check.JobId("name", request.name());
+  const std::string request_id = check.RequestId(request.request_id());
+  if (!check.ok()) return check.status();
+  return service.book.Cancel(id, request_id);
+}
+
+}  // namespace ballpiston::server

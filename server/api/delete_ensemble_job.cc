@@ -1,0 +1,16 @@
+#include "server/api/methods.h"
+#include "server/api/request_check.h"
+
+namespace ballpiston::server {
+
+absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
+    ServiceContext& service, const v1::DeleteEnsembleJobRequest& request) {
+  RequestCheck check;
+  const std::string id = check.JobId("name", request.name());
+  if (!check.ok()) return check.status();
+  const absl::Status deleted = service.book.Delete(id);
+  if (!deleted.ok()) return deleted;
+  return google::protobuf::Empty();
+}
+
+}  // namespace ballpiston::server

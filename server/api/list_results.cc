@@ -1,0 +1,32 @@
+#include "absl/strings/str_cat.h"
+#include "server/api/methods.h"
+#include "server/api/request_check.h"
+
+namespace ballpiston::server {
+
+absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service,
+                                                    const v1::ListResultsRequest& request) {
+  RequestCheck check;
+  const std::string id = check.JobId("parent", request.parent());
+  const std::string list = absl::StrCat("results:", id);
+  ResultsQuery query;
+  query.max_points = check.PageSize(request.page_size());
+  query.first_point = check.PageStart(request.page_token(), list, 0);
+  query.max_bytes = kMaxPageBytes;
+  query.histograms = request.view() != v1::ListResultsRequest::BASIC;
+  if (!v1::ListResultsRequest::View_IsValid(request.view())) {
+    check.Add("view", absl::StrCat(int{request.view()}, " is not a view this server knows"));
+  }
+  if (!check.ok()) return check.status();
+  absl::StatusOr<ResultsPage> page = service.book.Results(id, query);
+  if (!page.ok()) return page.status();
+  v1::ListResultsResponse response;
+  for (v1::PointResult& point : page->points) *response.add_points() = std::move(point);
+  if (page->more) {
+    const int64_t next = response.points(response.points_size() - 1).index() + int64_t{1};
+    response.set_next_page_token(RequestCheck::PageToken(list, next));
+  }
+  return response;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,31 @@
+// The unary methods of the API, one file each; contract and errors stand in the protos.
+#ifndef BALLPISTON_SERVER_API_METHODS_H_
+#define BALLPISTON_SERVER_API_METHODS_H_
+
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/analytic.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "google/protobuf/empty.pb.h"
+#include "server/api/service_context.h"
+
+namespace ballpiston::server {
+
+absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service,
+                                                  const v1::CreateEnsembleJobRequest& request);
+absl::StatusOr<v1::EnsembleJob> GetEnsembleJob(ServiceContext& service,
+                                               const v1::GetEnsembleJobRequest& request);
+absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
+    ServiceContext& service, const v1::ListEnsembleJobsRequest& request);
+absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service,
+                                                  const v1::CancelEnsembleJobRequest& request);
+absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
+    ServiceContext& service, const v1::DeleteEnsembleJobRequest& request);
+absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service,
+                                                    const v1::ListResultsRequest& request);
+
+absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext& service,
+                                                        const v1::EvaluatePairsRequest& request);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_METHODS_H_

@@ -1,0 +1,49 @@
+// Reads the fields that many requests share, and gathers all that is wrong with them.
+//
+//   RequestCheck check;
+//   const std::string id = check.JobId("name", request.name());
+//   if (!check.ok()) return check.status();
+#ifndef BALLPISTON_SERVER_API_REQUEST_CHECK_H_
+#define BALLPISTON_SERVER_API_REQUEST_CHECK_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/convert/errors.h"
+
+namespace ballpiston::server {
+
+// A page of a list ends before it has this many bytes (if it has an entry already).
+inline constexpr size_t kMaxPageBytes = size_t{2} << 20;
+
+class RequestCheck {
+ public:
+  std::string JobId(const char* field, const std::string& name);
+
+  // Empty, or a UUID in its usual form; in lower case, so that equal ones are equal.
+  std::string RequestId(const std::string& request_id);
+
+  // 0 is the default, 50; more than 1000 counts as 1000.
+  int PageSize(int32_t page_size);
+
+  // Where the page begins; `first` if the token is empty. Tokens are opaque, and good for the list
+  // they were made for.
+  int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
+  static std::string PageToken(const std::string& list, int64_t start);
+
+  void Add(std::string field, std::string description);
+
+  bool ok() const { return violations_.empty(); }
+  absl::Status status() const;  // OK, or INVALID_REQUEST with every violation
+  const std::vector<FieldViolation>& violations() const { return violations_; }
+
+ private:
+  std::vector<FieldViolation> violations_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_REQUEST_CHECK_H_

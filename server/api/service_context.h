@@ -1,0 +1,33 @@
+// What every method of the API works with.
+#ifndef BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
+#define BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
+
+#include <atomic>
+#include <chrono>
+#include <string>
+
+#include "server/api/rpc_executor.h"
+#include "server/api/watch_registry.h"
+#include "server/jobs/job_book.h"
+#include "server/observability/activity.h"
+
+namespace ballpiston::server {
+
+struct WatchTiming {
+  std::chrono::milliseconds snapshot{200};      // at most one in this time
+  std::chrono::milliseconds heartbeat{10'000};  // when nothing else was sent for so long
+};
+
+struct ServiceContext {
+  JobBook& book;
+  RpcExecutor& executor;
+  WatchRegistry& watches;
+  Activity& activity;
+  const std::atomic<bool>& draining;
+  std::string instance;  // of this server's life: numbers of changes mean nothing beyond it
+  WatchTiming timing;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_

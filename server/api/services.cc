@@ -1,0 +1,57 @@
+#include "server/api/services.h"
+
+#include "server/api/methods.h"
+#include "server/api/unary_rpc.h"
+#include "server/api/watch_ensemble_job.h"
+
+namespace ballpiston::server {
+
+using Context = grpc::CallbackServerContext;
+using Unary = grpc::ServerUnaryReactor;
+
+Unary* EnsembleService::CreateEnsembleJob(Context* context,
+                                          const v1::CreateEnsembleJobRequest* request,
+                                          v1::EnsembleJob* response) {
+  return RunUnary(service_, context, request, response, &server::CreateEnsembleJob);
+}
+
+Unary* EnsembleService::GetEnsembleJob(Context* context, const v1::GetEnsembleJobRequest* request,
+                                       v1::EnsembleJob* response) {
+  return RunUnary(service_, context, request, response, &server::GetEnsembleJob);
+}
+
+Unary* EnsembleService::ListEnsembleJobs(Context* context,
+                                         const v1::ListEnsembleJobsRequest* request,
+                                         v1::ListEnsembleJobsResponse* response) {
+  return RunUnary(service_, context, request, response, &server::ListEnsembleJobs);
+}
+
+Unary* EnsembleService::CancelEnsembleJob(Context* context,
+                                          const v1::CancelEnsembleJobRequest* request,
+                                          v1::EnsembleJob* response) {
+  return RunUnary(service_, context, request, response, &server::CancelEnsembleJob);
+}
+
+Unary* EnsembleService::DeleteEnsembleJob(Context* context,
+                                          const v1::DeleteEnsembleJobRequest* request,
+                                          google::protobuf::Empty* response) {
+  return RunUnary(service_, context, request, response, &server::DeleteEnsembleJob);
+}
+
+grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* EnsembleService::WatchEnsembleJob(
+    Context*, const v1::WatchEnsembleJobRequest* request) {
+  return WatchReactor::Start(service_, *request);
+}
+
+Unary* EnsembleService::ListResults(Context* context, const v1::ListResultsRequest* request,
+                                    v1::ListResultsResponse* response) {
+  return RunUnary(service_, context, request, response, &server::ListResults);
+}
+
+Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsRequest* request,
+                                      v1::EvaluatePairsResponse* response) {
+  return RunUnary<v1::EvaluatePairsRequest, v1::EvaluatePairsResponse>(
+      service_, context, request, response, &server::EvaluatePairs);
+}
+
+}  // namespace ballpiston::server

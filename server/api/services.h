@@ -1,0 +1,56 @@
+// The two gRPC services: each method runs its function of methods.h inside the frame of
+// unary_rpc.h; the watch has a reactor of its own.
+#ifndef BALLPISTON_SERVER_API_SERVICES_H_
+#define BALLPISTON_SERVER_API_SERVICES_H_
+
+#include "ballpiston/v1/analytic.grpc.pb.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "server/api/service_context.h"
+
+namespace ballpiston::server {
+
+// `service` has to outlive both.
+class EnsembleService : public v1::EnsembleService::CallbackService {
+ public:
+  explicit EnsembleService(ServiceContext& service) : service_(service) {}
+
+  grpc::ServerUnaryReactor* CreateEnsembleJob(grpc::CallbackServerContext* context,
+                                              const v1::CreateEnsembleJobRequest* request,
+                                              v1::EnsembleJob* response) override;
+  grpc::ServerUnaryReactor* GetEnsembleJob(grpc::CallbackServerContext* context,
+                                           const v1::GetEnsembleJobRequest* request,
+                                           v1::EnsembleJob* response) override;
+  grpc::ServerUnaryReactor* ListEnsembleJobs(grpc::CallbackServerContext* context,
+                                             const v1::ListEnsembleJobsRequest* request,
+                                             v1::ListEnsembleJobsResponse* response) override;
+  grpc::ServerUnaryReactor* CancelEnsembleJob(grpc::CallbackServerContext* context,
+                                              const v1::CancelEnsembleJobRequest* request,
+                                              v1::EnsembleJob* response) override;
+  grpc::ServerUnaryReactor* DeleteEnsembleJob(grpc::CallbackServerContext* context,
+                                              const v1::DeleteEnsembleJobRequest* request,
+                                              google::protobuf::Empty* response) override;
+  grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* WatchEnsembleJob(
+      grpc::CallbackServerContext* context, const v1::WatchEnsembleJobRequest* request) override;
+  grpc::ServerUnaryReactor* ListResults(grpc::CallbackServerContext* context,
+                                        const v1::ListResultsRequest* request,
+                                        v1::ListResultsResponse* response) override;
+
+ private:
+  ServiceContext& service_;
+};
+
+class AnalyticService : public v1::AnalyticService::CallbackService {
+ public:
+  explicit AnalyticService(ServiceContext& service) : service_(service) {}
+
+  grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
+                                          const v1::EvaluatePairsRequest* request,
+                                          v1::EvaluatePairsResponse* response) override;
+
+ private:
+  ServiceContext& service_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_SERVICES_H_

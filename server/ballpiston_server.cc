@@ -1,0 +1,127 @@
+#include "server/ballpiston_server.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "grpcpp/ext/proto_server_reflection_plugin.h"
+#include "grpcpp/health_check_service_interface.h"
+#include "grpcpp/server_builder.h"
+#include "server/execution/core_experiments.h"
+#include "server/jobs/job_name.h"
+
+namespace ballpiston::server {
+namespace {
+
+// They mostly wait for the disk.
+constexpr int kRpcThreads = 8;
+// How often watches are looked at; their snapshots are further apart.
+constexpr std::chrono::milliseconds kLongestLook(50);
+constexpr int kMinPingIntervalMs = 15'000;
+
+ServerOptions Completed(ServerOptions options) {
+  if (!options.factory) options.factory = CoreExperiments();
+  return options;
+}
+
+void AllowPings(grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
+                             kMinPingIntervalMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
+  absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
+  if (!directory.ok()) return directory.status();
+  if (options.listen.empty()) {
+    options.listen = absl::StrCat("unix:", directory->FilePath("server.socket"));
+  }
+  const absl::StatusOr<ListenAddress> address = ParseListenAddress(options.listen);
+  if (!address.ok()) return address.status();
+  absl::StatusOr<std::unique_ptr<Store>> store =
+      Store::Open(directory->FilePath("store.sqlite3"), options.store);
+  if (!store.ok()) return store.status();
+  try {
+    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
+        Completed(std::move(options)), *std::move(directory), *address, *std::move(store)));
+    absl::Status status = server->book_.Resume();
+    if (status.ok()) status = server->Listen();
+    if (!status.ok()) return status;
+    return server;
+  } catch (const std::system_error& error) {
+    return absl::InvalidArgumentError(absl::StrCat("the system gives no more threads (",
+                                                   error.what(), "); choose fewer with --workers"));
+  }
+}
+
+BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
+                                   ListenAddress address, std::unique_ptr<Store> store)
+    : options_(std::move(options)),
+      directory_(std::move(directory)),
+      address_(std::move(address)),
+      watches_(std::min(kLongestLook, options_.watch.snapshot)),
+      store_(std::move(store)),
+      book_(*store_, options_.workers, options_.factory, [this] { watches_.LookNow(); }),
+      executor_(kRpcThreads),
+      context_{book_, executor_, watches_, activity_, draining_, RandomId(), options_.watch},
+      ensemble_(context_),
+      analytic_(context_) {}
+
+BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
+
+absl::Status BallpistonServer::Listen() {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  if (!address_.socket_path.empty()) {
+    const absl::Status cleared = ClearSocketPath(address_);
+    if (!cleared.ok()) return cleared;
+  }
+  grpc::ServerBuilder builder;
+  int port = 0;
+  // gRPC would let two servers share a port, in silence.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  AllowPings(builder);
+  builder.AddListeningPort(address_.Text(), grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&ensemble_);
+  builder.RegisterService(&analytic_);
+  grpc_ = builder.BuildAndStart();
+  if (grpc_ == nullptr) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("--listen=", address_.Text(), ": cannot listen there (",
+                     WhyNotListening(address_), "); choose another address"));
+  }
+  if (address_.socket_path.empty()) {
+    address_.port = port;
+  } else {
+    chmod(address_.socket_path.c_str(), 0600);
+  }
+  return absl::OkStatus();
+}
+
+std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
+  if (book_.active_jobs() == 0) return activity_.IdleFor();
+  activity_.Touch();
+  return std::chrono::steady_clock::duration::zero();
+}
+
+void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
+  if (std::exchange(shut_down_, true)) return;
+  const auto deadline = std::chrono::system_clock::now() + drain;
+  draining_ = true;
+  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
+  watches_.LookNow();
+  book_.Shutdown();
+  store_->Flush().IgnoreError();
+  if (grpc_ != nullptr) grpc_->Shutdown(deadline);
+  executor_.Stop();
+  watches_.Stop();
+  store_->Close();
+}
+
+}  // namespace ballpiston::server

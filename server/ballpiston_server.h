@@ -1,0 +1,77 @@
+// The whole server as an object: store, jobs, workers, and gRPC in front of them.
+//
+//   auto server = BallpistonServer::Start(options);
+//   ...
+//   (*server)->Shutdown(std::chrono::seconds(10));
+#ifndef BALLPISTON_SERVER_BALLPISTON_SERVER_H_
+#define BALLPISTON_SERVER_BALLPISTON_SERVER_H_
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "grpcpp/server.h"
+#include "server/api/services.h"
+#include "server/listen_address.h"
+#include "server/store/data_directory.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+struct ServerOptions {
+  std::string data_dir = DataDirectory::Default();
+  std::string listen;  // empty: a Unix socket in data_dir
+  int workers = 1;
+  ExperimentFactory factory;  // empty: the core's experiments
+  WatchTiming watch;
+  Store::Options store;
+};
+
+class BallpistonServer {
+ public:
+  // Takes up unfinished jobs, and answers calls when it returns.
+  //   INVALID_ARGUMENT     an option, named as the flag it comes from
+  //   FAILED_PRECONDITION  data folder or address in use, or a store that cannot be read
+  //   PERMISSION_DENIED    data folder not writable
+  static absl::StatusOr<std::unique_ptr<BallpistonServer>> Start(ServerOptions options);
+  ~BallpistonServer();  // Shutdown, without time to drain
+
+  // The port that was chosen, if any was free to be.
+  std::string address() const { return address_.Text(); }
+
+  // How long nobody has used it and nothing was computed.
+  std::chrono::steady_clock::duration IdleFor();
+
+  // Health says NOT_SERVING, no job is accepted, watches end with UNAVAILABLE, blocks in flight are
+  // dropped, calls in progress have until then to end, and everything is on disk.
+  void Shutdown(std::chrono::milliseconds drain);
+
+ private:
+  BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
+                   std::unique_ptr<Store> store);
+
+  absl::Status Listen();
+
+  const ServerOptions options_;
+  DataDirectory directory_;  // first: its lock guards all that follows
+  ListenAddress address_;
+  std::atomic<bool> draining_ = false;
+  bool shut_down_ = false;
+  Activity activity_;
+  WatchRegistry watches_;
+  std::unique_ptr<Store> store_;
+  JobBook book_;
+  RpcExecutor executor_;
+  ServiceContext context_;
+  EnsembleService ensemble_;
+  AnalyticService analytic_;
+  std::unique_ptr<grpc::Server> grpc_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_BALLPISTON_SERVER_H_

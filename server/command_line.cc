@@ -1,0 +1,135 @@
+#include "server/command_line.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/flags/flag.h"
+#include "absl/flags/parse.h"
+#include "absl/flags/usage.h"
+#include "absl/flags/usage_config.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "server/version.h"
+
+namespace {
+
+int DefaultWorkers() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  return cores == 0 ? 1 : static_cast<int>(cores);
+}
+
+}  // namespace
+
+ABSL_FLAG(std::string, listen, "",
+          "where to listen: unix:PATH, or HOST:PORT with a loopback host (127.0.0.0/8, [::1], "
+          "localhost; port 0 takes any); empty: the Unix socket `server.socket` in --data_dir");
+ABSL_FLAG(std::string, data_dir, ballpiston::server::DataDirectory::Default(),
+          "folder that keeps jobs and results, made if it does not exist; one server at a time");
+ABSL_FLAG(int32_t, workers, DefaultWorkers(), "threads that compute, 1 to 1024");
+ABSL_FLAG(double, idle_exit_seconds, 0,
+          "end when no job is active and no call was in progress for so long; 0: never");
+ABSL_FLAG(double, drain_seconds, 10,
+          "after SIGTERM or SIGINT: time for calls in progress to end, 0 to 3600");
+ABSL_FLAG(double, watch_heartbeat_seconds, 10,
+          "a watch of a job says that it lives after so long without news, 0.01 to 3600");
+
+namespace ballpiston::server {
+namespace {
+
+constexpr char kProgram[] = "ballpistond";
+constexpr int kMaxWorkers = 1024;
+constexpr double kMaxSeconds = 1e6;
+
+bool parsing = false;
+bool help_asked = false;
+
+// Abseil ends a wrong command line, and a --help, with exit code 1; here they are 2 and 0.
+void CorrectExitCode(int code, void*) {
+  if (!parsing || code == 0) return;
+  std::fflush(nullptr);
+  _exit(help_asked ? 0 : 2);
+}
+
+void Configure() {
+  absl::SetProgramUsageMessage(
+      "The server of ballpiston: computes ensembles of rarely interacting billiards.\n"
+      "  ballpistond --listen=unix:PATH | --listen=127.0.0.1:PORT [--data_dir=DIR] [--workers=N]\n"
+      "Exit codes: 0 stopped, 2 a wrong flag, or address or data folder in use, 6 data folder not "
+      "writable.");
+  absl::FlagsUsageConfig config;
+  const auto of_this_program = [](absl::string_view file) { return file == kProgram; };
+  config.contains_helpshort_flags = of_this_program;
+  config.contains_help_flags = of_this_program;
+  config.contains_helppackage_flags = of_this_program;
+  config.normalize_filename = [](absl::string_view file) {
+    return absl::EndsWith(file, "server/command_line.cc") ? std::string(kProgram)
+                                                          : std::string(file);
+  };
+  config.version_string = [] { return absl::StrCat("ballpistond ", kVersion, "\n"); };
+  absl::SetFlagsUsageConfig(config);
+}
+
+std::vector<char*> ParseFlags(int argc, char** argv) {
+  help_asked = std::any_of(argv, argv + argc, [](const char* argument) {
+    return absl::StartsWith(argument, "-help") || absl::StartsWith(argument, "--help");
+  });
+  parsing = true;
+  on_exit(&CorrectExitCode, nullptr);
+  std::vector<char*> positional = absl::ParseCommandLine(argc, argv);
+  parsing = false;
+  return positional;
+}
+
+absl::Status OutOfRange(const char* flag, const std::string& value, const std::string& permitted) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("--", flag, "=", value, " is out of range; permitted: ", permitted));
+}
+
+absl::StatusOr<std::chrono::milliseconds> Seconds(const char* flag, double value, double lower,
+                                                  double upper) {
+  if (value >= lower && value <= upper) {
+    return std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * value)));
+  }
+  return OutOfRange(flag, absl::StrCat(value), absl::StrCat(lower, " to ", upper));
+}
+
+}  // namespace
+
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
+  Configure();
+  const std::vector<char*> positional = ParseFlags(argc, argv);
+  if (positional.size() > 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("unexpected argument \"", positional[1], "\"; see --help"));
+  }
+  const auto drain = Seconds("drain_seconds", absl::GetFlag(FLAGS_drain_seconds), 0, 3600);
+  const auto idle =
+      Seconds("idle_exit_seconds", absl::GetFlag(FLAGS_idle_exit_seconds), 0, kMaxSeconds);
+  const auto heartbeat =
+      Seconds("watch_heartbeat_seconds", absl::GetFlag(FLAGS_watch_heartbeat_seconds), 0.01, 3600);
+  for (const absl::Status& status : {drain.status(), idle.status(), heartbeat.status()}) {
+    if (!status.ok()) return status;
+  }
+  CommandLine line;
+  line.server.data_dir = absl::GetFlag(FLAGS_data_dir);
+  line.server.listen = absl::GetFlag(FLAGS_listen);
+  line.server.workers = absl::GetFlag(FLAGS_workers);
+  if (line.server.workers < 1 || line.server.workers > kMaxWorkers) {
+    return OutOfRange("workers", absl::StrCat(line.server.workers),
+                      absl::StrCat("1 to ", kMaxWorkers));
+  }
+  line.server.watch.heartbeat = *heartbeat;
+  if (idle->count() > 0) line.idle_exit = *idle;
+  line.drain = *drain;
+  return line;
+}
+
+}  // namespace ballpiston::server

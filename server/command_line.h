@@ -1,0 +1,25 @@
+// The flags of ballpistond.
+#ifndef BALLPISTON_SERVER_COMMAND_LINE_H_
+#define BALLPISTON_SERVER_COMMAND_LINE_H_
+
+#include <chrono>
+#include <optional>
+
+#include "absl/status/statusor.h"
+#include "server/ballpiston_server.h"
+
+namespace ballpiston::server {
+
+struct CommandLine {
+  ServerOptions server;
+  std::optional<std::chrono::milliseconds> idle_exit;
+  std::chrono::milliseconds drain{0};
+};
+
+// Ends the program on --help, --version, and (with exit code 2) on flags that do not exist.
+// INVALID_ARGUMENT names the flag, its value and what is permitted.
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_COMMAND_LINE_H_

@@ -1,0 +1,74 @@
+#include "server/convert/block_record.h"
+
+#include "absl/status/status.h"
+#include "ballpiston/v1/storage.pb.h"
+#include "server/convert/deterministic_bytes.h"
+
+namespace ballpiston::server {
+namespace {
+
+void Fill(const Moments& moments, v1::MomentsRecord& record) {
+  record.set_count(moments.count);
+  record.set_mean(moments.mean);
+  record.set_m2(moments.m2);
+  record.set_m3(moments.m3);
+  record.set_m4(moments.m4);
+}
+
+void Fill(const BatchMeans& means, v1::BatchMeansRecord& record) {
+  record.set_batches(means.batches);
+  record.set_mean_numerator(means.mean_numerator);
+  record.set_mean_denominator(means.mean_denominator);
+  record.set_c_nn(means.c_nn);
+  record.set_c_nd(means.c_nd);
+  record.set_c_dd(means.c_dd);
+}
+
+void Fill(const Histogram& histogram, v1::HistogramRecord& record) {
+  record.set_lower(histogram.lower);
+  record.set_upper(histogram.upper);
+  record.mutable_counts()->Assign(histogram.counts.begin(), histogram.counts.end());
+}
+
+Moments MomentsOf(const v1::MomentsRecord& record) {
+  return {record.count(), record.mean(), record.m2(), record.m3(), record.m4()};
+}
+
+BatchMeans BatchMeansOf(const v1::BatchMeansRecord& record) {
+  return {record.batches(), record.mean_numerator(), record.mean_denominator(),
+          record.c_nn(),    record.c_nd(),           record.c_dd()};
+}
+
+Histogram HistogramOf(const v1::HistogramRecord& record) {
+  return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
+}
+
+}  // namespace
+
+std::string BlockRecordBytes(const BlockResult& result) {
+  v1::BlockRecord record;
+  record.set_samples(result.samples);
+  for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
+  for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
+  for (const Histogram& histogram : result.histograms) Fill(histogram, *record.add_histograms());
+  record.set_escapes(result.health.escapes);
+  record.set_max_energy_error(result.health.max_energy_error);
+  return DeterministicBytes(record);
+}
+
+absl::StatusOr<BlockResult> BlockResultFromBytes(const std::string& bytes) {
+  v1::BlockRecord record;
+  if (!record.ParseFromString(bytes)) {
+    return absl::DataLossError("a stored block cannot be read");
+  }
+  BlockResult result;
+  result.samples = record.samples();
+  for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
+  for (const auto& means : record.batch_means()) result.batch_means.push_back(BatchMeansOf(means));
+  for (const auto& counts : record.histograms()) result.histograms.push_back(HistogramOf(counts));
+  result.health.escapes = record.escapes();
+  result.health.max_energy_error = record.max_energy_error();
+  return result;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,26 @@
+// A message's bytes, equal for equal messages. Pure function.
+#ifndef BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
+#define BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
+
+#include <string>
+
+#include "google/protobuf/io/coded_stream.h"
+#include "google/protobuf/io/zero_copy_stream_impl_lite.h"
+#include "google/protobuf/message_lite.h"
+
+namespace ballpiston::server {
+
+inline std::string DeterministicBytes(const google::protobuf::MessageLite& message) {
+  std::string bytes;
+  {
+    google::protobuf::io::StringOutputStream stream(&bytes);
+    google::protobuf::io::CodedOutputStream output(&stream);
+    output.SetSerializationDeterministic(true);
+    message.SerializeToCodedStream(&output);
+  }
+  return bytes;
+}
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_

@@ -1,0 +1,151 @@
+#include "server/convert/errors.h"
+
+#include <utility>
+
+#include "absl/strings/cord.h"
+#include "absl/strings/str_cat.h"
+#include "google/rpc/error_details.pb.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr char kTypePrefix[] = "type.googleapis.com/";
+// The message travels twice: in the details, and percent-encoded beside them.
+constexpr size_t kMaxMessage = 512;
+// What is left of kMaxErrorDetails for violations beside message, reason and metadata.
+constexpr size_t kMaxViolations = 4 * 1024;
+constexpr size_t kMaxViolationText = 400;
+constexpr size_t kMaxMetadataValue = 256;
+
+// At most `bytes` of it, cut between two characters of UTF-8.
+std::string Shortened(absl::string_view text, size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  size_t end = bytes - 3;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return absl::StrCat(std::string(text.substr(0, end)), "...");
+}
+
+template <typename Detail>
+void SetDetail(absl::Status& status, const Detail& detail) {
+  status.SetPayload(absl::StrCat(kTypePrefix, detail.GetTypeName()),
+                    absl::Cord(detail.SerializeAsString()));
+}
+
+google::rpc::ErrorInfo Info(const std::string& reason) {
+  google::rpc::ErrorInfo info;
+  info.set_reason(reason);
+  info.set_domain("ballpiston");
+  return info;
+}
+
+absl::Status WithInfo(absl::Status status, const std::string& reason, const std::string& key,
+                      const std::string& value) {
+  google::rpc::ErrorInfo info = Info(reason);
+  (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
+  SetDetail(status, info);
+  return status;
+}
+
+google::rpc::BadRequest AsManyAsFit(const std::vector<FieldViolation>& violations) {
+  google::rpc::BadRequest fitting;
+  for (const FieldViolation& violation : violations) {
+    google::rpc::BadRequest::FieldViolation* added = fitting.add_field_violations();
+    added->set_field(Shortened(violation.field, kMaxViolationText));
+    added->set_description(Shortened(violation.description, kMaxViolationText));
+    if (fitting.ByteSizeLong() > kMaxViolations) {
+      fitting.mutable_field_violations()->RemoveLast();
+      break;
+    }
+  }
+  return fitting;
+}
+
+std::string Message(const std::vector<FieldViolation>& violations) {
+  const FieldViolation& first = violations.front();
+  const std::string others =
+      violations.size() == 1 ? "" : absl::StrCat(" (and ", violations.size() - 1, " more)");
+  return absl::StrCat(Shortened(absl::StrCat(first.field, ": ", first.description), 400), others);
+}
+
+absl::Status Invalid(const std::string& reason, const std::vector<FieldViolation>& violations) {
+  absl::Status status = absl::InvalidArgumentError(Message(violations));
+  const google::rpc::BadRequest fitting = AsManyAsFit(violations);
+  const size_t left_out = violations.size() - static_cast<size_t>(fitting.field_violations_size());
+  google::rpc::ErrorInfo info = Info(reason);
+  if (left_out > 0) {
+    (*info.mutable_metadata())["violations_left_out"] = absl::StrCat(left_out);
+    status = absl::InvalidArgumentError(
+        absl::StrCat(status.message(), "; ", left_out, " violations are left out of the details"));
+  }
+  SetDetail(status, info);
+  SetDetail(status, fitting);
+  return status;
+}
+
+}  // namespace
+
+absl::Status InvalidSpec(const std::vector<FieldViolation>& violations) {
+  return Invalid("INVALID_SPEC", violations);
+}
+
+absl::Status InvalidRequest(const std::vector<FieldViolation>& violations) {
+  return Invalid("INVALID_REQUEST", violations);
+}
+
+absl::Status InvalidField(std::string field, std::string description) {
+  return InvalidRequest({{std::move(field), std::move(description)}});
+}
+
+absl::Status RequestIdReused(const std::string& request_id) {
+  return WithInfo(absl::InvalidArgumentError(absl::StrCat(
+                      "request_id ", request_id, " was used before, with another specification")),
+                  "REQUEST_ID_REUSED", "request_id", request_id);
+}
+
+absl::Status JobNotFound(const std::string& name) {
+  return WithInfo(absl::NotFoundError(absl::StrCat("no such job: ", name)), "JOB_NOT_FOUND", "name",
+                  name);
+}
+
+absl::Status JobAlreadyEnded(const std::string& name, absl::string_view state) {
+  return WithInfo(absl::FailedPreconditionError(
+                      absl::StrCat(name, " has ended already: it is ", std::string(state))),
+                  "JOB_ALREADY_ENDED", "state", std::string(state));
+}
+
+absl::Status JobStillActive(const std::string& name, absl::string_view state) {
+  return WithInfo(absl::FailedPreconditionError(absl::StrCat(
+                      name, " is ", std::string(state), ": cancel it, or wait until it has ended")),
+                  "JOB_STILL_ACTIVE", "state", std::string(state));
+}
+
+absl::Status ShuttingDown() {
+  return WithReason(absl::UnavailableError("the server is shutting down; try again later"),
+                    "SHUTTING_DOWN");
+}
+
+absl::Status WithReason(absl::Status status, const std::string& reason) {
+  SetDetail(status, Info(reason));
+  return status;
+}
+
+google::rpc::Status RpcStatus(const absl::Status& status) {
+  google::rpc::Status rpc;
+  rpc.set_code(static_cast<int>(status.code()));
+  rpc.set_message(Shortened({status.message().data(), status.message().size()}, kMaxMessage));
+  status.ForEachPayload([&](absl::string_view type, const absl::Cord& value) {
+    google::protobuf::Any* detail = rpc.add_details();
+    detail->set_type_url(std::string(type));
+    detail->set_value(std::string(value));
+  });
+  return rpc;
+}
+
+grpc::Status GrpcStatus(const absl::Status& status) {
+  if (status.ok()) return grpc::Status::OK;
+  const google::rpc::Status rpc = RpcStatus(status);
+  return grpc::Status(static_cast<grpc::StatusCode>(status.code()), rpc.message(),
+                      rpc.SerializeAsString());
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,26 @@
+// What the core measured at a point, as the API's PointResult: the same bytes for the same numbers.
+// A value that is not finite does not exist for JSON and is left out. Pure functions.
+#ifndef BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
+#define BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/result.pb.h"
+#include "core/experiment/point_experiment.h"
+
+namespace ballpiston::server {
+
+enum class Histograms { kLeftOut, kIncluded };
+
+// Requires at least one merged block.
+v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
+                              const BlockResult& merged, Histograms histograms);
+
+std::string PointResultBytes(const v1::PointResult& result);
+absl::StatusOr<v1::PointResult> PointResultFromBytes(const std::string& bytes);  // DATA_LOSS
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_

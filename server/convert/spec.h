@@ -1,0 +1,36 @@
+// Between the API's EnsembleSpec and the core's. Pure functions.
+#ifndef BALLPISTON_SERVER_CONVERT_SPEC_H_
+#define BALLPISTON_SERVER_CONVERT_SPEC_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/spec.pb.h"
+#include "core/experiment/ensemble_spec.h"
+
+namespace ballpiston::server {
+
+struct CheckedSpec {
+  EnsembleSpec spec;                       // can be run if there are no violations
+  std::vector<FieldViolation> violations;  // paths begin with "spec."
+};
+
+// What the message asks for and everything that is wrong with it. A field or a number of an
+// enumeration that this version does not know is a violation: it might change the answer.
+CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
+
+v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
+v1::PointParameters ParametersMessage(const PointParameters& parameters);
+v1::EnsembleSpec::Model ModelMessage(Model model);
+
+// The same bytes for the same specification: what the store keeps.
+std::string SpecBytes(const v1::EnsembleSpec& message);
+absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const std::string& bytes);  // DATA_LOSS
+
+// Version of the engine that this program computes with.
+std::string EngineVersion();
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_CONVERT_SPEC_H_

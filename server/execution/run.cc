@@ -1,0 +1,75 @@
+#include "server/execution/run.h"
+
+#include <utility>
+
+namespace ballpiston::server {
+
+OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment_of_point)
+    : experiment(std::move(experiment_of_point)), merge(experiment) {}
+
+std::optional<uint64_t> OpenPoint::NextBlock(uint64_t window) {
+  if (merge.finished()) return std::nullopt;
+  while (merge.Knows(next_block)) ++next_block;
+  if (next_block >= experiment->plan().Blocks()) return std::nullopt;
+  if (next_block >= merge.blocks_merged() + window) return std::nullopt;
+  return next_block++;
+}
+
+Run::Run(RunRequest request, uint64_t window) : request_(std::move(request)), window_(window) {
+  SkipFinishedPoints();
+}
+
+void Run::SkipFinishedPoints() {
+  while (next_point_ < request_.finished.size() && request_.finished[next_point_]) ++next_point_;
+}
+
+std::optional<RunTask> Run::NextTask() {
+  if (stopped_) return std::nullopt;
+  std::optional<RunTask> task = NextOfOpenPoints();
+  if (!task) task = NextPoint();
+  if (task) ++tasks_out_;
+  return task;
+}
+
+std::optional<RunTask> Run::NextOfOpenPoints() {
+  for (const auto& [index, point] : open_) {
+    if (const auto block = point->NextBlock(window_)) {
+      return BlockTask{index, *block, point->experiment, point->stop.get_token()};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<RunTask> Run::NextPoint() {
+  if (next_point_ == request_.finished.size()) return std::nullopt;
+  const size_t point = next_point_++;
+  SkipFinishedPoints();
+  return OpenPointTask{point};
+}
+
+void Run::TaskDone() { --tasks_out_; }
+
+void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
+  if (stopped_) open->stop.request_stop();
+  open_.emplace(point, std::move(open));
+}
+
+OpenPoint* Run::FindOpen(size_t point) {
+  const auto open = open_.find(point);
+  return open == open_.end() ? nullptr : open->second.get();
+}
+
+void Run::PointClosed(size_t point) { open_.erase(point); }
+
+void Run::Stop(absl::Status reason) {
+  if (std::exchange(stopped_, true)) return;
+  outcome_ = std::move(reason);
+  for (const auto& [index, point] : open_) point->stop.request_stop();
+}
+
+bool Run::over() const {
+  if (tasks_out_ > 0) return false;
+  return stopped_ || (open_.empty() && next_point_ == request_.finished.size());
+}
+
+}  // namespace ballpiston::server

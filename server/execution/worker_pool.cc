@@ -1,0 +1,223 @@
+#include "server/execution/worker_pool.h"
+
+#include <algorithm>
+#include <ctime>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::server {
+namespace {
+
+// Blocks handed out beyond the merged prefix of a point, for each worker: enough that nobody waits
+// for the slowest block, few enough that little is thrown away when a tolerance is reached.
+constexpr uint64_t kWindowPerWorker = 4;
+
+double ThreadSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Runs `step`, and turns what it throws into a status.
+template <typename Step>
+absl::Status Guarded(size_t point, Step step) {
+  try {
+    return step();
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(absl::StrCat("point ", point, ": out of memory"));
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat("point ", point, ": ", error.what()));
+  } catch (...) {
+    return absl::InternalError(absl::StrCat("point ", point, ": unknown exception"));
+  }
+}
+
+double ShareOfPoint(const PointExperiment& experiment, const BlockResult& result) {
+  return static_cast<double>(result.samples) / static_cast<double>(experiment.plan().samples);
+}
+
+}  // namespace
+
+WorkerPool::WorkerPool(int workers, ExperimentFactory factory)
+    : factory_(std::move(factory)), window_(kWindowPerWorker * static_cast<uint64_t>(workers)) {
+  for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+WorkerPool::~WorkerPool() { Shutdown(); }
+
+void WorkerPool::Add(RunRequest request) {
+  const int64_t key = request.key;
+  auto run = std::make_shared<Run>(std::move(request), window_);
+  {
+    std::lock_guard lock(mutex_);
+    runs_.emplace(key, run);
+    fair_share_.Add(key);
+  }
+  work_may_exist_.notify_all();
+  Conclude(run);  // it may have nothing left to compute
+}
+
+void WorkerPool::Cancel(int64_t key) {
+  std::shared_ptr<Run> run;
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = runs_.find(key);
+    if (found == runs_.end()) return;
+    run = found->second;
+    run->Stop(absl::CancelledError("the job was cancelled"));
+  }
+  Conclude(run);
+}
+
+void WorkerPool::Shutdown() {
+  std::vector<std::thread> threads;
+  {
+    std::lock_guard lock(mutex_);
+    shutting_down_ = true;
+    for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
+    threads.swap(threads_);
+  }
+  work_may_exist_.notify_all();
+  for (std::thread& thread : threads) thread.join();
+}
+
+std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, size_t limit) const {
+  std::vector<LivePoint> changed;
+  std::lock_guard lock(mutex_);
+  const auto run = runs_.find(key);
+  if (run == runs_.end()) return changed;
+  std::vector<std::pair<uint64_t, size_t>> newest;
+  for (const auto& [index, point] : run->second->open_points()) {
+    if (point->version > version) newest.emplace_back(point->version, index);
+  }
+  std::sort(newest.rbegin(), newest.rend());
+  if (newest.size() > limit) newest.resize(limit);
+  for (const auto& [number, index] : newest) {
+    const OpenPoint& point = *run->second->FindOpen(index);
+    changed.push_back({index, number, point.experiment, point.merge.merged()});
+  }
+  return changed;
+}
+
+void WorkerPool::Work() {
+  while (const auto assignment = AwaitAssignment()) {
+    if (assignment->begins_run) assignment->run->journal().Began();
+    Execute(*assignment);
+    Conclude(assignment->run);
+    assignment->run->journal().AwaitRoom();
+  }
+}
+
+std::optional<WorkerPool::Assignment> WorkerPool::AwaitAssignment() {
+  std::unique_lock lock(mutex_);
+  while (!shutting_down_) {
+    if (auto assignment = ChooseLocked()) return assignment;
+    work_may_exist_.wait(lock);
+  }
+  return std::nullopt;
+}
+
+std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
+  for (const auto& [charge, key] : fair_share_.order()) {
+    const std::shared_ptr<Run>& run = runs_.at(key);
+    if (auto task = run->NextTask()) {
+      Assignment assignment{run, *std::move(task), !run->began()};
+      run->set_began();
+      fair_share_.BlockBegins(key);  // changes the order: `charge` and `key` end here
+      return assignment;
+    }
+  }
+  return std::nullopt;
+}
+
+void WorkerPool::Execute(const Assignment& assignment) {
+  Run& run = *assignment.run;
+  const double start = ThreadSeconds();
+  const auto* block = std::get_if<BlockTask>(&assignment.task);
+  const absl::Status status = block != nullptr
+                                  ? ComputeBlock(run, *block)
+                                  : OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
+  {
+    std::lock_guard lock(mutex_);
+    if (!status.ok()) run.Stop(status);
+    run.TaskDone();
+    fair_share_.BlockEnds(run.request().key, ThreadSeconds() - start);
+  }
+  work_may_exist_.notify_all();
+}
+
+absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
+  return Guarded(task.point, [&]() -> absl::Status {
+    auto open = std::make_unique<OpenPoint>(factory_(run.request().spec, task.point));
+    if (run.request().has_stored_blocks) {
+      const PointExperiment& experiment = *open->experiment;
+      const auto on_merged = [&](uint64_t block, BlockResult& result) {
+        const double share = ShareOfPoint(experiment, result);
+        open->version = run.journal().BlockMerged({task.point, block, share, true, result});
+      };
+      const absl::Status read =
+          run.journal().ReadStoredBlocks(task.point, [&](uint64_t block, BlockResult result) {
+            open->merge.Add(block, std::move(result), on_merged);
+          });
+      if (!read.ok()) return read;
+    }
+    const bool finished = open->merge.finished();
+    {
+      std::lock_guard lock(mutex_);
+      run.PointOpened(task.point, std::move(open));
+    }
+    if (finished) ClosePoint(run, task.point);
+    return absl::OkStatus();
+  });
+}
+
+absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {
+  return Guarded(task.point, [&]() -> absl::Status {
+    std::optional<BlockResult> result = task.experiment->RunBlock(task.block, task.stop);
+    if (result) MergeBlock(run, task, *std::move(result));
+    return absl::OkStatus();
+  });
+}
+
+void WorkerPool::MergeBlock(Run& run, const BlockTask& task, BlockResult result) {
+  {
+    std::lock_guard lock(mutex_);
+    OpenPoint* open = run.FindOpen(task.point);
+    if (open == nullptr || open->merge.finished()) return;
+    open->merge.Add(task.block, std::move(result), [&](uint64_t block, BlockResult& merged) {
+      const double share = ShareOfPoint(*task.experiment, merged);
+      open->version = run.journal().BlockMerged({task.point, block, share, false, merged});
+    });
+    if (!open->merge.finished()) return;
+    open->stop.request_stop();  // blocks beyond the target are in vain
+  }
+  ClosePoint(run, task.point);
+}
+
+void WorkerPool::ClosePoint(Run& run, size_t point) {
+  const OpenPoint* open = nullptr;
+  {
+    std::lock_guard lock(mutex_);
+    open = run.FindOpen(point);
+  }
+  // A finished merge changes no more, and only this thread closes the point.
+  run.journal().PointFinished(point, *open->experiment, open->merge.merged());
+  std::lock_guard lock(mutex_);
+  run.PointClosed(point);
+}
+
+void WorkerPool::Conclude(const std::shared_ptr<Run>& run) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = runs_.find(run->request().key);
+    if (shutting_down_ || found == runs_.end() || !run->over()) return;
+    fair_share_.Remove(found->first);
+    runs_.erase(found);
+  }
+  run->journal().Ended(run->outcome());
+}
+
+}  // namespace ballpiston::server

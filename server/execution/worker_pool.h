@@ -1,0 +1,82 @@
+// The threads that compute: they take blocks from all active runs, fairly, and merge them in order.
+//
+// A worker asks the run with the least compute time used for a block (see fair_share.h), computes
+// it without any lock, and merges it under the pool's lock. Whatever a block throws ends its run
+// with a failure and nothing else. The numbers do not depend on how many workers there are.
+// Thread-safe.
+#ifndef BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
+#define BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/execution/fair_share.h"
+#include "server/execution/run.h"
+
+namespace ballpiston::server {
+
+// An open point as it was at one moment.
+struct LivePoint {
+  size_t index = 0;
+  uint64_t version = 0;
+  std::shared_ptr<const PointExperiment> experiment;
+  BlockResult merged;
+};
+
+class WorkerPool {
+ public:
+  WorkerPool(int workers, ExperimentFactory factory);
+  ~WorkerPool();  // shuts down
+
+  void Add(RunRequest request);
+
+  // Its journal's Ended(CANCELLED) follows, unless the run is over already.
+  void Cancel(int64_t key);
+
+  // Stops the blocks in flight and joins the threads. Unfinished runs are dropped without a word:
+  // what they stored lets a later process go on. May be called more than once.
+  void Shutdown();
+
+  // Copies of the run's open points that changed after `version`, newest first, at most `limit`.
+  std::vector<LivePoint> ChangedSince(int64_t key, uint64_t version, size_t limit) const;
+
+ private:
+  struct Assignment {
+    std::shared_ptr<Run> run;
+    RunTask task;
+    bool begins_run = false;
+  };
+
+  void Work();
+  std::optional<Assignment> AwaitAssignment();
+  std::optional<Assignment> ChooseLocked();
+
+  void Execute(const Assignment& assignment);
+  absl::Status OpenNewPoint(Run& run, const OpenPointTask& task);
+  absl::Status ComputeBlock(Run& run, const BlockTask& task);
+  void MergeBlock(Run& run, const BlockTask& task, BlockResult result);
+  void ClosePoint(Run& run, size_t point);
+  void Conclude(const std::shared_ptr<Run>& run);
+
+  const ExperimentFactory factory_;
+  const uint64_t window_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable work_may_exist_;
+  bool shutting_down_ = false;
+  std::map<int64_t, std::shared_ptr<Run>> runs_;
+  FairShare fair_share_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_

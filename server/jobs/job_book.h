@@ -1,0 +1,101 @@
+// The book of jobs: what the API's methods do, without the API.
+//
+// Active jobs live here and in the worker pool; ended ones only in the store. Every change of a
+// job's state is on disk before anybody is told of it (except that a job runs, which a restart
+// finds out by itself). Methods that write wait for the disk: not to be called from gRPC's own
+// threads. Errors carry their reasons (server/convert/errors.h). Thread-safe.
+#ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
+#define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/convert/spec.h"
+#include "server/execution/worker_pool.h"
+#include "server/jobs/job.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+struct ListedJob {
+  int64_t sequence = 0;
+  v1::EnsembleJob job;
+};
+
+struct ResultsQuery {
+  int64_t first_point = 0;
+  int max_points = 1;
+  size_t max_bytes = 0;  // ends a page that has a point already
+  bool histograms = true;
+};
+
+struct ResultsPage {
+  std::vector<v1::PointResult> points;
+  bool more = false;
+};
+
+class JobBook {
+ public:
+  // The store has to outlive this. `on_state_change` is called after each change of state.
+  JobBook(Store& store, int workers, ExperimentFactory factory,
+          std::function<void()> on_state_change);
+  ~JobBook();  // shuts down
+
+  // Takes up what an earlier process left unfinished. Before anything else.
+  absl::Status Resume();
+
+  // Stops computing; what is unfinished stays so in the store.
+  void Shutdown();
+
+  // The job as Create would make it.
+  v1::EnsembleJob Preview(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+
+  // `checked` is that of the message, without violations.
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& message,
+                                         const CheckedSpec& checked, const std::string& request_id);
+  absl::StatusOr<v1::EnsembleJob> Get(const std::string& id);
+  // Newest first, those older than `before`.
+  absl::StatusOr<std::vector<ListedJob>> List(int64_t before, int limit);
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& id, const std::string& request_id);
+  absl::Status Delete(const std::string& id);
+  absl::StatusOr<ResultsPage> Results(const std::string& id, const ResultsQuery& query);
+
+  // For a watch: the active job; null if it has ended. NOT_FOUND if it does not exist.
+  absl::StatusOr<std::shared_ptr<Job>> FindActive(const std::string& id);
+
+  // The job's points that changed after change `number`, newest first, without histograms.
+  std::vector<v1::PointResult> PointsChangedSince(const Job& job, uint64_t number,
+                                                  size_t limit) const;
+
+  size_t active_jobs() const;
+
+ private:
+  JobRecord NewRecord(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+  absl::Status ResumeJob(JobRecord record);
+  absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
+  absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
+  std::shared_ptr<Job> Register(JobRecord record);
+  void StartRun(std::shared_ptr<Job> job, EnsembleSpec spec, std::vector<bool> finished,
+                bool has_stored_blocks);
+  std::shared_ptr<Job> ActiveOrNull(const std::string& id) const;
+  absl::StatusOr<JobRecord> ReadRecord(const std::string& id);
+
+  Store& store_;
+  const std::function<void()> on_state_change_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Job>> active_;  // by id
+  WorkerPool pool_;                                     // last: its threads use what is above
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_JOB_BOOK_H_

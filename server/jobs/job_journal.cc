@@ -1,0 +1,102 @@
+#include "server/jobs/job_journal.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "server/convert/block_record.h"
+#include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "server/jobs/job_name.h"
+#include "server/observability/log.h"
+#include "server/store/job_table.h"
+
+namespace ballpiston::server {
+namespace {
+
+JobEnd EndOf(const Job& job, const absl::Status& outcome) {
+  const JobRecord record = job.Record();
+  JobEnd end;
+  end.time = absl::Now();
+  end.points_done = record.points_done;
+  end.samples = record.samples;
+  if (outcome.ok()) {
+    end.state = v1::EnsembleJob::SUCCEEDED;
+  } else if (absl::IsCancelled(outcome)) {
+    end.state = v1::EnsembleJob::CANCELLED;
+  } else {
+    end.state = v1::EnsembleJob::FAILED;
+    end.error = RpcStatus(WithReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
+  }
+  return end;
+}
+
+}  // namespace
+
+JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
+                       std::function<void(const Job&)> on_ended)
+    : job_(std::move(job)), store_(store), on_ended_(std::move(on_ended)) {}
+
+void JobJournal::Began() {
+  const absl::Time now = absl::Now();
+  if (!job_->Enter(v1::EnsembleJob::RUNNING, now)) return;
+  store_.Record([sequence = job_->sequence(), now](Database& database) {
+    return BeginJob(database, sequence, now);
+  });
+}
+
+absl::Status JobJournal::ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) {
+  const auto on_row = [&](int64_t block, const std::string& record) -> absl::Status {
+    absl::StatusOr<BlockResult> result = BlockResultFromBytes(record);
+    if (!result.ok()) return result.status();
+    on_block(static_cast<uint64_t>(block), *std::move(result));
+    return absl::OkStatus();
+  };
+  return store_.Read([&](Database& database) {
+    return ReadBlocks(database, job_->sequence(), static_cast<int64_t>(point), on_row);
+  });
+}
+
+uint64_t JobJournal::BlockMerged(MergedBlock block) {
+  const uint64_t change =
+      job_->AddBlock(static_cast<double>(block.result.samples), block.share_of_point);
+  if (block.restored) return change;
+  // Shared, because the store's closures are copyable; made into bytes only if it is written.
+  auto result = std::make_shared<const BlockResult>(std::move(block.result));
+  store_.RecordBlock(job_->sequence(), static_cast<int64_t>(block.point),
+                     static_cast<int64_t>(block.block),
+                     [result = std::move(result)] { return BlockRecordBytes(*result); });
+  return change;
+}
+
+void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
+                               const BlockResult& merged) {
+  v1::PointResult result = PointResultOf(point, experiment, merged, Histograms::kIncluded);
+  store_.RecordResult(job_->sequence(),
+                      {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
+  result.clear_histograms();
+  job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
+}
+
+void JobJournal::Ended(const absl::Status& outcome) {
+  const JobEnd end = EndOf(*job_, outcome);
+  if (end.state == v1::EnsembleJob::FAILED) {
+    LogError(absl::StrCat(JobName(job_->id()), " failed: ", outcome.message()));
+  }
+  auto state = std::make_shared<JobState>();
+  const auto change = [sequence = job_->sequence(), end, state](Database& database) {
+    const absl::StatusOr<JobState> now = EndJob(database, sequence, end);
+    if (now.ok()) *state = *now;
+    return now.status();
+  };
+  store_.RecordSoon(change, [job = job_, end, state, ended = on_ended_](const absl::Status& done) {
+    if (!done.ok()) return;
+    job->Enter(*state, end.time, *state == end.state ? end.error : "");
+    if (ended) ended(*job);
+  });
+}
+
+void JobJournal::AwaitRoom() { store_.AwaitRoom(); }
+
+}  // namespace ballpiston::server

@@ -1,0 +1,40 @@
+// Writes what a job's run reports into the store and into the job.
+//
+// Order in the store: a block after those merged before it, a point's result after its blocks, the
+// end of the job after all of it; the job is seen to have ended only when that is on disk.
+// Thread-safe.
+#ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
+#define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
+
+#include <functional>
+#include <memory>
+
+#include "server/execution/run_journal.h"
+#include "server/jobs/job.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+class JobJournal : public RunJournal {
+ public:
+  // `on_ended` is called, on the store's thread, when the job has ended for good. The store has to
+  // outlive this.
+  JobJournal(std::shared_ptr<Job> job, Store& store, std::function<void(const Job&)> on_ended);
+
+  void Began() override;
+  absl::Status ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) override;
+  uint64_t BlockMerged(MergedBlock block) override;
+  void PointFinished(size_t point, const PointExperiment& experiment,
+                     const BlockResult& merged) override;
+  void Ended(const absl::Status& outcome) override;
+  void AwaitRoom() override;
+
+ private:
+  const std::shared_ptr<Job> job_;
+  Store& store_;
+  const std::function<void(const Job&)> on_ended_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_

@@ -1,0 +1,15 @@
+// A job as the API shows it. Pure functions.
+#ifndef BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_
+#define BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/store/job_record.h"
+
+namespace ballpiston::server {
+
+// Of a row; its progress is what the row says. A specification that cannot be read is left out.
+v1::EnsembleJob JobMessage(const JobRecord& record);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_

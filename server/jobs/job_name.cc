@@ -1,0 +1,41 @@
+#include "server/jobs/job_name.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr char kCollection[] = "ensembleJobs/";
+constexpr size_t kMaxIdLength = 63;
+
+bool IsIdCharacter(char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; }
+
+bool IsId(const std::string& id) {
+  return !id.empty() && id.size() <= kMaxIdLength &&
+         std::all_of(id.begin(), id.end(), IsIdCharacter);
+}
+
+}  // namespace
+
+std::string JobName(const std::string& id) { return absl::StrCat(kCollection, id); }
+
+std::optional<std::string> JobIdOf(const std::string& name) {
+  const std::string collection = kCollection;
+  if (name.rfind(collection, 0) != 0) return std::nullopt;
+  std::string id = name.substr(collection.size());
+  if (!IsId(id)) return std::nullopt;
+  return id;
+}
+
+std::string RandomId() {
+  std::random_device random;
+  const uint64_t high = random();
+  return absl::StrFormat("%016x", high << 32 | random());
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,91 @@
+// ballpistond: starts the server, waits for a signal or for idleness, stops it.
+#include <signal.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "server/ballpiston_server.h"
+#include "server/command_line.h"
+#include "server/observability/log.h"
+#include "server/version.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr int kExitUsage = 2;
+constexpr int kExitNotPermitted = 6;
+constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
+// What stopping the workers and closing the store may take beyond the time to drain.
+constexpr std::chrono::seconds kGrace(5);
+
+// Blocked in this thread before any other is started, so in all of them.
+sigset_t BlockSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
+
+void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer& server) {
+  while (sigtimedwait(&signals, nullptr, &kLookInterval) < 0) {
+    if (line.idle_exit && server.IdleFor() >= *line.idle_exit) {
+      return LogInfo("nobody uses this server: stopping");
+    }
+  }
+  LogInfo("stopping");
+}
+
+// Ends the process if stopping takes too long: all that was acknowledged is on disk by then.
+void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
+  std::mutex mutex;
+  std::condition_variable stopped_now;
+  bool stopped = false;
+  std::thread watchdog([&] {
+    std::unique_lock lock(mutex);
+    if (!stopped_now.wait_for(lock, drain + kGrace, [&] { return stopped; })) std::_Exit(0);
+  });
+  server.Shutdown(drain);
+  {
+    std::lock_guard lock(mutex);
+    stopped = true;
+  }
+  stopped_now.notify_all();
+  watchdog.join();
+}
+
+int Fail(const absl::Status& status) {
+  LogError(status.message());
+  return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
+}
+
+int Main(int argc, char** argv) {
+  umask(0077);                              // store and socket are their owner's
+  setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
+  const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
+  if (!line.ok()) return Fail(line.status());
+  const sigset_t signals = BlockSignals();
+  const auto server = BallpistonServer::Start(line->server);
+  if (!server.ok()) return Fail(server.status());
+  std::fprintf(stderr, "ballpistond %s listening on %s\n", kVersion, (*server)->address().c_str());
+  AwaitEnd(signals, *line, **server);
+  StopInTime(**server, line->drain);
+  // Not by way of the destructors: after large answers gRPC may wait 10 s for a poller of its own.
+  std::fflush(nullptr);
+  std::_Exit(0);
+}
+
+}  // namespace
+}  // namespace ballpiston::server
+
+int main(int argc, char** argv) { return ballpiston::server::Main(argc, argv); }

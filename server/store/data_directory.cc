@@ -1,0 +1,83 @@
+#include "server/store/data_directory.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::server {
+namespace {
+
+absl::Status NotWritable(const std::string& path, int error) {
+  return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
+                                                  " is not writable: ", std::strerror(error),
+                                                  "; choose another one with --data_dir"));
+}
+
+bool IsDirectory(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+// Makes the folder and those above it; each is for its owner only.
+absl::Status MakeDirectories(const std::string& path) {
+  if (IsDirectory(path)) return absl::OkStatus();
+  const size_t slash = path.find_last_of('/');
+  if (slash != std::string::npos && slash > 0) {
+    const absl::Status above = MakeDirectories(path.substr(0, slash));
+    if (!above.ok()) return above;
+  }
+  if (mkdir(path.c_str(), 0700) == 0 || IsDirectory(path)) return absl::OkStatus();
+  return NotWritable(path, errno);
+}
+
+}  // namespace
+
+std::string DataDirectory::Default() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && *state == '/') return absl::StrCat(state, "/ballpiston");
+  const char* home = std::getenv("HOME");
+  return absl::StrCat(home == nullptr ? "" : home, "/.local/state/ballpiston");
+}
+
+absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
+  if (path.empty()) return absl::InvalidArgumentError("--data_dir is empty; name a folder");
+  const absl::Status made = MakeDirectories(path);
+  if (!made.ok()) return made;
+  if (access(path.c_str(), W_OK | X_OK) != 0) return NotWritable(path, errno);
+  const std::string lock_path = path + "/lock";
+  const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock < 0) return NotWritable(path, errno);
+  if (flock(lock, LOCK_EX | LOCK_NB) == 0) return DataDirectory(path, lock);
+  const int error = errno;
+  close(lock);
+  if (error != EWOULDBLOCK) return NotWritable(path, error);
+  return absl::FailedPreconditionError(
+      absl::StrCat("data folder ", path,
+                   " is in use by another ballpistond; stop that one or "
+                   "choose another folder with --data_dir"));
+}
+
+DataDirectory::DataDirectory(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
+
+DataDirectory::DataDirectory(DataDirectory&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+DataDirectory& DataDirectory::operator=(DataDirectory&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(lock_, other.lock_);
+  return *this;
+}
+
+DataDirectory::~DataDirectory() {
+  if (lock_ >= 0) close(lock_);
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,40 @@
+// The folder a server keeps its state in, held by one server at a time.
+//
+// Made, readable by its owner only, if it does not exist. A lock on the file `lock` in it, held as
+// long as this object lives (and released by the kernel when the process dies), keeps a second
+// server out.
+#ifndef BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
+#define BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::server {
+
+class DataDirectory {
+ public:
+  //   FAILED_PRECONDITION  another server uses it
+  //   PERMISSION_DENIED    it cannot be made or written to
+  static absl::StatusOr<DataDirectory> Open(const std::string& path);
+
+  // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston.
+  static std::string Default();
+
+  DataDirectory(DataDirectory&& other) noexcept;
+  DataDirectory& operator=(DataDirectory&& other) noexcept;
+  ~DataDirectory();
+
+  const std::string& path() const { return path_; }
+  std::string FilePath(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  DataDirectory(std::string path, int lock);
+
+  std::string path_;
+  int lock_;  // file descriptor
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_

@@ -1,0 +1,35 @@
+// A row of the jobs table.
+#ifndef BALLPISTON_SERVER_STORE_JOB_RECORD_H_
+#define BALLPISTON_SERVER_STORE_JOB_RECORD_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "absl/time/time.h"
+#include "ballpiston/v1/ensemble.pb.h"
+
+namespace ballpiston::server {
+
+using JobState = v1::EnsembleJob::State;
+
+struct JobRecord {
+  int64_t sequence = 0;  // given by the store; greater for a newer job, never given twice
+  std::string id;
+  std::string spec;  // serialized v1::EnsembleSpec
+  JobState state = v1::EnsembleJob::QUEUED;
+  absl::Time create_time;
+  std::optional<absl::Time> start_time;
+  std::optional<absl::Time> end_time;
+  std::string error;  // serialized google.rpc.Status, empty unless FAILED
+  std::string engine_version;
+  std::string request_id;         // of the Create, or empty
+  std::string cancel_request_id;  // of the Cancel, or empty
+  int64_t points = 0;
+  int64_t points_done = 0;  // these two are up to date in ended jobs only
+  double samples = 0;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_JOB_RECORD_H_

@@ -1,0 +1,169 @@
+#include "server/store/job_table.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr char kColumns[] =
+    "sequence, id, spec, state, create_time, start_time, end_time, error, engine_version,"
+    " request_id, cancel_request_id, points, points_done, samples";
+
+std::optional<absl::Time> OptionalTime(const Query& query, int column) {
+  if (query.IsNull(column)) return std::nullopt;
+  return absl::FromUnixNanos(query.Integer(column));
+}
+
+JobRecord RecordOf(const Query& query) {
+  JobRecord record;
+  record.sequence = query.Integer(0);
+  record.id = query.Bytes(1);
+  record.spec = query.Bytes(2);
+  record.state = static_cast<JobState>(query.Integer(3));
+  record.create_time = absl::FromUnixNanos(query.Integer(4));
+  record.start_time = OptionalTime(query, 5);
+  record.end_time = OptionalTime(query, 6);
+  record.error = query.Bytes(7);
+  record.engine_version = query.Bytes(8);
+  record.request_id = query.Bytes(9);
+  record.cancel_request_id = query.Bytes(10);
+  record.points = query.Integer(11);
+  record.points_done = query.Integer(12);
+  record.samples = query.Real(13);
+  return record;
+}
+
+void BindTextOrNull(Query& query, const std::string& text) {
+  if (text.empty()) {
+    query.BindNull();
+  } else {
+    query.BindText(text);
+  }
+}
+
+absl::StatusOr<std::optional<JobRecord>> FindBy(Database& database, const char* column,
+                                                const std::string& value) {
+  Query query =
+      database.Prepare(absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE ", column, " = ?"));
+  const absl::StatusOr<bool> row = query.BindText(value).Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return std::nullopt;
+  return RecordOf(query);
+}
+
+absl::StatusOr<std::vector<JobRecord>> AllRows(Query& query) {
+  std::vector<JobRecord> records;
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return records;
+    records.push_back(RecordOf(query));
+  }
+}
+
+absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
+  return database.Prepare(sql).Bind(sequence).Run();
+}
+
+}  // namespace
+
+absl::Status InsertJob(Database& database, JobRecord& record) {
+  Query query = database.Prepare(
+      "INSERT INTO jobs (id, spec, state, create_time, error, engine_version, request_id, points,"
+      " points_done, samples) VALUES (?, ?, ?, ?, x'', ?, ?, ?, 0, 0)");
+  query.BindText(record.id).BindBlob(record.spec).Bind(int64_t{record.state});
+  query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);
+  BindTextOrNull(query, record.request_id);
+  const absl::Status status = query.Bind(record.points).Run();
+  record.sequence = database.LastInsertedRow();
+  return status;
+}
+
+absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id) {
+  return FindBy(database, "id", id);
+}
+
+absl::StatusOr<std::optional<JobRecord>> FindJobByRequest(Database& database,
+                                                          const std::string& request_id) {
+  return FindBy(database, "request_id", request_id);
+}
+
+absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database, int64_t before, int limit) {
+  Query query = database.Prepare(absl::StrCat(
+      "SELECT ", kColumns, " FROM jobs WHERE sequence < ? ORDER BY sequence DESC LIMIT ?"));
+  query.Bind(before).Bind(int64_t{limit});
+  return AllRows(query);
+}
+
+absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database) {
+  Query query = database.Prepare(
+      absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE state IN (", int{v1::EnsembleJob::QUEUED},
+                   ", ", int{v1::EnsembleJob::RUNNING}, ", ", int{v1::EnsembleJob::CANCELLING},
+                   ") ORDER BY sequence"));
+  return AllRows(query);
+}
+
+absl::Status BeginJob(Database& database, int64_t sequence, absl::Time now) {
+  return database
+      .Prepare("UPDATE jobs SET state = ?, start_time = ? WHERE sequence = ? AND state = ?")
+      .Bind(int64_t{v1::EnsembleJob::RUNNING})
+      .Bind(absl::ToUnixNanos(now))
+      .Bind(sequence)
+      .Bind(int64_t{v1::EnsembleJob::QUEUED})
+      .Run();
+}
+
+absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
+                                       const std::string& request_id) {
+  Query query = database.Prepare(
+      "UPDATE jobs SET state = ?, cancel_request_id = ? WHERE sequence = ? AND state IN (?, ?)");
+  query.Bind(int64_t{v1::EnsembleJob::CANCELLING});
+  BindTextOrNull(query, request_id);
+  query.Bind(sequence);
+  query.Bind(int64_t{v1::EnsembleJob::QUEUED}).Bind(int64_t{v1::EnsembleJob::RUNNING});
+  const absl::Status status = query.Run();
+  if (!status.ok()) return status;
+  return database.RowsChanged() == 1;
+}
+
+absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end) {
+  Query query = database.Prepare(
+      "UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?, error = iif(state = ?, x'', ?),"
+      " points_done = ?, samples = ? WHERE sequence = ? RETURNING state");
+  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).Bind(int64_t{v1::EnsembleJob::CANCELLED});
+  query.Bind(int64_t{end.state}).Bind(absl::ToUnixNanos(end.time));
+  query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error);
+  const absl::StatusOr<bool> row =
+      query.Bind(end.points_done).Bind(end.samples).Bind(sequence).Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return absl::NotFoundError("the job is not in the store");
+  const auto state = static_cast<JobState>(query.Integer(0));
+  const absl::StatusOr<bool> last = query.Step();
+  if (!last.ok()) return last.status();
+  const absl::Status dropped = RunFor(database, sequence, "DELETE FROM blocks WHERE job = ?");
+  if (!dropped.ok()) return dropped;
+  return state;
+}
+
+absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version) {
+  for (const char* sql :
+       {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?"}) {
+    const absl::Status status = RunFor(database, sequence, sql);
+    if (!status.ok()) return status;
+  }
+  return database.Prepare("UPDATE jobs SET engine_version = ? WHERE sequence = ?")
+      .BindText(engine_version)
+      .Bind(sequence)
+      .Run();
+}
+
+absl::Status DeleteJob(Database& database, int64_t sequence) {
+  for (const char* sql : {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?",
+                          "DELETE FROM jobs WHERE sequence = ?"}) {
+    const absl::Status status = RunFor(database, sequence, sql);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,61 @@
+// The SQL about jobs. Each function runs inside the transaction of its caller.
+//
+// Changes of state are decided here, where all writes pass in one order: a cancellation and the
+// last result of a job may come together, and one of them is first. UNAVAILABLE: SQLite failed.
+#ifndef BALLPISTON_SERVER_STORE_JOB_TABLE_H_
+#define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "server/store/job_record.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+// Sets record.sequence.
+absl::Status InsertJob(Database& database, JobRecord& record);
+
+absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id);
+absl::StatusOr<std::optional<JobRecord>> FindJobByRequest(Database& database,
+                                                          const std::string& request_id);
+
+// Newest first, those with a smaller sequence than `before`.
+absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database, int64_t before, int limit);
+
+// Neither SUCCEEDED nor FAILED nor CANCELLED; oldest first.
+absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);
+
+// QUEUED -> RUNNING. Without effect in every other state.
+absl::Status BeginJob(Database& database, int64_t sequence, absl::Time now);
+
+// QUEUED, RUNNING -> CANCELLING. False, and without effect, in every other state.
+absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
+                                       const std::string& request_id);
+
+struct JobEnd {
+  JobState state = v1::EnsembleJob::SUCCEEDED;
+  absl::Time time;
+  std::string error;
+  int64_t points_done = 0;
+  double samples = 0;
+};
+
+// Ends an active job and drops its blocks; one that is CANCELLING becomes CANCELLED whatever was
+// asked for. Returns the state it is in now.
+absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end);
+
+// Of an engine that gives other numbers: what was computed is dropped, the version becomes this.
+absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version);
+
+// With its results.
+absl::Status DeleteJob(Database& database, int64_t sequence);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_JOB_TABLE_H_

@@ -1,0 +1,44 @@
+// The SQL about what was computed: blocks of unfinished points, results of finished ones. Each
+// function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+#ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
+#define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+// The first writer wins: a block that is there already stays as it is.
+absl::Status InsertBlock(Database& database, int64_t job, int64_t point, int64_t block,
+                         const std::string& record);
+
+// A point's blocks, in order; ends early, with that status, when `on_block` does not return OK.
+absl::Status ReadBlocks(
+    Database& database, int64_t job, int64_t point,
+    const std::function<absl::Status(int64_t block, const std::string& record)>& on_block);
+
+struct PointRow {
+  int64_t point = 0;
+  double samples = 0;
+  std::string result;  // serialized v1::PointResult
+};
+
+// Drops the point's blocks, which nobody reads any more. Here, too, the first writer wins.
+absl::Status InsertResult(Database& database, int64_t job, const PointRow& row);
+
+// In grid order, from point `first`; ends when `on_row` returns false.
+absl::Status ReadResults(Database& database, int64_t job, int64_t first,
+                         const std::function<bool(PointRow row)>& on_row);
+
+// All finished points without their results, in grid order.
+absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int64_t job);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_POINT_TABLES_H_

@@ -1,0 +1,31 @@
+// The tables of the store, and the checks before a file is taken for one.
+//
+//   jobs     one row a job; `sequence` is its age and the key of the other two
+//   blocks   (job, point, block) -> storage BlockRecord, of unfinished points of active jobs
+//   results  (job, point) -> PointResult, of finished points
+//
+// `application_id` tells a store from another program's database, `user_version` is the version of
+// these tables.
+#ifndef BALLPISTON_SERVER_STORE_SCHEMA_H_
+#define BALLPISTON_SERVER_STORE_SCHEMA_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+inline constexpr int64_t kSchemaVersion = 1;
+inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
+
+// The connection that writes and checkpoints, to a store that was checked, or made if there was
+// none. A file that is damaged, of a newer version or of another program is refused with
+// FAILED_PRECONDITION and left as it is.
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_SCHEMA_H_

@@ -1,0 +1,146 @@
+#include "server/store/sqlite.h"
+
+#include <sqlite3.h>
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::server {
+namespace {
+
+// A reader never waits for the writer in WAL mode; this covers recovery after a crash.
+constexpr int kBusyMilliseconds = 5000;
+
+absl::Status Failure(sqlite3* connection) {
+  return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errmsg(connection)));
+}
+
+}  // namespace
+
+Query::Query(sqlite3_stmt* statement, absl::Status prepared)
+    : statement_(statement), status_(std::move(prepared)) {}
+
+Query::Query(Query&& other) noexcept
+    : statement_(std::exchange(other.statement_, nullptr)),
+      status_(std::move(other.status_)),
+      next_parameter_(other.next_parameter_) {}
+
+Query::~Query() {
+  if (statement_ == nullptr) return;
+  sqlite3_reset(statement_);
+  sqlite3_clear_bindings(statement_);
+}
+
+Query& Query::Bind(int64_t value) {
+  if (status_.ok()) sqlite3_bind_int64(statement_, next_parameter_++, value);
+  return *this;
+}
+
+Query& Query::Bind(double value) {
+  if (status_.ok()) sqlite3_bind_double(statement_, next_parameter_++, value);
+  return *this;
+}
+
+Query& Query::BindText(absl::string_view value) {
+  if (status_.ok()) {
+    sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT,
+                        SQLITE_UTF8);
+  }
+  return *this;
+}
+
+Query& Query::BindBlob(absl::string_view value) {
+  // A null pointer would bind NULL.
+  const char* data = value.empty() ? "" : value.data();
+  if (status_.ok()) {
+    sqlite3_bind_blob64(statement_, next_parameter_++, data, value.size(), SQLITE_TRANSIENT);
+  }
+  return *this;
+}
+
+Query& Query::BindNull() {
+  if (status_.ok()) sqlite3_bind_null(statement_, next_parameter_++);
+  return *this;
+}
+
+absl::StatusOr<bool> Query::Step() {
+  if (!status_.ok()) return status_;
+  const int code = sqlite3_step(statement_);
+  if (code == SQLITE_ROW) return true;
+  if (code == SQLITE_DONE) return false;
+  status_ = Failure(sqlite3_db_handle(statement_));
+  return status_;
+}
+
+absl::Status Query::Run() { return Step().status(); }
+
+int64_t Query::Integer(int column) const { return sqlite3_column_int64(statement_, column); }
+
+double Query::Real(int column) const { return sqlite3_column_double(statement_, column); }
+
+std::string Query::Bytes(int column) const {
+  const void* data = sqlite3_column_blob(statement_, column);
+  const int size = sqlite3_column_bytes(statement_, column);
+  return data == nullptr ? std::string()
+                         : std::string(static_cast<const char*>(data), static_cast<size_t>(size));
+}
+
+bool Query::IsNull(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+}
+
+absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode) {
+  const int flags =
+      mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  sqlite3* connection = nullptr;
+  const int code = sqlite3_open_v2(path.c_str(), &connection, flags | SQLITE_OPEN_NOMUTEX, nullptr);
+  auto database = std::unique_ptr<Database>(new Database(connection));
+  if (code != SQLITE_OK) return Failure(connection);
+  sqlite3_extended_result_codes(connection, 1);
+  sqlite3_busy_timeout(connection, kBusyMilliseconds);
+  return database;
+}
+
+Database::~Database() {
+  for (const auto& [sql, statement] : statements_) sqlite3_finalize(statement);
+  sqlite3_close(connection_);
+}
+
+Query Database::Prepare(const std::string& sql) {
+  const auto known = statements_.find(sql);
+  if (known != statements_.end()) return Query(known->second, absl::OkStatus());
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v3(connection_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT,
+                                      &statement, nullptr);
+  if (code != SQLITE_OK) return Query(nullptr, Failure(connection_));
+  statements_.emplace(sql, statement);
+  return Query(statement, absl::OkStatus());
+}
+
+absl::Status Database::Execute(const std::string& sql) {
+  if (sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) {
+    return absl::OkStatus();
+  }
+  return Failure(connection_);
+}
+
+absl::StatusOr<int64_t> Database::Integer(const std::string& sql) {
+  Query query = Prepare(sql);
+  const absl::StatusOr<bool> row = query.Step();
+  if (!row.ok()) return row.status();
+  return *row ? query.Integer(0) : 0;
+}
+
+absl::StatusOr<std::string> Database::Text(const std::string& sql) {
+  Query query = Prepare(sql);
+  const absl::StatusOr<bool> row = query.Step();
+  if (!row.ok()) return row.status();
+  return *row ? query.Bytes(0) : std::string();
+}
+
+int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }
+
+int64_t Database::RowsChanged() const { return sqlite3_changes64(connection_); }
+
+}  // namespace ballpiston::server

@@ -1,0 +1,11 @@
+// The version of the program, as releases are numbered; that of the numbers is the engine's.
+#ifndef BALLPISTON_SERVER_VERSION_H_
+#define BALLPISTON_SERVER_VERSION_H_
+
+namespace ballpiston::server {
+
+inline constexpr char kVersion[] = "0.1.0";
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_VERSION_H_

@@ -1,0 +1,190 @@
+#include <cmath>
+#include <limits>
+
+#include "ballpiston/v1/storage.pb.h"
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "gtest/gtest.h"
+#include "server/convert/block_record.h"
+#include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "server/convert/spec.h"
+#include "tests/server/fake_experiments.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+BlockResult SomeBlock() {
+  BlockResult result;
+  result.samples = 12345678901234;
+  result.moments = {{3, 0.1, 1e-300, -2.5, 5e-324}, {}};
+  result.batch_means = {{7, 0.3, -0.0, 1e300, 2, 3}};
+  result.histograms = {{-1.5, 1.5, {0, 1, std::numeric_limits<uint64_t>::max()}}};
+  result.health = {2, 1e-15};
+  return result;
+}
+
+TEST(BlockRecord, ComesBackExactly) {
+  const auto back = BlockResultFromBytes(BlockRecordBytes(SomeBlock()));
+  ASSERT_TRUE(back.ok());
+  EXPECT_TRUE(*back == SomeBlock());
+  EXPECT_TRUE(std::signbit(back->batch_means[0].mean_denominator));
+}
+
+TEST(BlockRecord, GarbageIsDataLoss) {
+  EXPECT_TRUE(absl::IsDataLoss(BlockResultFromBytes("\xff\xff\xff").status()));
+}
+
+v1::EnsembleSpec FirstHit() {
+  v1::EnsembleSpec message;
+  message.set_experiment(v1::EnsembleSpec::FIRST_HIT);
+  message.mutable_grid()->add_rho(0.53);
+  message.mutable_grid()->add_delta(0.1);
+  message.mutable_grid()->add_epsilon(0.25);
+  message.mutable_grid()->add_exponent(1);
+  message.mutable_target()->set_samples(1000);
+  message.set_seed(std::numeric_limits<uint64_t>::max());
+  return message;
+}
+
+std::vector<std::string> Fields(const CheckedSpec& checked) {
+  std::vector<std::string> fields;
+  for (const FieldViolation& violation : checked.violations) fields.push_back(violation.field);
+  return fields;
+}
+
+TEST(Spec, ComesBackAsItWent) {
+  v1::EnsembleSpec message = FirstHit();
+  message.set_model(v1::EnsembleSpec::BILLIARD_REFERENCE);
+  message.set_precision(v1::EnsembleSpec::DOUBLE);
+  const CheckedSpec checked = CheckSpec(message);
+  EXPECT_TRUE(checked.violations.empty());
+  EXPECT_EQ(SpecMessage(checked.spec).SerializeAsString(), message.SerializeAsString());
+}
+
+TEST(Spec, EveryKindOfTargetComesBack) {
+  for (const int kind : {0, 1, 2, 3}) {
+    v1::EnsembleSpec message = FirstHit();
+    if (kind == 0) message.clear_target();
+    if (kind == 1) message.mutable_target()->set_collisions(5);
+    if (kind == 2) message.mutable_target()->set_tolerance(0.01);
+    if (kind == 3) message.mutable_target()->mutable_budget()->set_nanos(500'000'000);
+    const v1::EnsembleSpec back = SpecMessage(CheckSpec(message).spec);
+    EXPECT_EQ(back.target().SerializeAsString(), message.target().SerializeAsString());
+  }
+}
+
+TEST(Spec, UnknownNumbersOfEnumerationsAreViolationsOnce) {
+  v1::EnsembleSpec message = FirstHit();
+  message.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(77));
+  message.set_model(static_cast<v1::EnsembleSpec::Model>(78));
+  message.set_precision(static_cast<v1::EnsembleSpec::Precision>(79));
+  const std::vector<std::string> fields = Fields(CheckSpec(message));
+  for (const char* field : {"spec.experiment", "spec.model", "spec.precision"}) {
+    EXPECT_EQ(std::count(fields.begin(), fields.end(), field), 1) << field;
+  }
+}
+
+TEST(Spec, AFieldThatIsNotKnownIsAViolation) {
+  v1::EnsembleSpec message;
+  ASSERT_TRUE(message.ParseFromString(FirstHit().SerializeAsString() + "\xf8\x01\x01"));
+  EXPECT_THAT(Fields(CheckSpec(message)), testing::ElementsAre("spec"));
+}
+
+TEST(Spec, NotANumberAndInfinityAreViolations) {
+  v1::EnsembleSpec message = FirstHit();
+  message.mutable_grid()->add_rho(kNan);
+  message.mutable_grid()->add_delta(kInfinity);
+  message.mutable_grid()->add_epsilon(-kInfinity);
+  message.mutable_grid()->add_exponent(kNan);
+  message.mutable_target()->set_tolerance(kNan);
+  EXPECT_THAT(
+      Fields(CheckSpec(message)),
+      testing::IsSupersetOf({"spec.grid.rho[1]", "spec.grid.delta[1]", "spec.grid.epsilon[1]",
+                             "spec.grid.exponent[1]", "spec.target.tolerance"}));
+}
+
+TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
+  const EnsembleSpec spec = FakeSpec(1, 1);
+  const auto experiment = FakeExperiments()(spec, 0);
+  BlockResult merged;
+  merged.samples = 1;
+  merged.moments.resize(1);
+  merged.moments[0].Add(0.25);  // one sample: no standard error, no z-score
+  merged.health.max_energy_error = kNan;
+  const v1::PointResult result = PointResultOf(3, *experiment, merged, Histograms::kIncluded);
+  ASSERT_EQ(result.estimates_size(), 1);
+  EXPECT_EQ(result.index(), 3);
+  EXPECT_EQ(result.estimates(0).value(), 0.25);
+  EXPECT_FALSE(result.estimates(0).has_standard_error());
+  EXPECT_FALSE(result.estimates(0).has_z_score());
+  EXPECT_TRUE(result.estimates(0).has_exact());
+  EXPECT_EQ(result.health().max_energy_error(), 0);
+  EXPECT_FALSE(result.parameters().has_epsilon());
+  merged.moments[0].mean = kNan;
+  EXPECT_EQ(PointResultOf(3, *experiment, merged, Histograms::kIncluded).estimates_size(), 0);
+}
+
+google::rpc::Status Details(const grpc::Status& status) {
+  google::rpc::Status details;
+  EXPECT_TRUE(details.ParseFromString(status.error_details()));
+  return details;
+}
+
+TEST(Errors, CarryReasonAndDomain) {
+  const grpc::Status status = GrpcStatus(JobNotFound("ensembleJobs/x"));
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_THAT(status.error_message(), HasSubstr("ensembleJobs/x"));
+  const google::rpc::Status details = Details(status);
+  EXPECT_EQ(details.code(), grpc::StatusCode::NOT_FOUND);
+  google::rpc::ErrorInfo info;
+  ASSERT_EQ(details.details_size(), 1);
+  ASSERT_TRUE(details.details(0).UnpackTo(&info));
+  EXPECT_EQ(info.reason(), "JOB_NOT_FOUND");
+  EXPECT_EQ(info.domain(), "ballpiston");
+  EXPECT_EQ(info.metadata().at("name"), "ensembleJobs/x");
+}
+
+TEST(Errors, ViolationsThatDoNotFitAreCounted) {
+  std::vector<FieldViolation> violations;
+  for (int i = 0; i < 5000; ++i) {
+    violations.push_back({"spec.grid.rho[" + std::to_string(i) + "]", std::string(90, 'x')});
+  }
+  const grpc::Status status = GrpcStatus(InvalidSpec(violations));
+  EXPECT_LT(status.error_details().size(), kMaxErrorDetails);
+  google::rpc::ErrorInfo info;
+  google::rpc::BadRequest request;
+  const google::rpc::Status details = Details(status);
+  for (const auto& detail : details.details()) {
+    detail.UnpackTo(&info);
+    detail.UnpackTo(&request);
+  }
+  EXPECT_GT(request.field_violations_size(), 20);
+  EXPECT_EQ(info.metadata().at("violations_left_out"),
+            std::to_string(5000 - request.field_violations_size()));
+  EXPECT_THAT(status.error_message(), HasSubstr(info.metadata().at("violations_left_out")));
+}
+
+TEST(Errors, OneHugeViolationFitsToo) {
+  const grpc::Status status =
+      GrpcStatus(InvalidField(std::string(20'000, 'f'), std::string(20'000, 'd')));
+  EXPECT_LT(status.error_details().size(), kMaxErrorDetails);
+  EXPECT_LT(status.error_message().size(), 1024u);
+}
+
+TEST(Errors, TextIsCutBetweenCharacters) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "\xc3\xa9";  // e with an accent
+  const grpc::Status status = GrpcStatus(InvalidField("a", text));
+  EXPECT_TRUE(Details(status).IsInitialized());
+  const std::string message = status.error_message();
+  EXPECT_NE(message.find("\xa9..."), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,53 @@
+// Experiments a test can hold up, break and count.
+#ifndef BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
+#define BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "server/execution/run.h"
+
+namespace ballpiston::server {
+
+// Holds up those who pass until it is opened, or until they are told to stop.
+class Gate {
+ public:
+  void Open();
+  void Pass(std::stop_token stop);
+  // Returns when that many wait at the closed gate.
+  void AwaitWaiting(int count);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  bool open_ = false;
+  int waiting_ = 0;
+};
+
+// Called at the start of each block; what it throws, the block throws.
+using BeforeBlock = std::function<void(size_t point, uint64_t block, std::stop_token stop)>;
+
+inline constexpr uint64_t kFakeSamplesPerBlock = 4;
+
+// Cheap blocks of kFakeSamplesPerBlock pseudo-random numbers in (0, 1), a function of seed, point
+// and block alone. The spec's samples or collisions count blocks here; a tolerance has 1000 blocks
+// at most.
+ExperimentFactory FakeExperiments(BeforeBlock before_block = nullptr);
+
+// The core's experiments, held up.
+ExperimentFactory HeldUpExperiments(BeforeBlock before_block);
+
+// One rho, so many deltas, so many blocks each.
+EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed = 1);
+
+// What the fake experiment gives for these blocks of a point, merged in order.
+BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_

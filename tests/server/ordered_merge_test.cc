@@ -1,0 +1,94 @@
+#include "server/execution/ordered_merge.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "tests/server/fake_experiments.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr uint64_t kBlocks = 50;
+
+std::shared_ptr<const PointExperiment> Experiment() {
+  return FakeExperiments()(FakeSpec(1, kBlocks), 0);
+}
+
+std::vector<uint64_t> Shuffled(unsigned seed) {
+  std::vector<uint64_t> order(kBlocks);
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+  return order;
+}
+
+TEST(OrderedMerge, ResultIsIndependentOfArrivalOrder) {
+  const auto experiment = Experiment();
+  const BlockResult expected = FakeMerged(FakeSpec(1, kBlocks), 0, kBlocks);
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    OrderedMerge merge(experiment);
+    std::vector<uint64_t> merged;
+    for (const uint64_t block : Shuffled(seed)) {
+      merge.Add(block, *experiment->RunBlock(block, {}),
+                [&](uint64_t index, BlockResult&) { merged.push_back(index); });
+    }
+    EXPECT_TRUE(merge.finished());
+    EXPECT_TRUE(merge.merged() == expected) << "arrival order " << seed;
+    EXPECT_TRUE(std::is_sorted(merged.begin(), merged.end()));
+    EXPECT_EQ(merged.size(), kBlocks);
+  }
+}
+
+TEST(OrderedMerge, MergingInAnotherOrderGivesOtherBits) {  // or the test above proves nothing
+  const auto experiment = Experiment();
+  BlockResult backwards;
+  for (uint64_t block = kBlocks; block-- > 0;) backwards.Merge(*experiment->RunBlock(block, {}));
+  EXPECT_FALSE(backwards == FakeMerged(FakeSpec(1, kBlocks), 0, kBlocks));
+}
+
+TEST(OrderedMerge, EarlyBlocksWait) {
+  const auto experiment = Experiment();
+  OrderedMerge merge(experiment);
+  merge.Add(1, *experiment->RunBlock(1, {}), nullptr);
+  EXPECT_EQ(merge.blocks_merged(), 0u);
+  EXPECT_EQ(merge.waiting(), 1u);
+  EXPECT_TRUE(merge.Knows(1));
+  EXPECT_FALSE(merge.Knows(0));
+  merge.Add(0, *experiment->RunBlock(0, {}), nullptr);
+  EXPECT_EQ(merge.blocks_merged(), 2u);
+  EXPECT_EQ(merge.waiting(), 0u);
+}
+
+TEST(OrderedMerge, ABlockCountsOnce) {
+  const auto experiment = Experiment();
+  OrderedMerge merge(experiment);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    merge.Add(0, *experiment->RunBlock(0, {}), nullptr);
+    merge.Add(2, *experiment->RunBlock(2, {}), nullptr);
+  }
+  EXPECT_EQ(merge.blocks_merged(), 1u);
+  EXPECT_EQ(merge.merged().samples, kFakeSamplesPerBlock);
+}
+
+TEST(OrderedMerge, BlocksBeyondTheToleranceAreDropped) {
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {};
+  spec.target.tolerance = 0.05;  // reached after some 140 samples, never before kMinBlocks
+  const std::shared_ptr<const PointExperiment> experiment = FakeExperiments()(spec, 0);
+  OrderedMerge merge(experiment);
+  uint64_t told = 0;
+  for (uint64_t block = 200; block-- > 0;) {  // backwards: all wait for the first
+    merge.Add(block, *experiment->RunBlock(block, {}), [&](uint64_t, BlockResult&) { ++told; });
+  }
+  EXPECT_TRUE(merge.finished());
+  EXPECT_GE(merge.blocks_merged(), kMinBlocks);
+  EXPECT_LT(merge.blocks_merged(), 200u);
+  EXPECT_EQ(told, merge.blocks_merged());
+  EXPECT_EQ(merge.waiting(), 0u);
+  EXPECT_TRUE(merge.merged() == FakeMerged(spec, 0, merge.blocks_merged()));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,228 @@
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/schema.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/running_server.h"
+#include "tests/server/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using v1::EnsembleJob;
+
+ServerOptions Options(const std::string& data_dir, int workers, ExperimentFactory factory) {
+  ServerOptions options;
+  options.data_dir = data_dir;
+  options.workers = workers;
+  options.factory = std::move(factory);
+  options.watch.snapshot = std::chrono::milliseconds(5);
+  options.store.delay = std::chrono::milliseconds(1);
+  return options;
+}
+
+v1::EnsembleSpec SmallEquilibrium() {
+  v1::EnsembleSpec spec = Equilibrium(3, 5000);
+  spec.set_seed(7);
+  return spec;
+}
+
+v1::EnsembleSpec SmallMeanFreeTime() {
+  v1::EnsembleSpec spec = SmallFirstHit();
+  spec.set_experiment(v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME);
+  spec.mutable_grid()->clear_exponent();
+  return spec;
+}
+
+std::vector<v1::EnsembleSpec> AllExperiments() {
+  return {SmallFirstHit(), SmallEquilibrium(), SmallMeanFreeTime()};
+}
+
+// With the core's experiments, unless others are given.
+std::vector<std::string> BytesAt(int workers, const v1::EnsembleSpec& spec,
+                                 ExperimentFactory factory = nullptr) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder.path(), workers, std::move(factory)));
+  const std::string name = server.Submit(spec);
+  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
+  return server.ResultBytes(name);
+}
+
+TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
+  for (const v1::EnsembleSpec& spec : AllExperiments()) {
+    const std::vector<std::string> one = BytesAt(1, spec);
+    EXPECT_FALSE(one.empty());
+    EXPECT_EQ(BytesAt(2, spec), one);
+    EXPECT_EQ(BytesAt(8, spec), one);
+  }
+}
+
+TEST(Restart, TheSameBytesWithATolerance) {
+  v1::EnsembleSpec spec = Equilibrium(10, 0);
+  spec.mutable_target()->set_tolerance(0.02);  // some 800 samples: not all blocks, not the least
+  const std::vector<std::string> one = BytesAt(1, spec, FakeExperiments());
+  v1::PointResult first;
+  ASSERT_TRUE(first.ParseFromString(one.at(0)));
+  EXPECT_GT(first.samples(), kMinBlocks * kFakeSamplesPerBlock);
+  EXPECT_LT(first.samples(), 1000 * kFakeSamplesPerBlock);
+  EXPECT_EQ(BytesAt(2, spec, FakeExperiments()), one);
+  EXPECT_EQ(BytesAt(8, spec, FakeExperiments()), one);
+}
+
+// The core's experiments, held up in the middle: point 1 has 20 blocks, later ones none.
+ExperimentFactory StuckInTheMiddle(Gate& gate) {
+  return HeldUpExperiments([&gate](size_t point, uint64_t block, std::stop_token stop) {
+    if (point > 1 || (point == 1 && block >= 20)) gate.Pass(stop);
+  });
+}
+
+TEST(Restart, AStoppedServerGoesOnToTheSameBytes) {
+  for (const v1::EnsembleSpec& spec : AllExperiments()) {
+    TemporaryFolder folder;
+    std::string name;
+    {
+      Gate gate;
+      RunningServer server(Options(folder.path(), 2, StuckInTheMiddle(gate)));
+      name = server.Submit(spec);
+      gate.AwaitWaiting(2);
+    }
+    std::atomic<int> of_point_0 = 0;
+    std::atomic<uint64_t> first_of_point_1 = std::numeric_limits<uint64_t>::max();
+    RunningServer server(Options(
+        folder.path(), 3, HeldUpExperiments([&](size_t point, uint64_t block, std::stop_token) {
+          of_point_0 += point == 0;
+          uint64_t seen = first_of_point_1;
+          while (point == 1 && block < seen &&
+                 !first_of_point_1.compare_exchange_weak(seen, block)) {
+          }
+        })));
+    EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
+    EXPECT_EQ(of_point_0, 0);          // its result was stored
+    EXPECT_EQ(first_of_point_1, 20u);  // and so were its blocks
+  }
+}
+
+// What a kill or a power failure leaves: the files as they are at one moment, nothing said goodbye.
+TEST(Restart, ACopyTakenInTheMiddleGoesOnToTheSameBytes) {
+  TemporaryFolder folder, copy;
+  const v1::EnsembleSpec spec = SmallFirstHit();
+  std::string name;
+  {
+    Gate gate;
+    RunningServer server(Options(folder.path(), 2, StuckInTheMiddle(gate)));
+    name = server.Submit(spec);
+    gate.AwaitWaiting(2);
+    server.Submit(SmallEquilibrium());  // its commit takes along all that was recorded before
+    for (const char* file : {"store.sqlite3", "store.sqlite3-wal"}) {
+      std::filesystem::copy_file(folder.File(file), copy.File(file));
+    }
+  }
+  RunningServer server(Options(copy.path(), 8, nullptr));
+  const EnsembleJob job = server.AwaitEnd(name);
+  EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(job.progress().samples(), 6 * 4096);
+  EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
+}
+
+TEST(Restart, AnEndedJobStaysAsItWas) {
+  TemporaryFolder folder;
+  std::string name;
+  EnsembleJob before;
+  std::vector<std::string> bytes;
+  {
+    RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+    name = server.Submit(Equilibrium(3, 5));
+    before = server.AwaitEnd(name);
+    bytes = server.ResultBytes(name);
+  }
+  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  EXPECT_EQ(server.Get(name).SerializeAsString(), before.SerializeAsString());
+  EXPECT_EQ(server.ResultBytes(name), bytes);
+}
+
+TEST(Restart, ARequestIdIsRemembered) {
+  TemporaryFolder folder;
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = Equilibrium(1, 5);
+  request.set_request_id("123e4567-e89b-12d3-a456-426614174000");
+  EnsembleJob first, again;
+  {
+    RunningServer server(Options(folder.path(), 1, FakeExperiments()));
+    ASSERT_TRUE(server.Create(request, &first).ok());
+  }
+  RunningServer server(Options(folder.path(), 1, FakeExperiments()));
+  ASSERT_TRUE(server.Create(request, &again).ok());
+  EXPECT_EQ(again.name(), first.name());
+}
+
+// Runs `sql` on the store of a server that is not running.
+void Change(const TemporaryFolder& folder, const std::string& sql) {
+  auto database = OpenStoreFile(folder.File("store.sqlite3"));
+  ASSERT_TRUE(database.ok()) << database.status();
+  ASSERT_TRUE((*database)->Execute(sql).ok());
+}
+
+// A job of the fake experiments, stopped with a finished point and some blocks of the second.
+std::string LeaveUnfinished(const TemporaryFolder& folder) {
+  Gate gate;
+  RunningServer server(Options(
+      folder.path(), 2, FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
+        if (point == 1 && block >= 10) gate.Pass(stop);
+      })));
+  const std::string name = server.Submit(Equilibrium(2, 50));
+  gate.AwaitWaiting(2);
+  return name;
+}
+
+TEST(Restart, ACancellingJobBecomesCancelled) {
+  TemporaryFolder folder;
+  const std::string name = LeaveUnfinished(folder);
+  Change(folder, "UPDATE jobs SET state = 3");
+  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  const EnsembleJob job = server.Get(name);
+  EXPECT_EQ(job.state(), EnsembleJob::CANCELLED);
+  EXPECT_EQ(job.progress().points_done(), 1);
+  EXPECT_EQ(server.ResultBytes(name).size(), 1u);
+}
+
+TEST(Restart, AnotherEngineComputesAllAnew) {
+  TemporaryFolder folder;
+  const std::string name = LeaveUnfinished(folder);
+  Change(folder,
+         "UPDATE jobs SET engine_version = '0.0.1'; UPDATE results SET result = x'00';"
+         "UPDATE blocks SET record = x'00'");
+  std::atomic<int> computed = 0;
+  RunningServer server(Options(
+      folder.path(), 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
+  const EnsembleJob job = server.AwaitEnd(name);
+  EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(job.engine_version(), EngineVersion());
+  EXPECT_EQ(computed, 100);
+  EXPECT_EQ(server.ResultBytes(name).size(), 2u);
+}
+
+TEST(Restart, AJobThatCannotBeReadFails) {
+  TemporaryFolder folder;
+  const std::string name = LeaveUnfinished(folder);
+  Change(folder, "UPDATE jobs SET spec = x'ff'");
+  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  const EnsembleJob job = server.Get(name);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), testing::HasSubstr("cannot be read"));
+}
+
+TEST(Restart, AJobWhoseBlocksAreDamagedFailsAndTheServerStays) {
+  TemporaryFolder folder;
+  const std::string name = LeaveUnfinished(folder);
+  Change(folder, "UPDATE blocks SET record = x'ff'");
+  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::FAILED);
+  EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(1, 5))).state(), EnsembleJob::SUCCEEDED);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,407 @@
+#include "server/store/store.h"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/data_directory.h"
+#include "server/store/job_table.h"
+#include "server/store/schema.h"
+#include "tests/server/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string Contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+JobRecord Record(const std::string& id, const std::string& request_id = "") {
+  JobRecord record;
+  record.id = id;
+  record.spec = "spec";
+  record.create_time = absl::FromUnixNanos(1'700'000'000'123'456'789);
+  record.engine_version = "1";
+  record.request_id = request_id;
+  record.points = 3;
+  return record;
+}
+
+class StoreTest : public testing::Test {
+ protected:
+  std::unique_ptr<Store> Open(Store::Options options = {}) {
+    auto store = Store::Open(File(), options);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return store.ok() ? *std::move(store) : nullptr;
+  }
+  std::string File() const { return folder_.File("store.sqlite3"); }
+
+  static int64_t Insert(Store& store, JobRecord record) {
+    EXPECT_TRUE(store.Commit([&](Database& database) { return InsertJob(database, record); }).ok());
+    return record.sequence;
+  }
+
+  static std::optional<JobRecord> Find(Store& store, const std::string& id) {
+    std::optional<JobRecord> record;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      auto found = FindJob(database, id);
+                      if (found.ok()) record = *found;
+                      return found.status();
+                    })
+                    .ok());
+    return record;
+  }
+
+  static std::vector<std::string> Blocks(Store& store, int64_t job, int64_t point) {
+    std::vector<std::string> blocks;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      return ReadBlocks(database, job, point,
+                                        [&](int64_t block, const std::string& record) {
+                                          blocks.push_back(std::to_string(block) + record);
+                                          return absl::OkStatus();
+                                        });
+                    })
+                    .ok());
+    return blocks;
+  }
+
+  static std::vector<std::string> Results(Store& store, int64_t job) {
+    std::vector<std::string> results;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      return ReadResults(database, job, 0, [&](PointRow row) {
+                        results.push_back(std::to_string(row.point) + row.result);
+                        return true;
+                      });
+                    })
+                    .ok());
+    return results;
+  }
+
+  static JobState End(Store& store, int64_t job, JobState wish) {
+    JobState state{};
+    EXPECT_TRUE(store
+                    .Commit([&](Database& database) {
+                      const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5});
+                      if (now.ok()) state = *now;
+                      return now.status();
+                    })
+                    .ok());
+    return state;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(StoreTest, AJobIsThereAfterReopening) {
+  Insert(*Open(), Record("a", "request"));
+  const auto found = Find(*Open(), "a");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->spec, "spec");
+  EXPECT_EQ(found->state, v1::EnsembleJob::QUEUED);
+  EXPECT_EQ(found->create_time, Record("a").create_time);
+  EXPECT_FALSE(found->start_time);
+  EXPECT_EQ(found->request_id, "request");
+  EXPECT_EQ(found->points, 3);
+}
+
+TEST_F(StoreTest, WritesAreFlushedToTheDisk) {
+  const auto store = Open();
+  std::string mode;
+  int64_t synchronous = 0;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    mode = database.Text("PRAGMA journal_mode").value_or("");
+                    synchronous = database.Integer("PRAGMA synchronous").value_or(0);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_EQ(mode, "wal");
+  EXPECT_EQ(synchronous, 2);  // FULL
+}
+
+TEST_F(StoreTest, TheReaderCannotWrite) {
+  const auto store = Open();
+  EXPECT_FALSE(
+      store->Read([](Database& database) { return database.Execute("DELETE FROM jobs"); }).ok());
+}
+
+TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
+  Open().reset();
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE((*database)->Execute("PRAGMA user_version = 99").ok());
+  }
+  const std::string before = Contents(File());
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("version 99"));
+  EXPECT_EQ(Contents(File()), before);
+}
+
+TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
+  std::ofstream(File()) << std::string(5000, 'x');
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_EQ(Contents(File()), std::string(5000, 'x'));
+}
+
+TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
+  {
+    const auto store = Open();
+    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
+  }
+  std::string contents = Contents(File());
+  ASSERT_GT(contents.size(), 20000u);
+  // The second page on: the first holds the schema.
+  contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
+  std::ofstream(File(), std::ios::binary) << contents;
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_EQ(Contents(File()), contents);
+}
+
+TEST_F(StoreTest, ATruncatedFileIsRefused) {
+  {
+    const auto store = Open();
+    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
+  }
+  std::filesystem::resize_file(File(), std::filesystem::file_size(File()) / 2);
+  EXPECT_TRUE(absl::IsFailedPrecondition(Store::Open(File(), {}).status()));
+}
+
+TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE((*database)->Execute("CREATE TABLE recipes (name TEXT)").ok());
+  }
+  const auto store = Store::Open(File(), {});
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("not a ballpiston store"));
+}
+
+TEST_F(StoreTest, TheFirstWriterOfABlockWins) {
+  const auto store = Open();
+  store->RecordBlock(1, 2, 3, [] { return "first"; });
+  ASSERT_TRUE(store->Flush().ok());
+  store->RecordBlock(1, 2, 3, [] { return "second"; });
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Blocks(*store, 1, 2), testing::ElementsAre("3first"));
+}
+
+TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
+  const auto store = Open();
+  store->RecordResult(1, {2, 10, "first"});
+  ASSERT_TRUE(store->Flush().ok());
+  store->RecordResult(1, {2, 10, "second"});
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Results(*store, 1), testing::ElementsAre("2first"));
+}
+
+TEST_F(StoreTest, BlocksComeBackInOrder) {
+  const auto store = Open();
+  for (const int block : {10, 9, 2, 11}) {
+    store->RecordBlock(1, 0, block, [] { return "r"; });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("2r", "9r", "10r", "11r"));
+}
+
+TEST_F(StoreTest, WritesAreCommittedInGroups) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  for (int block = 0; block < 1000; ++block) {
+    store->RecordBlock(1, 0, block, [] { return "r"; });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->commits(), 1);
+  EXPECT_EQ(store->blocks_written(), 1000);
+}
+
+TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
+  const auto store = Open();
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 64; ++i) {
+    threads.emplace_back([&, i] { Insert(*store, Record("job-" + std::to_string(i))); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(Find(*store, "job-" + std::to_string(i)));
+  EXPECT_LE(store->commits(), 64);
+}
+
+TEST_F(StoreTest, BlocksOfAFinishedPointAreNeitherWrittenNorKept) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  store->RecordBlock(1, 0, 0, [] { return "r"; });
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->blocks_written(), 1);
+  store->RecordBlock(1, 0, 1, [] { return "r"; });
+  store->RecordBlock(1, 5, 0, [] { return "other"; });
+  store->RecordResult(1, {0, 8, "result"});
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->blocks_written(), 2);
+  EXPECT_TRUE(Blocks(*store, 1, 0).empty());
+  EXPECT_EQ(Blocks(*store, 1, 5).size(), 1u);
+}
+
+TEST_F(StoreTest, ClosingWritesWhatIsPending) {
+  {
+    const auto store = Open({.delay = std::chrono::hours(1)});
+    store->RecordBlock(1, 0, 0, [] { return "r"; });
+  }
+  EXPECT_EQ(Blocks(*Open(), 1, 0).size(), 1u);
+}
+
+TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
+  const auto store = Open();
+  std::vector<int> order;
+  for (int i = 0; i < 5; ++i) {
+    store->Record([](Database&) { return absl::OkStatus(); },
+                  [&order, i](const absl::Status& status) {
+                    EXPECT_TRUE(status.ok());
+                    order.push_back(i);
+                  });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST_F(StoreTest, AFailedCommitTellsAndLeavesNothingBehind) {
+  const auto store = Open();
+  const absl::Status failed = store->Commit([](Database& database) {
+    JobRecord record = Record("half");
+    EXPECT_TRUE(InsertJob(database, record).ok());
+    return absl::UnavailableError("disk full");
+  });
+  EXPECT_TRUE(absl::IsUnavailable(failed));
+  EXPECT_FALSE(Find(*store, "half"));
+}
+
+TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
+  const auto store =
+      Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
+  int attempts = 0;
+  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  store->Record([&](Database&) {
+    return ++attempts < 4 ? absl::UnavailableError("disk full") : absl::OkStatus();
+  });
+  while (!store->Flush().ok()) {
+  }
+  EXPECT_EQ(attempts, 4);
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+}
+
+TEST_F(StoreTest, AfterClosingWritesFail) {
+  const auto store = Open();
+  store->Close();
+  EXPECT_TRUE(absl::IsUnavailable(store->Flush()));
+  EXPECT_TRUE(absl::IsUnavailable(store->Read([](Database&) { return absl::OkStatus(); })));
+}
+
+TEST_F(StoreTest, ACancellationThatCameFirstIsNotOvertakenByTheEnd) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  bool begun = false;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    begun = BeginCancellation(database, job, "").value_or(false);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_TRUE(begun);
+  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::CANCELLED);
+  EXPECT_EQ(Find(*store, "a")->error, "");
+}
+
+TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::SUCCEEDED);
+  bool begun = true;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    begun = BeginCancellation(database, job, "").value_or(true);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_FALSE(begun);
+  EXPECT_EQ(Find(*store, "a")->state, v1::EnsembleJob::SUCCEEDED);
+}
+
+TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordBlock(job, 0, 0, [] { return "r"; });
+  End(*store, job, v1::EnsembleJob::FAILED);
+  const auto found = Find(*store, "a");
+  EXPECT_EQ(found->points_done, 2);
+  EXPECT_EQ(found->samples, 7.5);
+  EXPECT_EQ(found->error, "why");
+  EXPECT_TRUE(found->end_time);
+  EXPECT_TRUE(Blocks(*store, job, 0).empty());
+}
+
+TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordResult(job, {0, 1, "r"});
+  ASSERT_TRUE(store->Commit([&](Database& database) { return DeleteJob(database, job); }).ok());
+  EXPECT_FALSE(Find(*store, "a"));
+  EXPECT_TRUE(Results(*store, job).empty());
+  EXPECT_GT(Insert(*store, Record("a")), job);
+}
+
+TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordResult(job, {0, 1, "r"});
+  store->RecordBlock(job, 1, 0, [] { return "r"; });
+  ASSERT_TRUE(
+      store->Commit([&](Database& database) { return RestartJob(database, job, "2"); }).ok());
+  EXPECT_TRUE(Results(*store, job).empty());
+  EXPECT_TRUE(Blocks(*store, job, 1).empty());
+  EXPECT_EQ(Find(*store, "a")->engine_version, "2");
+}
+
+TEST(DataDirectory, IsMadeForItsOwnerOnly) {
+  TemporaryFolder folder;
+  const auto directory = DataDirectory::Open(folder.File("a/b"));
+  ASSERT_TRUE(directory.ok()) << directory.status();
+  struct stat found {};
+  ASSERT_EQ(stat(directory->path().c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 0777, 0700u);
+}
+
+TEST(DataDirectory, IsHeldByOneAtATime) {
+  TemporaryFolder folder;
+  {
+    const auto first = DataDirectory::Open(folder.path());
+    ASSERT_TRUE(first.ok());
+    const auto second = DataDirectory::Open(folder.path());
+    EXPECT_TRUE(absl::IsFailedPrecondition(second.status()));
+    EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+  }
+  EXPECT_TRUE(DataDirectory::Open(folder.path()).ok());
+}
+
+TEST(DataDirectory, AFileInItsPlaceIsNotWritable) {
+  TemporaryFolder folder;
+  std::ofstream(folder.File("file")) << "x";
+  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file")).status()));
+  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file/below")).status()));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,240 @@
+#include "server/execution/worker_pool.h"
+
+#include <algorithm>
+#include <atomic>
+#include <new>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/recording_journal.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+RunRequest Request(int64_t key, const EnsembleSpec& spec,
+                   std::shared_ptr<RecordingJournal> journal) {
+  RunRequest request;
+  request.key = key;
+  request.spec = spec;
+  request.finished.assign(PointCount(spec), false);
+  request.journal = std::move(journal);
+  return request;
+}
+
+void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJournal& journal) {
+  const auto blocks = static_cast<uint64_t>(*spec.target.samples);
+  ASSERT_EQ(journal.finished.size(), PointCount(spec));
+  for (const auto& [point, merged] : journal.finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
+  }
+}
+
+TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
+  const EnsembleSpec spec = FakeSpec(20, 40);
+  for (const int workers : {1, 2, 8}) {
+    WorkerPool pool(workers, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, spec, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ExpectAllPointsRight(spec, *journal);
+    EXPECT_EQ(journal->begun, 1);
+  }
+}
+
+TEST(WorkerPool, BlocksOfAPointAreMergedInOrderAndOnce) {
+  const EnsembleSpec spec = FakeSpec(5, 100);
+  WorkerPool pool(8, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  for (const auto& [point, blocks] : journal->merged) {
+    EXPECT_EQ(blocks.size(), 100u);
+    EXPECT_TRUE(std::is_sorted(blocks.begin(), blocks.end()));
+  }
+}
+
+TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
+  const EnsembleSpec spec = FakeSpec(2, 30);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 1);
+  for (const uint64_t block : {0, 1, 2, 7, 9}) {  // with gaps: an early block was stored
+    journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
+  }
+  std::mutex mutex;
+  std::set<uint64_t> computed;
+  WorkerPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
+                    std::lock_guard lock(mutex);
+                    if (point == 1) computed.insert(block);
+                  }));
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed.size(), 25u);
+  for (const uint64_t block : {0, 1, 2, 7, 9}) EXPECT_FALSE(computed.contains(block));
+}
+
+TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0);
+  for (uint64_t block = 0; block < 3; ++block) {
+    journal->stored[0].emplace(block, *experiment->RunBlock(block, {}));
+  }
+  std::atomic<int> computed = 0;
+  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed, 0);
+}
+
+TEST(WorkerPool, FinishedPointsAreLeftAlone) {
+  const EnsembleSpec spec = FakeSpec(4, 5);
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.finished = {true, false, true, false};
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ASSERT_EQ(journal->finished.size(), 2u);
+  EXPECT_TRUE(journal->finished.contains(1));
+  EXPECT_TRUE(journal->finished.contains(3));
+}
+
+TEST(WorkerPool, ARunWithNothingToComputeEnds) {
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1, FakeExperiments());
+  RunRequest request = Request(1, FakeSpec(1, 5), journal);
+  request.finished = {true};
+  pool.Add(std::move(request));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  EXPECT_EQ(journal->begun, 0);
+}
+
+TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
+  constexpr int kWorkers = 4;
+  Gate gate;
+  std::atomic<uint64_t> furthest = 0;
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {};
+  spec.target.tolerance = 0.05;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(kWorkers, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    uint64_t seen = furthest;
+                    while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
+                    }
+                    if (block == 0) gate.Pass(stop);
+                    // The last block of the window: no more can be handed out before the first.
+                    if (block == 4 * kWorkers - 1) gate.Open();
+                  }));
+  pool.Add(Request(1, spec, journal));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  const uint64_t merged = journal->merged[0].size();
+  EXPECT_LT(merged, 1000u);
+  EXPECT_LE(furthest, merged + 4 * kWorkers);
+  EXPECT_TRUE(journal->finished.at(0) == FakeMerged(spec, 0, merged));
+}
+
+TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    if (block >= 3) gate.Pass(stop);
+                  }));
+  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  gate.AwaitWaiting(2);
+  pool.Cancel(1);
+  pool.Cancel(1);
+  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 1);
+  EXPECT_TRUE(journal->finished.empty());
+}
+
+TEST(WorkerPool, AnExceptionFailsItsRunAndNoOther) {
+  auto good = std::make_shared<RecordingJournal>();
+  auto bad = std::make_shared<RecordingJournal>();
+  auto hungry = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [](const EnsembleSpec& spec, size_t index) {
+    return FakeExperiments([seed = spec.seed](size_t, uint64_t block, std::stop_token) {
+      if (seed == 13 && block == 5) throw std::runtime_error("the ball left the cell");
+      if (seed == 14 && block == 5) throw std::bad_alloc();
+    })(spec, index);
+  });
+  pool.Add(Request(1, FakeSpec(3, 20, 13), bad));
+  pool.Add(Request(2, FakeSpec(3, 20, 14), hungry));
+  pool.Add(Request(3, FakeSpec(3, 20, 15), good));
+  EXPECT_TRUE(good->AwaitEnd().ok());
+  EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
+  EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
+  ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
+}
+
+TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
+    throw std::runtime_error("no such experiment");
+  });
+  pool.Add(Request(1, FakeSpec(3, 20), journal));
+  EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
+}
+
+// A short run beside a long one that came first: it has ended when the long one has not.
+TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
+  auto long_run = std::make_shared<RecordingJournal>();
+  auto short_run = std::make_shared<RecordingJournal>();
+  Gate gate;
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index) {
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t block, std::stop_token stop) {
+      if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
+    })(spec, index);
+  });
+  pool.Add(Request(1, FakeSpec(1, 1'000'000'000, 1), long_run));
+  gate.AwaitWaiting(1);
+  pool.Add(Request(2, FakeSpec(1, 10, 2), short_run));
+  gate.Open();
+  EXPECT_TRUE(short_run->AwaitEnd().ok());
+  EXPECT_EQ(long_run->ends, 0);
+}
+
+TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(
+      2, FakeExperiments([&](size_t, uint64_t, std::stop_token stop) { gate.Pass(stop); }));
+  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  gate.AwaitWaiting(2);
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 0);
+}
+
+TEST(WorkerPool, LivePointsAreThoseThatChanged) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    if (block == 6) gate.Pass(stop);
+                  }));
+  const EnsembleSpec spec = FakeSpec(1, 100);
+  pool.Add(Request(1, spec, journal));
+  gate.AwaitWaiting(1);
+  const auto live = pool.ChangedSince(1, 0, 10);
+  ASSERT_EQ(live.size(), 1u);
+  EXPECT_EQ(live[0].index, 0u);
+  EXPECT_EQ(live[0].version, 6u);
+  EXPECT_TRUE(live[0].merged == FakeMerged(spec, 0, 6));
+  EXPECT_TRUE(pool.ChangedSince(1, 6, 10).empty());
+  EXPECT_TRUE(pool.ChangedSince(2, 0, 10).empty());
+}
+
+}  // namespace
+}  // namespace ballpiston::server
