@@ -1,9 +1,10 @@
 // How a point's samples are cut into blocks.
 //
 // The block size follows from the target and the predicted cost of a sample alone, never from
-// threads or machines: some 2^20 events a block, so that a block takes about 0.05 s, and an eighth of
-// that with a tolerance, which is looked at after each block from the 64th on; a power of two, so that a rounding difference in the prediction does not change the plan; small
-// enough that a point has at least kMinBlocks of them, so that errors can be taken between blocks.
+// threads or machines: some 2^20 events a block, so that a block takes about 0.05 s, and an eighth
+// of that with a tolerance, which is looked at after each block from the 64th on. It is a power of
+// two, so that a rounding difference in the prediction does not change the plan, and small enough
+// that a point has at least kMinBlocks of them, so that errors can be taken between blocks.
 #ifndef BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 #define BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 

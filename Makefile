@@ -1,0 +1,56 @@
+# The front door. On a fresh Debian 12 each of these does its own set-up first.
+MAKEFLAGS += --no-print-directory
+SHELL := /bin/bash
+TEST_JOBS ?= 2
+
+.DEFAULT_GOAL := build
+.PHONY: build test demo bench asan tsan format check-format tidy setup clean help
+
+build: build-release ## Build everything, optimised, in build/release (the default)
+
+test: build-release ## Build, then run all tests
+	@ctest --preset release -j$(TEST_JOBS)
+
+demo: build/release/.configured ## Run the paper's sweep with a real server and client (1 minute)
+	@cmake --build build/release --target ballpiston ballpistond
+	@scripts/demo.sh build/release/bin
+
+bench: build-release ## Build, then run the benchmarks on one core
+	@scripts/bench.sh build/release/bin
+
+asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
+	@ctest --preset asan -j$(TEST_JOBS)
+
+# gRPC is not instrumented: what it does on its own is not judged.
+tsan: build-tsan ## Run the fast tests under the thread sanitizer
+	@TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS" ctest --preset tsan -j$(TEST_JOBS)
+
+format: ## Format all C++ and proto files
+	@scripts/format.sh
+
+check-format: ## Say which lines are not formatted
+	@scripts/format.sh --check
+
+tidy: build-release ## Run clang-tidy over the project's sources
+	@scripts/setup.sh clang-tidy
+	@run-clang-tidy -quiet -p build/release '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
+
+clean: ## Remove everything that was built, and the demo's output
+	@rm -rf build demo
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' Makefile
+
+setup: ## Install the Debian packages that are missing
+	@scripts/setup.sh
+
+# `make build-PRESET` builds a preset of CMakePresets.json.
+PRESETS := release asan tsan
+.PHONY: $(PRESETS:%=build-%)
+$(PRESETS:%=build-%): build-%: build/%/.configured
+	@cmake --build build/$*
+
+$(PRESETS:%=build/%/.configured): build/%/.configured: CMakePresets.json | setup
+	@mkdir -p build/$*
+	@cmake --preset $* >build/$*/configure.log 2>&1 || { cat build/$*/configure.log; exit 1; }
+	@touch $@

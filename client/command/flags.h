@@ -1,0 +1,39 @@
+// Flags and arguments that several verbs share.
+#ifndef BALLPISTON_CLIENT_COMMAND_FLAGS_H_
+#define BALLPISTON_CLIENT_COMMAND_FLAGS_H_
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::client {
+
+struct FormatFlag {
+  std::string text = "table";
+
+  void AddTo(CLI::App& verb) {
+    verb.add_option("--format", text, "table | json | jsonl | csv; table if not given");
+  }
+};
+
+struct ProgressFlag {
+  std::string text = "auto";
+
+  void AddTo(CLI::App& verb) {
+    verb.add_option("--progress", text,
+                    "auto | bar | json | none, on standard error; auto: a bar on a terminal");
+  }
+};
+
+// JOB: a job's name, ensembleJobs/ID, or its ID alone.
+struct JobArgument {
+  std::string text;
+
+  void AddTo(CLI::App& verb) { verb.add_option("JOB", text, "ensembleJobs/ID")->required(); }
+  absl::StatusOr<std::string> Name() const;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_FLAGS_H_

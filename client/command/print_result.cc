@@ -1,0 +1,49 @@
+#include "client/command/print_result.h"
+
+#include <memory>
+
+#include "client/command/follow_job.h"
+#include "client/output/number_text.h"
+#include "client/output/result_writer.h"
+#include "client/output/spelling.h"
+
+namespace ballpiston::client {
+namespace {
+
+// An orbit that left its cell is a defect of the engine: never to be read past.
+void WarnOfEscapes(const v1::PointResult& point, std::ostream& err) {
+  if (point.health().escapes() == 0) return;
+  err << "ballpiston: warning: point " << point.index() << ": "
+      << ExactText(point.health().escapes())
+      << " orbits left the cell; this is a defect, do not trust the point\n";
+}
+
+void NoteUnfinished(const v1::EnsembleJob& job, std::ostream& err) {
+  err << "ballpiston: " << job.name() << " is still " << Spelling(job.state()) << ": "
+      << job.progress().points_done() << " of " << job.progress().points()
+      << " points are finished\n";
+}
+
+}  // namespace
+
+absl::StatusOr<ExitCode> PrintResult(const EnsembleClient& client, const std::string& name,
+                                     Format format, Terminal& terminal) {
+  const absl::StatusOr<v1::EnsembleJob> job = client.Get(name);
+  if (!job.ok()) return job.status();
+  const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
+  writer->Begin(*job);
+  const auto view =
+      ShowsHistograms(format) ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
+  const absl::Status status = client.ForEachResult(name, view, [&](const v1::PointResult& point) {
+    writer->Add(point);
+    WarnOfEscapes(point, terminal.err);
+  });
+  if (!status.ok()) return status;
+  writer->End();
+  terminal.out.flush();
+  if (HasEnded(job->state())) return ReportEnd(*job, terminal.err);
+  NoteUnfinished(*job, terminal.err);
+  return ExitCode::kDone;
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,20 @@
+// Fetches a job's finished points and prints them.
+#ifndef BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
+#define BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/command/verbs.h"
+#include "client/library/ensemble_client.h"
+#include "client/output/format.h"
+
+namespace ballpiston::client {
+
+// kFailed for a job that failed or was cancelled; what it finished is printed all the same.
+absl::StatusOr<ExitCode> PrintResult(const EnsembleClient& client, const std::string& name,
+                                     Format format, Terminal& terminal);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_

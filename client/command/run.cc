@@ -1,0 +1,61 @@
+// ballpiston run: submit, watch, and print the result.
+#include <memory>
+
+#include "client/command/connection.h"
+#include "client/command/flags.h"
+#include "client/command/follow_job.h"
+#include "client/command/interrupts.h"
+#include "client/command/print_result.h"
+#include "client/command/spec_flags.h"
+#include "client/command/verbs.h"
+#include "client/library/ensemble_client.h"
+
+namespace ballpiston::client {
+namespace {
+
+struct Run {
+  SpecFlags spec;
+  ServerFlag server;
+  FormatFlag format;
+  ProgressFlag progress;
+
+  absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
+    const absl::StatusOr<v1::EnsembleSpec> wanted = SpecOf(spec);
+    if (!wanted.ok()) return wanted.status();
+    const absl::StatusOr<Format> shape = ParseFormat(format.text);
+    if (!shape.ok()) return shape.status();
+    const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
+    if (!style.ok()) return style.status();
+    Interrupts interrupts;  // before gRPC starts threads
+    return WithServer(server, [&](const Connection& connection) {
+      return RunOn(connection, *wanted, *shape, *style, interrupts, terminal);
+    });
+  }
+
+  static absl::StatusOr<ExitCode> RunOn(const Connection& connection,
+                                        const v1::EnsembleSpec& wanted, Format shape,
+                                        ProgressStyle style, Interrupts& interrupts,
+                                        Terminal& terminal) {
+    const EnsembleClient client(connection.channel);
+    const absl::StatusOr<v1::EnsembleJob> job = client.Create(wanted);
+    if (!job.ok()) return job.status();
+    const auto end = FollowJob(connection, job->name(), style, interrupts, terminal.err);
+    if (!end.ok()) return end.status();
+    if (!end->has_value()) return ExitCode::kInterrupted;
+    return PrintResult(client, job->name(), shape, terminal);
+  }
+};
+
+}  // namespace
+
+void AddRun(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("run", "submit a job, watch it, print its result");
+  const auto run = std::make_shared<Run>();
+  run->spec.AddTo(*verb);
+  run->server.AddTo(*verb);
+  run->format.AddTo(*verb);
+  run->progress.AddTo(*verb);
+  verb->callback([&action, run] { action = [run](Terminal& t) { return run->Act(t); }; });
+}
+
+}  // namespace ballpiston::client

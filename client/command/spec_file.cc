@@ -1,0 +1,53 @@
+#include "client/command/spec_file.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+namespace {
+
+// Without exceptions, which stream iterators would let through when a read fails.
+std::string ReadAll(std::istream& in) {
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+absl::Status BadFile(absl::string_view name, absl::string_view reason) {
+  return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", reason));
+}
+
+}  // namespace
+
+absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path) {
+  if (path == "-") return ParseSpec("standard input", ReadAll(std::cin));
+  std::ifstream in(path);
+  if (!in) return BadFile(path, std::strerror(errno));
+  if (std::filesystem::is_directory(path)) return BadFile(path, "is a folder");
+  return ParseSpec(path, ReadAll(in));
+}
+
+absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json) {
+  // The parser takes `null` and a bare string for an empty message.
+  if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
+    return BadFile(name, "not a JSON object");
+  }
+  v1::EnsembleSpec spec;
+  const auto status = google::protobuf::util::JsonStringToMessage(json, &spec);
+  if (status.ok()) return spec;
+  return BadFile(name, std::string(status.message()));
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,22 @@
+// A specification from a file of proto JSON (ballpiston.v1.EnsembleSpec).
+#ifndef BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_
+#define BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "ballpiston/v1/spec.pb.h"
+
+namespace ballpiston::client {
+
+// `-` is standard input. INVALID_ARGUMENT, with the file's name and the parser's words, if it
+// cannot be read, is not JSON, or has a field that the specification does not have.
+absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path);
+
+// `name` stands for the file in errors.
+absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_SPEC_FILE_H_

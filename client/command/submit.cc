@@ -1,0 +1,38 @@
+// ballpiston submit: hands a job to the server and prints its name, alone, on standard output.
+#include <memory>
+
+#include "client/command/connection.h"
+#include "client/command/spec_flags.h"
+#include "client/command/verbs.h"
+#include "client/library/ensemble_client.h"
+
+namespace ballpiston::client {
+namespace {
+
+struct Submit {
+  SpecFlags spec;
+  ServerFlag server;
+
+  absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
+    const absl::StatusOr<v1::EnsembleSpec> wanted = SpecOf(spec);
+    if (!wanted.ok()) return wanted.status();
+    return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
+      const auto job = EnsembleClient(connection.channel).Create(*wanted);
+      if (!job.ok()) return job.status();
+      terminal.out << job->name() << '\n';
+      return ExitCode::kDone;
+    });
+  }
+};
+
+}  // namespace
+
+void AddSubmit(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand("submit", "submit a job, print its name");
+  const auto submit = std::make_shared<Submit>();
+  submit->spec.AddTo(*verb);
+  submit->server.AddTo(*verb);
+  verb->callback([&action, submit] { action = [submit](Terminal& t) { return submit->Act(t); }; });
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,49 @@
+#include "client/library/channel.h"
+
+#include <string>
+
+#include "absl/strings/string_view.h"
+#include "client/library/server_address.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr int kKeepaliveMilliseconds = 30'000;
+
+// A job's specification may hold 100,000 numbers, a page of jobs a thousand specifications.
+constexpr int kMaxMessageBytes = 256 << 20;
+
+// The second entry has no retry policy, and a method's own entry wins over the default.
+constexpr char kServiceConfig[] = R"({"methodConfig": [
+  {"name": [{}],
+   "retryPolicy": {"maxAttempts": 4, "initialBackoff": "0.1s", "maxBackoff": "1s",
+                   "backoffMultiplier": 2, "retryableStatusCodes": ["UNAVAILABLE"]}},
+  {"name": [
+    {"service": "ballpiston.v1.EnsembleService", "method": "WatchEnsembleJob"},
+    {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"}]}
+]})";
+
+grpc::ChannelArguments Arguments() {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMilliseconds);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+  // gRPC's own pauses between attempts to connect grow to two minutes: too long for a watch that
+  // waits for a server to come back.
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
+  // A server on this machine or in this laboratory is not behind the web proxy.
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
+  arguments.SetServiceConfigJSON(kServiceConfig);
+  return arguments;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address) {
+  absl::StatusOr<std::string> target = GrpcTarget(address);
+  if (!target.ok()) return target.status();
+  return grpc::CreateCustomChannel(*target, grpc::InsecureChannelCredentials(), Arguments());
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,104 @@
+#include "client/library/child_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::client {
+namespace {
+
+class FileActions {
+ public:
+  explicit FileActions(const ChildProcess& child) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (!child.output.empty()) {
+      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, child.output.c_str(),
+                                       O_WRONLY | O_CREAT | O_APPEND, 0600);
+      posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    }
+    if (!child.folder.empty()) {
+      posix_spawn_file_actions_addchdir_np(&actions_, child.folder.c_str());
+    }
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+  }
+  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
+  FileActions(const FileActions&) = delete;
+  FileActions& operator=(const FileActions&) = delete;
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+class Attributes {
+ public:
+  explicit Attributes(const ChildProcess& child) {
+    posix_spawnattr_init(&attributes_);
+    sigset_t signals;
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&attributes_, &signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGPIPE);
+    posix_spawnattr_setsigdefault(&attributes_, &signals);
+    const int session = child.detached ? POSIX_SPAWN_SETSID : 0;
+    posix_spawnattr_setflags(
+        &attributes_, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | session));
+  }
+  ~Attributes() { posix_spawnattr_destroy(&attributes_); }
+  Attributes(const Attributes&) = delete;
+  Attributes& operator=(const Attributes&) = delete;
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
+std::vector<char*> Arguments(const ChildProcess& child) {
+  std::vector<char*> arguments;
+  for (const std::string& word : child.command)
+    arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  return arguments;
+}
+
+int Decode(int status) {
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+absl::StatusOr<pid_t> StartChild(const ChildProcess& child) {
+  const FileActions actions(child);
+  const Attributes attributes(child);
+  pid_t pid = 0;
+  const int error = posix_spawnp(&pid, child.command[0].c_str(), actions.get(), attributes.get(),
+                                 Arguments(child).data(), environ);
+  if (error == 0) return pid;
+  return absl::ErrnoToStatus(error, absl::StrCat("cannot start ", child.command[0]));
+}
+
+std::optional<int> ExitStatus(pid_t pid) {
+  int status = 0;
+  if (waitpid(pid, &status, WNOHANG) != pid) return std::nullopt;
+  return Decode(status);
+}
+
+absl::StatusOr<int> RunChild(const ChildProcess& child) {
+  absl::StatusOr<pid_t> pid = StartChild(child);
+  if (!pid.ok()) return pid.status();
+  int status = 0;
+  while (waitpid(*pid, &status, 0) < 0) {
+    if (errno != EINTR) return absl::ErrnoToStatus(errno, "waiting for a child process");
+  }
+  return Decode(status);
+}
+
+}  // namespace ballpiston::client

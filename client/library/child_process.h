@@ -1,0 +1,36 @@
+// Starting other programs: the private server, gnuplot.
+//
+// A child starts with no signal blocked or ignored and with no file open but the standard three,
+// whatever this program has set up for itself.
+#ifndef BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
+#define BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::client {
+
+struct ChildProcess {
+  std::vector<std::string> command;  // the program's path or name (then sought in PATH), arguments
+  std::string folder;                // to run in; empty: this program's
+  std::string output;     // file that standard output and error are appended to; empty: inherited
+  bool detached = false;  // in a session of its own, so that Ctrl-C here does not reach it
+};
+
+// NOT_FOUND if there is no such program.
+absl::StatusOr<pid_t> StartChild(const ChildProcess& child);
+
+// Empty while it runs; afterwards, once, its exit status (128 + signal if one killed it).
+std::optional<int> ExitStatus(pid_t pid);
+
+// Starts, waits, returns the exit status.
+absl::StatusOr<int> RunChild(const ChildProcess& child);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_

@@ -1,0 +1,92 @@
+#include "client/library/ensemble_client.h"
+
+#include <utility>
+
+#include "client/library/request_id.h"
+#include "client/library/unary_call.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Stub = v1::EnsembleService::StubInterface;
+
+constexpr int kPageSize = 1000;
+
+}  // namespace
+
+EnsembleClient::EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& channel,
+                               absl::Duration timeout)
+    : stub_(v1::EnsembleService::NewStub(channel)), timeout_(timeout) {}
+
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec) const {
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  request.set_request_id(NewRequestId());
+  return CallUnary(*stub_, &Stub::CreateEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Get(const std::string& name) const {
+  v1::GetEnsembleJobRequest request;
+  request.set_name(name);
+  return CallUnary(*stub_, &Stub::GetEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<std::vector<v1::EnsembleJob>> EnsembleClient::List() const {
+  std::vector<v1::EnsembleJob> jobs;
+  v1::ListEnsembleJobsRequest request;
+  request.set_page_size(kPageSize);
+  do {
+    auto page = CallUnary(*stub_, &Stub::ListEnsembleJobs, request, timeout_);
+    if (!page.ok()) return page.status();
+    for (v1::EnsembleJob& job : *page->mutable_jobs()) jobs.push_back(std::move(job));
+    request.set_page_token(page->next_page_token());
+  } while (!request.page_token().empty());
+  return jobs;
+}
+
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Cancel(const std::string& name) const {
+  v1::CancelEnsembleJobRequest request;
+  request.set_name(name);
+  request.set_request_id(NewRequestId());
+  return CallUnary(*stub_, &Stub::CancelEnsembleJob, request, timeout_);
+}
+
+absl::Status EnsembleClient::Delete(const std::string& name) const {
+  v1::DeleteEnsembleJobRequest request;
+  request.set_name(name);
+  return CallUnary(*stub_, &Stub::DeleteEnsembleJob, request, timeout_).status();
+}
+
+absl::Status EnsembleClient::ForEachResult(
+    const std::string& name, v1::ListResultsRequest::View view,
+    const std::function<void(const v1::PointResult&)>& visit) const {
+  v1::ListResultsRequest request;
+  request.set_parent(name);
+  request.set_page_size(kPageSize);
+  request.set_view(view);
+  do {
+    auto page = CallUnary(*stub_, &Stub::ListResults, request, timeout_);
+    if (!page.ok()) return page.status();
+    for (const v1::PointResult& point : page->points()) visit(point);
+    request.set_page_token(page->next_page_token());
+  } while (!request.page_token().empty());
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<v1::PointResult>> EnsembleClient::Results(
+    const std::string& name, v1::ListResultsRequest::View view) const {
+  std::vector<v1::PointResult> points;
+  absl::Status status = ForEachResult(
+      name, view, [&points](const v1::PointResult& point) { points.push_back(point); });
+  if (!status.ok()) return status;
+  return points;
+}
+
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Watch(const std::string& name,
+                                                      const WatchCallbacks& callbacks,
+                                                      const WatchOptions& options,
+                                                      std::stop_token stop) const {
+  return WatchJob(*stub_, name, callbacks, options, std::move(stop));
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,65 @@
+// Ensemble jobs on a server: submit, look up, watch, cancel, delete, fetch results.
+//
+//   auto channel = OpenChannel("localhost:50051");
+//   EnsembleClient client(*channel);
+//   absl::StatusOr<v1::EnsembleJob> job = client.Create(spec);
+//   job = client.Watch(job->name(), {});
+//   absl::StatusOr<std::vector<v1::PointResult>> points = client.Results(job->name());
+//
+// Errors are the server's, as error_text.h renders them, with its code; UNAVAILABLE or
+// DEADLINE_EXCEEDED if it cannot be reached. Safe to share between threads.
+#ifndef BALLPISTON_CLIENT_LIBRARY_ENSEMBLE_CLIENT_H_
+#define BALLPISTON_CLIENT_LIBRARY_ENSEMBLE_CLIENT_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "client/library/job_watch.h"
+
+namespace ballpiston::client {
+
+class EnsembleClient {
+ public:
+  // `timeout` bounds each single call, not a watch.
+  explicit EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& channel,
+                          absl::Duration timeout = absl::Seconds(60));
+
+  // With an id of its own for each call of this function: sent again by the channel's retries, a
+  // job that was already accepted is answered, not made twice.
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec) const;
+
+  absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
+  absl::StatusOr<std::vector<v1::EnsembleJob>> List() const;  // all pages, newest first
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;
+  absl::Status Delete(const std::string& name) const;
+
+  // The finished points in grid order, page by page, so that a large result need not fit into
+  // memory.
+  absl::Status ForEachResult(const std::string& name, v1::ListResultsRequest::View view,
+                             const std::function<void(const v1::PointResult&)>& visit) const;
+  absl::StatusOr<std::vector<v1::PointResult>> Results(
+      const std::string& name,
+      v1::ListResultsRequest::View view = v1::ListResultsRequest::FULL) const;
+
+  // See job_watch.h.
+  absl::StatusOr<v1::EnsembleJob> Watch(const std::string& name, const WatchCallbacks& callbacks,
+                                        const WatchOptions& options = {},
+                                        std::stop_token stop = {}) const;
+
+ private:
+  std::unique_ptr<v1::EnsembleService::StubInterface> stub_;
+  absl::Duration timeout_;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_LIBRARY_ENSEMBLE_CLIENT_H_

@@ -1,0 +1,87 @@
+#include "client/library/error_text.h"
+
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "absl/strings/cord.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace ballpiston::client {
+namespace {
+
+template <typename Detail>
+std::optional<Detail> Find(const google::rpc::Status& status) {
+  for (const google::protobuf::Any& any : status.details()) {
+    if (Detail detail; any.UnpackTo(&detail)) return detail;
+  }
+  return std::nullopt;
+}
+
+using Violations = std::vector<google::rpc::BadRequest::FieldViolation>;
+
+Violations ViolationsOf(const google::rpc::Status& status) {
+  Violations all;
+  for (const google::protobuf::Any& any : status.details()) {
+    google::rpc::BadRequest request;
+    if (!any.UnpackTo(&request)) continue;
+    all.insert(all.end(), request.field_violations().begin(), request.field_violations().end());
+  }
+  return all;
+}
+
+std::string LinesOf(const Violations& violations) {
+  std::string lines;
+  for (const auto& violation : violations) {
+    absl::StrAppend(&lines, "\n  ", violation.field(), ": ", violation.description());
+  }
+  return lines;
+}
+
+int LeftOut(const google::rpc::ErrorInfo& info) {
+  const auto entry = info.metadata().find("violations_left_out");
+  int count = 0;
+  if (entry == info.metadata().end() || !absl::SimpleAtoi(entry->second, &count)) return 0;
+  return count;
+}
+
+std::string Text(const std::string& message, const google::rpc::Status& status) {
+  const auto info = Find<google::rpc::ErrorInfo>(status).value_or(google::rpc::ErrorInfo());
+  const std::string reason = info.reason().empty() ? "" : absl::StrCat(" (", info.reason(), ")");
+  const Violations violations = ViolationsOf(status);
+  const int left_out = LeftOut(info);
+  const auto count = std::ssize(violations) + left_out;
+  if (count == 0) return message + reason;
+  if (count == 1 && left_out == 0) {
+    return absl::StrCat(violations[0].field(), ": ", violations[0].description(), reason);
+  }
+  return absl::StrCat("not valid, ", count, " violations", reason, ":", LinesOf(violations),
+                      left_out > 0 ? absl::StrCat("\n  and ", left_out, " more") : "");
+}
+
+}  // namespace
+
+absl::Status FromGrpc(const grpc::Status& status) {
+  if (status.ok()) return absl::OkStatus();
+  const auto code = static_cast<absl::StatusCode>(status.error_code());  // the same numbers
+  google::rpc::Status details;
+  if (status.error_details().empty() || !details.ParseFromString(status.error_details())) {
+    return absl::Status(code, status.error_message());
+  }
+  absl::Status result(code, Text(status.error_message(), details));
+  result.SetPayload(kStatusPayload, absl::Cord(status.error_details()));
+  return result;
+}
+
+std::string ErrorReason(const absl::Status& status) {
+  const auto payload = status.GetPayload(kStatusPayload);
+  google::rpc::Status details;
+  if (!payload || !details.ParseFromString(std::string(*payload))) return "";
+  const auto info = Find<google::rpc::ErrorInfo>(details);
+  return info ? info->reason() : "";
+}
+
+}  // namespace ballpiston::client

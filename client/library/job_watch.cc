@@ -1,0 +1,122 @@
+#include "client/library/job_watch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "absl/random/random.h"
+#include "absl/strings/str_cat.h"
+#include "client/library/error_text.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+absl::Duration Since(Clock::time_point start) { return absl::FromChrono(Clock::now() - start); }
+
+// False if `stop` cut it short.
+bool Pause(absl::Duration length, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any woken;
+  std::unique_lock lock(mutex);
+  woken.wait_for(lock, stop, absl::ToChronoNanoseconds(length), [] { return false; });
+  return !stop.stop_requested();
+}
+
+class Watch {
+ public:
+  Watch(v1::EnsembleService::StubInterface& stub, const WatchCallbacks& callbacks,
+        const WatchOptions& options, std::stop_token stop)
+      : stub_(stub), callbacks_(callbacks), options_(options), stop_(std::move(stop)) {}
+
+  absl::StatusOr<v1::EnsembleJob> Follow(const std::string& name) {
+    request_.set_name(name);
+    while (true) {
+      const absl::Status end = ReadStream();
+      if (ended_) return *std::move(ended_);
+      if (stop_.stop_requested()) return Stopped();
+      if (!absl::IsUnavailable(end)) return end;
+      if (absl::Status wait = WaitToReattach(end); !wait.ok()) return wait;
+    }
+  }
+
+ private:
+  static absl::Status Stopped() { return absl::CancelledError("the watch was stopped"); }
+
+  // One attachment, to its end.
+  absl::Status ReadStream() {
+    grpc::ClientContext context;
+    std::stop_callback cancel(stop_, [&context] { context.TryCancel(); });
+    auto reader = stub_.WatchEnsembleJob(&context, request_);
+    v1::WatchEnsembleJobResponse message;
+    while (reader->Read(&message)) Handle(message);
+    const absl::Status status = FromGrpc(reader->Finish());
+    if (!status.ok()) return status;
+    return absl::UnavailableError("the server ended the watch before the job's end");
+  }
+
+  void Handle(const v1::WatchEnsembleJobResponse& message) {
+    if (ended_) return;  // the terminal state was the last word
+    heard_ = Clock::now();
+    backoff_ = options_.initial_backoff;
+    if (!message.resume_token().empty()) request_.set_resume_token(message.resume_token());
+    if (message.has_job()) HandleJob(message.job());
+    if (message.has_snapshot() && callbacks_.on_snapshot)
+      callbacks_.on_snapshot(message.snapshot());
+    if (message.has_heartbeat() && callbacks_.on_heartbeat) callbacks_.on_heartbeat();
+  }
+
+  void HandleJob(const v1::EnsembleJob& job) {
+    if (HasEnded(job.state())) ended_ = job;
+    if (callbacks_.on_job) callbacks_.on_job(job);
+  }
+
+  absl::Status WaitToReattach(const absl::Status& why) {
+    const absl::Duration pause = NextPause();
+    if (Since(heard_) + pause > options_.give_up_after) {
+      return absl::UnavailableError(absl::StrCat("gave up watching after ",
+                                                 absl::FormatDuration(options_.give_up_after),
+                                                 " without the server: ", why.message()));
+    }
+    if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, pause);
+    if (!Pause(pause, stop_)) return Stopped();
+    if (options_.before_reattach) options_.before_reattach();
+    return absl::OkStatus();
+  }
+
+  // Up to a quarter longer, so that the watchers of a server that died do not return as one.
+  absl::Duration NextPause() {
+    const absl::Duration pause = backoff_ * absl::Uniform(random_, 1.0, 1.25);
+    backoff_ = std::min(2 * backoff_, options_.max_backoff);
+    return pause;
+  }
+
+  v1::EnsembleService::StubInterface& stub_;
+  const WatchCallbacks& callbacks_;
+  const WatchOptions& options_;
+  const std::stop_token stop_;
+  v1::WatchEnsembleJobRequest request_;
+  std::optional<v1::EnsembleJob> ended_;
+  Clock::time_point heard_ = Clock::now();
+  absl::Duration backoff_ = options_.initial_backoff;
+  absl::InsecureBitGen random_;
+};
+
+}  // namespace
+
+bool HasEnded(v1::EnsembleJob::State state) {
+  return state == v1::EnsembleJob::SUCCEEDED || state == v1::EnsembleJob::FAILED ||
+         state == v1::EnsembleJob::CANCELLED;
+}
+
+absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
+                                         const std::string& name, const WatchCallbacks& callbacks,
+                                         const WatchOptions& options, std::stop_token stop) {
+  return Watch(stub, callbacks, options, std::move(stop)).Follow(name);
+}
+
+}  // namespace ballpiston::client

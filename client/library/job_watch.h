@@ -1,0 +1,52 @@
+// Following a job to its end, through restarts of the server and cut connections.
+//
+// When the stream breaks (UNAVAILABLE, or an end without a terminal state), the watch attaches
+// again with the last resume token it saw, after pauses that double from `initial_backoff` to
+// `max_backoff`, until nothing was heard for `give_up_after`. Every other error ends it.
+//
+// Properties, each with a test of its name:
+//   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.
+//   3. GivesUpAfterTheConfiguredTime.  4. AStopEndsTheWatchAtOnce.
+#ifndef BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_
+#define BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_
+
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+
+namespace ballpiston::client {
+
+// Called on the thread that watches, one at a time; any of them may be empty.
+struct WatchCallbacks {
+  std::function<void(const v1::EnsembleJob&)> on_job;  // at first, and on each change of state
+  std::function<void(const v1::StatisticsSnapshot&)> on_snapshot;
+  std::function<void()> on_heartbeat;
+  // The stream broke; the next attempt follows after `pause`.
+  std::function<void(const absl::Status& why, absl::Duration pause)> on_disconnect;
+};
+
+struct WatchOptions {
+  absl::Duration initial_backoff = absl::Milliseconds(100);
+  absl::Duration max_backoff = absl::Seconds(5);
+  absl::Duration give_up_after = absl::Minutes(2);
+  std::function<void()> before_reattach;  // e.g. starts a private server again
+};
+
+// SUCCEEDED, FAILED or CANCELLED.
+bool HasEnded(v1::EnsembleJob::State state);
+
+// Blocks until the job has ended and returns it as it then is. CANCELLED if `stop` was requested
+// (the job goes on), UNAVAILABLE if the watch gave up, else the server's error.
+absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
+                                         const std::string& name, const WatchCallbacks& callbacks,
+                                         const WatchOptions& options = {},
+                                         std::stop_token stop = {});
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_LIBRARY_JOB_WATCH_H_

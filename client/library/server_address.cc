@@ -1,0 +1,53 @@
+#include "client/library/server_address.h"
+
+#include <cstdint>
+
+#include "absl/status/status.h"
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
+
+namespace ballpiston::client {
+namespace {
+
+absl::Status BadAddress(absl::string_view address, absl::string_view reason) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      "'", address, "' is not a server's address: ", reason, " (write host:port or unix:PATH)"));
+}
+
+absl::StatusOr<std::string> UnixTarget(absl::string_view address, absl::string_view path) {
+  if (path.empty()) return BadAddress(address, "the socket's path is missing");
+  if (path.size() > kMaxSocketPath) {
+    return BadAddress(address,
+                      absl::StrCat("the socket's path is longer than ", kMaxSocketPath, " bytes"));
+  }
+  return absl::StrCat("unix:", path);
+}
+
+bool IsPort(absl::string_view text) {
+  uint32_t port = 0;
+  return absl::SimpleAtoi(text, &port) && port >= 1 && port <= 65535;
+}
+
+bool IsHost(absl::string_view text) {
+  if (absl::ConsumePrefix(&text, "[")) return text.size() > 1 && absl::EndsWith(text, "]");
+  return !text.empty() && text.find_first_of(":/[] \t") == absl::string_view::npos;
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> GrpcTarget(absl::string_view address) {
+  absl::string_view path = address;
+  if (absl::ConsumePrefix(&path, "unix:")) return UnixTarget(address, path);
+  const size_t colon = address.rfind(':');
+  if (colon == absl::string_view::npos) return BadAddress(address, "the port is missing");
+  if (!IsHost(address.substr(0, colon))) return BadAddress(address, "that is no host");
+  if (!IsPort(address.substr(colon + 1))) {
+    return BadAddress(address, "the port has to be a number from 1 to 65535");
+  }
+  return absl::StrCat("dns:///", address);
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,67 @@
+#include "client/output/job_list.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/time.h"
+#include "client/output/json.h"
+#include "client/output/number_text.h"
+#include "client/output/spelling.h"
+#include "client/output/text_table.h"
+
+namespace ballpiston::client {
+namespace {
+
+std::string TimeText(bool present, const google::protobuf::Timestamp& time) {
+  if (!present) return "";
+  const absl::Time instant = absl::FromUnixSeconds(time.seconds());
+  return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", instant, absl::UTCTimeZone());
+}
+
+std::vector<std::string> Cells(const v1::EnsembleJob& job) {
+  return {job.name(),
+          Spelling(job.spec().experiment()),
+          Spelling(job.state()),
+          absl::StrCat(job.progress().points_done()),
+          absl::StrCat(job.progress().points()),
+          ExactText(job.progress().samples()),
+          TimeText(job.has_create_time(), job.create_time()),
+          TimeText(job.has_end_time(), job.end_time())};
+}
+
+void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
+  out << "name,experiment,state,points_done,points,samples,create_time,end_time\n";
+  for (const v1::EnsembleJob& job : jobs) out << absl::StrJoin(Cells(job), ",") << '\n';
+}
+
+void PrintTable(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
+  constexpr auto kLeft = TextTable::Column::kLeft;
+  TextTable table({{"name", kLeft},
+                   {"experiment", kLeft},
+                   {"state", kLeft},
+                   {"done"},
+                   {"points"},
+                   {"samples"},
+                   {"created", kLeft},
+                   {"ended", kLeft}});
+  for (const v1::EnsembleJob& job : jobs) table.AddRow(Cells(job));
+  table.Print(out);
+}
+
+}  // namespace
+
+void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, Format format, std::ostream& out) {
+  switch (format) {
+    case Format::kTable:
+      return PrintTable(jobs, out);
+    case Format::kJson:
+      return PrintJsonDocument("jobs", jobs, out);
+    case Format::kJsonl:
+      return PrintJsonLines(jobs, out);
+    case Format::kCsv:
+      return PrintCsv(jobs, out);
+  }
+}
+
+}  // namespace ballpiston::client

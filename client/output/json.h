@@ -1,0 +1,38 @@
+// Messages as JSON: the proto's own field names, one line, and plain fields printed even where they
+// have their default value, so that no column ever vanishes. Doubles read back as the same double.
+// 64-bit integers are strings, as proto JSON has it. The same message gives the same bytes.
+#ifndef BALLPISTON_CLIENT_OUTPUT_JSON_H_
+#define BALLPISTON_CLIENT_OUTPUT_JSON_H_
+
+#include <google/protobuf/message.h>
+
+#include <ostream>
+#include <string>
+
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+
+std::string Json(const google::protobuf::Message& message);
+
+// One message a line.
+template <typename Messages>
+void PrintJsonLines(const Messages& messages, std::ostream& out) {
+  for (const auto& message : messages) out << Json(message) << '\n';
+}
+
+// {"key": [...]}, one message a line.
+template <typename Messages>
+void PrintJsonDocument(absl::string_view key, const Messages& messages, std::ostream& out) {
+  out << "{\"" << key << "\": [";
+  const char* separator = "\n";
+  for (const auto& message : messages) {
+    out << separator << Json(message);
+    separator = ",\n";
+  }
+  out << "\n]}\n";
+}
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_JSON_H_

@@ -1,0 +1,71 @@
+#include "client/output/number_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr double kWholeBelow = 1e15;
+
+// Outside these a number is written with an exponent.
+constexpr double kSmallest = 1e-4;
+constexpr double kLargest = 1e7;
+
+// Digits before rounding may carry (0.0996 -> 0.100): harmless, one digit more than needed.
+int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); }
+
+std::string Fixed(double x, int decimals) { return absl::StrFormat("%.*f", decimals, x); }
+
+std::string Scientific(double x, int last_digit) {
+  if (x == 0) return "0";
+  return absl::StrFormat("%.*e", std::max(0, DecimalExponent(x) - last_digit), x);
+}
+
+// `last_digit` is the power of ten of the last digit shown.
+std::string RoundedAt(double x, int last_digit, bool scientific) {
+  return scientific ? Scientific(x, last_digit) : Fixed(x, std::max(0, -last_digit));
+}
+
+std::string Significant(double x) { return absl::StrFormat("%.6g", x); }
+
+}  // namespace
+
+std::string ExactText(double value) {
+  if (value == std::floor(value) && std::abs(value) < kWholeBelow) {
+    return absl::StrFormat("%.0f", value);
+  }
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value).ptr;
+  return std::string(buffer, end);
+}
+
+MeasuredText Measured(double value, std::optional<double> error, std::optional<double> exact) {
+  MeasuredText text;
+  const bool usable = error && *error > 0 && std::isfinite(*error) && std::isfinite(value);
+  if (!usable) {
+    text.value = Significant(value);
+    if (error) text.error = Significant(*error);
+    if (exact) text.exact = Significant(*exact);
+    return text;
+  }
+  const int last_digit = DecimalExponent(*error) - 1;
+  const double size = std::max(std::abs(value), *error);
+  const bool scientific = size < kSmallest || size >= kLargest;
+  text.value = RoundedAt(value, last_digit, scientific);
+  text.error = RoundedAt(*error, last_digit, scientific);
+  if (exact) text.exact = RoundedAt(*exact, last_digit, scientific);
+  return text;
+}
+
+std::string ClockText(absl::Duration time) {
+  const int64_t seconds = absl::ToInt64Seconds(absl::Ceil(time, absl::Seconds(1)));
+  const int64_t minutes = seconds / 60;
+  if (minutes < 60) return absl::StrFormat("%d:%02d", minutes, seconds % 60);
+  return absl::StrFormat("%d:%02d:%02d", minutes / 60, minutes % 60, seconds % 60);
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,31 @@
+// Numbers as text.
+#ifndef BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_
+#define BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/time/time.h"
+
+namespace ballpiston::client {
+
+// The shortest text that reads back as the same double; whole numbers below 10^15 without exponent.
+std::string ExactText(double value);
+
+// A value to the digits its standard error supports: the error to two significant digits, the
+// value and the exact value to the same decimal place. Without an error six significant digits.
+//   (21.63214, 0.1234, 21.6225) -> 21.63, 0.12, 21.62
+struct MeasuredText {
+  std::string value;
+  std::string error;  // empty if there is none
+  std::string exact;  // empty if there is none
+};
+MeasuredText Measured(double value, std::optional<double> error,
+                      std::optional<double> exact = std::nullopt);
+
+// 0:35, 12:04, 3:25:10; whole seconds, rounded up, so that it ends with 0:00 at the end only.
+std::string ClockText(absl::Duration time);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_NUMBER_TEXT_H_

@@ -1,0 +1,71 @@
+#include "client/output/progress_line.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
+#include "client/output/number_text.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr size_t kWidestBar = 30;
+constexpr size_t kNarrowestBar = 6;
+
+// [####----], `width` characters in all.
+std::string Bar(double fraction, size_t width) {
+  const size_t inside = width - 2;
+  const double filled = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(inside);
+  const auto marks = static_cast<size_t>(filled);
+  return absl::StrCat("[", std::string(marks, '#'), std::string(inside - marks, '-'), "]");
+}
+
+// 1.4e5: shorter than printf's 1.4e+05.
+std::string Rate(double rate) {
+  return absl::StrCat(
+      absl::StrReplaceAll(absl::StrFormat("%.2g", rate), {{"e+0", "e"}, {"e+", "e"}}),
+      " samples/s");
+}
+
+// With the closed forms' short names: tau_ball_piston for mean_free_time_ball_piston.
+std::string Estimate(const v1::Estimate& estimate) {
+  std::optional<double> error;
+  if (estimate.has_standard_error()) error = estimate.standard_error();
+  const MeasuredText text = Measured(estimate.value(), error);
+  return absl::StrCat(absl::StrReplaceAll(estimate.name(), {{"mean_free_time", "tau"}}), " ",
+                      text.value, error ? " +- " : "", text.error);
+}
+
+std::string Parameters(const v1::PointParameters& parameters) {
+  std::string text = absl::StrFormat("delta %.4g", parameters.delta());
+  if (parameters.has_epsilon()) absl::StrAppendFormat(&text, " epsilon %.4g", parameters.epsilon());
+  if (parameters.has_exponent()) absl::StrAppendFormat(&text, " n %.4g", parameters.exponent());
+  return absl::StrCat("(", text, ")");
+}
+
+}  // namespace
+
+std::string ProgressLine(const ProgressMeter& meter,
+                         const std::optional<v1::PointResult>& point_in_work, size_t width) {
+  std::vector<std::string> parts = {
+      absl::StrFormat("%d/%d points", meter.progress().points_done(), meter.progress().points())};
+  if (const auto rate = meter.SamplesPerSecond()) parts.push_back(Rate(*rate));
+  if (const auto left = meter.TimeLeft()) parts.push_back(ClockText(*left) + " left");
+  if (point_in_work && !point_in_work->estimates().empty()) {
+    parts.push_back(Estimate(point_in_work->estimates(0)));
+    parts.push_back(Parameters(point_in_work->parameters()));
+  }
+  std::string line = parts[0].substr(0, width);
+  for (size_t i = 1; i < parts.size(); ++i) {
+    if (line.size() + 2 + parts[i].size() > width) break;
+    absl::StrAppend(&line, "  ", parts[i]);
+  }
+  if (line.size() + 1 + kNarrowestBar > width) return line;
+  return absl::StrCat(Bar(meter.Fraction(), std::min(width - line.size() - 1, kWidestBar)), " ",
+                      line);
+}
+
+}  // namespace ballpiston::client

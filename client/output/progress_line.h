@@ -1,0 +1,22 @@
+// The text of the progress bar's one line.
+#ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_
+#define BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "ballpiston/v1/result.pb.h"
+#include "client/output/progress_meter.h"
+
+namespace ballpiston::client {
+
+// At most `width` characters. What comes last in the line is left out first if it does not fit; the
+// bar takes what the text leaves.
+//   [######--------] 12/177 points  1.2e6 samples/s  0:35 left  tau_conditional 21.63 +- 0.12
+std::string ProgressLine(const ProgressMeter& meter,
+                         const std::optional<v1::PointResult>& point_in_work, size_t width);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_PROGRESS_LINE_H_

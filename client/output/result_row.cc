@@ -1,0 +1,26 @@
+#include "client/output/result_row.h"
+
+namespace ballpiston::client {
+namespace {
+
+ResultRow RowOf(const v1::Estimate& estimate) {
+  ResultRow row(estimate.name(), estimate.value());
+  if (estimate.has_standard_error()) row.standard_error = estimate.standard_error();
+  if (estimate.has_exact()) row.exact = estimate.exact();
+  if (estimate.has_z_score()) row.z_score = estimate.z_score();
+  return row;
+}
+
+}  // namespace
+
+std::vector<ResultRow> ResultRows(const v1::PointResult& point) {
+  std::vector<ResultRow> rows;
+  for (const v1::Estimate& estimate : point.estimates()) rows.push_back(RowOf(estimate));
+  if (point.has_kl_divergence()) {
+    rows.emplace_back("kl_divergence", point.kl_divergence().value());
+    rows.emplace_back("kl_noise_floor", point.kl_divergence().noise_floor());
+  }
+  return rows;
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,39 @@
+// Prints the results of a job, point by point, in one of the formats.
+//
+//   table   a heading with experiment and model, then one row for each point and estimate
+//   json    {"job": {...}, "points": [...]}, one point a line
+//   jsonl   one point a line
+//   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score
+//
+// In tables and CSV a Kullback-Leibler divergence becomes two rows of its own, kl_divergence and
+// kl_noise_floor. What does not exist stays empty. The same points give the same bytes.
+#ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
+#define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
+
+#include <memory>
+#include <ostream>
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/result.pb.h"
+#include "client/output/format.h"
+
+namespace ballpiston::client {
+
+class ResultWriter {
+ public:
+  virtual ~ResultWriter() = default;
+
+  virtual void Begin(const v1::EnsembleJob& job) = 0;
+  virtual void Add(const v1::PointResult& point) = 0;
+  virtual void End() = 0;
+};
+
+// `out` has to outlive the writer.
+std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out);
+
+// Whether the format shows histograms, so that they have to be fetched.
+bool ShowsHistograms(Format format);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_

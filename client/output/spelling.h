@@ -1,0 +1,57 @@
+// The proto's enum values as users write them: FIRST_HIT is first-hit; first_hit is read as well.
+#ifndef BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
+#define BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/generated_enum_reflection.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+
+inline std::string SpellingOfName(absl::string_view enum_name) {
+  return absl::StrReplaceAll(absl::AsciiStrToLower(enum_name), {{"_", "-"}});
+}
+
+// A value this version does not know is spelled as its number.
+template <typename Enum>
+std::string Spelling(Enum value) {
+  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>()->FindValueByNumber(value);
+  return descriptor == nullptr ? std::to_string(value) : SpellingOfName(descriptor->name());
+}
+
+// Every value but the unspecified one.
+template <typename Enum>
+std::vector<std::string> Spellings() {
+  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
+  std::vector<std::string> names;
+  for (int i = 0; i < descriptor->value_count(); ++i) {
+    if (descriptor->value(i)->number() != 0)
+      names.push_back(SpellingOfName(descriptor->value(i)->name()));
+  }
+  return names;
+}
+
+template <typename Enum>
+std::optional<Enum> FromSpelling(absl::string_view text) {
+  const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();
+  const std::string wanted = absl::StrReplaceAll(text, {{"_", "-"}});
+  for (int i = 0; i < descriptor->value_count(); ++i) {
+    const auto* value = descriptor->value(i);
+    if (value->number() != 0 && SpellingOfName(value->name()) == wanted) {
+      return static_cast<Enum>(value->number());
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_SPELLING_H_

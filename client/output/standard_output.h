@@ -1,0 +1,46 @@
+// Standard output that remembers why it failed.
+//
+// A reader that goes away (`ballpiston result JOB | head`) is no error of the user's; a full disk
+// is one. std::cout cannot tell them apart afterwards.
+#ifndef BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
+#define BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
+
+#include <array>
+#include <ostream>
+#include <streambuf>
+
+#include "absl/status/status.h"
+
+namespace ballpiston::client {
+
+// Needs SIGPIPE ignored. Not thread-safe.
+class FileDescriptorBuffer : public std::streambuf {
+ public:
+  explicit FileDescriptorBuffer(int descriptor);
+
+  int error() const { return error_; }  // errno of the first write that failed, or 0
+
+ protected:
+  int_type overflow(int_type c) override;
+  int sync() override;
+
+ private:
+  int descriptor_;
+  int error_ = 0;
+  std::array<char, 1 << 16> buffer_;
+};
+
+class StandardOutput : public std::ostream {
+ public:
+  explicit StandardOutput(int descriptor = 1);
+
+  // Flushes. OK also if the reader went away.
+  absl::Status Finish();
+
+ private:
+  FileDescriptorBuffer buffer_;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_

@@ -1,0 +1,39 @@
+#include "client/output/text_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::client {
+
+TextTable::TextTable(std::vector<Column> columns)
+    : columns_(std::move(columns)), widths_(columns_.size(), 0) {
+  std::vector<std::string> titles;
+  for (const Column& column : columns_) titles.push_back(column.title);
+  AddRow(std::move(titles));
+}
+
+void TextTable::AddRow(std::vector<std::string> row) {
+  row.resize(columns_.size());
+  for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], row[i].size());
+  rows_.push_back(std::move(row));
+}
+
+std::string TextTable::Line(const std::vector<std::string>& row, size_t indent) const {
+  std::string line(indent, ' ');
+  for (size_t i = 0; i < row.size(); ++i) {
+    const std::string padding(widths_[i] - row[i].size(), ' ');
+    const bool left = columns_[i].alignment == Column::kLeft;
+    absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, row[i], left ? padding : "");
+  }
+  absl::StripTrailingAsciiWhitespace(&line);
+  return line;
+}
+
+void TextTable::Print(std::ostream& out, size_t indent) const {
+  for (const std::vector<std::string>& row : rows_) out << Line(row, indent) << '\n';
+}
+
+}  // namespace ballpiston::client

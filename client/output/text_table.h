@@ -1,0 +1,35 @@
+// Aligned columns of text: the first row is the header; columns of numbers to the right.
+#ifndef BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
+#define BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace ballpiston::client {
+
+class TextTable {
+ public:
+  struct Column {
+    std::string title;
+    enum { kLeft, kRight } alignment = kRight;
+  };
+
+  explicit TextTable(std::vector<Column> columns);
+
+  // One text for each column.
+  void AddRow(std::vector<std::string> row);
+  // Each line indented by `indent` blanks; no blanks at a line's end.
+  void Print(std::ostream& out, size_t indent = 0) const;
+
+ private:
+  std::string Line(const std::vector<std::string>& row, size_t indent) const;
+
+  std::vector<Column> columns_;
+  std::vector<size_t> widths_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_

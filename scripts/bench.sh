@@ -1,0 +1,19 @@
+#!/bin/bash
+# Runs the benchmarks, one after the other, pinned to the first core this process may use.
+#
+#   scripts/bench.sh FOLDER_OF_PROGRAMS [BENCHMARK_FLAG...]
+set -euo pipefail
+folder=$1
+shift
+
+shopt -s nullglob
+benchmarks=("$folder"/*_benchmark)
+if ((${#benchmarks[@]} == 0)); then
+  echo "bench: no benchmark was built in $folder" >&2
+  exit 1
+fi
+core=$(taskset -pc $$ | sed 's/.*: //; s/[,-].*//')
+for benchmark in "${benchmarks[@]}"; do
+  echo "== $(basename "$benchmark") on core $core"
+  taskset -c "$core" "$benchmark" "$@"
+done

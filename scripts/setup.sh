@@ -1,0 +1,57 @@
+#!/bin/bash
+# Installs the Debian packages that the build, the tests and the demo need: only those that are
+# missing, so that a second run changes nothing and needs no network.
+#
+#   scripts/setup.sh [FURTHER_PACKAGE...]
+#
+# With SKIP_SETUP=1 in the environment it does nothing: for those who bring the libraries themselves.
+set -euo pipefail
+
+readonly PACKAGES=(
+  g++ cmake ninja-build                                        # the build
+  libgrpc++-dev libprotobuf-dev                                # the service
+  protobuf-compiler protobuf-compiler-grpc
+  libabsl-dev libeigen3-dev librandom123-dev                   # the core
+  libsqlite3-dev                                               # the store
+  libcli11-dev gnuplot-nox                                     # the client, its figures
+  libgtest-dev libgmock-dev libbenchmark-dev)                  # tests and benchmarks
+
+missing_of() {
+  local installed
+  installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    awk '$2 == "installed" {print $1}') || true
+  comm -23 <(printf '%s\n' "$@" | sort -u) <(sort -u <<<"$installed")
+}
+
+as_root() {
+  if [[ $(id -u) == 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Acquire::Retries=3 \
+    -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" >"$log" 2>&1 && return
+  cat "$log" >&2
+  echo "setup: apt-get $1 failed (its words are above)" >&2
+  exit 1
+}
+
+[[ ${SKIP_SETUP:-0} != 1 ]] || exit 0
+if ! command -v dpkg-query >/dev/null; then
+  echo "setup: not a Debian system; these packages, or what holds the same, must be there:" \
+    "${PACKAGES[*]} $*" >&2
+  exit 0
+fi
+
+mapfile -t missing < <(missing_of "${PACKAGES[@]}" "$@")
+((${#missing[@]})) || exit 0
+
+if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
+  echo "setup: packages are missing, and there is neither root nor sudo to install them." >&2
+  echo "setup: as root, run:  apt-get install ${missing[*]}" >&2
+  exit 1
+fi
+echo "setup: installing ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+apt_get update
+apt_get install -y --no-install-recommends "${missing[@]}"

@@ -1,0 +1,113 @@
+#include "client/library/ensemble_client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+#include <string>
+
+#include "client/library/error_text.h"
+#include "client/library/request_id.h"
+#include "tests/client/fake_server.h"
+
+namespace ballpiston::client {
+namespace {
+
+v1::EnsembleJob Named(const std::string& name) {
+  v1::EnsembleJob job;
+  job.set_name(name);
+  return job;
+}
+
+TEST(RequestId, IsARandomUuid) {
+  const std::regex uuid("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
+  std::set<std::string> ids;
+  for (int i = 0; i < 1000; ++i) {
+    ids.insert(NewRequestId());
+    EXPECT_TRUE(std::regex_match(NewRequestId(), uuid));
+  }
+  EXPECT_EQ(ids.size(), 1000u);
+}
+
+// The channel repeats the call; the server can tell that it is the same one.
+TEST(EnsembleClient, CreateIsRepeatedWithTheSameRequestId) {
+  FakeServer server;
+  server.ensemble.jobs = {Named("ensembleJobs/a")};
+  server.ensemble.unavailable_creates = 2;
+  server.Start();
+  v1::EnsembleSpec spec;
+  spec.set_seed(7);
+  const auto job = EnsembleClient(server.Channel()).Create(spec);
+  ASSERT_TRUE(job.ok()) << job.status();
+  EXPECT_EQ(job->name(), "ensembleJobs/a");
+  const auto& requests = server.ensemble.create_requests;
+  ASSERT_EQ(requests.size(), 3u);
+  EXPECT_EQ(requests[0].request_id(), requests[2].request_id());
+  EXPECT_EQ(requests[2].spec().seed(), 7u);
+}
+
+TEST(EnsembleClient, EachCreateHasAnIdOfItsOwn) {
+  FakeServer server;
+  server.ensemble.jobs = {Named("ensembleJobs/a")};
+  server.Start();
+  const EnsembleClient client(server.Channel());
+  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
+  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
+  EXPECT_NE(server.ensemble.create_requests[0].request_id(),
+            server.ensemble.create_requests[1].request_id());
+}
+
+TEST(EnsembleClient, ListGathersAllPages) {
+  FakeServer server;
+  for (int i = 0; i < 5; ++i) server.ensemble.jobs.push_back(Named(std::to_string(i)));
+  server.Start();
+  const auto jobs = EnsembleClient(server.Channel()).List();
+  ASSERT_TRUE(jobs.ok()) << jobs.status();
+  ASSERT_EQ(jobs->size(), 5u);
+  for (size_t i = 0; i < 5; ++i) EXPECT_EQ((*jobs)[i].name(), std::to_string(i));
+}
+
+TEST(EnsembleClient, ResultsGathersAllPagesOfTheViewAskedFor) {
+  FakeServer server;
+  for (int i = 0; i < 5; ++i) server.ensemble.points.emplace_back().set_index(i);
+  server.Start();
+  const auto points =
+      EnsembleClient(server.Channel()).Results("ensembleJobs/a", v1::ListResultsRequest::BASIC);
+  ASSERT_TRUE(points.ok()) << points.status();
+  ASSERT_EQ(points->size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ((*points)[static_cast<size_t>(i)].index(), i);
+  ASSERT_EQ(server.ensemble.result_requests.size(), 3u);
+  for (const auto& request : server.ensemble.result_requests) {
+    EXPECT_EQ(request.parent(), "ensembleJobs/a");
+    EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
+  }
+}
+
+TEST(EnsembleClient, ErrorsKeepCodeAndReason) {
+  FakeServer server;
+  server.Start();
+  const auto job = EnsembleClient(server.Channel()).Get("ensembleJobs/none");
+  EXPECT_EQ(job.status().code(), absl::StatusCode::kNotFound);
+  EXPECT_EQ(job.status().message(), "no such job: ensembleJobs/none (JOB_NOT_FOUND)");
+  EXPECT_EQ(ErrorReason(job.status()), "JOB_NOT_FOUND");
+}
+
+TEST(EnsembleClient, WithoutAServerIsUnavailable) {
+  const FakeServer server;  // not started
+  const EnsembleClient client(server.Channel());
+  EXPECT_EQ(client.List().status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(client.Delete("ensembleJobs/a").code(), absl::StatusCode::kUnavailable);
+}
+
+TEST(EnsembleClient, CancelCarriesARequestId) {
+  FakeServer server;
+  server.Start();
+  ASSERT_TRUE(EnsembleClient(server.Channel()).Cancel("ensembleJobs/a").ok());
+  ASSERT_EQ(server.ensemble.cancel_requests.size(), 1u);
+  EXPECT_EQ(server.ensemble.cancel_requests[0].name(), "ensembleJobs/a");
+  EXPECT_FALSE(server.ensemble.cancel_requests[0].request_id().empty());
+}
+
+}  // namespace
+}  // namespace ballpiston::client

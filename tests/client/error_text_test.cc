@@ -1,0 +1,81 @@
+#include "client/library/error_text.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Violation = std::pair<std::string, std::string>;
+
+grpc::Status Invalid(const std::vector<Violation>& violations, int left_out = 0) {
+  google::rpc::ErrorInfo info;
+  info.set_reason("INVALID_SPEC");
+  if (left_out > 0) (*info.mutable_metadata())["violations_left_out"] = std::to_string(left_out);
+  google::rpc::BadRequest request;
+  for (const auto& [field, description] : violations) {
+    auto* violation = request.add_field_violations();
+    violation->set_field(field);
+    violation->set_description(description);
+  }
+  google::rpc::Status details;
+  details.add_details()->PackFrom(info);
+  details.add_details()->PackFrom(request);
+  return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "summary", details.SerializeAsString());
+}
+
+TEST(ErrorText, OkIsOk) { EXPECT_TRUE(FromGrpc(grpc::Status::OK).ok()); }
+
+TEST(ErrorText, WithoutDetailsIsTheMessage) {
+  const absl::Status status =
+      FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
+  EXPECT_EQ(status, absl::UnavailableError("connection refused"));
+  EXPECT_EQ(ErrorReason(status), "");
+}
+
+TEST(ErrorText, OneViolationTakesOneLine) {
+  const absl::Status status = FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}}));
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(status.message(), "spec.grid.rho[0]: is 0.9 (INVALID_SPEC)");
+  EXPECT_EQ(ErrorReason(status), "INVALID_SPEC");
+}
+
+TEST(ErrorText, EveryViolationHasItsLine) {
+  const absl::Status status =
+      FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}, {"spec.target.samples", "is 0"}}));
+  EXPECT_EQ(status.message(),
+            "not valid, 2 violations (INVALID_SPEC):\n"
+            "  spec.grid.rho[0]: is 0.9\n"
+            "  spec.target.samples: is 0");
+}
+
+TEST(ErrorText, SaysHowManyViolationsTheServerLeftOut) {
+  const absl::Status status = FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}}, 41));
+  EXPECT_EQ(status.message(),
+            "not valid, 42 violations (INVALID_SPEC):\n"
+            "  spec.grid.rho[0]: is 0.9\n"
+            "  and 41 more");
+}
+
+TEST(ErrorText, AReasonAloneFollowsTheMessage) {
+  google::rpc::ErrorInfo info;
+  info.set_reason("JOB_NOT_FOUND");
+  google::rpc::Status details;
+  details.add_details()->PackFrom(info);
+  const absl::Status status = FromGrpc(
+      grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job", details.SerializeAsString()));
+  EXPECT_EQ(status.message(), "no such job (JOB_NOT_FOUND)");
+}
+
+TEST(ErrorText, DetailsThatAreNoStatusDoNotHideTheMessage) {
+  const absl::Status status =
+      FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff"));
+  EXPECT_EQ(status.message(), "went wrong");
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,142 @@
+#include "tests/client/fake_server.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "client/library/channel.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace ballpiston::client {
+
+grpc::Status FakeEnsembleService::CreateEnsembleJob(grpc::ServerContext*,
+                                                    const v1::CreateEnsembleJobRequest* request,
+                                                    v1::EnsembleJob* job) {
+  const std::lock_guard lock(mutex_);
+  create_requests.push_back(*request);
+  if (unavailable_creates-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  *job = jobs.at(0);
+  return grpc::Status::OK;
+}
+
+const v1::EnsembleJob* FakeEnsembleService::Find(const std::string& name) const {
+  const auto found = std::find_if(jobs.begin(), jobs.end(),
+                                  [&](const v1::EnsembleJob& job) { return job.name() == name; });
+  return found == jobs.end() ? nullptr : &*found;
+}
+
+grpc::Status FakeEnsembleService::GetEnsembleJob(grpc::ServerContext*,
+                                                 const v1::GetEnsembleJobRequest* request,
+                                                 v1::EnsembleJob* job) {
+  const v1::EnsembleJob* found = Find(request->name());
+  if (found == nullptr) return JobNotFound(request->name());
+  *job = *found;
+  return grpc::Status::OK;
+}
+
+grpc::Status FakeEnsembleService::ListEnsembleJobs(grpc::ServerContext*,
+                                                   const v1::ListEnsembleJobsRequest* request,
+                                                   v1::ListEnsembleJobsResponse* page) {
+  const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
+  const size_t to = std::min(from + static_cast<size_t>(page_size), jobs.size());
+  for (size_t i = from; i < to; ++i) *page->add_jobs() = jobs[i];
+  if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
+  return grpc::Status::OK;
+}
+
+grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
+                                                    const v1::CancelEnsembleJobRequest* request,
+                                                    v1::EnsembleJob* job) {
+  const std::lock_guard lock(mutex_);
+  cancel_requests.push_back(*request);
+  *job = JobIn(v1::EnsembleJob::CANCELLED);
+  return cancel_status;
+}
+
+grpc::Status FakeEnsembleService::DeleteEnsembleJob(grpc::ServerContext*,
+                                                    const v1::DeleteEnsembleJobRequest* request,
+                                                    google::protobuf::Empty*) {
+  return Find(request->name()) == nullptr ? JobNotFound(request->name()) : grpc::Status::OK;
+}
+
+WatchScript FakeEnsembleService::NextScript(const v1::WatchEnsembleJobRequest& request) {
+  const std::lock_guard lock(mutex_);
+  watch_requests.push_back(request);
+  return watches.at(std::min(watch_requests.size(), watches.size()) - 1);
+}
+
+grpc::Status FakeEnsembleService::WatchEnsembleJob(
+    grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,
+    grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) {
+  const WatchScript script = NextScript(*request);
+  for (const v1::WatchEnsembleJobResponse& message : script.messages) writer->Write(message);
+  if (script.hangs) released_.wait();
+  return script.end;
+}
+
+grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
+                                              const v1::ListResultsRequest* request,
+                                              v1::ListResultsResponse* page) {
+  const std::lock_guard lock(mutex_);
+  result_requests.push_back(*request);
+  const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
+  const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
+  for (size_t i = from; i < to; ++i) *page->add_points() = points[i];
+  if (to < points.size()) page->set_next_page_token(std::to_string(to));
+  return grpc::Status::OK;
+}
+
+FakeServer::FakeServer() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "client_test_XXXXXX").string();
+  folder_ = mkdtemp(pattern.data());
+}
+
+FakeServer::~FakeServer() {
+  ensemble.Release();
+  if (server_) server_->Shutdown();
+  std::filesystem::remove_all(folder_);
+}
+
+void FakeServer::Start() {
+  grpc::ServerBuilder builder;
+  builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
+  builder.RegisterService(&ensemble);
+  builder.RegisterService(&analytic);
+  server_ = builder.BuildAndStart();
+}
+
+std::shared_ptr<grpc::Channel> FakeServer::Channel() const { return *OpenChannel(Address()); }
+
+grpc::Status JobNotFound(const std::string& name) {
+  google::rpc::ErrorInfo info;
+  info.set_reason("JOB_NOT_FOUND");
+  info.set_domain("ballpiston");
+  google::rpc::Status details;
+  details.add_details()->PackFrom(info);
+  return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
+                      details.SerializeAsString());
+}
+
+v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token) {
+  v1::WatchEnsembleJobResponse message;
+  *message.mutable_job() = job;
+  message.set_resume_token(token);
+  return message;
+}
+
+v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token) {
+  v1::WatchEnsembleJobResponse message;
+  message.mutable_snapshot()->mutable_progress()->set_samples(samples);
+  message.set_resume_token(token);
+  return message;
+}
+
+v1::EnsembleJob JobIn(v1::EnsembleJob::State state) {
+  v1::EnsembleJob job;
+  job.set_name("ensembleJobs/abc");
+  job.set_state(state);
+  return job;
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,104 @@
+// A server whose answers a test has written down beforehand, on a Unix socket of its own.
+#ifndef BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
+#define BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <latch>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "ballpiston/v1/analytic.grpc.pb.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+
+namespace ballpiston::client {
+
+// One attachment of a watch: messages, then the end; with `hangs` the end comes with the server's.
+struct WatchScript {
+  std::vector<v1::WatchEnsembleJobResponse> messages;
+  grpc::Status end;
+  bool hangs = false;
+};
+
+class FakeEnsembleService final : public v1::EnsembleService::Service {
+ public:
+  // What to play. Set before the server is used.
+  std::vector<WatchScript> watches;  // the last one is played again and again
+  std::vector<v1::EnsembleJob> jobs;
+  std::vector<v1::PointResult> points;
+  int unavailable_creates = 0;  // so many attempts fail first
+  grpc::Status cancel_status;
+  int page_size = 2;  // whatever was asked for
+
+  // What was asked.
+  std::vector<v1::WatchEnsembleJobRequest> watch_requests;
+  std::vector<v1::CreateEnsembleJobRequest> create_requests;
+  std::vector<v1::CancelEnsembleJobRequest> cancel_requests;
+  std::vector<v1::ListResultsRequest> result_requests;
+
+  grpc::Status CreateEnsembleJob(grpc::ServerContext*, const v1::CreateEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override;
+  grpc::Status GetEnsembleJob(grpc::ServerContext*, const v1::GetEnsembleJobRequest* request,
+                              v1::EnsembleJob* job) override;
+  grpc::Status ListEnsembleJobs(grpc::ServerContext*, const v1::ListEnsembleJobsRequest* request,
+                                v1::ListEnsembleJobsResponse* page) override;
+  grpc::Status CancelEnsembleJob(grpc::ServerContext*, const v1::CancelEnsembleJobRequest* request,
+                                 v1::EnsembleJob* job) override;
+  grpc::Status DeleteEnsembleJob(grpc::ServerContext*, const v1::DeleteEnsembleJobRequest* request,
+                                 google::protobuf::Empty*) override;
+  grpc::Status WatchEnsembleJob(grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,
+                                grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) override;
+  grpc::Status ListResults(grpc::ServerContext*, const v1::ListResultsRequest* request,
+                           v1::ListResultsResponse* page) override;
+
+  void Release() { released_.count_down(); }  // ends watches that hang
+
+ private:
+  WatchScript NextScript(const v1::WatchEnsembleJobRequest& request);
+  const v1::EnsembleJob* Find(const std::string& name) const;
+
+  std::mutex mutex_;
+  std::latch released_{1};
+};
+
+class FakeAnalyticService final : public v1::AnalyticService::Service {
+ public:
+  v1::EvaluatePairsResponse response;
+  grpc::Status EvaluatePairs(grpc::ServerContext*, const v1::EvaluatePairsRequest*,
+                             v1::EvaluatePairsResponse* answer) override {
+    *answer = response;
+    return grpc::Status::OK;
+  }
+};
+
+class FakeServer {
+ public:
+  FakeServer();
+  ~FakeServer();
+  FakeServer(const FakeServer&) = delete;
+  FakeServer& operator=(const FakeServer&) = delete;
+
+  FakeEnsembleService ensemble;
+  FakeAnalyticService analytic;
+
+  std::string Address() const { return "unix:" + folder_ + "/socket"; }
+  std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it
+  void Start();                                    // listens; not before the scripts are set
+
+ private:
+  std::string folder_;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+// NOT_FOUND with the details a server attaches.
+grpc::Status JobNotFound(const std::string& name);
+
+v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
+v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);
+v1::EnsembleJob JobIn(v1::EnsembleJob::State state);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_

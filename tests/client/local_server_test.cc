@@ -1,0 +1,151 @@
+#include "client/library/local_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "client/library/server_address.h"
+#include "tests/client/fake_server.h"
+
+namespace ballpiston::client {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// A HOME of its own, and the variables that matter as the test wants them.
+class LocalServerTest : public ::testing::Test {
+ protected:
+  LocalServerTest() {
+    std::string pattern = (fs::temp_directory_path() / "local_XXXXXX").string();
+    home_ = mkdtemp(pattern.data());
+    setenv("HOME", home_.c_str(), 1);
+    unsetenv("XDG_STATE_HOME");
+    unsetenv("BALLPISTON_SERVER_PROGRAM");
+  }
+  ~LocalServerTest() override {
+    fs::remove_all(home_);
+    unsetenv("TMPDIR");
+    unsetenv("BALLPISTON_SERVER_PROGRAM");
+  }
+
+  // A program that does what the shell script says.
+  std::string Program(const std::string& script) const {
+    const fs::path path = home_ / "program";
+    std::ofstream(path) << "#!/bin/sh\n" << script << "\n";
+    fs::permissions(path, fs::perms::owner_all);
+    return path.string();
+  }
+
+  static mode_t ModeOf(const fs::path& path) {
+    struct stat status {};
+    stat(path.c_str(), &status);
+    return status.st_mode & 0777;
+  }
+
+  fs::path home_;
+};
+
+TEST_F(LocalServerTest, LivesInTheUsersStateFolder) {
+  const auto server = FindLocalServer();
+  ASSERT_TRUE(server.ok()) << server.status();
+  EXPECT_EQ(server->folder, home_.string() + "/.local/state/ballpiston");
+  EXPECT_EQ(server->socket, server->folder + "/server.socket");
+  EXPECT_EQ(ModeOf(server->folder), 0700u);
+}
+
+TEST_F(LocalServerTest, FollowsXdgStateHome) {
+  setenv("XDG_STATE_HOME", (home_ / "state").c_str(), 1);
+  EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/state/ballpiston");
+  setenv("XDG_STATE_HOME", "relative", 1);  // has to be ignored, says the specification
+  EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/.local/state/ballpiston");
+  unsetenv("XDG_STATE_HOME");
+}
+
+TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
+  setenv("HOME", (home_ / std::string(100, 'x')).c_str(), 1);
+  setenv("TMPDIR", home_.c_str(), 1);
+  const auto server = FindLocalServer();
+  ASSERT_TRUE(server.ok()) << server.status();
+  EXPECT_THAT(server->socket, StartsWith(home_.string() + "/ballpiston-"));
+  EXPECT_LE(server->socket.size(), kMaxSocketPath);
+  EXPECT_EQ(ModeOf(fs::path(server->socket).parent_path()), 0700u);
+  EXPECT_EQ(FindLocalServer()->socket, server->socket);
+}
+
+TEST_F(LocalServerTest, RefusesASocketFolderThatOthersMayEnter) {
+  setenv("HOME", (home_ / std::string(100, 'x')).c_str(), 1);
+  setenv("TMPDIR", home_.c_str(), 1);
+  const fs::path folder = fs::path(FindLocalServer()->socket).parent_path();
+  fs::permissions(folder, fs::perms::all);
+  EXPECT_EQ(FindLocalServer().status().code(), absl::StatusCode::kPermissionDenied);
+}
+
+TEST_F(LocalServerTest, AStateFolderThatCannotBeMadeIsAClearError) {
+  std::ofstream(home_ / "file") << "not a folder";
+  setenv("HOME", (home_ / "file").c_str(), 1);
+  const auto server = FindLocalServer();
+  EXPECT_EQ(server.status().code(), absl::StatusCode::kPermissionDenied);
+  EXPECT_THAT(std::string(server.status().message()), HasSubstr(home_.string() + "/file/.local"));
+}
+
+TEST_F(LocalServerTest, TheProgramMayBeChosen) {
+  EXPECT_THAT(FindLocalServer()->program, EndsWith("ballpistond"));
+  setenv("BALLPISTON_SERVER_PROGRAM", "/opt/server", 1);
+  EXPECT_EQ(FindLocalServer()->program, "/opt/server");
+  setenv("BALLPISTON_SERVER_PROGRAM", "bin/server", 1);
+  EXPECT_EQ(FindLocalServer()->program, (fs::current_path() / "bin/server").string());
+}
+
+TEST_F(LocalServerTest, OneThatAnswersIsUsedAsItIs) {
+  FakeServer running;
+  running.Start();
+  const LocalServer server{.folder = home_.string(),
+                           .socket = running.Address().substr(5),
+                           .program = Program("exit 1")};
+  EXPECT_TRUE(ConnectToLocalServer(server).ok());
+  EXPECT_FALSE(fs::exists(server.Log()));  // nothing was started
+}
+
+TEST_F(LocalServerTest, OneThatExitsIsQuoted) {
+  setenv("BALLPISTON_SERVER_PROGRAM", Program("echo first; echo the disk is full; exit 9").c_str(),
+         1);
+  const auto channel = ConnectToLocalServer(*FindLocalServer());
+  EXPECT_EQ(channel.status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(channel.status().message()),
+              HasSubstr("exit status 9: the disk is full\n  log: " + home_.string()));
+}
+
+TEST_F(LocalServerTest, OneThatIsNotInstalledIsNamed) {
+  setenv("BALLPISTON_SERVER_PROGRAM", "no-such-server", 1);
+  const auto channel = ConnectToLocalServer(*FindLocalServer());
+  EXPECT_EQ(channel.status().code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(channel.status().message()), HasSubstr("cannot start no-such-server"));
+}
+
+// As when another client's server holds the folder: the own program exits, the other one comes up.
+TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
+  FakeServer other;
+  // The other server listens only once the program has been started and has exited.
+  const fs::path gate = home_ / "gate";
+  const LocalServer server{.folder = home_.string(),
+                           .socket = other.Address().substr(5),
+                           .program = Program("touch " + gate.string() + "; exit 1")};
+  std::thread starter([&] {
+    while (!fs::exists(gate)) std::this_thread::yield();
+    other.Start();
+  });
+  EXPECT_TRUE(ConnectToLocalServer(server).ok());
+  starter.join();
+}
+
+}  // namespace
+}  // namespace ballpiston::client

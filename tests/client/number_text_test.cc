@@ -1,0 +1,66 @@
+#include "client/output/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+namespace ballpiston::client {
+namespace {
+
+TEST(ExactText, ReadsBackAsTheSameDouble) {
+  for (const double x : {0.1, 1.0 / 3, 0.529561127988977, 1e-300, 5e-324, 1.7976931348623157e308,
+                         -2.5e-7, 123456789.125, std::nextafter(1.0, 2.0)}) {
+    EXPECT_EQ(std::strtod(ExactText(x).c_str(), nullptr), x) << ExactText(x);
+  }
+}
+
+TEST(ExactText, WholeNumbersHaveNoExponent) {
+  EXPECT_EQ(ExactText(0), "0");
+  EXPECT_EQ(ExactText(1'000'000), "1000000");
+  EXPECT_EQ(ExactText(-42), "-42");
+  EXPECT_EQ(ExactText(1e12), "1000000000000");
+}
+
+void ExpectMeasured(double value, double error, const std::string& value_text,
+                    const std::string& error_text) {
+  const MeasuredText text = Measured(value, error);
+  EXPECT_EQ(text.value, value_text);
+  EXPECT_EQ(text.error, error_text);
+}
+
+TEST(Measured, ShowsTheDigitsTheErrorSupports) {
+  ExpectMeasured(21.63214, 0.1234, "21.63", "0.12");
+  ExpectMeasured(21.63214, 0.01234, "21.632", "0.012");
+  ExpectMeasured(0.0012345678, 0.0000045, "0.0012346", "0.0000045");
+  ExpectMeasured(1234.5678, 12.3, "1235", "12");
+  ExpectMeasured(1234.5678, 456, "1235", "456");
+  ExpectMeasured(-0.5, 0.25, "-0.50", "0.25");
+  ExpectMeasured(0, 0.25, "0.00", "0.25");
+}
+
+TEST(Measured, VeryLargeAndVerySmallNumbersHaveExponents) {
+  ExpectMeasured(1.23456e-8, 4.5e-11, "1.2346e-08", "4.5e-11");
+  ExpectMeasured(6.54321e9, 1.2e6, "6.5432e+09", "1.2e+06");
+}
+
+TEST(Measured, TheExactValueStandsInTheSamePlaces) {
+  EXPECT_EQ(Measured(21.63214, 0.1234, 21.62257).exact, "21.62");
+  EXPECT_EQ(Measured(21.63214, 0.1234).exact, "");
+}
+
+TEST(Measured, WithoutAnErrorSixDigits) {
+  EXPECT_EQ(Measured(1.0 / 3, std::nullopt).value, "0.333333");
+  EXPECT_EQ(Measured(1.0 / 3, std::nullopt).error, "");
+  EXPECT_EQ(Measured(1.0 / 3, 0.0).error, "0");
+}
+
+TEST(ClockText, CountsMinutesThenHours) {
+  EXPECT_EQ(ClockText(absl::ZeroDuration()), "0:00");
+  EXPECT_EQ(ClockText(absl::Milliseconds(34200)), "0:35");
+  EXPECT_EQ(ClockText(absl::Seconds(724)), "12:04");
+  EXPECT_EQ(ClockText(absl::Seconds(12310)), "3:25:10");
+}
+
+}  // namespace
+}  // namespace ballpiston::client

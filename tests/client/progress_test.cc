@@ -1,0 +1,158 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <sstream>
+
+#include "client/output/progress_line.h"
+#include "client/output/progress_meter.h"
+#include "client/output/progress_reporter.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const absl::Time kStart = absl::FromUnixSeconds(1'000'000);
+
+v1::JobProgress Progress(int done, double samples, std::optional<double> fraction) {
+  v1::JobProgress progress;
+  progress.set_points(100);
+  progress.set_points_done(done);
+  progress.set_samples(samples);
+  if (fraction) progress.set_fraction(*fraction);
+  return progress;
+}
+
+v1::PointResult Point() {
+  v1::PointResult point;
+  point.mutable_parameters()->set_delta(0.1);
+  point.mutable_parameters()->set_epsilon(0.25);
+  v1::Estimate* estimate = point.add_estimates();
+  estimate->set_name("mean_free_time_conditional");
+  estimate->set_value(21.63214);
+  estimate->set_standard_error(0.1234);
+  return point;
+}
+
+TEST(ProgressMeter, KnowsNothingFromOneReading) {
+  ProgressMeter meter;
+  meter.Update(Progress(50, 1e6, 0.5), kStart);
+  EXPECT_EQ(meter.SamplesPerSecond(), std::nullopt);
+  EXPECT_EQ(meter.TimeLeft(), std::nullopt);
+  EXPECT_EQ(meter.Fraction(), 0.5);
+}
+
+// A job that was half done when the watch began does not look twice as fast.
+TEST(ProgressMeter, MeasuresFromTheStartOfTheWatch) {
+  ProgressMeter meter;
+  meter.Update(Progress(50, 1e6, 0.5), kStart);
+  meter.Update(Progress(60, 1.2e6, 0.6), kStart + absl::Seconds(10));
+  EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 2e4);
+  EXPECT_NEAR(absl::ToDoubleSeconds(*meter.TimeLeft()), 40, 1e-6);
+}
+
+TEST(ProgressMeter, FallsBackOnFinishedPoints) {
+  ProgressMeter meter;
+  meter.Update(Progress(0, 0, std::nullopt), kStart);
+  meter.Update(Progress(25, 10, std::nullopt), kStart + absl::Seconds(10));
+  EXPECT_NEAR(absl::ToDoubleSeconds(*meter.TimeLeft()), 30, 1e-6);
+}
+
+TEST(ProgressMeter, StartsAgainWhenSamplesWereLost) {
+  ProgressMeter meter;
+  meter.Update(Progress(50, 1e6, 0.5), kStart);
+  meter.Update(Progress(40, 8e5, 0.4), kStart + absl::Seconds(10));
+  EXPECT_EQ(meter.SamplesPerSecond(), std::nullopt);
+  meter.Update(Progress(50, 9e5, 0.5), kStart + absl::Seconds(20));
+  EXPECT_DOUBLE_EQ(*meter.SamplesPerSecond(), 1e4);
+}
+
+ProgressMeter Halfway() {
+  ProgressMeter meter;
+  meter.Update(Progress(0, 0, 0), kStart);
+  meter.Update(Progress(50, 1234567, 0.5), kStart + absl::Seconds(10));
+  return meter;
+}
+
+TEST(ProgressLine, ShowsPointsRateTimeAndTheRunningEstimate) {
+  EXPECT_EQ(ProgressLine(Halfway(), Point(), 200),
+            "[##############--------------] 50/100 points  1.2e5 samples/s  0:10 left  "
+            "tau_conditional 21.63 +- 0.12  (delta 0.1 epsilon 0.25)");
+}
+
+TEST(ProgressLine, AnOrdinaryTerminalShowsTheEstimate) {
+  EXPECT_EQ(ProgressLine(Halfway(), Point(), 79),
+            "[##--] 50/100 points  1.2e5 samples/s  0:10 left  tau_conditional 21.63 +- 0.12");
+}
+
+TEST(ProgressLine, NeverExceedsTheWidth) {
+  for (size_t width = 1; width < 150; ++width) {
+    EXPECT_LE(ProgressLine(Halfway(), Point(), width).size(), width);
+  }
+  EXPECT_EQ(ProgressLine(Halfway(), Point(), 60),
+            "[########--------] 50/100 points  1.2e5 samples/s  0:10 left");
+}
+
+v1::EnsembleJob RunningJob() {
+  v1::EnsembleJob job;
+  job.set_name("ensembleJobs/abc");
+  job.set_state(v1::EnsembleJob::RUNNING);
+  *job.mutable_progress() = Progress(0, 0, 0);
+  return job;
+}
+
+std::string Reported(ProgressStyle style) {
+  std::ostringstream err;
+  const auto reporter = NewProgressReporter(style, err);
+  reporter->OnJob(RunningJob());
+  v1::StatisticsSnapshot snapshot;
+  *snapshot.mutable_progress() = Progress(50, 1000, 0.5);
+  *snapshot.add_points() = Point();
+  reporter->OnSnapshot(snapshot);
+  v1::EnsembleJob job = RunningJob();
+  job.set_state(v1::EnsembleJob::SUCCEEDED);
+  *job.mutable_progress() = Progress(100, 2000, 1);
+  reporter->OnJob(job);
+  reporter->OnEnd();
+  return err.str();
+}
+
+TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
+  const std::string text = Reported(ProgressStyle::kBar);
+  EXPECT_EQ(text.rfind("\rensembleJobs/abc\x1b[K\n", 0), 0u);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_THAT(text, HasSubstr("50/100 points"));
+  EXPECT_THAT(text, HasSubstr("\rsucceeded: 100 of 100 points, 2000 samples\x1b[K\n"));
+}
+
+TEST(ProgressJson, IsOneObjectALine) {
+  const std::string text = Reported(ProgressStyle::kJson);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+  EXPECT_EQ(text.rfind(R"({"job": "ensembleJobs/abc", "state": "RUNNING", "progress": )"
+                       R"({"points":100,"points_done":0,"samples":0,"fraction":0}, )"
+                       R"("samples_per_second": null, "seconds_left": null, "points": []})",
+                       0),
+            0u);
+  EXPECT_THAT(text, HasSubstr(R"("points": [{"index":0,"parameters":{"rho":0,"delta":0.1,)"));
+  EXPECT_THAT(text, HasSubstr(R"("state": "SUCCEEDED")"));
+}
+
+TEST(ProgressNone, IsSilentButForNotes) {
+  EXPECT_EQ(Reported(ProgressStyle::kNone), "");
+  std::ostringstream err;
+  NewProgressReporter(ProgressStyle::kNone, err)->Note("hint");
+  EXPECT_EQ(err.str(), "hint\n");
+}
+
+TEST(ProgressStyle, IsOneOfFour) {
+  EXPECT_EQ(*ParseProgressStyle("bar"), ProgressStyle::kBar);
+  EXPECT_EQ(*ParseProgressStyle("json"), ProgressStyle::kJson);
+  EXPECT_EQ(*ParseProgressStyle("none"), ProgressStyle::kNone);
+  EXPECT_TRUE(ParseProgressStyle("auto").ok());
+  EXPECT_EQ(ParseProgressStyle("loud").status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,124 @@
+#include "client/output/result_writer.h"
+
+#include <google/protobuf/text_format.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace ballpiston::client {
+namespace {
+
+template <typename Message>
+Message FromText(const std::string& text) {
+  Message message;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message));
+  return message;
+}
+
+v1::EnsembleJob Job() {
+  return FromText<v1::EnsembleJob>(R"(
+    name: "ensembleJobs/abc" state: SUCCEEDED engine_version: "1"
+    spec { experiment: FIRST_HIT seed: 7 target { samples: 10000 } }
+    progress { points: 2 points_done: 2 samples: 20000 fraction: 1 })");
+}
+
+std::vector<v1::PointResult> Points() {
+  return {FromText<v1::PointResult>(R"(
+            index: 0 parameters { rho: 0.53 delta: 0.2 epsilon: 0 exponent: 1 }
+            model: BILLIARD_REFERENCE samples: 10000
+            estimates { name: "mean_hit_time" value: 21.63214 standard_error: 0.1234
+                        exact: 21.62257 z_score: 0.0775527 }
+            estimates { name: "mean_sigma" value: -0.25 }
+            kl_divergence { value: 0.005 noise_floor: 0.0025 cells: 2000 }
+            histograms { name: "alpha" sigma: 1 lower: 0 upper: 0.5 counts: [1, 0] }
+            health { max_energy_error: 1e-12 })"),
+          FromText<v1::PointResult>(R"(
+            index: 1 parameters { rho: 0.53 delta: 0.1 epsilon: 0.25 exponent: 1 }
+            model: BILLIARD_REFERENCE samples: 10000
+            estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
+}
+
+std::string Written(Format format) {
+  std::ostringstream out;
+  const auto writer = NewResultWriter(format, out);
+  writer->Begin(Job());
+  for (const v1::PointResult& point : Points()) writer->Add(point);
+  writer->End();
+  return out.str();
+}
+
+TEST(ResultTable, AlignsAndRounds) {
+  EXPECT_EQ(
+      Written(Format::kTable),
+      R"(first-hit, model billiard-reference, seed 7, engine 1  (ensembleJobs/abc, succeeded, 2 of 2 points)
+ rho  delta  epsilon  exponent  samples  estimate            value    error  exact      z
+0.53    0.2        0         1    10000  mean_hit_time       21.63     0.12  21.62  +0.08
+0.53    0.2        0         1    10000  mean_sigma          -0.25
+0.53    0.2        0         1    10000  kl_divergence       0.005
+0.53    0.2        0         1    10000  kl_noise_floor     0.0025
+0.53    0.1     0.25         1    10000  mean_hit_time   1.000e-07  2.0e-09
+)");
+}
+
+TEST(ResultTable, WithoutPointsIsAHeading) {
+  std::ostringstream out;
+  const auto writer = NewResultWriter(Format::kTable, out);
+  v1::EnsembleJob job = Job();
+  job.set_state(v1::EnsembleJob::RUNNING);
+  job.mutable_progress()->set_points_done(0);
+  writer->Begin(job);
+  writer->End();
+  EXPECT_EQ(out.str(),
+            "first-hit, no finished points, seed 7, engine 1  "
+            "(ensembleJobs/abc, running, 0 of 2 points)\n");
+}
+
+TEST(ResultCsv, HasARowForEachPointAndEstimate) {
+  EXPECT_EQ(Written(Format::kCsv),
+            R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score
+0.53,0.2,0,1,billiard-reference,10000,mean_hit_time,21.63214,0.1234,21.62257,0.0775527
+0.53,0.2,0,1,billiard-reference,10000,mean_sigma,-0.25,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,,,
+0.53,0.1,0.25,1,billiard-reference,10000,mean_hit_time,1e-07,2e-09,,
+)");
+}
+
+TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
+  EXPECT_EQ(
+      Written(Format::kJson),
+      R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED"},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1"},
+"points": [
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12}},
+{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[]}
+]}
+)");
+}
+
+TEST(ResultJson, WithoutPointsIsStillADocument) {
+  std::ostringstream out;
+  const auto writer = NewResultWriter(Format::kJson, out);
+  writer->Begin(v1::EnsembleJob());
+  writer->End();
+  EXPECT_EQ(out.str(),
+            "{\"job\": {\"name\":\"\",\"state\":\"STATE_UNSPECIFIED\",\"engine_version\":\"\"},\n"
+            "\"points\": [\n]}\n");
+}
+
+TEST(ResultJsonl, HasAPointALine) {
+  const std::string text = Written(Format::kJsonl);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_EQ(text.rfind("{\"index\":0,", 0), 0u);
+  EXPECT_NE(text.find("\n{\"index\":1,"), std::string::npos);
+}
+
+TEST(ResultWriter, SamePointsGiveTheSameBytes) {
+  for (const Format format : {Format::kTable, Format::kJson, Format::kJsonl, Format::kCsv}) {
+    EXPECT_EQ(Written(format), Written(format));
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::client

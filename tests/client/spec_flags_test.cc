@@ -1,0 +1,159 @@
+#include "client/command/spec_flags.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "client/command/spec_file.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+
+void ExpectSpec(const SpecFlags& flags, const std::string& text) {
+  const auto spec = SpecOf(flags);
+  ASSERT_TRUE(spec.ok()) << spec.status();
+  v1::EnsembleSpec expected;
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &expected));
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(*spec, expected))
+      << spec->DebugString();
+}
+
+void ExpectError(const SpecFlags& flags, const std::string& part) {
+  const auto spec = SpecOf(flags);
+  EXPECT_EQ(spec.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(spec.status().message()), HasSubstr(part));
+}
+
+SpecFlags FirstHit() {
+  SpecFlags flags;
+  flags.experiment = "first-hit";
+  return flags;
+}
+
+TEST(SpecFlags, EveryFlagReachesItsField) {
+  SpecFlags flags = FirstHit();
+  flags.rho = "0.53";
+  flags.delta = "0.1,0.2";
+  flags.epsilon = "0.25";
+  flags.exponent = "0:2:3";
+  flags.cells = "4";
+  flags.samples = "1e6";
+  flags.seed = "18446744073709551615";
+  flags.model = "billiard_reference";
+  flags.precision = "single";
+  ExpectSpec(flags,
+             "experiment: FIRST_HIT grid { rho: 0.53 delta: [0.1, 0.2] epsilon: 0.25 "
+             "exponent: [0, 1, 2] cells: 4 } target { samples: 1000000 } "
+             "seed: 18446744073709551615 model: BILLIARD_REFERENCE precision: SINGLE");
+}
+
+TEST(SpecFlags, WhatIsNotGivenIsNotSet) { ExpectSpec(FirstHit(), "experiment: FIRST_HIT grid {}"); }
+
+TEST(SpecFlags, TargetsOfEachKind) {
+  SpecFlags flags = FirstHit();
+  flags.collisions = "5";
+  ExpectSpec(flags, "experiment: FIRST_HIT grid {} target { collisions: 5 }");
+  flags.collisions.reset();
+  flags.tolerance = "1e-3";
+  ExpectSpec(flags, "experiment: FIRST_HIT grid {} target { tolerance: 1e-3 }");
+  flags.tolerance.reset();
+  flags.budget = "90.5";
+  ExpectSpec(flags,
+             "experiment: FIRST_HIT grid {} target { budget { seconds: 90 nanos: 500000000 } }");
+}
+
+TEST(SpecFlags, TwoTargetsExcludeEachOther) {
+  SpecFlags flags = FirstHit();
+  flags.samples = "10";
+  flags.tolerance = "0.1";
+  ExpectError(flags, "--samples and --tolerance exclude each other");
+}
+
+TEST(SpecFlags, ExperimentsAreReadInBothSpellings) {
+  SpecFlags flags;
+  flags.experiment = "conditional_mean_free_time";
+  ExpectSpec(flags, "experiment: CONDITIONAL_MEAN_FREE_TIME grid {}");
+  flags.experiment = "equilibrium";
+  ExpectSpec(flags, "experiment: EQUILIBRIUM grid {}");
+}
+
+TEST(SpecFlags, UnknownNamesListWhatThereIs) {
+  SpecFlags flags;
+  flags.experiment = "brownian";
+  ExpectError(flags, "experiment 'brownian' is unknown; it offers equilibrium, ");
+  flags.experiment = "gas-conduction";
+  ExpectError(flags, "'gas-conduction' is not offered by this version; it offers equilibrium, ");
+  flags.experiment = "experiment-unspecified";
+  ExpectError(flags, "is unknown");
+  flags.experiment.reset();
+  ExpectError(flags, "name an EXPERIMENT");
+  flags = FirstHit();
+  flags.model = "guess";
+  ExpectError(flags, "--model: 'guess' is not one of auto, closed-form, markov, billiard, ");
+  flags = FirstHit();
+  flags.precision = "half";
+  ExpectError(flags, "--precision: 'half' is not one of double, single");
+}
+
+TEST(SpecFlags, BadNumbersNameTheirFlag) {
+  SpecFlags flags = FirstHit();
+  flags.delta = "nan";
+  ExpectError(flags, "--delta: 'nan'");
+  flags = FirstHit();
+  flags.budget = "1e300";
+  ExpectError(flags, "--budget: '1e300'");
+  flags = FirstHit();
+  flags.samples = "many";
+  ExpectError(flags, "--samples: 'many'");
+}
+
+TEST(SpecFlags, AFileComesAlone) {
+  SpecFlags flags;
+  flags.file = "spec.json";
+  flags.rho = "0.53";
+  ExpectError(flags, "--spec holds the whole specification");
+  flags.rho.reset();
+  flags.seed = "1";
+  ExpectError(flags, "--spec holds the whole specification");
+}
+
+TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
+  const auto spec = ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
+                                            "target": {"samples": "100"}, "seed": 7})");
+  ASSERT_TRUE(spec.ok()) << spec.status();
+  EXPECT_EQ(spec->target().samples(), 100);
+  EXPECT_EQ(spec->seed(), 7u);
+}
+
+TEST(SpecFile, RefusesWhatIsNotASpecification) {
+  for (const char* text :
+       {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",
+        "{\"grid\": {\"rho\": [\"x\"]}}", "{\"experiment\": \"NO_SUCH\"}",
+        "{\"target\": {\"samples\": 1, \"tolerance\": 0.1}}", "{\"seed\": -1}", "{} {}"}) {
+    const auto spec = ParseSpec("s.json", text);
+    EXPECT_EQ(spec.status().code(), absl::StatusCode::kInvalidArgument) << text;
+    EXPECT_THAT(std::string(spec.status().message()), HasSubstr("--spec s.json: ")) << text;
+  }
+}
+
+TEST(SpecFile, NamesTheUnknownField) {
+  const auto spec = ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})");
+  EXPECT_THAT(std::string(spec.status().message()), HasSubstr("sed"));
+}
+
+TEST(SpecFile, AFileThatCannotBeReadIsNamed) {
+  const auto absent = ReadSpecFile("/no/such/file.json");
+  EXPECT_EQ(absent.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(absent.status().message()), HasSubstr("/no/such/file.json: No such"));
+  EXPECT_FALSE(ReadSpecFile("/").ok());
+}
+
+}  // namespace
+}  // namespace ballpiston::client

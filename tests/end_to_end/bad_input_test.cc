@@ -1,0 +1,182 @@
+// Every way of asking wrongly: a clear message, the right exit code, and the server unharmed.
+//
+// Prints the table: command, exit code, message.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct BadInput {
+  std::string command;  // words separated by blanks; FOLDER stands for the test's folder
+  int exit_code;
+  std::vector<std::string> parts;  // of the message
+};
+
+std::vector<BadInput> Table(const std::string& cancelled) {
+  const std::string first_hit = "run first-hit --delta 0.1 --epsilon 0.1 --exponent 1 --rho 0.53 ";
+  return {
+      // rho and delta: which bound, and its value
+      {"run equilibrium --rho 0.5 --delta 0.1", 2, {"spec.grid.rho[0]"}},
+      {"run equilibrium --rho 0.7072 --delta 0.1", 2, {"spec.grid.rho[0]", "0.707"}},
+      {"run equilibrium --rho 0.529561127988977 --delta 0.33", 2, {"spec.grid.delta[0]", "0.3255"}},
+      {"run equilibrium --rho 0.53 --delta 0", 2, {"spec.grid.delta[0]"}},
+      {"run equilibrium --rho 0.53 --delta -0.1", 2, {"spec.grid.delta[0]"}},
+      {"analytic --rho 0.4 --delta 0.1", 2, {"rho[0]"}},
+      {"analytic --rho 0.529561127988977 --delta 0.33", 2, {"delta[0]", "0.3255"}},
+      {"analytic --rho 0.53 --delta 0.1 --epsilon 0.6", 2, {"epsilon[0]"}},
+      // epsilon, exponent, samples
+      {"run conditional-mean-free-time --rho 0.53 --delta 0.1 --epsilon 0.50001",
+       2,
+       {"spec.grid.epsilon[0]"}},
+      {"run conditional-mean-free-time --rho 0.53 --delta 0.1 --epsilon -1e-9",
+       2,
+       {"spec.grid.epsilon[0]"}},
+      {"run first-hit --rho 0.53 --delta 0.1 --epsilon 0.1 --exponent -1",
+       2,
+       {"spec.grid.exponent[0]"}},
+      {"run first-hit --rho 0.53 --delta 0.1 --epsilon 0.1 --exponent 1e9",
+       2,
+       {"spec.grid.exponent[0]"}},
+      {first_hit + "--samples 0", 2, {"spec.target.samples"}},
+      {first_hit + "--samples -5", 2, {"spec.target.samples"}},
+      {first_hit + "--samples 1e15", 2, {"spec.target.samples"}},
+      {first_hit + "--samples 1.5", 2, {"--samples: '1.5' is not a whole number"}},
+      {"run equilibrium --rho 0.53 --delta 0.1 --collisions 0", 2, {"spec.target.collisions"}},
+      {first_hit + "--tolerance 0", 2, {"spec.target.tolerance"}},
+      {first_hit + "--tolerance 2", 2, {"spec.target.tolerance"}},
+      {first_hit + "--budget -1", 2, {"spec.target.budget"}},
+      // grids
+      {"run equilibrium", 2, {"spec.grid.rho", "spec.grid.delta"}},
+      {"run equilibrium --rho 0.53 --delta 0.1 --epsilon 0.1", 2, {"spec.grid.epsilon"}},
+      {"run first-hit --rho 0.51:0.6:1000 --delta 0.001:0.01:1000 --epsilon 0:0.5:1000 "
+       "--exponent 1",
+       2,
+       {"spec.grid", "1000000000"}},
+      {"run equilibrium --rho 0.51:0.6:1000000000 --delta 0.1",
+       2,
+       {"--rho: ", "a whole number from 1 to 100000"}},
+      {"run equilibrium --rho , --delta 0.1", 2, {"--rho: '' is not a decimal number"}},
+      // NaN and infinity, by flag and by file
+      {"run equilibrium --rho nan --delta 0.1", 2, {"--rho: 'nan' is not a decimal number"}},
+      {"run equilibrium --rho 0.53 --delta inf", 2, {"--delta: 'inf' is not a decimal number"}},
+      {"run equilibrium --rho 0.53 --delta 1e999", 2, {"--delta: '1e999'"}},
+      {"run --spec FOLDER/nan.json", 2, {"spec.grid.rho[0]", "spec.grid.delta[0]"}},
+      // names, and flags that exclude each other
+      {"run brownian-motion --rho 0.53", 2, {"experiment 'brownian-motion' is unknown"}},
+      {"run gas-conduction --rho 0.53", 2, {"'gas-conduction' is not offered by this version"}},
+      {first_hit + "--model guess", 2, {"--model: 'guess' is not one of auto, "}},
+      {first_hit + "--precision half", 2, {"--precision: 'half' is not one of "}},
+      {first_hit + "--samples 10 --tolerance 0.1", 2, {"--samples and --tolerance exclude"}},
+      {first_hit + "--format xml", 2, {"--format: 'xml'"}},
+      {first_hit + "--progress loud", 2, {"--progress: 'loud'"}},
+      {first_hit + "--speed 3", 2, {"not expected: --speed 3"}},
+      {"dance", 2, {"'dance' is not a verb"}},
+      {"run first-hit extra", 2, {"not expected: extra"}},
+      {"figure portrait --out FOLDER/figure", 2, {"figure 'portrait'"}},
+      {"figure mean-free-time --out FOLDER/broken.json", 2, {"--out: "}},
+      {"figure mean-free-time --rho 0.4 --out FOLDER/figure", 2, {"rho[0]"}},
+      // specification files
+      {"run --spec FOLDER/broken.json", 2, {"--spec FOLDER/broken.json: "}},
+      {"run --spec FOLDER/unknown.json", 2, {"--spec FOLDER/unknown.json: ", "radius"}},
+      {"run --spec FOLDER/text.json", 2, {"not a JSON object"}},
+      {"run --spec FOLDER/two_targets.json", 2, {"--spec FOLDER/two_targets.json: "}},
+      {"run --spec FOLDER/absent.json", 2, {"No such file"}},
+      {"run --spec FOLDER", 2, {"is a folder"}},
+      {"run --spec FOLDER/empty.json", 2, {"spec.experiment"}},
+      {"run --spec FOLDER/broken.json --rho 0.53", 2, {"--spec holds the whole specification"}},
+      // every violation at once, each with its field
+      {"run first-hit --rho 0.4,0.53,0.8 --delta 0.1 --epsilon 0.7 --exponent -1 --samples 0",
+       2,
+       {"spec.grid.rho[0]", "spec.grid.rho[2]", "spec.grid.epsilon[0]", "spec.grid.exponent[0]",
+        "spec.target.samples"}},
+      // jobs
+      {"result ensembleJobs/none", 5, {"JOB_NOT_FOUND"}},
+      {"watch none", 5, {"JOB_NOT_FOUND"}},
+      {"cancel none", 5, {"JOB_NOT_FOUND"}},
+      {"delete none", 5, {"JOB_NOT_FOUND"}},
+      {"result a/b", 2, {"'a/b' is not a job's name"}},
+      {"cancel " + cancelled, 4, {"JOB_ALREADY_ENDED"}},
+      {"list --server nowhere", 2, {"'nowhere' is not a server's address"}},
+      {"list --server 127.0.0.1:1", 3, {"no answer from the server at 127.0.0.1:1"}},
+      {"list --server unix:FOLDER/no.socket", 3, {"no answer from the server at unix:"}}};
+}
+
+class BadInputTest : public ::testing::Test {
+ protected:
+  BadInputTest() {
+    Write("broken.json", R"({"experiment": "FIRST_HIT",)");
+    Write("unknown.json", R"({"experiment": "EQUILIBRIUM", "grid": {"radius": [0.53]}})");
+    Write("text.json", "rho = 0.53");
+    Write("empty.json", "{}");
+    Write("nan.json", R"({"experiment": "EQUILIBRIUM",
+                         "grid": {"rho": ["NaN"], "delta": ["Infinity"]}})");
+    Write("two_targets.json", R"({"target": {"samples": 1, "tolerance": 0.1}})");
+  }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(server_.folder().Path(name)) << text;
+  }
+
+  std::string Replaced(const std::string& text) const {
+    return absl::StrReplaceAll(text, {{"FOLDER", server_.folder().path().string()}});
+  }
+
+  ProcessResult Run(const std::string& command) const {
+    std::vector<std::string> words = absl::StrSplit(Replaced(command), ' ', absl::SkipEmpty());
+    // TestServer adds its own address.
+    if (command.find("--server") == std::string::npos) return server_.Client(words);
+    words.insert(words.begin(), BALLPISTON_CLIENT_BINARY);
+    return RunProgram(
+        {.command = words, .environment = CleanEnvironment(server_.folder()), .input = ""});
+  }
+
+  // In the table the test's folder is `DIR`, and a message's lines are joined.
+  void Print(const BadInput& input, const ProcessResult& result) const {
+    const std::string line =
+        absl::StrReplaceAll(absl::StripSuffix(result.err, "\n"),
+                            {{server_.folder().path().string(), "DIR"}, {"\n", "<br>"}});
+    std::printf("| `ballpiston %s` | %d | %s |\n",
+                absl::StrReplaceAll(input.command, {{"FOLDER", "DIR"}}).c_str(), result.exit_code,
+                line.c_str());
+  }
+
+  const TestServer server_;
+};
+
+TEST_F(BadInputTest, EachIsRefusedWithAMessageAndItsExitCode) {
+  const std::string job = server_.Submit(
+      {"equilibrium", "--rho", "0.53", "--delta", "0.05", "--collisions", "1000000000000"});
+  ASSERT_EQ(server_.Client({"cancel", job}).exit_code, 0);
+  ASSERT_EQ(server_.Client({"watch", job}).exit_code, 4);
+  std::printf("| command | exit | message |\n|---|---|---|\n");
+  for (const BadInput& input : Table(job)) {
+    const ProcessResult result = Run(input.command);
+    Print(input, result);
+    EXPECT_EQ(result.exit_code, input.exit_code) << input.command << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << input.command;
+    EXPECT_THAT(result.err, StartsWith("ballpiston: ")) << input.command;
+    for (const std::string& part : input.parts) {
+      EXPECT_THAT(result.err, HasSubstr(Replaced(part))) << input.command;
+    }
+  }
+  // Nothing of it became a job.
+  const auto jobs = ParseJson(server_.Client({"list", "--format", "json"}).out);
+  EXPECT_EQ(At(jobs, "jobs").list_value().values_size(), 1);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,61 @@
+// The paper's figure, from one command.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+std::string Contents(const std::string& path) {
+  std::ifstream in(path);
+  return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+}
+
+ProcessOptions Figure(const TestServer& server, const std::string& folder) {
+  return {.command = {BALLPISTON_CLIENT_BINARY, "figure", "mean-free-time", "--out", folder,
+                      "--samples", "200", "--delta", "0.2,0.1", "--server", server.Address()},
+          .environment = CleanEnvironment(server.folder()),
+          .input = ""};
+}
+
+TEST(Figure, LeavesDataScriptAndPicture) {
+  if (RunProgram({.command = {"sh", "-c", "command -v gnuplot"}, .environment = {}, .input = ""})
+          .exit_code != 0) {
+    GTEST_SKIP() << "gnuplot is not installed";
+  }
+  const TestServer server;
+  const std::string folder = server.folder().Path("out/figure");  // made, parents too
+  const ProcessResult result = RunProgram(Figure(server, folder));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("among 124 estimates"));  // 2 deltas of 59 + 3
+  const std::string csv = Contents(folder + "/mean-free-time.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 59);
+  const std::string svg = Contents(folder + "/mean-free-time.svg");
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  EXPECT_THAT(svg, HasSubstr("δ = 0.1"));
+  EXPECT_THAT(result.out, HasSubstr(folder + "/mean-free-time.svg\n"));
+}
+
+TEST(Figure, WithoutGnuplotLeavesDataAndScript) {
+  const TestServer server;
+  const std::string folder = server.folder().Path("figure");
+  ProcessOptions options = Figure(server, folder);
+  options.environment["PATH"] = "/nonexistent";
+  const ProcessResult result = RunProgram(options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("gnuplot is not installed"));
+  EXPECT_TRUE(fs::exists(folder + "/mean-free-time.gnuplot"));
+  EXPECT_FALSE(fs::exists(folder + "/mean-free-time.svg"));
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,71 @@
+// Ctrl-C while a job is followed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <memory>
+#include <string>
+
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr char kHint[] = "Press Ctrl-C again within 5 s to cancel the job.";
+
+class InterruptTest : public ::testing::Test {
+ protected:
+  // A run that takes years; when this returns the job has been accepted and is being watched.
+  InterruptTest()
+      : run_(server_.StartClient({"run", "equilibrium", "--rho", "0.53", "--delta", "0.05",
+                                  "--collisions", "1000000000000", "--progress", "json", "--format",
+                                  "csv"})) {
+    job_ = At(ParseJson(run_->WaitForErrLine([](const std::string&) { return true; })), "job")
+               .string_value();
+  }
+
+  std::string State() const {
+    const auto json = ParseJson(server_.Client({"list", "--format", "json"}).out);
+    return At(json, "jobs", 0, "state").string_value();
+  }
+
+  const TestServer server_;
+  std::unique_ptr<Process> run_;
+  std::string job_;
+};
+
+TEST_F(InterruptTest, WithoutASecondPressTheClientLetsGoAndTheJobGoesOn) {
+  run_->Signal(SIGINT);
+  const ProcessResult result = run_->Wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result.err,
+              HasSubstr("ballpiston watch " + job_ + " --server " + server_.Address() + "\n"));
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(State(), "RUNNING");
+}
+
+TEST_F(InterruptTest, ASecondPressCancels) {
+  run_->Signal(SIGINT);
+  ASSERT_TRUE(run_->WaitForErr(kHint));
+  run_->Signal(SIGINT);
+  const ProcessResult result = run_->Wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result.err, HasSubstr("cancelled " + job_));
+  EXPECT_EQ(server_.Client({"watch", job_}).exit_code, 4);
+  EXPECT_EQ(State(), "CANCELLED");
+}
+
+// Ended by another client while this one waits for the second press.
+TEST_F(InterruptTest, AJobThatEndsMeanwhileIsShown) {
+  run_->Signal(SIGINT);
+  ASSERT_TRUE(run_->WaitForErr(kHint));
+  EXPECT_EQ(server_.Client({"cancel", job_}).exit_code, 0);
+  const ProcessResult result = run_->Wait();
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.out, HasSubstr("rho,delta,"));
+}
+
+}  // namespace
+}  // namespace ballpiston

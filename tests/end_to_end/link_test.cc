@@ -1,0 +1,58 @@
+// The client is thin: its binary holds nothing of core or server.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "tests/end_to_end/process.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Output(std::vector<std::string> command) {
+  const ProcessResult result =
+      RunProgram({.command = std::move(command), .environment = {}, .input = ""});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.out;
+}
+
+bool IsOfClientOrProto(const std::string& name) {
+  return absl::StartsWith(name, "client::") || absl::StartsWith(name, "v1::");
+}
+
+// Symbols that mention a name of the project's that is neither the client's nor the protos'.
+std::vector<std::string> ForeignSymbols(const std::string& binary) {
+  const std::string prefix = "ballpiston::";
+  std::istringstream symbols(Output({"nm", "--demangle", "--defined-only", binary}));
+  std::vector<std::string> found;
+  for (std::string line; std::getline(symbols, line);) {
+    size_t at = line.find(prefix);
+    while (at != std::string::npos && IsOfClientOrProto(line.substr(at + prefix.size(), 8))) {
+      at = line.find(prefix, at + 1);
+    }
+    if (at != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+TEST(ClientBinary, DefinesNothingOfCoreOrServer) {
+  EXPECT_THAT(ForeignSymbols(BALLPISTON_CLIENT_BINARY), ::testing::IsEmpty());
+  EXPECT_GT(ForeignSymbols(BALLPISTON_SERVER_BINARY).size(), 100u);  // the check can fail
+}
+
+TEST(ClientBinary, NeedsNoLibraryOfTheServers) {
+  const std::string needed = Output({"readelf", "--dynamic", BALLPISTON_CLIENT_BINARY});
+  EXPECT_THAT(needed, HasSubstr("libgrpc++"));
+  EXPECT_THAT(needed, Not(HasSubstr("sqlite")));
+  EXPECT_THAT(needed, Not(HasSubstr("libballpiston")));
+  EXPECT_THAT(Output({"readelf", "--dynamic", BALLPISTON_SERVER_BINARY}), HasSubstr("sqlite"));
+}
+
+}  // namespace
+}  // namespace ballpiston

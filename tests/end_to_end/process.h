@@ -1,0 +1,87 @@
+// One running program: its output as it comes, its exit code at the end.
+#ifndef BALLPISTON_TESTS_END_TO_END_PROCESS_H_
+#define BALLPISTON_TESTS_END_TO_END_PROCESS_H_
+
+#include <sys/types.h>
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace ballpiston {
+
+struct ProcessOptions {
+  std::vector<std::string> command;                // path, arguments
+  std::map<std::string, std::string> environment;  // added to the test's own; empty value: removed
+  std::string input;                               // on standard input
+};
+
+struct ProcessResult {
+  int exit_code = -1;  // 128 + signal if one killed it
+  std::string out;
+  std::string err;
+};
+
+// Killed, if it still runs, when the object ends.
+class Process {
+ public:
+  explicit Process(const ProcessOptions& options);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void Signal(int signal) const;
+  // Waits until standard error holds the text. False if the program ended without it.
+  bool WaitForErr(const std::string& text);
+  // Waits for a line of standard error for which `wanted` is true, and returns it; empty if the
+  // program ended without one.
+  template <typename Wanted>
+  std::string WaitForErrLine(Wanted wanted);
+  bool Running();
+  ProcessResult Wait();
+
+  pid_t pid() const { return pid_; }
+
+ private:
+  struct Stream {
+    int descriptor = -1;
+    std::string text;
+    bool ended = false;
+    std::thread reader;
+  };
+  void Read(Stream& stream);
+
+  pid_t pid_ = 0;
+  int exit_code_ = -1;
+  bool waited_ = false;
+  std::mutex mutex_;
+  std::condition_variable news_;
+  Stream out_, err_;
+};
+
+template <typename Wanted>
+std::string Process::WaitForErrLine(Wanted wanted) {
+  std::unique_lock lock(mutex_);
+  size_t begin = 0;
+  while (true) {
+    const size_t end = err_.text.find('\n', begin);
+    if (end != std::string::npos) {
+      const std::string line = err_.text.substr(begin, end - begin);
+      if (wanted(line)) return line;
+      begin = end + 1;
+    } else if (err_.ended) {
+      return "";
+    } else {
+      news_.wait(lock);
+    }
+  }
+}
+
+ProcessResult RunProgram(const ProcessOptions& options);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_END_TO_END_PROCESS_H_

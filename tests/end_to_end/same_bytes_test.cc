@@ -1,0 +1,73 @@
+// The same question gives the same bytes: whatever the number of workers, and through kill -9.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+// Four points of 64 blocks or more each; some seconds of one core.
+const std::vector<std::string> kQuestion = {
+    "first-hit",  "--rho", "0.529561127988977", "--delta", "0.1,0.05", "--epsilon", "0.1,0.4",
+    "--exponent", "1",     "--samples",         "40000",   "--seed",   "11"};
+
+std::string Points(const TestServer& server, const std::string& job) {
+  const ProcessResult result = server.Client({"result", job, "--format", "json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return PointsOf(result.out);
+}
+
+std::string PointsWithWorkers(int workers) {
+  const TestServer server(workers);
+  const std::string job = server.Submit(kQuestion);
+  EXPECT_EQ(server.Client({"watch", job}).exit_code, 0);
+  return Points(server, job);
+}
+
+TEST(SameBytes, WithOneTwoAndEightWorkers) {
+  const std::string one = PointsWithWorkers(1);
+  EXPECT_EQ(At(ParseJson("{" + one), "points").list_value().values_size(), 4);
+  EXPECT_EQ(PointsWithWorkers(2), one);
+  EXPECT_EQ(PointsWithWorkers(8), one);
+}
+
+// Killed when a point is finished and others are not, and again when another one is. The client
+// that watches stays, and attaches again by itself.
+TEST(SameBytes, ThroughKillNineAndRestart) {
+  TestServer server(1);
+  const std::string job = server.Submit(kQuestion);
+  const auto watch = server.StartClient({"watch", job, "--progress", "json"});
+  for (const double finished : {1.0, 2.0}) {
+    const std::string line = watch->WaitForErrLine([&](const std::string& text) {
+      return At(ParseJson(text), "progress", "points_done").number_value() >= finished;
+    });
+    ASSERT_NE(line, "");
+    ASSERT_LT(At(ParseJson(line), "progress", "points_done").number_value(), 4)
+        << "killed too late";
+    server.KillHard();
+    server.Start();
+  }
+  const ProcessResult watched = watch->Wait();
+  EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  EXPECT_EQ(Points(server, job), PointsWithWorkers(2));
+}
+
+// The neighbour that shows that these tests can fail.
+TEST(SameBytes, AnotherSeedGivesOtherBytes) {
+  const TestServer server;
+  std::string points[2];
+  for (const int seed : {0, 1}) {
+    const std::string job = server.Submit({"equilibrium", "--rho", "0.53", "--delta", "0.2",
+                                           "--collisions", "1000", "--seed", std::to_string(seed)});
+    EXPECT_EQ(server.Client({"watch", job}).exit_code, 0);
+    points[seed] = Points(server, job);
+  }
+  EXPECT_NE(points[0], points[1]);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,141 @@
+#include "tests/layout/include_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ballpiston {
+namespace {
+
+using Prefixes = std::vector<std::string_view>;
+
+struct Rule {
+  std::string_view folder;
+  Prefixes may_include;   // folders of the house, then libraries
+  bool operating_system;  // threads and the headers of POSIX
+};
+
+// The first row whose folder holds the file counts.
+const std::vector<Rule>& Rules() {
+  static const auto* const rules = new std::vector<Rule>{
+      {"core/geometry/", {"core/geometry/", "Eigen/", "absl/"}, false},
+      {"core/closed_form/", {"core/geometry/", "core/closed_form/", "Eigen/", "absl/"}, false},
+      {"core/sampling/",
+       {"core/geometry/", "core/sampling/", "Eigen/", "absl/", "Random123/"},
+       false},
+      {"core/billiard/",
+       {"core/geometry/", "core/closed_form/", "core/sampling/", "core/billiard/", "Eigen/",
+        "absl/", "hwy/"},
+       false},
+      {"core/statistics/", {"core/statistics/", "Eigen/", "absl/"}, false},
+      {"core/experiment/", {"core/", "Eigen/", "absl/"}, false},
+      {"core/engine_version.h", {}, false},
+      {"server/",
+       {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h"},
+       true},
+      {"client/",
+       {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
+       true},
+      {"tests/core/",
+       {"core/", "tests/core/", "tests/oracle/", "Eigen/", "absl/", "gtest/", "gmock/"},
+       true},
+      {"tests/oracle/", {"core/", "tests/oracle/", "Eigen/", "absl/"}, true},
+      {"tests/client/",
+       {"client/", "tests/client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/",
+        "CLI/", "gtest/", "gmock/"},
+       true},
+      {"tests/",
+       {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "google/", "absl/", "grpc/",
+        "grpcpp/", "sqlite3.h", "Eigen/", "gtest/", "gmock/", "benchmark/"},
+       true},
+  };
+  return *rules;
+}
+
+bool StartsWithAny(std::string_view path, const Prefixes& prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(),
+                     [&](std::string_view prefix) { return path.starts_with(prefix); });
+}
+
+// <vector>, <cmath>, ...; but those that start threads belong to the operating system.
+bool IsStandardHeader(std::string_view include) {
+  static constexpr std::array<std::string_view, 4> kThreads = {"thread", "future", "mutex",
+                                                               "condition_variable"};
+  return include.find_first_of("/.") == std::string_view::npos &&
+         std::find(kThreads.begin(), kThreads.end(), include) == kThreads.end();
+}
+
+// <unistd.h>, <sys/stat.h>, <thread>, ...
+bool IsOperatingSystemHeader(std::string_view include) {
+  if (include == "sqlite3.h") return false;
+  return include.find('/') == std::string_view::npos ||
+         StartsWithAny(include, {"sys/", "arpa/", "netinet/"});
+}
+
+bool IsAllowed(const Rule& rule, std::string_view include) {
+  return IsStandardHeader(include) || StartsWithAny(include, rule.may_include) ||
+         (rule.operating_system && IsOperatingSystemHeader(include));
+}
+
+// The core's physics and the API's messages meet in server/convert only.
+bool JoinsPhysicsAndMessages(std::string_view path, const std::vector<std::string>& includes) {
+  if (!path.starts_with("server/") || path.starts_with("server/convert/")) return false;
+  const auto some = [&](std::string_view prefix) {
+    return std::any_of(includes.begin(), includes.end(),
+                       [&](const std::string& include) { return include.starts_with(prefix); });
+  };
+  return some("core/") && some("ballpiston/v1/");
+}
+
+void SkipBlanks(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+}
+
+// Takes `word` and the blanks before it off the text, if it comes next.
+bool Skip(std::string_view word, std::string_view& text) {
+  SkipBlanks(text);
+  if (!text.starts_with(word)) return false;
+  text.remove_prefix(word.size());
+  return true;
+}
+
+// What the line includes; empty if nothing.
+std::string IncludedBy(std::string_view line) {
+  if (!Skip("#", line) || !Skip("include", line)) return "";
+  if (!Skip("<", line) && !Skip("\"", line)) return "";
+  return std::string(line.substr(0, line.find_first_of(">\"")));
+}
+
+}  // namespace
+
+std::vector<std::string> IncludesOf(std::string_view text) {
+  std::vector<std::string> found;
+  std::istringstream lines{std::string(text)};
+  for (std::string line; std::getline(lines, line);) {
+    const std::string include = IncludedBy(line);
+    if (!include.empty()) found.push_back(include);
+  }
+  return found;
+}
+
+std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text) {
+  const std::string file(path);
+  const auto rule = std::find_if(Rules().begin(), Rules().end(),
+                                 [&](const Rule& row) { return path.starts_with(row.folder); });
+  if (rule == Rules().end()) return {file + " lies in a folder without a rule"};
+
+  std::vector<std::string> wrong;
+  const std::vector<std::string> includes = IncludesOf(text);
+  for (const std::string& include : includes) {
+    if (!IsAllowed(*rule, include)) wrong.push_back(file + " may not include " + include);
+  }
+  if (JoinsPhysicsAndMessages(path, includes)) {
+    wrong.push_back(file + " includes core/ and ballpiston/v1/; only server/convert/ may");
+  }
+  return wrong;
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,28 @@
+// Which folder of the house may include what: the arrows between the layers, as a table.
+//
+//   core:    geometry <- closed_form, sampling <- billiard <- experiment; statistics knows no
+//            physics, and experiment alone joins it to the rest. Libraries: Eigen, Highway,
+//            Random123, Abseil and C++'s own, without threads.
+//   server:  core and the protos.   client: the protos only.   Neither knows the other.
+//   server/convert alone speaks of the core's physics and of the API's messages in one file.
+//
+// A new folder needs a row of its own in the table: a file without one is a violation.
+#ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
+#define BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ballpiston {
+
+// What the text includes, in order, without quotes or angle brackets.
+std::vector<std::string> IncludesOf(std::string_view text);
+
+// One sentence for each include of the file that points the wrong way. `path` is relative to the
+// repository's root.
+std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
