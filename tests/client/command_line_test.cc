@@ -123,9 +123,9 @@ TEST_F(CommandLineTest, TablesAreAskedForWithoutHistograms) {
   server_.Start();
   WithServer({"result", "abc"});
   WithServer({"result", "abc", "--format", "json"});
-  ASSERT_EQ(server_.ensemble.result_requests.size(), 2u);
-  EXPECT_EQ(server_.ensemble.result_requests[0].view(), v1::ListResultsRequest::BASIC);
-  EXPECT_EQ(server_.ensemble.result_requests[1].view(), v1::ListResultsRequest::FULL);
+  ASSERT_EQ(server_.ensemble.Asked().results.size(), 2u);
+  EXPECT_EQ(server_.ensemble.Asked().results[0].view(), v1::ListResultsRequest::BASIC);
+  EXPECT_EQ(server_.ensemble.Asked().results[1].view(), v1::ListResultsRequest::FULL);
 }
 
 TEST_F(CommandLineTest, ResultOfAnActiveJobSaysSo) {
@@ -165,8 +165,6 @@ TEST_F(CommandLineTest, AnUnknownJobExitsWithFive) {
 TEST_F(CommandLineTest, CancelPrintsTheStateAndRefusalExitsWithFour) {
   server_.Start();
   EXPECT_EQ(WithServer({"cancel", "abc"}).out, "ensembleJobs/abc cancelled\n");
-  server_.ensemble.cancel_status =
-      grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
   const Outcome again = WithServer({"cancel", "abc"});
   EXPECT_EQ(again.code, 4);
   EXPECT_EQ(again.err, "ballpiston: has ended already\n");

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <regex>
 #include <set>
 #include <string>
 
@@ -21,11 +20,11 @@ v1::EnsembleJob Named(const std::string& name) {
 }
 
 TEST(RequestId, IsARandomUuid) {
-  const std::regex uuid("[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}");
+  constexpr char kUuid[] = "[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}";
   std::set<std::string> ids;
   for (int i = 0; i < 1000; ++i) {
     ids.insert(NewRequestId());
-    EXPECT_TRUE(std::regex_match(NewRequestId(), uuid));
+    EXPECT_THAT(NewRequestId(), ::testing::MatchesRegex(kUuid));
   }
   EXPECT_EQ(ids.size(), 1000u);
 }
@@ -41,7 +40,7 @@ TEST(EnsembleClient, CreateIsRepeatedWithTheSameRequestId) {
   const auto job = EnsembleClient(server.Channel()).Create(spec);
   ASSERT_TRUE(job.ok()) << job.status();
   EXPECT_EQ(job->name(), "ensembleJobs/a");
-  const auto& requests = server.ensemble.create_requests;
+  const auto requests = server.ensemble.Asked().create;
   ASSERT_EQ(requests.size(), 3u);
   EXPECT_EQ(requests[0].request_id(), requests[2].request_id());
   EXPECT_EQ(requests[2].spec().seed(), 7u);
@@ -54,8 +53,8 @@ TEST(EnsembleClient, EachCreateHasAnIdOfItsOwn) {
   const EnsembleClient client(server.Channel());
   ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
   ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
-  EXPECT_NE(server.ensemble.create_requests[0].request_id(),
-            server.ensemble.create_requests[1].request_id());
+  EXPECT_NE(server.ensemble.Asked().create[0].request_id(),
+            server.ensemble.Asked().create[1].request_id());
 }
 
 TEST(EnsembleClient, ListGathersAllPages) {
@@ -77,8 +76,9 @@ TEST(EnsembleClient, ResultsGathersAllPagesOfTheViewAskedFor) {
   ASSERT_TRUE(points.ok()) << points.status();
   ASSERT_EQ(points->size(), 5u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ((*points)[static_cast<size_t>(i)].index(), i);
-  ASSERT_EQ(server.ensemble.result_requests.size(), 3u);
-  for (const auto& request : server.ensemble.result_requests) {
+  ASSERT_EQ(server.ensemble.Asked().results.size(), 3u);
+  const auto asked = server.ensemble.Asked();
+  for (const auto& request : asked.results) {
     EXPECT_EQ(request.parent(), "ensembleJobs/a");
     EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
   }
@@ -104,9 +104,9 @@ TEST(EnsembleClient, CancelCarriesARequestId) {
   FakeServer server;
   server.Start();
   ASSERT_TRUE(EnsembleClient(server.Channel()).Cancel("ensembleJobs/a").ok());
-  ASSERT_EQ(server.ensemble.cancel_requests.size(), 1u);
-  EXPECT_EQ(server.ensemble.cancel_requests[0].name(), "ensembleJobs/a");
-  EXPECT_FALSE(server.ensemble.cancel_requests[0].request_id().empty());
+  ASSERT_EQ(server.ensemble.Asked().cancel.size(), 1u);
+  EXPECT_EQ(server.ensemble.Asked().cancel[0].name(), "ensembleJobs/a");
+  EXPECT_FALSE(server.ensemble.Asked().cancel[0].request_id().empty());
 }
 
 }  // namespace

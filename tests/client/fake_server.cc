@@ -14,10 +14,15 @@ grpc::Status FakeEnsembleService::CreateEnsembleJob(grpc::ServerContext*,
                                                     const v1::CreateEnsembleJobRequest* request,
                                                     v1::EnsembleJob* job) {
   const std::lock_guard lock(mutex_);
-  create_requests.push_back(*request);
+  asked_.create.push_back(*request);
   if (unavailable_creates-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   *job = jobs.at(0);
   return grpc::Status::OK;
+}
+
+FakeEnsembleService::Requests FakeEnsembleService::Asked() const {
+  const std::lock_guard lock(mutex_);
+  return asked_;
 }
 
 const v1::EnsembleJob* FakeEnsembleService::Find(const std::string& name) const {
@@ -49,9 +54,10 @@ grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
                                                     const v1::CancelEnsembleJobRequest* request,
                                                     v1::EnsembleJob* job) {
   const std::lock_guard lock(mutex_);
-  cancel_requests.push_back(*request);
+  asked_.cancel.push_back(*request);
   *job = JobIn(v1::EnsembleJob::CANCELLED);
-  return cancel_status;
+  if (asked_.cancel.size() == 1) return grpc::Status::OK;
+  return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
 }
 
 grpc::Status FakeEnsembleService::DeleteEnsembleJob(grpc::ServerContext*,
@@ -62,8 +68,8 @@ grpc::Status FakeEnsembleService::DeleteEnsembleJob(grpc::ServerContext*,
 
 WatchScript FakeEnsembleService::NextScript(const v1::WatchEnsembleJobRequest& request) {
   const std::lock_guard lock(mutex_);
-  watch_requests.push_back(request);
-  return watches.at(std::min(watch_requests.size(), watches.size()) - 1);
+  asked_.watch.push_back(request);
+  return watches.at(std::min(asked_.watch.size(), watches.size()) - 1);
 }
 
 grpc::Status FakeEnsembleService::WatchEnsembleJob(
@@ -79,7 +85,7 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
                                               const v1::ListResultsRequest* request,
                                               v1::ListResultsResponse* page) {
   const std::lock_guard lock(mutex_);
-  result_requests.push_back(*request);
+  asked_.results.push_back(*request);
   const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
   const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
   for (size_t i = from; i < to; ++i) *page->add_points() = points[i];

@@ -29,14 +29,16 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<v1::EnsembleJob> jobs;
   std::vector<v1::PointResult> points;
   int unavailable_creates = 0;  // so many attempts fail first
-  grpc::Status cancel_status;
-  int page_size = 2;  // whatever was asked for
+  int page_size = 2;            // whatever was asked for
 
-  // What was asked.
-  std::vector<v1::WatchEnsembleJobRequest> watch_requests;
-  std::vector<v1::CreateEnsembleJobRequest> create_requests;
-  std::vector<v1::CancelEnsembleJobRequest> cancel_requests;
-  std::vector<v1::ListResultsRequest> result_requests;
+  // What was asked so far.
+  struct Requests {
+    std::vector<v1::WatchEnsembleJobRequest> watch;
+    std::vector<v1::CreateEnsembleJobRequest> create;
+    std::vector<v1::CancelEnsembleJobRequest> cancel;
+    std::vector<v1::ListResultsRequest> results;
+  };
+  Requests Asked() const;
 
   grpc::Status CreateEnsembleJob(grpc::ServerContext*, const v1::CreateEnsembleJobRequest* request,
                                  v1::EnsembleJob* job) override;
@@ -59,7 +61,8 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   WatchScript NextScript(const v1::WatchEnsembleJobRequest& request);
   const v1::EnsembleJob* Find(const std::string& name) const;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
+  Requests asked_;
   std::latch released_{1};
 };
 

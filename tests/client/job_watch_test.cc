@@ -48,7 +48,8 @@ struct Watcher {
 
 std::vector<std::string> TokensOf(const FakeServer& server) {
   std::vector<std::string> tokens;
-  for (const auto& request : server.ensemble.watch_requests) {
+  const auto asked = server.ensemble.Asked();
+  for (const auto& request : asked.watch) {
     tokens.push_back(request.resume_token());
   }
   return tokens;
@@ -97,7 +98,7 @@ TEST(JobWatch, ShowsTheTerminalStateOnce) {
   ASSERT_TRUE(job.ok()) << job.status();
   EXPECT_EQ(job->state(), v1::EnsembleJob::CANCELLED);
   EXPECT_THAT(watcher.states, ElementsAre(v1::EnsembleJob::CANCELLED));
-  EXPECT_EQ(server.ensemble.watch_requests.size(), 1u);
+  EXPECT_EQ(server.ensemble.Asked().watch.size(), 1u);
 }
 
 TEST(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
@@ -118,7 +119,7 @@ TEST(JobWatch, OtherErrorsEndTheWatch) {
   Watcher watcher;
   const auto job = watcher.Watch(server, Quick());
   EXPECT_EQ(job.status().code(), absl::StatusCode::kNotFound);
-  EXPECT_EQ(server.ensemble.watch_requests.size(), 1u);
+  EXPECT_EQ(server.ensemble.Asked().watch.size(), 1u);
 }
 
 TEST(JobWatch, GivesUpAfterTheConfiguredTime) {
@@ -132,7 +133,7 @@ TEST(JobWatch, GivesUpAfterTheConfiguredTime) {
   EXPECT_EQ(job.status().code(), absl::StatusCode::kUnavailable);
   EXPECT_THAT(std::string(job.status().message()),
               HasSubstr("gave up watching after 50ms without the server: connection reset"));
-  EXPECT_GT(server.ensemble.watch_requests.size(), 1u);
+  EXPECT_GT(server.ensemble.Asked().watch.size(), 1u);
 }
 
 // Each attempt fails, but each brings news: the server is not gone.
