@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/experiment/ensemble_spec.h"
+#include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
@@ -39,8 +40,8 @@ void CheckRange(absl::string_view list, const std::vector<double>& values, doubl
                 double upper, Found* found) {
   for (size_t i = 0; i < values.size(); ++i) {
     if (values[i] >= lower && values[i] <= upper) continue;
-    found->push_back({At(list, i), absl::StrFormat("%s is %.17g; permitted: [%g, %g]", list,
-                                                   values[i], lower, upper)});
+    found->push_back({At(list, i), absl::StrCat(list, " is ", NumberText(values[i]),
+                                                "; permitted: [", lower, ", ", upper, "]")});
   }
 }
 
@@ -118,8 +119,8 @@ void CheckTarget(const EnsembleSpec& spec, Found* found) {
   CheckCount("samples", target.samples, found);
   CheckCount("collisions", target.collisions, found);
   if (target.tolerance && !(*target.tolerance > 0 && *target.tolerance < 1)) {
-    found->push_back({"target.tolerance", absl::StrFormat("is %.17g; permitted: 0 < tolerance < 1",
-                                                          *target.tolerance)});
+    found->push_back({"target.tolerance", absl::StrCat("is ", NumberText(*target.tolerance),
+                                                       "; permitted: 0 < tolerance < 1")});
   }
   if (target.budget_seconds) {
     found->push_back({"target.budget",

@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "absl/status/status.h"
-#include "absl/strings/str_format.h"
+#include "absl/strings/str_cat.h"
+#include "core/geometry/number_text.h"
 
 namespace ballpiston {
 
@@ -25,24 +26,23 @@ double GasDeltaBound(double rho) {
 
 absl::Status ValidateRho(double rho) {
   if (rho > kMinRho && rho < kMaxRho) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("rho is %.17g; permitted: 1/2 < rho < 1/sqrt(2) (%.17g)", rho, kMaxRho));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "rho is ", NumberText(rho), "; permitted: 1/2 < rho < 1/sqrt(2) = ", NumberText(kMaxRho)));
 }
 
 absl::Status ValidatePairDelta(double rho, double delta) {
   // The computed bound may lie an ulp below the true one, which a user may have computed better.
   const double bound = PairDeltaBound(rho);
   if (delta > 0 && delta <= std::nextafter(bound, 1.0)) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("delta is %.17g; permitted at rho = %.17g: 0 < delta <= (1 - lambda)/2 = "
-                      "%.17g, the bound of a ball-piston pair",
-                      delta, rho, bound));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "delta is ", NumberText(delta), "; permitted at rho = ", NumberText(rho),
+      ": 0 < delta <= (1 - lambda)/2 = ", NumberText(bound), ", the bound of a ball-piston pair"));
 }
 
 absl::Status ValidateSomeDelta(double delta) {
   if (delta > 0 && delta < 0.5) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrFormat("delta is %.17g; permitted: 0 < delta <= (1 - lambda)/2 < 1/2", delta));
+  return absl::InvalidArgumentError(absl::StrCat("delta is ", NumberText(delta),
+                                                 "; permitted: 0 < delta <= (1 - lambda)/2 < 1/2"));
 }
 
 absl::StatusOr<PairGeometry> PairGeometry::Create(double rho, double delta) {

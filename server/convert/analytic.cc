@@ -13,6 +13,7 @@
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
+#include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
 #include "server/convert/errors.h"
 
@@ -36,7 +37,7 @@ void CheckValues(const char* field, const List& values, Allowed allowed, const c
   for (int i = 0; i < values.size() && !Enough(violations); ++i) {
     if (allowed(values.Get(i))) continue;
     violations.push_back(
-        {Element(field, i), absl::StrFormat("%.17g is not in %s", values.Get(i), range)});
+        {Element(field, i), absl::StrCat(NumberText(values.Get(i)), " is not in ", range)});
   }
 }
 
@@ -159,16 +160,17 @@ Violations Overflows(const v1::EvaluatePairsRequest& request,
   for (int i = 0; i < pairs; ++i) {  // those of the first rho
     const v1::PairAnalytics& point = response.points(i);
     if (std::isfinite(point.tau_ball_piston()) && point.area_ball_piston() > 0) continue;
-    violations.push_back({Element("delta", i), absl::StrFormat("%.17g is too small: the mean free "
-                                                               "time leaves the range of double",
-                                                               point.delta())});
+    violations.push_back(
+        {Element("delta", i),
+         absl::StrCat(NumberText(point.delta()),
+                      " is too small: the mean free time leaves the range of double")});
   }
   for (int i = 0; i < response.points(0).canonical_size(); ++i) {
     const v1::CanonicalAnalytics& canonical = response.points(0).canonical(i);
     if (std::isfinite(canonical.mean_h())) continue;
-    violations.push_back({Element("beta", i), absl::StrFormat("%.17g is too small: <h> leaves the "
-                                                              "range of double",
-                                                              canonical.beta())});
+    violations.push_back(
+        {Element("beta", i), absl::StrCat(NumberText(canonical.beta()),
+                                          " is too small: <h> leaves the range of double")});
   }
   return violations;
 }

@@ -103,13 +103,6 @@ bool Process::WaitForErr(const std::string& text) {
   return found();
 }
 
-bool Process::Running() {
-  if (waited_) return false;
-  siginfo_t info{};
-  waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);
-  return info.si_pid == 0;
-}
-
 ProcessResult Process::Wait() {
   if (!waited_) {
     int status = 0;

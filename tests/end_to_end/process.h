@@ -40,10 +40,7 @@ class Process {
   // program ended without one.
   template <typename Wanted>
   std::string WaitForErrLine(Wanted wanted);
-  bool Running();
   ProcessResult Wait();
-
-  pid_t pid() const { return pid_; }
 
  private:
   struct Stream {

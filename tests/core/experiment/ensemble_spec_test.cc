@@ -77,7 +77,7 @@ TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
   EnsembleSpec spec = FirstHit();
   spec.grid.delta = {0.2};  // legal at 0.55, not at 0.6, where the bound is 0.1683
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]",
-                                                  "rho = 0.59999999999999998: 0 < delta <= (1 - "
+                                                  "rho = 0.6: 0 < delta <= (1 - "
                                                   "lambda)/2 = 0.1683")));
 }
 
