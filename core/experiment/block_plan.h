@@ -28,6 +28,7 @@ struct BlockPlan {
   uint64_t SamplesIn(uint64_t block) const;
 };
 
+// events_per_sample > 0, finite.
 BlockPlan PlanBlocks(const Target& target, double events_per_sample);
 
 }  // namespace ballpiston

@@ -1,6 +1,5 @@
 #include "core/experiment/conditional_mean_free_time.h"
 
-#include "core/closed_form/conditional_rate.h"
 #include "core/experiment/point_stream.h"
 
 namespace ballpiston {
@@ -15,7 +14,7 @@ ConditionalMeanFreeTimeExperiment::ConditionalMeanFreeTimeExperiment(const Ensem
                                                                      const PairGeometry& geometry)
     : PointExperiment(point, PlanBlocks(spec.target, EventsPerReturn(geometry, *point.epsilon))),
       orbit_(geometry, *point.epsilon, kInvariantExponent),
-      exact_(ConditionalMeanFreeTime(geometry, *point.epsilon)),
+      return_time_(geometry, *point.epsilon),
       seed_(spec.seed),
       stream_(PointStream(spec.experiment, point)) {}
 
@@ -35,17 +34,17 @@ std::optional<BlockResult> ConditionalMeanFreeTimeExperiment::RunBlock(uint64_t 
   return result;
 }
 
+Estimate ConditionalMeanFreeTimeExperiment::FirstEstimate(const BlockResult& merged) const {
+  Estimate mean = return_time_.Mean("mean_free_time_conditional", merged.moments[0]);
+  mean.exact = return_time_.exact_mean();
+  return mean;
+}
+
 PointSummary ConditionalMeanFreeTimeExperiment::Summarize(const BlockResult& merged) const {
-  const Moments& time = merged.moments[0];
   PointSummary summary = {.samples = merged.samples, .health = merged.health};
-  summary.estimates.push_back({.name = "mean_free_time_conditional",
-                               .value = time.mean,
-                               .standard_error = time.StandardError(),
-                               .exact = exact_});
-  if (const auto variation = time.CoefficientOfVariation()) {
-    summary.estimates.push_back({.name = "coefficient_of_variation",
-                                 .value = *variation,
-                                 .standard_error = time.CoefficientOfVariationError()});
+  summary.estimates.push_back(FirstEstimate(merged));
+  if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
+    summary.estimates.push_back(*variation);
   }
   return summary;
 }

@@ -6,6 +6,7 @@
 
 #include "core/experiment/point_experiment.h"
 #include "core/experiment/return_orbit.h"
+#include "core/experiment/return_time.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
@@ -16,11 +17,12 @@ class ConditionalMeanFreeTimeExperiment : public PointExperiment {
                                     const PairGeometry& geometry);
 
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  Estimate FirstEstimate(const BlockResult& merged) const override;
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
   ReturnOrbit orbit_;
-  double exact_;
+  ReturnTime return_time_;
   uint64_t seed_;
   uint64_t stream_;
 };

@@ -14,10 +14,13 @@ double EventsPerCollision(const PairGeometry& geometry) {
   return 1 + tau.ball_piston / tau.ball_wall + tau.ball_piston / tau.piston_wall;
 }
 
-Estimate MeanFreeTime(absl::string_view between, const BatchMeans& measured, double exact) {
+Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
+                      double exact) {
+  const BatchMeans& measured = merged.batch_means[index];
+  const bool enough = merged.samples >= kCollisionsForAnError;
   return {.name = "mean_free_time_" + std::string(between),
           .value = measured.Ratio().value_or(0),
-          .standard_error = measured.StandardError(),
+          .standard_error = enough ? measured.StandardError() : std::nullopt,
           .exact = exact};
 }
 
@@ -57,13 +60,17 @@ std::optional<BlockResult> EquilibriumExperiment::RunBlock(uint64_t block,
   return result;
 }
 
+Estimate EquilibriumExperiment::FirstEstimate(const BlockResult& merged) const {
+  return MeanFreeTime("ball_piston", merged, 0, MeanFreeTimesOf(geometry_).ball_piston);
+}
+
 PointSummary EquilibriumExperiment::Summarize(const BlockResult& merged) const {
   const MeanFreeTimes exact = MeanFreeTimesOf(geometry_);
-  return {.samples = merged.samples,
-          .estimates = {MeanFreeTime("ball_piston", merged.batch_means[0], exact.ball_piston),
-                        MeanFreeTime("ball_wall", merged.batch_means[1], exact.ball_wall),
-                        MeanFreeTime("piston_wall", merged.batch_means[2], exact.piston_wall)},
-          .health = merged.health};
+  return {
+      .samples = merged.samples,
+      .estimates = {FirstEstimate(merged), MeanFreeTime("ball_wall", merged, 1, exact.ball_wall),
+                    MeanFreeTime("piston_wall", merged, 2, exact.piston_wall)},
+      .health = merged.health};
 }
 
 }  // namespace ballpiston

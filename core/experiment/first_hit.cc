@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/closed_form/conditional_rate.h"
 #include "core/experiment/point_stream.h"
 
 namespace ballpiston {
@@ -44,7 +43,8 @@ FirstHitExperiment::FirstHitExperiment(const EnsembleSpec& spec, const PointPara
     : PointExperiment(point, PlanBlocks(spec.target, EventsPerReturn(geometry, *point.epsilon))),
       orbit_(geometry, *point.epsilon, *point.exponent),
       equilibrium_(*point.epsilon),
-      exact_time_(ConditionalMeanFreeTime(geometry, *point.epsilon)),
+      return_time_(geometry, *point.epsilon),
+      expected_(ExpectedProbabilities()),
       seed_(spec.seed),
       stream_(PointStream(spec.experiment, point)) {}
 
@@ -72,36 +72,45 @@ std::optional<BlockResult> FirstHitExperiment::RunBlock(uint64_t block,
   return result;
 }
 
+std::vector<std::vector<double>> FirstHitExperiment::ExpectedProbabilities() const {
+  std::vector<std::vector<double>> expected;
+  const BlockResult empty = EmptyResult();
+  for (size_t i = 0; i < empty.histograms.size(); ++i) {
+    const Histogram& histogram = empty.histograms[i];
+    std::vector<double>& bins = expected.emplace_back(kIngoingBins);
+    for (size_t bin = 0; bin < kIngoingBins; ++bin) {
+      bins[bin] =
+          equilibrium_.BinProbability(kSigmas[i], histogram.Edge(bin), histogram.Edge(bin + 1));
+    }
+  }
+  return expected;
+}
+
 std::vector<SignedHistogram> FirstHitExperiment::LabelledHistograms(
     const BlockResult& merged) const {
   std::vector<SignedHistogram> labelled;
   for (size_t i = 0; i < merged.histograms.size(); ++i) {
-    const Histogram& histogram = merged.histograms[i];
-    std::vector<double> expected(histogram.counts.size());
-    for (size_t bin = 0; bin < expected.size(); ++bin) {
-      expected[bin] =
-          equilibrium_.BinProbability(kSigmas[i], histogram.Edge(bin), histogram.Edge(bin + 1));
-    }
-    labelled.push_back({"alpha", kSigmas[i], histogram, std::move(expected)});
+    labelled.push_back({"alpha", kSigmas[i], merged.histograms[i], expected_[i]});
   }
   return labelled;
 }
 
+Estimate FirstHitExperiment::FirstEstimate(const BlockResult& merged) const {
+  Estimate mean = return_time_.Mean("mean_hit_time", merged.moments[0]);
+  if (parameters().exponent == 1) mean.exact = return_time_.exact_mean();
+  return mean;
+}
+
 PointSummary FirstHitExperiment::Summarize(const BlockResult& merged) const {
   PointSummary summary = {.samples = merged.samples, .health = merged.health};
-  summary.estimates.push_back(Mean("mean_hit_time", merged.moments[0]));
-  summary.estimates.push_back(Mean("mean_cos_alpha", merged.moments[1]));
-  summary.estimates.push_back(Mean("mean_sigma", merged.moments[2]));
+  summary.estimates = {FirstEstimate(merged), Mean("mean_cos_alpha", merged.moments[1]),
+                       Mean("mean_sigma", merged.moments[2])};
   if (parameters().exponent == 1) {
-    summary.estimates[0].exact = exact_time_;
     summary.estimates[1].exact = equilibrium_.MeanCosAlpha();
     summary.estimates[2].exact = equilibrium_.MeanSigma();
   }
-  if (const auto variation = merged.moments[0].CoefficientOfVariation()) {
-    summary.estimates.push_back(
-        {.name = "coefficient_of_variation",
-         .value = *variation,
-         .standard_error = merged.moments[0].CoefficientOfVariationError()});
+  if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
+    summary.estimates.push_back(*variation);
   }
   summary.histograms = LabelledHistograms(merged);
   if (merged.samples > 0) summary.kl_divergence = RelativeEntropyTo(summary.histograms);

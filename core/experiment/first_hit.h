@@ -11,6 +11,7 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/experiment/point_experiment.h"
 #include "core/experiment/return_orbit.h"
+#include "core/experiment/return_time.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
@@ -23,15 +24,18 @@ class FirstHitExperiment : public PointExperiment {
                      const PairGeometry& geometry);
 
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  Estimate FirstEstimate(const BlockResult& merged) const override;
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
   BlockResult EmptyResult() const;
+  std::vector<std::vector<double>> ExpectedProbabilities() const;
   std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const;
 
   ReturnOrbit orbit_;
   IngoingLaw equilibrium_;
-  double exact_time_;
+  ReturnTime return_time_;
+  std::vector<std::vector<double>> expected_;  // probabilities of the bins of each histogram
   uint64_t seed_;
   uint64_t stream_;
 };

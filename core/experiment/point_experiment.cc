@@ -29,7 +29,7 @@ std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpe
 bool PointExperiment::TargetReached(uint64_t blocks, const BlockResult& merged) const {
   if (blocks >= plan_.Blocks()) return true;
   if (!plan_.tolerance || blocks < kMinBlocks) return false;
-  const Estimate estimate = Summarize(merged).estimates.front();
+  const Estimate estimate = FirstEstimate(merged);
   return estimate.standard_error &&
          *estimate.standard_error <= *plan_.tolerance * std::fabs(estimate.value);
 }

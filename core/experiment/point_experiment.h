@@ -36,7 +36,10 @@ class PointExperiment {
   // Empty only if `stop` was requested. A block takes some 0.1 s (one sample at least).
   virtual std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const = 0;
 
-  // Requires at least one merged block.
+  // What a tolerance refers to. Requires at least one merged block, as Summarize does.
+  virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;
+
+  // Everything that was measured; its first estimate is FirstEstimate.
   virtual PointSummary Summarize(const BlockResult& merged) const = 0;
 
   // Whether the first `blocks` blocks, merged in order, are all that the target asks for.

@@ -1,9 +1,11 @@
 // Everything that can be wrong with a specification, field by field.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/closed_form/pair_measures.h"
 #include "core/experiment/ensemble_spec.h"
 #include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
@@ -45,6 +47,12 @@ void CheckRange(absl::string_view list, const std::vector<double>& values, doubl
   }
 }
 
+bool HasFiniteTimes(double rho, double delta) {
+  const PairMeasures measures = Measures(PairGeometry::Create(rho, delta).value());
+  // Not a denormal number either: it would have lost its digits.
+  return measures.area_ball_piston >= std::numeric_limits<double>::min();
+}
+
 void CheckGeometry(const Grid& grid, Found* found) {
   // The largest valid rho has the smallest bound, so it decides for every delta.
   double largest = 0;
@@ -56,7 +64,13 @@ void CheckGeometry(const Grid& grid, Found* found) {
   for (size_t i = 0; i < grid.delta.size(); ++i) {
     const absl::Status status =
         largest > 0 ? ValidatePairDelta(largest, grid.delta[i]) : ValidateSomeDelta(grid.delta[i]);
-    if (!status.ok()) found->push_back({At("delta", i), std::string(status.message())});
+    if (!status.ok()) {
+      found->push_back({At("delta", i), std::string(status.message())});
+    } else if (largest > 0 && !HasFiniteTimes(largest, grid.delta[i])) {
+      found->push_back({At("delta", i), absl::StrCat("delta is ", NumberText(grid.delta[i]),
+                                                     ", too small: the mean free time leaves the "
+                                                     "range of double")});
+    }
   }
 }
 
@@ -110,6 +124,11 @@ void CheckTargetKind(const EnsembleSpec& spec, Found* found) {
   }
 }
 
+bool HasRestingPiston(const EnsembleSpec& spec) {
+  return std::find(spec.grid.epsilon.begin(), spec.grid.epsilon.end(), 0.0) !=
+         spec.grid.epsilon.end();
+}
+
 void CheckTarget(const EnsembleSpec& spec, Found* found) {
   const Target& target = spec.target;
   const int kinds = target.samples.has_value() + target.collisions.has_value() +
@@ -121,6 +140,11 @@ void CheckTarget(const EnsembleSpec& spec, Found* found) {
   if (target.tolerance && !(*target.tolerance > 0 && *target.tolerance < 1)) {
     found->push_back({"target.tolerance", absl::StrCat("is ", NumberText(*target.tolerance),
                                                        "; permitted: 0 < tolerance < 1")});
+  }
+  if (target.tolerance && HasRestingPiston(spec)) {
+    found->push_back({"target.tolerance",
+                      "cannot be reached at epsilon = 0, where the return time has no variance; "
+                      "permitted: samples"});
   }
   if (target.budget_seconds) {
     found->push_back({"target.budget",

@@ -111,6 +111,19 @@ TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
   }
 }
 
+TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
+  EnsembleSpec spec = FirstHit();
+  spec.grid.delta = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
+                                            Names("grid.delta[2]", "too small")));
+}
+
+TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {
+  EnsembleSpec spec = FirstHit();
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
+}
+
 TEST(EnsembleSpec, MissingExperimentIsNamed) {
   EXPECT_THAT(Violations({}), Contains(Names("experiment", "permitted: equilibrium")));
 }

@@ -1,0 +1,41 @@
+#include "core/experiment/long_returns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/pair_measures.h"
+
+namespace ballpiston {
+namespace {
+
+// The time that a long return takes, if the piston is the slow one: to its far wall and back.
+double PistonsRoundTrip(const PairGeometry& geometry, double epsilon) {
+  return 2 * (geometry.lambda() + 2 * geometry.delta()) / std::sqrt(2 * epsilon);
+}
+
+// If the ball is: mean time between crossings of the line that the piston reaches, pi A/(v eta).
+double BallsRoundTrip(const PairGeometry& geometry, double epsilon) {
+  const PairMeasures measures = Measures(geometry);
+  return std::numbers::pi * measures.cell_area / (std::sqrt(1 - 2 * epsilon) * measures.eta);
+}
+
+// Long returns make up for what the mean has beyond that of a resting partner.
+double PerSample(double mean, double mean_at_rest, double round_trip) {
+  return std::max(mean - mean_at_rest, 0.0) / round_trip;
+}
+
+}  // namespace
+
+double LongReturnsPerSample(const PairGeometry& geometry, double epsilon) {
+  if (epsilon == 0) return 0;
+  if (epsilon == 0.5) return std::numeric_limits<double>::infinity();
+  const double mean = ConditionalMeanFreeTime(geometry, epsilon);
+  return std::min(
+      PerSample(mean, ConditionalMeanFreeTime(geometry, 0), PistonsRoundTrip(geometry, epsilon)),
+      PerSample(mean, ConditionalMeanFreeTime(geometry, 0.5), BallsRoundTrip(geometry, epsilon)));
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,35 @@
+// The estimates that come from a sample of return times, with errors where the sample can tell
+// them.
+#ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
+#define BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
+
+#include <optional>
+#include <string>
+
+#include "core/experiment/point_summary.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/statistics/moments.h"
+
+namespace ballpiston {
+
+class ReturnTime {
+ public:
+  ReturnTime(const PairGeometry& geometry, double epsilon);
+
+  // The mean under the invariant law, exact at every delta.
+  double exact_mean() const { return exact_mean_; }
+
+  Estimate Mean(std::string name, const Moments& times) const;
+  // Empty where no error can be told: then the sample's own scatter means nothing either.
+  std::optional<Estimate> CoefficientOfVariation(const Moments& times) const;
+
+ private:
+  bool TellsItsError(const Moments& times) const;
+
+  double exact_mean_;
+  double long_returns_per_sample_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
