@@ -105,6 +105,7 @@ TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "not offered")));
   spec.target = {.samples = kMaxSamples + 1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.samples", "permitted: 1 to")));
+  spec.grid.epsilon = {0.5};
   for (const double tolerance : {0.0, -0.1, 1.0, kNaN, kInfinity}) {
     spec.target = {.tolerance = tolerance};
     EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "0 < tolerance < 1")));

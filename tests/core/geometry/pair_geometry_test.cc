@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "absl/strings/str_format.h"
+#include "core/geometry/number_text.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -23,8 +23,6 @@ std::string Message(double rho, double delta) {
   EXPECT_EQ(geometry.status().code(), absl::StatusCode::kInvalidArgument);
   return std::string(geometry.status().message());
 }
-
-std::string Digits(double x) { return absl::StrFormat("%.17g", x); }
 
 TEST(PairGeometry, DerivedLengthsAreThoseOfTheCell) {
   const auto g = PairGeometry::Create(kPaperRho, 0.175);
@@ -75,16 +73,16 @@ TEST(PairGeometry, SmallestDeltaIsAccepted) {
 TEST(PairGeometry, RhoOutsideOfItsOpenIntervalIsNamed) {
   for (double rho : {0.5, kMaxRho, 0.0, -0.6, 1.0, kInfinity, -kInfinity, kNaN}) {
     EXPECT_THAT(Message(rho, 0.1),
-                AllOf(HasSubstr("rho is " + Digits(rho)), HasSubstr("1/2 < rho < 1/sqrt(2)"),
-                      HasSubstr(Digits(kMaxRho))));
+                AllOf(HasSubstr("rho is " + NumberText(rho)), HasSubstr("1/2 < rho < 1/sqrt(2)"),
+                      HasSubstr(NumberText(kMaxRho))));
   }
 }
 
 TEST(PairGeometry, DeltaOutsideOfItsIntervalIsNamedWithTheBound) {
   for (double delta : {0.0, -0.0, -0.1, 0.33, 1.0, kInfinity, -kInfinity, kNaN}) {
     EXPECT_THAT(Message(kPaperRho, delta),
-                AllOf(HasSubstr("delta is " + Digits(delta)), HasSubstr("(1 - lambda)/2"),
-                      HasSubstr(Digits(PairDeltaBound(kPaperRho)))));
+                AllOf(HasSubstr("delta is " + NumberText(delta)), HasSubstr("(1 - lambda)/2"),
+                      HasSubstr(NumberText(PairDeltaBound(kPaperRho)))));
   }
 }
 
