@@ -7,7 +7,9 @@
 #include "client/command/connection.h"
 #include "client/command/flags.h"
 #include "client/command/number_list.h"
+#include "client/command/request_size.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 #include "client/library/analytic_client.h"
 #include "client/output/analytic_output.h"
 
@@ -42,24 +44,26 @@ struct Analytic {
 
   absl::StatusOr<v1::EvaluatePairsRequest> Request() const {
     v1::EvaluatePairsRequest request;
-    for (const absl::Status& status :
-         {Take("--rho", rho, request.mutable_rho()),
-          Take("--delta", delta, request.mutable_delta()),
-          Take("--epsilon", epsilon, request.mutable_epsilon()),
-          Take("--outgoing-epsilon", outgoing_epsilon, request.mutable_outgoing_epsilon()),
-          Take("--beta", beta, request.mutable_beta())}) {
-      if (!status.ok()) return status;
-    }
+    absl::Status status = Violations({Take("--rho", rho, request.mutable_rho()),
+                                      Take("--delta", delta, request.mutable_delta()),
+                                      Take("--epsilon", epsilon, request.mutable_epsilon()),
+                                      Take("--outgoing-epsilon", outgoing_epsilon,
+                                           request.mutable_outgoing_epsilon()),
+                                      Take("--beta", beta, request.mutable_beta())})
+                              .Lines();
+    if (status.ok()) status = CheckSize(request, "");
+    if (!status.ok()) return status;
     return request;
   }
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<v1::EvaluatePairsRequest> request = Request();
-    if (!request.ok()) return request.status();
     const absl::StatusOr<Format> shape = ParseFormat(format.text);
-    if (!shape.ok()) return shape.status();
+    const Violations violations({request.status(), shape.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const auto response = AnalyticClient(connection.channel).EvaluatePairs(*request);
+      const AnalyticClient client(connection.channel);
+      const auto response = connection.Ask([&] { return client.EvaluatePairs(*request); });
       if (!response.ok()) return response.status();
       const Numbers& outgoing = request->outgoing_epsilon();
       PrintAnalytics(*response, {outgoing.begin(), outgoing.end()}, *shape, terminal.out);

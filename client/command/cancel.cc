@@ -4,6 +4,7 @@
 #include "client/command/connection.h"
 #include "client/command/flags.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 #include "client/library/ensemble_client.h"
 #include "client/output/spelling.h"
 
@@ -16,9 +17,11 @@ struct Cancel {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<std::string> name = job.Name();
-    if (!name.ok()) return name.status();
+    const Violations violations({name.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const auto cancelled = EnsembleClient(connection.channel).Cancel(*name);
+      const EnsembleClient client(connection.channel);
+      const auto cancelled = connection.Ask([&] { return client.Cancel(*name); });
       if (!cancelled.ok()) return cancelled.status();
       terminal.out << cancelled->name() << ' ' << Spelling(cancelled->state()) << '\n';
       return ExitCode::kDone;

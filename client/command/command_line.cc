@@ -1,5 +1,7 @@
 #include "client/command/command_line.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,9 +30,26 @@ void AddVerbs(CLI::App& app, Action& action) {
   AddFigure(app, action);
 }
 
+// The verbs that --help shows.
 std::string Verbs(const CLI::App& app) {
   const auto name = [](std::string* out, const CLI::App* verb) { out->append(verb->get_name()); };
-  return absl::StrJoin(app.get_subcommands(nullptr), ", ", name);
+  const auto offered = [](const CLI::App* verb) { return !verb->get_group().empty(); };
+  return absl::StrJoin(app.get_subcommands(offered), ", ", name);
+}
+
+// Verbs that the command line's contract names and this version lacks: whatever follows them, the
+// answer is the same. `app` has to outlive the action.
+void AddLaterVerbs(CLI::App& app, Action& action) {
+  for (const std::string name : {"plan", "trace"}) {
+    CLI::App* verb = app.add_subcommand(name)->group("")->prefix_command();
+    verb->set_help_flag();
+    verb->callback([&app, &action, name] {
+      action = [&app, name](Terminal&) -> absl::StatusOr<ExitCode> {
+        return absl::InvalidArgumentError(
+            absl::StrCat(name, " is not offered by this version; it offers ", Verbs(app)));
+      };
+    });
+  }
 }
 
 // CLI11's own words where they are good ones.
@@ -64,12 +83,15 @@ std::optional<ExitCode> Parse(CLI::App& app, int argc, const char* const* argv,
 }  // namespace
 
 ExitCode RunCommandLine(int argc, const char* const* argv, Terminal& terminal) {
+  // Every error is told here, in the project's words.
+  google::protobuf::SetLogHandler(nullptr);
   CLI::App app(kDescription, "ballpiston");
   Action action;
   app.require_subcommand(1);
   app.failure_message(UsageError);
   app.footer(kFooter);
   AddVerbs(app, action);
+  AddLaterVerbs(app, action);
   if (const auto code = Parse(app, argc, argv, terminal)) return *code;
   const absl::StatusOr<ExitCode> code = action(terminal);
   if (code.ok()) return *code;

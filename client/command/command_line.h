@@ -7,7 +7,8 @@
 
 namespace ballpiston::client {
 
-// Errors of the command line are kUsage with one line that says what to do; --help is kDone.
+// Errors of the command line are kUsage with what to do; --help is kDone. Silences Protocol
+// Buffers' own log for the rest of the process.
 ExitCode RunCommandLine(int argc, const char* const* argv, Terminal& terminal);
 
 }  // namespace ballpiston::client

@@ -4,11 +4,16 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/library/channel.h"
 #include "client/library/error_text.h"
+#include "client/library/server_address.h"
 
 namespace ballpiston::client {
 namespace {
+
+constexpr absl::Duration kReviveTimeout = absl::Seconds(10);
 
 absl::StatusOr<Connection> ConnectTo(const std::string& address, const std::string& flag) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(address);
@@ -47,8 +52,19 @@ void ServerFlag::AddTo(CLI::App& verb) {
                   "when needed");
 }
 
-void Connection::Revive() const {
-  if (local) ConnectToLocalServer(*local).IgnoreError();  // the watch reports what goes wrong
+absl::Status ServerFlag::Check() const {
+  if (address.empty()) return absl::OkStatus();
+  const absl::Status status = GrpcTarget(address).status();
+  if (status.ok()) return status;
+  return absl::InvalidArgumentError(absl::StrCat("--server: ", status.message()));
+}
+
+absl::Status Connection::Revive() const {
+  if (!local) return absl::OkStatus();
+  if (absl::Status started = ConnectToLocalServer(*local).status(); !started.ok()) return started;
+  // This channel may still be pausing after its last attempt; a call would fail at once.
+  channel->WaitForConnected(absl::ToChronoTime(absl::Now() + kReviveTimeout));
+  return absl::OkStatus();
 }
 
 absl::StatusOr<ExitCode> WithServer(

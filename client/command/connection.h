@@ -20,6 +20,7 @@ struct ServerFlag {
   std::string address;  // of --server; empty: not given
 
   void AddTo(CLI::App& verb);
+  absl::Status Check() const;  // whether it can be an address; connects to nothing
 };
 
 struct Connection {
@@ -29,12 +30,33 @@ struct Connection {
   std::string flag;                  // " --server ADDRESS" if that was given: for hints
 
   // Starts the private server again if it is gone; with a named server nothing to do.
-  void Revive() const;
+  absl::Status Revive() const;
+
+  // What `call`, a verb's first one, answers. A private server may be leaving, idle, just as the
+  // client arrives: then it is started again and asked once more. So `call` has to be one that may
+  // be repeated.
+  template <typename Call>
+  auto Ask(const Call& call) const -> decltype(call());
+
+ private:
+  static absl::Status StatusOf(const absl::Status& status) { return status; }
+  template <typename Value>
+  static absl::Status StatusOf(const absl::StatusOr<Value>& value) {
+    return value.status();
+  }
 };
 
 // Connects, runs `verb`, and names the server in the error if it did not answer.
 absl::StatusOr<ExitCode> WithServer(
     const ServerFlag& flag, const std::function<absl::StatusOr<ExitCode>(const Connection&)>& verb);
+
+template <typename Call>
+auto Connection::Ask(const Call& call) const -> decltype(call()) {
+  auto answer = call();
+  if (!local || !absl::IsUnavailable(StatusOf(answer))) return answer;
+  if (absl::Status revived = Revive(); !revived.ok()) return revived;
+  return call();
+}
 
 }  // namespace ballpiston::client
 

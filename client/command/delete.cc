@@ -4,6 +4,7 @@
 #include "client/command/connection.h"
 #include "client/command/flags.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 #include "client/library/ensemble_client.h"
 
 namespace ballpiston::client {
@@ -15,9 +16,11 @@ struct Delete {
 
   absl::StatusOr<ExitCode> Act(Terminal&) const {
     const absl::StatusOr<std::string> name = job.Name();
-    if (!name.ok()) return name.status();
+    const Violations violations({name.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const absl::Status status = EnsembleClient(connection.channel).Delete(*name);
+      const EnsembleClient client(connection.channel);
+      const absl::Status status = connection.Ask([&] { return client.Delete(*name); });
       if (!status.ok()) return status;
       return ExitCode::kDone;
     });

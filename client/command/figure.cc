@@ -9,11 +9,13 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/command/connection.h"
+#include "client/command/create_job.h"
 #include "client/command/flags.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
 #include "client/command/number_list.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 #include "client/figure/mean_free_time_figure.h"
 #include "client/library/analytic_client.h"
 #include "client/library/child_process.h"
@@ -54,7 +56,7 @@ class Asker {
   // The points of a job that succeeded. `*end` tells how it ended otherwise.
   absl::StatusOr<std::vector<v1::PointResult>> Measure(const v1::EnsembleSpec& spec,
                                                        ExitCode& end) const {
-    const absl::StatusOr<v1::EnsembleJob> job = client_.Create(spec);
+    const absl::StatusOr<v1::EnsembleJob> job = CreateJob(connection_, spec);
     if (!job.ok()) return job.status();
     const auto ended = FollowJob(connection_, job->name(), style_, interrupts_, err_);
     if (!ended.ok()) return ended.status();
@@ -65,7 +67,8 @@ class Asker {
 
   absl::StatusOr<v1::EvaluatePairsResponse> Evaluate(
       const v1::EvaluatePairsRequest& request) const {
-    return AnalyticClient(connection_.channel).EvaluatePairs(request);
+    const AnalyticClient client(connection_.channel);
+    return connection_.Ask([&] { return client.EvaluatePairs(request); });
   }
 
  private:
@@ -121,30 +124,32 @@ struct Figure {
     progress.AddTo(verb);
   }
 
+  absl::Status CheckName() const {
+    if (name == kMeanFreeTimeFigure) return absl::OkStatus();
+    return absl::InvalidArgumentError(absl::StrCat(
+        "figure '", name, "' is not offered by this version; it offers ", kMeanFreeTimeFigure));
+  }
+
   absl::StatusOr<MeanFreeTimeQuestion> Question() const {
     MeanFreeTimeQuestion question;
-    absl::Status status;
-    const auto take = [&status](auto parsed, auto& into) {
+    Violations violations;
+    const auto take = [&violations](auto parsed, auto& into) {
       if (parsed.ok()) into = *std::move(parsed);
-      status.Update(parsed.status());
+      violations.Add(parsed.status());
     };
     if (rho) take(ParseNumber("--rho", *rho), question.rho);
     if (delta) take(ParseNumberList("--delta", *delta), question.delta);
     if (samples) take(ParseCount("--samples", *samples), question.samples);
     if (seed) take(ParseSeed("--seed", *seed), question.seed);
-    if (!status.ok()) return status;
+    if (absl::Status bad = violations.Lines(); !bad.ok()) return bad;
     return question;
   }
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
-    if (name != kMeanFreeTimeFigure) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "figure '", name, "' is not offered by this version; it offers ", kMeanFreeTimeFigure));
-    }
     const absl::StatusOr<MeanFreeTimeQuestion> question = Question();
-    if (!question.ok()) return question.status();
     const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
-    if (!style.ok()) return style.status();
+    const Violations violations({CheckName(), question.status(), style.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     if (absl::Status made = MakeFolder(folder); !made.ok()) return made;
     Interrupts interrupts;  // before gRPC starts threads
     return WithServer(server, [&](const Connection& connection) {

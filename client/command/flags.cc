@@ -1,20 +1,37 @@
 #include "client/command/flags.h"
 
+#include <algorithm>
+
 #include "absl/status/status.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 
 namespace ballpiston::client {
+namespace {
+
+bool IsId(absl::string_view text) {
+  constexpr size_t kLongest = 63;
+  return !text.empty() && text.size() <= kLongest &&
+         std::all_of(text.begin(), text.end(), [](char c) {
+           return absl::ascii_islower(static_cast<unsigned char>(c)) ||
+                  absl::ascii_isdigit(static_cast<unsigned char>(c)) || c == '-';
+         });
+}
+
+}  // namespace
 
 absl::StatusOr<std::string> JobArgument::Name() const {
   constexpr absl::string_view kCollection = "ensembleJobs/";
   const absl::string_view id = absl::StripPrefix(text, kCollection);
-  if (id.empty() || id.find_first_of("/ \t\n") != absl::string_view::npos) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("'", text, "' is not a job's name: write ensembleJobs/ID, or the ID alone"));
-  }
-  return absl::StrCat(kCollection, id);
+  if (IsId(id)) return absl::StrCat(kCollection, id);
+  // Escaped: a name that is not text at all would spoil the terminal.
+  return absl::InvalidArgumentError(absl::StrCat(
+      "'", absl::CHexEscape(text),
+      "' is not a job's name: write ensembleJobs/ID, or the ID alone; an ID is 1 to 63 "
+      "of a-z, 0-9 and hyphen"));
 }
 
 }  // namespace ballpiston::client

@@ -26,7 +26,7 @@ struct ProgressFlag {
   }
 };
 
-// JOB: a job's name, ensembleJobs/ID, or its ID alone.
+// JOB: a job's name, ensembleJobs/ID, or its ID alone, which is 1 to 63 of a-z, 0-9 and hyphen.
 struct JobArgument {
   std::string text;
 

@@ -55,7 +55,8 @@ absl::StatusOr<std::optional<v1::EnsembleJob>> FollowJob(const Connection& conne
                                    .on_second = [&] { Cancel(client, name, *reporter, stop); },
                                    .on_no_second = [&] { stop.request_stop(); }});
     WatchOptions options;
-    options.before_reattach = [&connection] { connection.Revive(); };
+    // The watch reports what goes wrong.
+    options.before_reattach = [&connection] { connection.Revive().IgnoreError(); };
     job = client.Watch(name, Report(*reporter), options, stop.get_token());
   }
   reporter->OnEnd();

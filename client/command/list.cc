@@ -4,6 +4,7 @@
 #include "client/command/connection.h"
 #include "client/command/flags.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 #include "client/library/ensemble_client.h"
 #include "client/output/job_list.h"
 
@@ -16,9 +17,11 @@ struct List {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<Format> shape = ParseFormat(format.text);
-    if (!shape.ok()) return shape.status();
+    const Violations violations({shape.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const auto jobs = EnsembleClient(connection.channel).List();
+      const EnsembleClient client(connection.channel);
+      const auto jobs = connection.Ask([&] { return client.List(); });
       if (!jobs.ok()) return jobs.status();
       PrintJobs(*jobs, *shape, terminal.out);
       return ExitCode::kDone;

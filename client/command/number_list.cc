@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "client/command/violations.h"
 
 namespace ballpiston::client {
 namespace {
@@ -84,16 +85,19 @@ absl::StatusOr<Range> ParseRange(absl::string_view flag, absl::string_view text)
   return Range{*from, *to, *count, logarithmic};
 }
 
-absl::Status AppendItem(absl::string_view flag, absl::string_view item, std::vector<double>& list) {
-  if (item.find(':') == absl::string_view::npos) {
-    absl::StatusOr<double> number = ParseNumber(flag, item);
-    if (number.ok()) list.push_back(*number);
-    return number.status();
-  }
-  absl::StatusOr<Range> range = ParseRange(flag, item);
-  if (!range.ok()) return range.status();
-  for (int64_t i = 0; i < range->count; ++i) list.push_back(range->At(i));
-  return absl::OkStatus();
+// A number is a range of one.
+absl::StatusOr<Range> ParseItem(absl::string_view flag, absl::string_view item) {
+  if (item.find(':') != absl::string_view::npos) return ParseRange(flag, item);
+  const absl::StatusOr<double> number = ParseNumber(flag, item);
+  if (!number.ok()) return number.status();
+  return Range{*number, *number, 1, false};
+}
+
+absl::Status TooLong(absl::string_view flag, absl::string_view text, int64_t length) {
+  constexpr size_t kShown = 40;
+  const absl::string_view dots = text.size() > kShown ? "..." : "";
+  return Bad(flag, absl::StrCat(text.substr(0, kShown), dots),
+             absl::StrCat("has ", length, " numbers; at most ", kMaxListLength, " are permitted"));
 }
 
 }  // namespace
@@ -118,13 +122,17 @@ absl::StatusOr<uint64_t> ParseSeed(absl::string_view flag, absl::string_view tex
 absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view flag,
                                                     absl::string_view text) {
   std::vector<double> list;
+  Violations violations;
+  int64_t length = 0;  // goes on where the list has become too long to be made
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    if (absl::Status status = AppendItem(flag, item, list); !status.ok()) return status;
-    if (std::ssize(list) > kMaxListLength) {
-      return Bad(flag, text.substr(0, 40),
-                 absl::StrCat("has more than ", kMaxListLength, " numbers"));
-    }
+    const absl::StatusOr<Range> range = ParseItem(flag, item);
+    violations.Add(range.status());
+    length += range.ok() ? range->count : 1;
+    if (!range.ok() || length > kMaxListLength) continue;
+    for (int64_t i = 0; i < range->count; ++i) list.push_back(range->At(i));
   }
+  if (length > kMaxListLength) violations.Add(TooLong(flag, text, length));
+  if (absl::Status status = violations.Lines(); !status.ok()) return status;
   return list;
 }
 

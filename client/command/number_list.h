@@ -6,7 +6,8 @@
 //   range   FROM:TO:COUNT, evenly spaced, both ends included; with :log evenly in the logarithm
 //           (both ends above 0). COUNT is 1 to 100,000; a range of one is its FROM.
 //
-// Every error is INVALID_ARGUMENT and names the flag, the text, and what is permitted.
+// Every error is INVALID_ARGUMENT and names the flag, the text, and what is permitted; of a list,
+// every item that is wrong has its line (violations.h).
 #ifndef BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 #define BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 

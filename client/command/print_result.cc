@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "client/command/follow_job.h"
+#include "client/library/ensemble_client.h"
 #include "client/output/number_text.h"
 #include "client/output/result_writer.h"
 #include "client/output/spelling.h"
@@ -26,9 +27,10 @@ void NoteUnfinished(const v1::EnsembleJob& job, std::ostream& err) {
 
 }  // namespace
 
-absl::StatusOr<ExitCode> PrintResult(const EnsembleClient& client, const std::string& name,
+absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
                                      Format format, Terminal& terminal) {
-  const absl::StatusOr<v1::EnsembleJob> job = client.Get(name);
+  const EnsembleClient client(connection.channel);
+  const absl::StatusOr<v1::EnsembleJob> job = connection.Ask([&] { return client.Get(name); });
   if (!job.ok()) return job.status();
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
   writer->Begin(*job);

@@ -5,14 +5,14 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "client/command/connection.h"
 #include "client/command/verbs.h"
-#include "client/library/ensemble_client.h"
 #include "client/output/format.h"
 
 namespace ballpiston::client {
 
 // kFailed for a job that failed or was cancelled; what it finished is printed all the same.
-absl::StatusOr<ExitCode> PrintResult(const EnsembleClient& client, const std::string& name,
+absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
                                      Format format, Terminal& terminal);
 
 }  // namespace ballpiston::client

@@ -5,7 +5,7 @@
 #include "client/command/flags.h"
 #include "client/command/print_result.h"
 #include "client/command/verbs.h"
-#include "client/library/ensemble_client.h"
+#include "client/command/violations.h"
 
 namespace ballpiston::client {
 namespace {
@@ -17,11 +17,11 @@ struct Result {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<std::string> name = job.Name();
-    if (!name.ok()) return name.status();
     const absl::StatusOr<Format> shape = ParseFormat(format.text);
-    if (!shape.ok()) return shape.status();
+    const Violations violations({name.status(), shape.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) {
-      return PrintResult(EnsembleClient(connection.channel), *name, *shape, terminal);
+      return PrintResult(connection, *name, *shape, terminal);
     });
   }
 };

@@ -2,13 +2,14 @@
 #include <memory>
 
 #include "client/command/connection.h"
+#include "client/command/create_job.h"
 #include "client/command/flags.h"
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
 #include "client/command/print_result.h"
 #include "client/command/spec_flags.h"
 #include "client/command/verbs.h"
-#include "client/library/ensemble_client.h"
+#include "client/command/violations.h"
 
 namespace ballpiston::client {
 namespace {
@@ -21,11 +22,10 @@ struct Run {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<v1::EnsembleSpec> wanted = SpecOf(spec);
-    if (!wanted.ok()) return wanted.status();
     const absl::StatusOr<Format> shape = ParseFormat(format.text);
-    if (!shape.ok()) return shape.status();
     const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
-    if (!style.ok()) return style.status();
+    const Violations violations({wanted.status(), shape.status(), style.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     Interrupts interrupts;  // before gRPC starts threads
     return WithServer(server, [&](const Connection& connection) {
       return RunOn(connection, *wanted, *shape, *style, interrupts, terminal);
@@ -36,13 +36,12 @@ struct Run {
                                         const v1::EnsembleSpec& wanted, Format shape,
                                         ProgressStyle style, Interrupts& interrupts,
                                         Terminal& terminal) {
-    const EnsembleClient client(connection.channel);
-    const absl::StatusOr<v1::EnsembleJob> job = client.Create(wanted);
+    const absl::StatusOr<v1::EnsembleJob> job = CreateJob(connection, wanted);
     if (!job.ok()) return job.status();
     const auto end = FollowJob(connection, job->name(), style, interrupts, terminal.err);
     if (!end.ok()) return end.status();
     if (!end->has_value()) return ExitCode::kInterrupted;
-    return PrintResult(client, job->name(), shape, terminal);
+    return PrintResult(connection, job->name(), shape, terminal);
   }
 };
 

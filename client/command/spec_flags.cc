@@ -10,7 +10,9 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/string_view.h"
 #include "client/command/number_list.h"
+#include "client/command/request_size.h"
 #include "client/command/spec_file.h"
+#include "client/command/violations.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -62,23 +64,17 @@ absl::Status Take(absl::string_view name, const Flag& flag, Parse parse, Set set
   return value.status();
 }
 
-absl::Status FirstError(std::initializer_list<absl::Status> statuses) {
-  for (const absl::Status& status : statuses) {
-    if (!status.ok()) return status;
-  }
-  return absl::OkStatus();
-}
-
 absl::Status SetGrid(const SpecFlags& flags, v1::Grid& grid) {
   const auto into = [](auto* field) {
     return [field](const auto& list) { field->Add(list.begin(), list.end()); };
   };
-  return FirstError(
-      {Take("--rho", flags.rho, ParseNumberList, into(grid.mutable_rho())),
-       Take("--delta", flags.delta, ParseNumberList, into(grid.mutable_delta())),
-       Take("--epsilon", flags.epsilon, ParseNumberList, into(grid.mutable_epsilon())),
-       Take("--exponent", flags.exponent, ParseNumberList, into(grid.mutable_exponent())),
-       Take("--cells", flags.cells, ParseCountList, into(grid.mutable_cells()))});
+  return Violations(
+             {Take("--rho", flags.rho, ParseNumberList, into(grid.mutable_rho())),
+              Take("--delta", flags.delta, ParseNumberList, into(grid.mutable_delta())),
+              Take("--epsilon", flags.epsilon, ParseNumberList, into(grid.mutable_epsilon())),
+              Take("--exponent", flags.exponent, ParseNumberList, into(grid.mutable_exponent())),
+              Take("--cells", flags.cells, ParseCountList, into(grid.mutable_cells()))})
+      .Lines();
 }
 
 absl::StatusOr<google::protobuf::Duration> ParseBudget(absl::string_view name,
@@ -107,24 +103,36 @@ absl::Status CheckOneTarget(const SpecFlags& flags) {
 }
 
 absl::Status SetTarget(const SpecFlags& flags, Spec& spec) {
-  if (absl::Status status = CheckOneTarget(flags); !status.ok()) return status;
   const auto target = [&spec] { return spec.mutable_target(); };
-  return FirstError(
-      {Take("--samples", flags.samples, ParseCount, [&](int64_t n) { target()->set_samples(n); }),
-       Take("--collisions", flags.collisions, ParseCount,
-            [&](int64_t n) { target()->set_collisions(n); }),
-       Take("--tolerance", flags.tolerance, ParseNumber,
-            [&](double x) { target()->set_tolerance(x); }),
-       Take("--budget", flags.budget, ParseBudget,
-            [&](const auto& time) { *target()->mutable_budget() = time; })});
+  return Violations({CheckOneTarget(flags),
+                     Take("--samples", flags.samples, ParseCount,
+                          [&](int64_t n) { target()->set_samples(n); }),
+                     Take("--collisions", flags.collisions, ParseCount,
+                          [&](int64_t n) { target()->set_collisions(n); }),
+                     Take("--tolerance", flags.tolerance, ParseNumber,
+                          [&](double x) { target()->set_tolerance(x); }),
+                     Take("--budget", flags.budget, ParseBudget,
+                          [&](const auto& time) { *target()->mutable_budget() = time; })})
+      .Lines();
 }
 
 absl::Status SetRest(const SpecFlags& flags, Spec& spec) {
-  return FirstError(
-      {Take("--seed", flags.seed, ParseSeed, [&](uint64_t seed) { spec.set_seed(seed); }),
-       Take("--model", flags.model, Choice<Spec::Model>, [&](auto m) { spec.set_model(m); }),
-       Take("--precision", flags.precision, Choice<Spec::Precision>,
-            [&](auto p) { spec.set_precision(p); })});
+  return Violations(
+             {Take("--seed", flags.seed, ParseSeed, [&](uint64_t seed) { spec.set_seed(seed); }),
+              Take("--model", flags.model, Choice<Spec::Model>, [&](auto m) { spec.set_model(m); }),
+              Take("--precision", flags.precision, Choice<Spec::Precision>,
+                   [&](auto p) { spec.set_precision(p); })})
+      .Lines();
+}
+
+absl::StatusOr<Spec> FromFlags(const SpecFlags& flags) {
+  Spec spec;
+  const absl::Status status =
+      Violations({SetExperiment(flags.experiment, spec), SetGrid(flags, *spec.mutable_grid()),
+                  SetTarget(flags, spec), SetRest(flags, spec)})
+          .Lines();
+  if (!status.ok()) return status;
+  return spec;
 }
 
 bool AnyButFile(const SpecFlags& flags) {
@@ -166,13 +174,9 @@ absl::StatusOr<v1::EnsembleSpec> SpecOf(const SpecFlags& flags) {
         "--spec holds the whole specification: give no EXPERIMENT, grid, target, --seed, --model "
         "or --precision with it");
   }
-  if (flags.file) return ReadSpecFile(*flags.file);
-  Spec spec;
-  absl::Status status = SetExperiment(flags.experiment, spec);
-  if (status.ok()) status = SetGrid(flags, *spec.mutable_grid());
-  if (status.ok()) status = SetTarget(flags, spec);
-  if (status.ok()) status = SetRest(flags, spec);
-  if (!status.ok()) return status;
+  absl::StatusOr<Spec> spec = flags.file ? ReadSpecFile(*flags.file) : FromFlags(flags);
+  if (!spec.ok()) return spec;
+  if (absl::Status size = CheckSize(*spec, "spec"); !size.ok()) return size;
   return spec;
 }
 

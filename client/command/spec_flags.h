@@ -26,7 +26,8 @@ struct SpecFlags {
   void AddTo(CLI::App& verb);
 };
 
-// INVALID_ARGUMENT names the flag, or the file, and what is permitted.
+// INVALID_ARGUMENT has a line for every violation (violations.h), which names the flag, the text
+// and what is permitted; or the file; or the field that is too large to be sent (request_size.h).
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const SpecFlags& flags);
 
 }  // namespace ballpiston::client

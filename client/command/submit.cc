@@ -2,9 +2,10 @@
 #include <memory>
 
 #include "client/command/connection.h"
+#include "client/command/create_job.h"
 #include "client/command/spec_flags.h"
 #include "client/command/verbs.h"
-#include "client/library/ensemble_client.h"
+#include "client/command/violations.h"
 
 namespace ballpiston::client {
 namespace {
@@ -15,9 +16,10 @@ struct Submit {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<v1::EnsembleSpec> wanted = SpecOf(spec);
-    if (!wanted.ok()) return wanted.status();
+    const Violations violations({wanted.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const auto job = EnsembleClient(connection.channel).Create(*wanted);
+      const auto job = CreateJob(connection, *wanted);
       if (!job.ok()) return job.status();
       terminal.out << job->name() << '\n';
       return ExitCode::kDone;

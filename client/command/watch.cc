@@ -6,6 +6,7 @@
 #include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
 #include "client/command/verbs.h"
+#include "client/command/violations.h"
 
 namespace ballpiston::client {
 namespace {
@@ -17,9 +18,9 @@ struct Watch {
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<std::string> name = job.Name();
-    if (!name.ok()) return name.status();
     const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
-    if (!style.ok()) return style.status();
+    const Violations violations({name.status(), style.status(), server.Check()});
+    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     Interrupts interrupts;  // before gRPC starts threads
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
       const auto end = FollowJob(connection, *name, *style, interrupts, terminal.err);

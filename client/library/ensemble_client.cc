@@ -19,9 +19,14 @@ EnsembleClient::EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& ch
     : stub_(v1::EnsembleService::NewStub(channel)), timeout_(timeout) {}
 
 absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec) const {
+  return Create(spec, NewRequestId());
+}
+
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec,
+                                                       const std::string& request_id) const {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = spec;
-  request.set_request_id(NewRequestId());
+  request.set_request_id(request_id);
   return CallUnary(*stub_, &Stub::CreateEnsembleJob, request, timeout_);
 }
 

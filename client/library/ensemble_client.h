@@ -36,6 +36,9 @@ class EnsembleClient {
   // With an id of its own for each call of this function: sent again by the channel's retries, a
   // job that was already accepted is answered, not made twice.
   absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec) const;
+  // With the caller's id (request_id.h), for a caller that may ask again.
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
+                                         const std::string& request_id) const;
 
   absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
   absl::StatusOr<std::vector<v1::EnsembleJob>> List() const;  // all pages, newest first

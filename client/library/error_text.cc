@@ -2,11 +2,15 @@
 
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/cord.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -62,6 +66,19 @@ std::string Text(const std::string& message, const google::rpc::Status& status) 
                       left_out > 0 ? absl::StrCat("\n  and ", left_out, " more") : "");
 }
 
+// gRPC 1.51 says "Received message larger than max (SIZE vs. MOST)", or "Sent ...".
+std::string PlainText(absl::StatusCode code, absl::string_view text) {
+  const size_t begin = text.find("message larger than max (");
+  if (code != absl::StatusCode::kResourceExhausted || begin == absl::string_view::npos) {
+    return std::string(text);
+  }
+  const absl::string_view sizes = text.substr(text.find('(', begin) + 1);
+  const std::pair<absl::string_view, absl::string_view> size_and_most =
+      absl::StrSplit(absl::StripSuffix(sizes, ")"), absl::MaxSplits(" vs. ", 1));
+  return absl::StrCat("the request or its answer is too large to be sent: ", size_and_most.first,
+                      " bytes; at most ", size_and_most.second, " are permitted");
+}
+
 }  // namespace
 
 absl::Status FromGrpc(const grpc::Status& status) {
@@ -69,7 +86,7 @@ absl::Status FromGrpc(const grpc::Status& status) {
   const auto code = static_cast<absl::StatusCode>(status.error_code());  // the same numbers
   google::rpc::Status details;
   if (status.error_details().empty() || !details.ParseFromString(status.error_details())) {
-    return absl::Status(code, status.error_message());
+    return absl::Status(code, PlainText(code, status.error_message()));
   }
   absl::Status result(code, Text(status.error_message(), details));
   result.SetPayload(kStatusPayload, absl::Cord(status.error_details()));

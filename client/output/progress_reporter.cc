@@ -1,5 +1,6 @@
 #include "client/output/progress_reporter.h"
 
+#include <google/protobuf/struct.pb.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -61,7 +62,7 @@ class BarReporter : public ProgressReporter {
   void OnSnapshot(const v1::StatisticsSnapshot& snapshot) override {
     const std::lock_guard lock(mutex_);
     meter_.Update(snapshot.progress(), absl::Now());
-    if (!snapshot.points().empty()) point_ = *snapshot.points().rbegin();
+    if (!snapshot.points().empty()) point_ = snapshot.points(0);  // the newest comes first
     Draw();
   }
 
@@ -130,10 +131,11 @@ class JsonReporter : public ProgressReporter {
   void OnDisconnect(const absl::Status&, absl::Duration) override {}
   void OnEnd() override {}
 
-  // Not an object: notes are for people, and only Ctrl-C causes one.
   void Note(absl::string_view text) override {
+    google::protobuf::Value note;
+    note.set_string_value(std::string(text));
     const std::lock_guard lock(mutex_);
-    err_ << text << '\n' << std::flush;
+    err_ << "{\"note\": " << Json(note) << "}\n" << std::flush;
   }
 
  private:

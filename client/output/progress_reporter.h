@@ -2,8 +2,9 @@
 //
 //   bar   one line, redrawn: bar, points, samples a second, time left, and the running estimate of
 //         the point that changed last
-//   json  one object a line:
-//   {"job","state","progress","samples_per_second","seconds_left","points"} none  nothing
+//   json  one object a line: {"job", "state", "progress", "samples_per_second", "seconds_left",
+//         "points"}, or a note's {"note"}
+//   none  nothing but notes
 //
 // Thread-safe: notes come from the thread that handles Ctrl-C while the bar is being redrawn.
 #ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_

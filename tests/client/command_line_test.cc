@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -30,6 +33,31 @@ Outcome Ballpiston(std::vector<std::string> words) {
   const ExitCode code = RunCommandLine(static_cast<int>(argv.size()), argv.data(), terminal);
   return {static_cast<int>(code), out.str(), err.str()};
 }
+
+// A home whose private server is the one at `address`; no other can be started.
+class PrivateHome {
+ public:
+  explicit PrivateHome(const std::string& address) {
+    namespace fs = std::filesystem;
+    std::string pattern = (fs::temp_directory_path() / "home_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    fs::create_directories(folder_ + "/ballpiston");
+    fs::create_symlink(address.substr(std::string("unix:").size()),
+                       folder_ + "/ballpiston/server.socket");
+    setenv("XDG_STATE_HOME", folder_.c_str(), 1);
+    setenv("BALLPISTON_SERVER_PROGRAM", "/bin/false", 1);
+  }
+  ~PrivateHome() {
+    unsetenv("XDG_STATE_HOME");
+    unsetenv("BALLPISTON_SERVER_PROGRAM");
+    std::filesystem::remove_all(folder_);
+  }
+  PrivateHome(const PrivateHome&) = delete;
+  PrivateHome& operator=(const PrivateHome&) = delete;
+
+ private:
+  std::string folder_;
+};
 
 class CommandLineTest : public ::testing::Test {
  protected:
@@ -78,6 +106,13 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"result", ""},
                                                {"result", "ensembleJobs/"},
                                                {"result", "a/b"},
+                                               {"result", "ensembleJobs/\xff"},
+                                               {"watch", "\xc3\xa9"},
+                                               {"cancel", "ABC"},
+                                               {"delete", std::string(64, 'a')},
+                                               {"plan"},
+                                               {"plan", "equilibrium", "--rho", "0.53"},
+                                               {"trace", "--events", "5"},
                                                {"list", "--server", "nowhere"},
                                                {"analytic", "--rho", "0.53"},
                                                {"figure", "portrait", "--out", "x"},
@@ -89,6 +124,85 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
     EXPECT_EQ(outcome.err.rfind("ballpiston: ", 0), 0u) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
+}
+
+TEST_F(CommandLineTest, MistakesOfAllFlagsAreShownAtOnce) {
+  const Outcome run = Ballpiston({"run", "first-hit", "--exponent", "x", "--samples", "y",
+                                  "--format", "xml", "--progress", "loud", "--server", "z"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_EQ(run.err,
+            "ballpiston: not valid, 5 violations:\n"
+            "  --exponent: 'x' is not a decimal number such as 0.1 or 1e-3\n"
+            "  --samples: 'y' is not a whole number such as 10000 or 1e6\n"
+            "  --format: 'xml' is not one of table, json, jsonl, csv\n"
+            "  --progress: 'loud' is not one of auto, bar, json, none\n"
+            "  --server: 'z' is not a server's address: the port is missing (write host:port or "
+            "unix:PATH)\n");
+  const Outcome analytic =
+      Ballpiston({"analytic", "--rho", "nan", "--delta", "inf", "--epsilon", "nan"});
+  EXPECT_EQ(analytic.code, 2);
+  EXPECT_EQ(analytic.err,
+            "ballpiston: not valid, 3 violations:\n"
+            "  --rho: 'nan' is not a decimal number such as 0.1 or 1e-3\n"
+            "  --delta: 'inf' is not a decimal number such as 0.1 or 1e-3\n"
+            "  --epsilon: 'nan' is not a decimal number such as 0.1 or 1e-3\n");
+}
+
+TEST_F(CommandLineTest, WhatIsNotAJobsNameIsShownEscaped) {
+  const Outcome outcome = Ballpiston({"result", "ensembleJobs/\xff\x1b"});
+  EXPECT_THAT(outcome.err, HasSubstr("'ensembleJobs/\\xff\\x1b' is not a job's name"));
+}
+
+TEST_F(CommandLineTest, VerbsOfLaterVersionsAreKnownAsSuch) {
+  for (const auto& words : {std::vector<std::string>{"plan", "equilibrium", "--tolerance", "0.1"},
+                            {"plan", "--help"},
+                            {"plan", "run", "list"}}) {
+    const Outcome outcome = Ballpiston(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err,
+              "ballpiston: plan is not offered by this version; it offers analytic, run, submit, "
+              "watch, result, list, cancel, delete, figure\n");
+  }
+  EXPECT_THAT(Ballpiston({"trace"}).err, HasSubstr("trace is not offered by this version"));
+}
+
+// A server that answers with bytes that are no text; Protocol Buffers would log it.
+TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
+  job().set_name("ensembleJobs/\xff");
+  server_.Start();
+  testing::internal::CaptureStderr();
+  EXPECT_NE(WithServer({"submit", "first-hit"}).code, 0);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// The channel tries four times; then the server has left.
+constexpr int kAttempts = 4;
+
+TEST_F(CommandLineTest, APrivateServerThatIsJustLeavingIsAskedAgainWithTheSameId) {
+  const PrivateHome home(server_.Address());
+  server_.ensemble.unavailable_creates = kAttempts;
+  server_.Start();
+  const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(std::ssize(asked), kAttempts + 1);
+  EXPECT_EQ(asked.front().request_id(), asked.back().request_id());
+}
+
+TEST_F(CommandLineTest, APrivateServerIsAskedAgainOnce) {
+  const PrivateHome home(server_.Address());
+  server_.ensemble.unavailable_creates = 100;
+  server_.Start();
+  EXPECT_EQ(Ballpiston({"submit", "first-hit"}).code, 3);
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), 2 * kAttempts);
+}
+
+TEST_F(CommandLineTest, ANamedServerIsNotAskedAgain) {
+  server_.ensemble.unavailable_creates = kAttempts;
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kAttempts);
 }
 
 TEST_F(CommandLineTest, WithoutAServerExitsWithThreeAndNamesIt) {

@@ -109,5 +109,18 @@ TEST(EnsembleClient, CancelCarriesARequestId) {
   EXPECT_FALSE(server.ensemble.Asked().cancel[0].request_id().empty());
 }
 
+// The words are gRPC's own; a server takes 4 MiB if nobody tells it otherwise.
+TEST(EnsembleClient, ASpecificationThatIsTooLargeIsToldInPlainWords) {
+  FakeServer server;
+  server.Start();
+  v1::EnsembleSpec spec;
+  spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
+  const absl::Status status = EnsembleClient(server.Channel()).Create(spec).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(status.message().find("the request or its answer is too large to be sent: 80000"), 0u)
+      << status;
+  EXPECT_NE(status.message().find(" bytes; at most 4194304 are permitted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ballpiston::client

@@ -71,6 +71,23 @@ TEST(ErrorText, AReasonAloneFollowsTheMessage) {
   EXPECT_EQ(status.message(), "no such job (JOB_NOT_FOUND)");
 }
 
+TEST(ErrorText, AMessageThatIsTooLargeIsToldInPlainWords) {
+  for (const char* text : {"Sent message larger than max (8000051 vs. 4194304)",
+                           "SERVER: Received message larger than max (8000051 vs. 4194304)"}) {
+    const absl::Status status = FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, text));
+    EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
+    EXPECT_EQ(status.message(),
+              "the request or its answer is too large to be sent: 8000051 bytes; at most 4194304 "
+              "are permitted");
+  }
+}
+
+TEST(ErrorText, OtherExhaustionKeepsItsWords) {
+  const absl::Status status =
+      FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many watchers"));
+  EXPECT_EQ(status, absl::ResourceExhaustedError("too many watchers"));
+}
+
 TEST(ErrorText, DetailsThatAreNoStatusDoNotHideTheMessage) {
   const absl::Status status =
       FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff"));

@@ -80,13 +80,28 @@ TEST(NumberList, RefusesWhatIsNotAListAndSaysWhy) {
       {"0:1:3:log", "both ends have to be above 0"},
       {"-1:1:3:log", "both ends have to be above 0"},
       {"1e-300:1e300:3:log", "beyond 1e100"},
-      {"0:1:100000,5", "has more than 100000 numbers"}};
+      {"0:1:100000,5", "'0:1:100000,5' has 100001 numbers; at most 100000 are permitted"}};
   for (const auto& [text, reason] : cases) {
     const auto list = ParseNumberList("--rho", text);
     EXPECT_EQ(list.status().code(), absl::StatusCode::kInvalidArgument) << text;
     EXPECT_THAT(std::string(list.status().message()), HasSubstr(reason)) << text;
     EXPECT_THAT(std::string(list.status().message()), HasSubstr("--rho: ")) << text;
   }
+}
+
+TEST(NumberList, EveryItemThatIsWrongHasItsLine) {
+  EXPECT_EQ(ParseNumberList("--rho", "nan,0.53,inf,0:1:0").status().message(),
+            "--rho: 'nan' is not a decimal number such as 0.1 or 1e-3\n"
+            "--rho: 'inf' is not a decimal number such as 0.1 or 1e-3\n"
+            "--rho: '0:1:0' has a count that is not a whole number from 1 to 100000");
+}
+
+TEST(NumberList, OneThatIsTooLongIsCountedToItsEndWithoutBeingMade) {
+  std::string text = "0:1:100000";
+  for (int i = 1; i < 1000; ++i) text += ",0:1:100000";
+  EXPECT_EQ(ParseNumberList("--rho", text).status().message(),
+            "--rho: '0:1:100000,0:1:100000,0:1:100000,0:1:100...' has 100000000 numbers; "
+            "at most 100000 are permitted");
 }
 
 TEST(Count, IsWholeHoweverItIsWritten) {

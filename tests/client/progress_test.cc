@@ -127,6 +127,26 @@ TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
   EXPECT_THAT(text, HasSubstr("\rsucceeded: 100 of 100 points, 2000 samples\x1b[K\n"));
 }
 
+// The server sends the point that changed last first.
+TEST(ProgressBar, ShowsThePointThatChangedLast) {
+  std::ostringstream err;
+  const auto reporter = NewProgressReporter(ProgressStyle::kBar, err);
+  v1::StatisticsSnapshot snapshot;
+  *snapshot.mutable_progress() = Progress(50, 1000, 0.5);
+  *snapshot.add_points() = Point();
+  *snapshot.add_points() = Point();
+  snapshot.mutable_points(1)->mutable_estimates(0)->set_value(99.5);
+  reporter->OnSnapshot(snapshot);
+  EXPECT_THAT(err.str(), HasSubstr("tau_conditional 21.63"));
+  EXPECT_THAT(err.str(), Not(HasSubstr("99.5")));
+}
+
+TEST(ProgressJson, NotesAreObjectsToo) {
+  std::ostringstream err;
+  NewProgressReporter(ProgressStyle::kJson, err)->Note("a \"hint\"\nof two lines");
+  EXPECT_EQ(err.str(), "{\"note\": \"a \\\"hint\\\"\\nof two lines\"}\n");
+}
+
 TEST(ProgressJson, IsOneObjectALine) {
   const std::string text = Reported(ProgressStyle::kJson);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);

@@ -5,6 +5,7 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -112,6 +113,32 @@ TEST(SpecFlags, BadNumbersNameTheirFlag) {
   flags = FirstHit();
   flags.samples = "many";
   ExpectError(flags, "--samples: 'many'");
+}
+
+TEST(SpecFlags, EveryFlagThatDoesNotParseHasItsLine) {
+  SpecFlags flags;
+  flags.experiment = "brownian";
+  flags.rho = "0.53,nan";
+  flags.exponent = "x";
+  flags.cells = "1.5";
+  flags.samples = "many";
+  flags.seed = "-1";
+  flags.model = "guess";
+  flags.precision = "half";
+  const std::string text(SpecOf(flags).status().message());
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7) << text;
+  for (const char* part :
+       {"experiment 'brownian'", "--rho: 'nan'", "--exponent: 'x'", "--cells: '1.5'",
+        "--samples: 'many'", "--seed: '-1'", "--model: 'guess'", "--precision: 'half'"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+TEST(SpecFlags, WhatIsTooLargeToBeSentIsRefused) {
+  SpecFlags flags = FirstHit();
+  flags.rho = flags.delta = flags.epsilon = flags.exponent = "0:1:100000";
+  flags.cells = "-100000:-1:100000";
+  ExpectError(flags, "spec: has 42000");
 }
 
 TEST(SpecFlags, AFileComesAlone) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -84,6 +85,8 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {first_hit + "--format xml", 2, {"--format: 'xml'"}},
       {first_hit + "--progress loud", 2, {"--progress: 'loud'"}},
       {first_hit + "--speed 3", 2, {"not expected: --speed 3"}},
+      {"plan equilibrium --rho 0.53", 2, {"plan is not offered by this version"}},
+      {"trace --rho 0.53 --events 5", 2, {"trace is not offered by this version"}},
       {"dance", 2, {"'dance' is not a verb"}},
       {"run first-hit extra", 2, {"not expected: extra"}},
       {"figure portrait --out FOLDER/figure", 2, {"figure 'portrait'"}},
@@ -103,12 +106,37 @@ std::vector<BadInput> Table(const std::string& cancelled) {
        2,
        {"spec.grid.rho[0]", "spec.grid.rho[2]", "spec.grid.epsilon[0]", "spec.grid.exponent[0]",
         "spec.target.samples"}},
+      {"run first-hit --rho 0.5296 --delta -0.1 --epsilon nan --samples few --exponent x",
+       2,
+       {"not valid, 3 violations", "\n  --epsilon: 'nan'", "\n  --exponent: 'x'",
+        "\n  --samples: 'few'"}},
+      {"analytic --rho nan --delta inf --epsilon nan,0.1,y",
+       2,
+       {"not valid, 4 violations", "\n  --rho: 'nan'", "\n  --delta: 'inf'", "\n  --epsilon: 'nan'",
+        "\n  --epsilon: 'y'"}},
+      // too large to be sent
+      {"run --spec FOLDER/million.json",
+       2,
+       {"spec.grid.rho: has 1000000 values; at most 100000 are permitted"}},
+      {"run equilibrium --rho 0.51:0.6:100000,0.61 --delta 0.1",
+       2,
+       {"--rho: ", "has 100001 numbers; at most 100000 are permitted"}},
+      {"analytic --rho 0.53 --delta 0.1 --beta 1:2:60000,1:2:60000",
+       2,
+       {"--beta: ", "has 120000 numbers; at most 100000 are permitted"}},
+      {"submit equilibrium --rho 0:1:100000 --delta 0:1:100000 --epsilon 0:1:100000 "
+       "--exponent 0:1:100000 --cells -100000:-1:100000",
+       2,
+       {"spec: has 42000", " bytes; at most 4193280 are permitted"}},
       // jobs
       {"result ensembleJobs/none", 5, {"JOB_NOT_FOUND"}},
       {"watch none", 5, {"JOB_NOT_FOUND"}},
       {"cancel none", 5, {"JOB_NOT_FOUND"}},
       {"delete none", 5, {"JOB_NOT_FOUND"}},
       {"result a/b", 2, {"'a/b' is not a job's name"}},
+      {"result ensembleJobs/\xff", 2, {"'ensembleJobs/\\xff' is not a job's name"}},
+      {"watch \xc3\xa9", 2, {"'\\xc3\\xa9' is not a job's name"}},
+      {"delete ABC", 2, {"'ABC' is not a job's name"}},
       {"cancel " + cancelled, 4, {"JOB_ALREADY_ENDED"}},
       {"list --server nowhere", 2, {"'nowhere' is not a server's address"}},
       {"list --server 127.0.0.1:1", 3, {"no answer from the server at 127.0.0.1:1"}},
@@ -124,6 +152,9 @@ class BadInputTest : public ::testing::Test {
     Write("empty.json", "{}");
     Write("nan.json", R"({"experiment": "EQUILIBRIUM",
                          "grid": {"rho": ["NaN"], "delta": ["Infinity"]}})");
+    std::string million = R"({"experiment": "EQUILIBRIUM", "grid": {"delta": [0.1], "rho": [0.53)";
+    for (int i = 1; i < 1'000'000; ++i) million += ",0.53";
+    Write("million.json", million + "]}}");
     Write("two_targets.json", R"({"target": {"samples": 1, "tolerance": 0.1}})");
   }
 
@@ -150,8 +181,8 @@ class BadInputTest : public ::testing::Test {
         absl::StrReplaceAll(absl::StripSuffix(result.err, "\n"),
                             {{server_.folder().path().string(), "DIR"}, {"\n", "<br>"}});
     std::printf("| `ballpiston %s` | %d | %s |\n",
-                absl::StrReplaceAll(input.command, {{"FOLDER", "DIR"}}).c_str(), result.exit_code,
-                line.c_str());
+                absl::CHexEscape(absl::StrReplaceAll(input.command, {{"FOLDER", "DIR"}})).c_str(),
+                result.exit_code, line.c_str());
   }
 
   const TestServer server_;

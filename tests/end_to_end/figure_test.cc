@@ -2,11 +2,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -27,6 +32,16 @@ ProcessOptions Figure(const TestServer& server, const std::string& folder) {
           .input = ""};
 }
 
+int64_t RowsWithZScore(const std::string& csv) {
+  constexpr size_t kZScore = 7;
+  int64_t rows = 0;
+  for (const absl::string_view line : absl::StrSplit(csv, '\n', absl::SkipEmpty())) {
+    const std::vector<std::string> fields = absl::StrSplit(line, ',');
+    rows += fields.size() > kZScore && !fields[kZScore].empty();
+  }
+  return rows - 1;  // the heading
+}
+
 TEST(Figure, LeavesDataScriptAndPicture) {
   if (RunProgram({.command = {"sh", "-c", "command -v gnuplot"}, .environment = {}, .input = ""})
           .exit_code != 0) {
@@ -36,8 +51,11 @@ TEST(Figure, LeavesDataScriptAndPicture) {
   const std::string folder = server.folder().Path("out/figure");  // made, parents too
   const ProcessResult result = RunProgram(Figure(server, folder));
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("among 124 estimates"));  // 2 deltas of 59 + 3
   const std::string csv = Contents(folder + "/mean-free-time.csv");
+  // At each delta 59 energies and 3 mean free times; rare long returns leave some without an error.
+  const auto compared = 2 * 3 + RowsWithZScore(csv);
+  EXPECT_GT(compared, 100);
+  EXPECT_THAT(result.err, HasSubstr(absl::StrCat("among ", compared, " estimates")));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 59);
   const std::string svg = Contents(folder + "/mean-free-time.svg");
   EXPECT_THAT(svg, HasSubstr("</svg>"));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -41,7 +42,11 @@ TEST_F(InterruptTest, WithoutASecondPressTheClientLetsGoAndTheJobGoesOn) {
   const ProcessResult result = run_->Wait();
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_THAT(result.err,
-              HasSubstr("ballpiston watch " + job_ + " --server " + server_.Address() + "\n"));
+              HasSubstr("ballpiston watch " + job_ + " --server " + server_.Address() + "\\n"));
+  // All of it can be read by a program.
+  for (const auto line : absl::StrSplit(result.err, '\n', absl::SkipEmpty())) {
+    EXPECT_FALSE(ParseJson(std::string(line)).fields().empty()) << line;
+  }
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(State(), "RUNNING");
 }
