@@ -43,10 +43,14 @@ class FakeExperiment : public PointExperiment {
     return result;
   }
 
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return {"mean", merged.moments[0].mean, merged.moments[0].StandardError(), 0.5};
+  }
+
   PointSummary Summarize(const BlockResult& merged) const override {
     PointSummary summary;
     summary.samples = merged.samples;
-    summary.estimates = {{"mean", merged.moments[0].mean, merged.moments[0].StandardError(), 0.5}};
+    summary.estimates = {FirstEstimate(merged)};
     return summary;
   }
 
@@ -69,6 +73,9 @@ class HeldUpExperiment : public PointExperiment {
     before_block_(index_, block, stop);
     if (stop.stop_requested()) return std::nullopt;  // a short block would not notice
     return real_->RunBlock(block, stop);
+  }
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return real_->FirstEstimate(merged);
   }
   PointSummary Summarize(const BlockResult& merged) const override {
     return real_->Summarize(merged);
