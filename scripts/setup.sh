@@ -11,7 +11,7 @@ readonly PACKAGES=(
   g++ cmake ninja-build                                        # the build
   libgrpc++-dev libprotobuf-dev                                # the service
   protobuf-compiler protobuf-compiler-grpc
-  libabsl-dev libeigen3-dev librandom123-dev                   # the core
+  libabsl-dev libeigen3-dev libhwy-dev librandom123-dev        # the core
   libsqlite3-dev                                               # the store
   libcli11-dev gnuplot-nox                                     # the client, its figures
   libgtest-dev libgmock-dev libbenchmark-dev)                  # tests and benchmarks

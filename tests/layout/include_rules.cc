@@ -40,7 +40,7 @@ const std::vector<Rule>& Rules() {
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
        true},
       {"tests/core/",
-       {"core/", "tests/core/", "tests/oracle/", "Eigen/", "absl/", "gtest/", "gmock/"},
+       {"core/", "tests/core/", "tests/oracle/", "Eigen/", "absl/", "hwy/", "gtest/", "gmock/"},
        true},
       {"tests/oracle/", {"core/", "tests/oracle/", "Eigen/", "absl/"}, true},
       {"tests/client/",

@@ -1,0 +1,34 @@
+// Runs a test under every instruction set that this machine has and the build knows.
+#ifndef BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
+#define BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstdint>
+#include <functional>
+
+namespace ballpiston {
+
+inline bool HasFusedMultiplyAdd(int64_t target) {
+#if HWY_ARCH_X86
+  return target <= HWY_AVX2;  // better ones have smaller values
+#else
+  return target != HWY_SCALAR && target != HWY_EMU128;
+#endif
+}
+
+inline void ForEachTarget(const std::function<void(int64_t target)>& test) {
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    test(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
