@@ -4,7 +4,7 @@
 
 namespace ballpiston {
 
-inline constexpr char kEngineVersion[] = "0.1.0";
+inline constexpr char kEngineVersion[] = "0.2.0";
 
 }  // namespace ballpiston
 

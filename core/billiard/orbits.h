@@ -1,4 +1,4 @@
-// Orbits of many ball-piston pairs, from collision to collision.
+// Orbits of many ball-piston pairs, from collision to collision: what every experiment runs.
 //
 // Two engines do the same work behind one interface.
 //   kReference  one orbit after the other by ReferenceFlow, every event resolved.

@@ -4,11 +4,14 @@
 #include <bit>
 #include <cmath>
 
+#include "core/experiment/engine_choice.h"
+
 namespace ballpiston {
 namespace {
 
-constexpr double kEventsPerBlock = 0x1p20;
-constexpr double kEventsPerBlockOfATolerance = 0x1p17;
+constexpr double kReferenceEventsPerBlock = 0x1p20;
+constexpr double kLaneEventsPerBlock = 0x1p24;
+constexpr double kShareWithATolerance = 0.125;
 constexpr uint64_t kMaxBlockSize = uint64_t{1} << 16;
 
 uint64_t SamplesAskedFor(const Target& target) {
@@ -19,9 +22,12 @@ uint64_t SamplesAskedFor(const Target& target) {
 
 }  // namespace
 
-BlockPlan PlanBlocks(const Target& target, double events_per_sample) {
+BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample) {
+  const Target& target = spec.target;
   const uint64_t samples = SamplesAskedFor(target);
-  const double events = target.tolerance ? kEventsPerBlockOfATolerance : kEventsPerBlock;
+  const double events =
+      (EngineFor(spec) == Engine::kReference ? kReferenceEventsPerBlock : kLaneEventsPerBlock) *
+      (target.tolerance ? kShareWithATolerance : 1);
   const double affordable =
       std::clamp(events / events_per_sample, 1.0, static_cast<double>(kMaxBlockSize));
   const uint64_t divisible = std::max<uint64_t>(samples / kMinBlocks, 1);

@@ -1,10 +1,11 @@
 // How a point's samples are cut into blocks.
 //
-// The block size follows from the target and the predicted cost of a sample alone, never from
-// threads or machines: some 2^20 events a block, so that a block takes about 0.05 s, and an eighth
-// of that with a tolerance, which is looked at after each block from the 64th on. It is a power of
-// two, so that a rounding difference in the prediction does not change the plan, and small enough
-// that a point has at least kMinBlocks of them, so that errors can be taken between blocks.
+// The block size follows from the engine, the target and the predicted cost of a sample alone,
+// never from threads or machines: some 2^20 events a block for the reference, 2^24 in lanes, so
+// that a block takes about 0.05 s, and an eighth of that with a tolerance, which is looked at after
+// each block from the 16th on. It is a power of two, so that a rounding difference in the
+// prediction does not change the plan, and small enough that a point has at least kMinBlocks of
+// them to share out.
 #ifndef BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 #define BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 
@@ -15,7 +16,7 @@
 
 namespace ballpiston {
 
-inline constexpr uint64_t kMinBlocks = 64;
+inline constexpr uint64_t kMinBlocks = 16;
 
 struct BlockPlan {
   uint64_t samples = 0;     // in all; with a tolerance the most that will be computed
@@ -29,7 +30,7 @@ struct BlockPlan {
 };
 
 // events_per_sample > 0, finite.
-BlockPlan PlanBlocks(const Target& target, double events_per_sample);
+BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample);
 
 }  // namespace ballpiston
 

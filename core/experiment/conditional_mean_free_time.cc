@@ -1,6 +1,6 @@
 #include "core/experiment/conditional_mean_free_time.h"
 
-#include "core/experiment/point_stream.h"
+#include "core/experiment/return_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -12,24 +12,21 @@ constexpr double kInvariantExponent = 1;
 ConditionalMeanFreeTimeExperiment::ConditionalMeanFreeTimeExperiment(const EnsembleSpec& spec,
                                                                      const PointParameters& point,
                                                                      const PairGeometry& geometry)
-    : PointExperiment(point, PlanBlocks(spec.target, EventsPerReturn(geometry, *point.epsilon))),
-      orbit_(geometry, *point.epsilon, kInvariantExponent),
-      return_time_(geometry, *point.epsilon),
-      seed_(spec.seed),
-      stream_(PointStream(spec.experiment, point)) {}
+    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerReturn(geometry, *point.epsilon))),
+      geometry_(geometry),
+      return_time_(geometry, *point.epsilon) {}
 
 std::optional<BlockResult> ConditionalMeanFreeTimeExperiment::RunBlock(uint64_t block,
                                                                        std::stop_token stop) const {
+  ReturnOrbits orbits(geometry_, {*parameters().epsilon, kInvariantExponent}, random(),
+                      plan().FirstSample(block), plan().SamplesIn(block));
+  if (!RunOrbits(engine(), geometry_, plan().SamplesIn(block), orbits, stop)) return std::nullopt;
   BlockResult result;
   result.moments.resize(1);
-  const uint64_t first = plan().FirstSample(block);
-  for (uint64_t i = 0; i < plan().SamplesIn(block); ++i) {
-    const auto hit = orbit_.Run(CounterRandom(seed_, stream_, first + i), stop);
-    if (!hit) return std::nullopt;
-    result.health.Merge(hit->health);
-    if (hit->health.escapes != 0) continue;
+  for (const Return& sample : orbits.returns()) {
+    if (!Healthy(sample, result.health)) continue;
     ++result.samples;
-    result.moments[0].Add(hit->time);
+    result.moments[0].Add(sample.time);
   }
   return result;
 }

@@ -5,7 +5,6 @@
 #define BALLPISTON_CORE_EXPERIMENT_CONDITIONAL_MEAN_FREE_TIME_H_
 
 #include "core/experiment/point_experiment.h"
-#include "core/experiment/return_orbit.h"
 #include "core/experiment/return_time.h"
 #include "core/geometry/pair_geometry.h"
 
@@ -21,10 +20,8 @@ class ConditionalMeanFreeTimeExperiment : public PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
-  ReturnOrbit orbit_;
+  PairGeometry geometry_;
   ReturnTime return_time_;
-  uint64_t seed_;
-  uint64_t stream_;
 };
 
 }  // namespace ballpiston

@@ -1,9 +1,10 @@
 #include "core/experiment/equilibrium.h"
 
-#include "core/billiard/reference_flow.h"
+#include <algorithm>
+#include <vector>
+
+#include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/flight_to_collision.h"
-#include "core/experiment/point_stream.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
@@ -24,40 +25,83 @@ Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size
           .exact = exact};
 }
 
+// `collisions` of them over orbits that start at numbers first, first + length, ...
+class EquilibriumOrbits : public OrbitSource {
+ public:
+  EquilibriumOrbits(const PairGeometry& geometry, const RandomStream& random, uint64_t first,
+                    uint64_t collisions)
+      : geometry_(geometry),
+        random_(random),
+        first_(first),
+        collisions_(collisions),
+        length_(std::max<uint64_t>(collisions / kOrbitsPerBlock, 1)),
+        orbits_((collisions + length_ - 1) / length_) {}
+
+  uint64_t count() const { return orbits_.size(); }
+
+  PairState Start(uint64_t orbit) override {
+    CounterRandom random = random_.Sample(first_ + orbit * length_);
+    return DrawFromCollisionMeasure(geometry_, random);
+  }
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    Orbit& sums = orbits_[orbit];
+    if (contact.escaped) {
+      ++sums.health.escapes;
+      return AfterContact::kEnd;
+    }
+    ++sums.collisions;
+    sums.time += contact.time;
+    sums.ball_wall += static_cast<double>(contact.ball_wall_hits);
+    sums.piston_wall += static_cast<double>(contact.piston_wall_hits);
+    sums.health.max_energy_error =
+        std::max(sums.health.max_energy_error, EnergyError(contact.state));
+    const uint64_t last = std::min(length_, collisions_ - orbit * length_);
+    return sums.collisions < last ? AfterContact::kGoOn : AfterContact::kEnd;
+  }
+
+  BlockResult Result() const {
+    BlockResult result;
+    result.batch_means.resize(3);
+    for (const Orbit& orbit : orbits_) {
+      result.samples += orbit.collisions;
+      result.batch_means[0].Add(orbit.time, static_cast<double>(orbit.collisions));
+      result.batch_means[1].Add(orbit.time, orbit.ball_wall);
+      result.batch_means[2].Add(orbit.time, orbit.piston_wall);
+      result.health.Merge(orbit.health);
+    }
+    return result;
+  }
+
+ private:
+  struct Orbit {
+    uint64_t collisions = 0;
+    double time = 0;
+    double ball_wall = 0;
+    double piston_wall = 0;
+    Health health;
+  };
+
+  PairGeometry geometry_;
+  RandomStream random_;
+  uint64_t first_;
+  uint64_t collisions_;
+  uint64_t length_;
+  std::vector<Orbit> orbits_;
+};
+
 }  // namespace
 
 EquilibriumExperiment::EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point,
                                              const PairGeometry& geometry)
-    : PointExperiment(point, PlanBlocks(spec.target, EventsPerCollision(geometry))),
-      geometry_(geometry),
-      seed_(spec.seed),
-      stream_(PointStream(spec.experiment, point)) {}
+    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(geometry))),
+      geometry_(geometry) {}
 
 std::optional<BlockResult> EquilibriumExperiment::RunBlock(uint64_t block,
                                                            std::stop_token stop) const {
-  CounterRandom random(seed_, stream_, plan().FirstSample(block));
-  ReferenceFlow flow(geometry_, DrawFromCollisionMeasure(geometry_, random));
-  BlockResult result;
-  double time = 0, ball_wall = 0, piston_wall = 0;
-  while (result.samples < plan().SamplesIn(block)) {
-    const std::optional<Flight> flight = FlyToCollision(flow, stop);
-    if (!flight) return std::nullopt;
-    if (flight->escaped) {
-      ++result.health.escapes;
-      break;
-    }
-    flow.ExchangeComponents();
-    ++result.samples;
-    time += flight->time;
-    ball_wall += static_cast<double>(flight->ball_wall_hits);
-    piston_wall += static_cast<double>(flight->piston_wall_hits);
-  }
-  result.health.max_energy_error = EnergyError(flow.state());
-  result.batch_means.resize(3);
-  result.batch_means[0].Add(time, static_cast<double>(result.samples));
-  result.batch_means[1].Add(time, ball_wall);
-  result.batch_means[2].Add(time, piston_wall);
-  return result;
+  EquilibriumOrbits orbits(geometry_, random(), plan().FirstSample(block), plan().SamplesIn(block));
+  if (!RunOrbits(engine(), geometry_, orbits.count(), orbits, stop)) return std::nullopt;
+  return orbits.Result();
 }
 
 Estimate EquilibriumExperiment::FirstEstimate(const BlockResult& merged) const {

@@ -1,8 +1,8 @@
 // The pair in equilibrium: mean times between collisions of ball and piston, ball and wall, piston
 // and wall (the paper's eqs. taubpmft and tauwall).
 //
-// A block is an orbit of its own, started from the return map's invariant measure, so nothing has
-// to be burnt in, and blocks are independent; each is one batch of the batch means:
+// A block is many orbits of a few collisions, each started from the return map's invariant measure,
+// so nothing has to be burnt in, and orbits are independent; each is one batch of the batch means:
 // No error is given below kCollisionsForAnError: with a few long flights the ratio's law is skewed,
 // and its error too small (the z-scores of 100 seeds with 64 collisions had variance 1.35).
 //   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
@@ -16,6 +16,10 @@ namespace ballpiston {
 
 inline constexpr uint64_t kCollisionsForAnError = 500;
 
+// Orbits in a block, if it has as many collisions: batches enough for an error, and lanes kept
+// full.
+inline constexpr uint64_t kOrbitsPerBlock = 256;
+
 class EquilibriumExperiment : public PointExperiment {
  public:
   EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point,
@@ -27,8 +31,6 @@ class EquilibriumExperiment : public PointExperiment {
 
  private:
   PairGeometry geometry_;
-  uint64_t seed_;
-  uint64_t stream_;
 };
 
 }  // namespace ballpiston

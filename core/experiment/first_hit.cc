@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/experiment/point_stream.h"
+#include "core/experiment/return_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -40,13 +40,11 @@ Estimate Mean(std::string name, const Moments& moments) {
 
 FirstHitExperiment::FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point,
                                        const PairGeometry& geometry)
-    : PointExperiment(point, PlanBlocks(spec.target, EventsPerReturn(geometry, *point.epsilon))),
-      orbit_(geometry, *point.epsilon, *point.exponent),
+    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerReturn(geometry, *point.epsilon))),
+      geometry_(geometry),
       equilibrium_(*point.epsilon),
       return_time_(geometry, *point.epsilon),
-      expected_(ExpectedProbabilities()),
-      seed_(spec.seed),
-      stream_(PointStream(spec.experiment, point)) {}
+      expected_(ExpectedProbabilities()) {}
 
 BlockResult FirstHitExperiment::EmptyResult() const {
   BlockResult result;
@@ -61,13 +59,12 @@ BlockResult FirstHitExperiment::EmptyResult() const {
 
 std::optional<BlockResult> FirstHitExperiment::RunBlock(uint64_t block,
                                                         std::stop_token stop) const {
+  ReturnOrbits orbits(geometry_, {*parameters().epsilon, *parameters().exponent}, random(),
+                      plan().FirstSample(block), plan().SamplesIn(block));
+  if (!RunOrbits(engine(), geometry_, plan().SamplesIn(block), orbits, stop)) return std::nullopt;
   BlockResult result = EmptyResult();
-  const uint64_t first = plan().FirstSample(block);
-  for (uint64_t i = 0; i < plan().SamplesIn(block); ++i) {
-    const auto hit = orbit_.Run(CounterRandom(seed_, stream_, first + i), stop);
-    if (!hit) return std::nullopt;
-    result.health.Merge(hit->health);
-    if (hit->health.escapes == 0) Record(*hit, &result);
+  for (const Return& sample : orbits.returns()) {
+    if (Healthy(sample, result.health)) Record(sample, &result);
   }
   return result;
 }

@@ -10,7 +10,6 @@
 
 #include "core/closed_form/ingoing_law.h"
 #include "core/experiment/point_experiment.h"
-#include "core/experiment/return_orbit.h"
 #include "core/experiment/return_time.h"
 #include "core/geometry/pair_geometry.h"
 
@@ -32,12 +31,10 @@ class FirstHitExperiment : public PointExperiment {
   std::vector<std::vector<double>> ExpectedProbabilities() const;
   std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const;
 
-  ReturnOrbit orbit_;
+  PairGeometry geometry_;
   IngoingLaw equilibrium_;
   ReturnTime return_time_;
   std::vector<std::vector<double>> expected_;  // probabilities of the bins of each histogram
-  uint64_t seed_;
-  uint64_t stream_;
 };
 
 }  // namespace ballpiston

@@ -3,11 +3,23 @@
 #include <cmath>
 
 #include "core/experiment/conditional_mean_free_time.h"
+#include "core/experiment/engine_choice.h"
 #include "core/experiment/equilibrium.h"
 #include "core/experiment/first_hit.h"
+#include "core/experiment/point_stream.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
+PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                                 const BlockPlan& plan)
+    : parameters_(parameters),
+      engine_(EngineFor(spec)),
+      plan_(plan),
+      random_{spec.seed, PointStream(spec.experiment, parameters)} {}
+
+Model PointExperiment::model() const {
+  return engine_ == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;
+}
 
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
                                                                size_t index) {

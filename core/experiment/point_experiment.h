@@ -15,10 +15,12 @@
 #include <optional>
 #include <stop_token>
 
+#include "core/billiard/orbits.h"
 #include "core/experiment/block_plan.h"
 #include "core/experiment/block_result.h"
 #include "core/experiment/ensemble_spec.h"
 #include "core/experiment/point_summary.h"
+#include "core/experiment/random_stream.h"
 
 namespace ballpiston {
 
@@ -31,9 +33,9 @@ class PointExperiment {
 
   const BlockPlan& plan() const { return plan_; }
   const PointParameters& parameters() const { return parameters_; }
-  Model model() const { return Model::kBilliardReference; }  // the one that answers
+  Model model() const;  // the one that answers
 
-  // Empty only if `stop` was requested. A block takes some 0.1 s (one sample at least).
+  // Empty only if `stop` was requested. A block takes some 0.05 s (one sample at least).
   virtual std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const = 0;
 
   // What a tolerance refers to. Requires at least one merged block, as Summarize does.
@@ -46,12 +48,17 @@ class PointExperiment {
   bool TargetReached(uint64_t blocks, const BlockResult& merged) const;
 
  protected:
-  PointExperiment(const PointParameters& parameters, const BlockPlan& plan)
-      : parameters_(parameters), plan_(plan) {}
+  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                  const BlockPlan& plan);
+
+  Engine engine() const { return engine_; }
+  const RandomStream& random() const { return random_; }
 
  private:
   PointParameters parameters_;
+  Engine engine_;
   BlockPlan plan_;
+  RandomStream random_;
 };
 
 }  // namespace ballpiston

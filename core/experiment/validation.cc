@@ -153,15 +153,15 @@ void CheckTarget(const EnsembleSpec& spec, Found* found) {
 }
 
 void CheckModel(const EnsembleSpec& spec, Found* found) {
-  if (spec.model != Model::kAuto && spec.model != Model::kBilliardReference) {
-    found->push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
-                                            Name(spec.experiment),
-                                            " in this version; permitted: auto, "
-                                            "billiard_reference")});
+  if (spec.model == Model::kClosedForm || spec.model == Model::kMarkov) {
+    found->push_back(
+        {"model",
+         absl::StrCat("is ", Name(spec.model), ", which cannot answer ", Name(spec.experiment),
+                      " in this version; permitted: auto, billiard, billiard_reference")});
   }
-  if (spec.precision != Precision::kDouble) {
-    found->push_back({"precision", absl::StrCat("is ", Name(spec.precision),
-                                                "; permitted with billiard_reference: double")});
+  if (spec.precision == Precision::kSingle && spec.model != Model::kBilliard) {
+    found->push_back({"precision", absl::StrCat("is single; permitted with model ",
+                                                Name(spec.model), ": double")});
   }
 }
 

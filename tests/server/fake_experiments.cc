@@ -26,7 +26,7 @@ BlockPlan FakePlan(const Target& target) {
 class FakeExperiment : public PointExperiment {
  public:
   FakeExperiment(const EnsembleSpec& spec, size_t index, BeforeBlock before_block)
-      : PointExperiment(PointAt(spec, index), FakePlan(spec.target)),
+      : PointExperiment(spec, PointAt(spec, index), FakePlan(spec.target)),
         seed_(spec.seed),
         index_(index),
         before_block_(std::move(before_block)) {}
@@ -62,9 +62,13 @@ class FakeExperiment : public PointExperiment {
 
 class HeldUpExperiment : public PointExperiment {
  public:
-  HeldUpExperiment(std::unique_ptr<const PointExperiment> real, size_t index,
-                   BeforeBlock before_block)
-      : PointExperiment(real->parameters(), real->plan()),
+  HeldUpExperiment(const EnsembleSpec& spec, size_t index, BeforeBlock before_block)
+      : HeldUpExperiment(spec, PointExperiment::Create(spec, index), index,
+                         std::move(before_block)) {}
+
+  HeldUpExperiment(const EnsembleSpec& spec, std::unique_ptr<const PointExperiment> real,
+                   size_t index, BeforeBlock before_block)
+      : PointExperiment(spec, real->parameters(), real->plan()),
         real_(std::move(real)),
         index_(index),
         before_block_(std::move(before_block)) {}
@@ -116,8 +120,7 @@ ExperimentFactory FakeExperiments(BeforeBlock before_block) {
 
 ExperimentFactory HeldUpExperiments(BeforeBlock before_block) {
   return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
-    return std::make_unique<const HeldUpExperiment>(PointExperiment::Create(spec, index), index,
-                                                    before_block);
+    return std::make_unique<const HeldUpExperiment>(spec, index, before_block);
   };
 }
 

@@ -75,7 +75,7 @@ TEST(Restart, TheSameBytesWithATolerance) {
 // The core's experiments, held up in the middle: point 1 has 20 blocks, later ones none.
 ExperimentFactory StuckInTheMiddle(Gate& gate) {
   return HeldUpExperiments([&gate](size_t point, uint64_t block, std::stop_token stop) {
-    if (point > 1 || (point == 1 && block >= 20)) gate.Pass(stop);
+    if (point > 1 || (point == 1 && block >= 10)) gate.Pass(stop);
   });
 }
 
@@ -102,7 +102,7 @@ TEST(Restart, AStoppedServerGoesOnToTheSameBytes) {
     EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
     EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
     EXPECT_EQ(of_point_0, 0);          // its result was stored
-    EXPECT_EQ(first_of_point_1, 20u);  // and so were its blocks
+    EXPECT_EQ(first_of_point_1, 10u);  // and so were its blocks
   }
 }
 

@@ -7,10 +7,12 @@
 namespace ballpiston {
 namespace {
 
+EnsembleSpec With(const Target& target) { return {.target = target}; }
+
 TEST(BlockPlan, CoversEverySampleOnce) {
   for (const int64_t samples : {1, 2, 63, 64, 65, 1000, 1'000'003}) {
     for (const double events : {1.0, 37.0, 1e4, 1e9}) {
-      const BlockPlan plan = PlanBlocks({.samples = samples}, events);
+      const BlockPlan plan = PlanBlocks(With({.samples = samples}), events);
       uint64_t covered = 0;
       for (uint64_t block = 0; block < plan.Blocks(); ++block) {
         ASSERT_EQ(plan.FirstSample(block), covered);
@@ -24,23 +26,23 @@ TEST(BlockPlan, CoversEverySampleOnce) {
 
 TEST(BlockPlan, SizeIsAPowerOfTwoThatLeavesEnoughBlocks) {
   for (const int64_t samples : {64, 1000, 1'000'003}) {
-    const BlockPlan plan = PlanBlocks({.collisions = samples}, 50);
+    const BlockPlan plan = PlanBlocks(With({.collisions = samples}), 50);
     EXPECT_TRUE(std::has_single_bit(plan.block_size));
     EXPECT_GE(plan.Blocks(), kMinBlocks);
   }
 }
 
 TEST(BlockPlan, ExpensiveSamplesMakeSmallBlocks) {
-  EXPECT_EQ(PlanBlocks({.samples = 1'000'000}, 1e9).block_size, 1u);
-  EXPECT_LE(PlanBlocks({.samples = 1'000'000'000}, 1000).block_size, 1024u);
+  EXPECT_EQ(PlanBlocks(With({.samples = 1'000'000}), 1e9).block_size, 1u);
+  EXPECT_LE(PlanBlocks(With({.samples = 1'000'000'000}), 1000).block_size, 1024u);
 }
 
 TEST(BlockPlan, NoTargetAsksForTheDefault) {
-  EXPECT_EQ(PlanBlocks({}, 1).samples, static_cast<uint64_t>(kDefaultSamples));
+  EXPECT_EQ(PlanBlocks(With({}), 1).samples, static_cast<uint64_t>(kDefaultSamples));
 }
 
 TEST(BlockPlan, ToleranceMayGoOnToTheLargestCount) {
-  const BlockPlan plan = PlanBlocks({.tolerance = 0.01}, 100);
+  const BlockPlan plan = PlanBlocks(With({.tolerance = 0.01}), 100);
   EXPECT_EQ(plan.samples, static_cast<uint64_t>(kMaxSamples));
   EXPECT_EQ(plan.tolerance, 0.01);
 }

@@ -22,6 +22,10 @@ std::vector<EnsembleSpec> OneOfEach() {
        .grid = {.rho = {kPaperRho}, .delta = {0.2, 0.3}, .epsilon = {0.125}, .exponent = {5}},
        .target = {.samples = 1000}}};
   for (EnsembleSpec& spec : specs) spec.seed = 42;
+  for (size_t i = 0; i < 3; ++i) {
+    specs.push_back(specs[i]);
+    specs.back().model = Model::kBilliard;
+  }
   return specs;
 }
 
@@ -68,7 +72,8 @@ TEST(PointExperiment, ComputesWhatTheTargetAsksFor) {
     EXPECT_EQ(summary.samples, 1000u);
     EXPECT_EQ(summary.health.escapes, 0u);
     EXPECT_LT(summary.health.max_energy_error, 1e-14);
-    EXPECT_EQ(point->model(), Model::kBilliardReference);
+    EXPECT_EQ(point->model(),
+              spec.model == Model::kBilliard ? Model::kBilliard : Model::kBilliardReference);
     for (const Estimate& estimate : summary.estimates) {
       EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
       ASSERT_TRUE(estimate.standard_error) << estimate.name;
