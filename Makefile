@@ -4,7 +4,7 @@ SHELL := /bin/bash
 TEST_JOBS ?= 2
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo bench asan tsan format check-format tidy setup clean help
+.PHONY: build test demo chart bench stability asan tsan format check-format tidy setup clean help
 
 build: build-release ## Build everything, optimised, in build/release (the default)
 
@@ -15,8 +15,16 @@ demo: build/release/.configured ## Run the paper's sweep with a real server and 
 	@cmake --build build/release --target ballpiston ballpistond
 	@scripts/demo.sh build/release/bin
 
+chart: build/release/.configured ## Chart speed against accuracy for every method, on this machine (1 minute)
+	@cmake --build build/release --target ballpiston ballpistond
+	@scripts/chart.sh build/release/bin
+
 bench: build-release ## Build, then run the benchmarks on one core
 	@scripts/bench.sh build/release/bin
+
+stability: build/release/.configured ## Show where methods fail and which do; write the tables of core/README.md (10 minutes)
+	@cmake --build build/release --target stability
+	@build/release/bin/stability --out core/README.md
 
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 	@ctest --preset asan -j$(TEST_JOBS)
@@ -35,8 +43,8 @@ tidy: build-release ## Run clang-tidy over the project's sources
 	@scripts/setup.sh clang-tidy
 	@run-clang-tidy -quiet -p build/release '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
 
-clean: ## Remove everything that was built, and the demo's output
-	@rm -rf build demo
+clean: ## Remove everything that was built, and the output of demo and chart
+	@rm -rf build demo chart
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' Makefile

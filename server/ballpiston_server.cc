@@ -25,6 +25,7 @@ constexpr int kMinPingIntervalMs = 15'000;
 
 ServerOptions Completed(ServerOptions options) {
   if (!options.factory) options.factory = CoreExperiments();
+  if (!options.compare) options.compare = CoreComparer();
   return options;
 }
 
@@ -69,9 +70,12 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       store_(std::move(store)),
       book_(*store_, options_.workers, options_.factory, [this] { watches_.LookNow(); }),
       executor_(kRpcThreads),
-      context_{book_, executor_, watches_, activity_, draining_, RandomId(), options_.watch},
+      comparisons_(options_.compare),
+      context_{book_,     executor_, watches_,   comparisons_,
+               activity_, draining_, RandomId(), options_.watch},
       ensemble_(context_),
-      analytic_(context_) {}
+      analytic_(context_),
+      method_(context_) {}
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 
@@ -90,6 +94,7 @@ absl::Status BallpistonServer::Listen() {
   builder.AddListeningPort(address_.Text(), grpc::InsecureServerCredentials(), &port);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
+  builder.RegisterService(&method_);
   grpc_ = builder.BuildAndStart();
   if (grpc_ == nullptr) {
     return absl::FailedPreconditionError(
@@ -116,6 +121,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   draining_ = true;
   if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
   watches_.LookNow();
+  comparisons_.Stop();
   book_.Shutdown();
   store_->Flush().IgnoreError();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);

@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
 #include "server/api/services.h"
+#include "server/execution/comparison_thread.h"
 #include "server/listen_address.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
@@ -27,6 +28,7 @@ struct ServerOptions {
   std::string listen;  // empty: a Unix socket in data_dir
   int workers = 1;
   ExperimentFactory factory;  // empty: the core's experiments
+  MethodComparer compare;     // empty: the core's
   WatchTiming watch;
   Store::Options store;
 };
@@ -46,8 +48,9 @@ class BallpistonServer {
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
 
-  // Health says NOT_SERVING, no job is accepted, watches end with UNAVAILABLE, blocks in flight are
-  // dropped, calls in progress have until then to end, and everything is on disk.
+  // Health says NOT_SERVING, no job is accepted, watches and a comparison of methods end with
+  // UNAVAILABLE, blocks in flight are dropped, calls in progress have until then to end, and
+  // everything is on disk.
   void Shutdown(std::chrono::milliseconds drain);
 
  private:
@@ -66,9 +69,11 @@ class BallpistonServer {
   std::unique_ptr<Store> store_;
   JobBook book_;
   RpcExecutor executor_;
+  ComparisonThread comparisons_;
   ServiceContext context_;
   EnsembleService ensemble_;
   AnalyticService analytic_;
+  MethodService method_;
   std::unique_ptr<grpc::Server> grpc_;
 };
 

@@ -20,7 +20,8 @@ constexpr char kServiceConfig[] = R"({"methodConfig": [
                    "backoffMultiplier": 2, "retryableStatusCodes": ["UNAVAILABLE"]}},
   {"name": [
     {"service": "ballpiston.v1.EnsembleService", "method": "WatchEnsembleJob"},
-    {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"}]}
+    {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"},
+    {"service": "ballpiston.v1.MethodService", "method": "CompareMethods"}]}
 ]})";
 
 grpc::ChannelArguments Arguments() {

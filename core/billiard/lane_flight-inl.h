@@ -1,4 +1,4 @@
-// One flight of the ball, wall to wall, in every lane of a vector; frame and symbols of
+// One flight of the ball, wall to wall, in every lane of some vectors; frame and symbols of
 // lane_frame.h. Included once for each instruction set.
 //
 // For a disc displaced by D from the one just left, the ray's impact parameter is c + u x D and the
@@ -10,15 +10,22 @@
 // The two meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) > 0, hits
 // the disc at (1, 0). One above hits it only with a chord that lies between the tips:
 //   c1 > -rho, f1 > 0 and the chord's foot 1 - ... at height -u_x c1 < 1/2.
-// So "beside" is the sign of max(tip, min(c1 + rho, f1, u_x c1 + 1/2)). Then, with the c' of the
-// disc that is hit, s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle
-// with
+// So "beside" is a matter of four signs. Then, with the c' of the disc that is hit,
+// s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
-// In the next disc's frame the cell lies toward (-, +) after (1, 0) and (-, -) after (1, 1):
-// another turn by -90 or 180 degrees (the former followed by the mirror that keeps c' as it is). In
-// terms of (h, e) a turn by an angle is h cos - e sin, e cos + h sin with the sign of sin reversed.
+// In the next disc's frame the cell lies toward (-, +) after (1, 0) and (-, -) after (1, 1): one
+// more turn by -90 or 180 degrees. In terms of (h, e) a turn by an angle is (h cos - e sin,
+// e cos + h sin) with the sign of sin reversed; with U = -(h cos + e sin), W = -(e cos - h sin) the
+// next frame has (U, W, c') after (1, 1), and after (1, 0), mirrored, (W, U, -c').
 //
-// |u| would do a random walk by rounding; one Newton step a flight keeps h^2 + e^2 at 1/2.
+// h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c': no factor,
+// and the cosine need not wait for the root.
+//
+// |u| would do a random walk by rounding; one Newton step a flight, of the direction before, keeps
+// h^2 + e^2 at 1/2.
+//
+// K vectors fly at once, operation by operation: a flight is a chain of some 70 cycles, and vector
+// after vector a processor would see hardly more than one chain at a time.
 #if defined(BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
 #undef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
@@ -28,7 +35,14 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
+#include <cstddef>
+
 #include "core/geometry/pair_geometry.h"
+
+// For all K vectors; unrolled, or the arrays would not be kept in registers.
+#undef BALLPISTON_EACH
+#define BALLPISTON_EACH _Pragma("GCC unroll 8") for (size_t i = 0; i < K; ++i)
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -38,78 +52,116 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <typename T>
 struct FlightConstants {
   explicit FlightConstants(const PairGeometry& geometry)
-      : rho(static_cast<T>(geometry.rho())),
-        rho_squared(static_cast<T>(geometry.rho() * geometry.rho())),
-        two_over_rho_squared(static_cast<T>(2 / (geometry.rho() * geometry.rho()))),
+      : scale(M_SQRT2 / geometry.rho()),
+        sqrt_2(static_cast<T>(M_SQRT2)),
+        half_height(static_cast<T>(scale * scale / 2)),
+        length_squared(static_cast<T>(1 / (scale * scale))),
         tip_h(static_cast<T>(geometry.lambda() / 2 - 0.5)),
         tip_e(static_cast<T>(1.5 - geometry.lambda() / 2)) {}
 
-  T rho;
-  T rho_squared;
-  T two_over_rho_squared;
+  double scale;  // of h, e, c, s and lengths in lanes
+  T sqrt_2;      // rho
+  T half_height;
+  T length_squared;
   T tip_h;  // u x t = h tip_h + e tip_e
   T tip_e;
 };
 
-template <class D>
-struct Ball {
-  hn::Vec<D> h, e, c, s;
+// K vectors of balls on walls.
+template <class D, size_t K>
+struct Balls {
+  hn::Vec<D> h[K], e[K], c[K], s[K];
+  hn::Vec<D> a[K], b[K], m[K];
 };
 
-template <class D>
-struct Compass {
-  hn::Vec<D> a, b, m;
-};
-
-template <class D>
-struct Flight {
-  Ball<D> ball;  // after the hit at its end
-  hn::Vec<D> length;
-  hn::Vec<D> mirror;  // its sign: -0 where the frame was mirrored first
-  hn::Mask<D> ahead;  // hit the disc at (1, 1)
-};
-
-template <class D, typename T = hn::TFromD<D>>
-HWY_INLINE Flight<D> Fly(D d, const FlightConstants<T>& k, const Ball<D>& from) {
-  using V = hn::Vec<D>;
-  const V zero = hn::Zero(d), half = hn::Set(d, T(0.5));
-  const V mirror = hn::And(hn::Add(from.c, from.e), hn::SignBit(d));
-  const V c = hn::Xor(from.c, mirror), e = hn::Xor(from.e, mirror), h = from.h;
-  const V x = hn::Add(h, e), y = hn::Sub(h, e);
-  const V c1 = hn::Sub(c, y), f1 = hn::Sub(x, from.s);
-  const V tip = hn::MulAdd(e, hn::Set(d, k.tip_e), hn::MulAdd(h, hn::Set(d, k.tip_h), c));
-  const V chord = hn::Min(hn::Min(hn::Add(c1, hn::Set(d, k.rho)), hn::MulAdd(x, c1, half)), f1);
-  const auto ahead = hn::Le(hn::Max(tip, chord), zero);
-  const V c2 = hn::Add(c1, hn::IfThenElseZero(ahead, x));
-  const V f2 = hn::Add(f1, hn::IfThenElseZero(ahead, y));
-  const V s2 = hn::Sqrt(hn::Max(hn::NegMulAdd(c2, c2, hn::Set(d, k.rho_squared)), zero));
-  // Minus cosine and minus sine of the turn; then the frame's own turn swaps or keeps them.
-  const V twice = hn::Mul(s2, hn::Set(d, k.two_over_rho_squared));
-  const V p = hn::MulSub(twice, s2, hn::Set(d, T(1))), r = hn::Mul(twice, c2);
-  const V cosine = hn::IfThenElse(ahead, p, hn::Neg(r)), sine = hn::IfThenElse(ahead, r, p);
-  const V h2 = hn::MulAdd(e, sine, hn::Mul(h, cosine));
-  const V e2 = hn::NegMulAdd(h, sine, hn::Mul(e, cosine));
-  const V unit = hn::Sub(hn::Set(d, T(1.5)), hn::MulAdd(h2, h2, hn::Mul(e2, e2)));
-  return {{hn::Mul(h2, unit), hn::Mul(e2, unit), c2, s2}, hn::Sub(f2, s2), mirror, ahead};
+// Exchanges x and y where `mask` is set.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void SwapIf(D d, hn::Mask<D> mask, V& x, V& y) {
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  const V before = x;
+  x = hn::IfThenElse(mask, y, x);
+  y = hn::IfThenElse(mask, before, y);
+#else
+  // A select is three operations on some processors, and these are four for both.
+  const V difference = hn::And(hn::VecFromMask(d, mask), hn::Xor(x, y));
+  x = hn::Xor(x, difference);
+  y = hn::Xor(y, difference);
+#endif
 }
 
-// The compass of the frame after that flight: turned as h and e, by right angles.
-template <class D>
-HWY_INLINE Compass<D> Turned(D /*d*/, const Compass<D>& from, const Flight<D>& flight) {
-  const auto b = hn::Xor(from.b, flight.mirror);
-  return {hn::Neg(hn::IfThenElse(flight.ahead, from.a, b)),
-          hn::IfThenElse(flight.ahead, hn::Neg(b), from.a), hn::Xor(from.m, flight.mirror)};
+// Where the sign bit is set.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> SignMask(D d, V v) {
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  return hn::MaskFromVec(v);
+#else
+  const hn::RebindToSigned<D> integers;
+  return hn::RebindMask(d, hn::Lt(hn::BitCast(integers, v), hn::Zero(integers)));
+#endif
 }
 
-// How far left of the discs' centres, x = 1/2 - depth, a ball on a disc beside the right tip is; on
-// the other two discs more than any depth.
-template <class D, typename T = hn::TFromD<D>>
-HWY_INLINE hn::Vec<D> DepthAtRightTip(D d, const Ball<D>& ball, const Compass<D>& compass) {
-  // The smaller of q's components for a disc beside the tip: q_y if r = (0, -1), q_x if (-1, 0).
-  const auto sum = hn::NegMulAdd(ball.c, ball.e, hn::Mul(ball.s, ball.h));      // (q_x + q_y)/2
-  const auto difference = hn::MulAdd(ball.c, ball.h, hn::Mul(ball.s, ball.e));  // (q_x - q_y)/2
-  const auto depth = hn::NegMulAdd(compass.b, difference, sum);
-  return hn::IfThenElse(hn::Lt(compass.a, hn::Zero(d)), depth, hn::Set(d, T(4)));
+// Flies every ball to the next wall, and reflects it there.
+template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&length)[K]) {
+  const V sign = hn::SignBit(d), zero = hn::Zero(d);
+  auto& [h, e, c, s, a, b, m] = balls;
+  V mirror[K], x[K], y[K], tip[K], chord[K], foot[K], unit[K], q[K], p[K], r[K], w[K], flip[K];
+  hn::Mask<D> beside[K];
+  BALLPISTON_EACH mirror[i] = hn::And(hn::Add(c[i], e[i]), sign);
+  BALLPISTON_EACH c[i] = hn::Xor(c[i], mirror[i]);
+  BALLPISTON_EACH e[i] = hn::Xor(e[i], mirror[i]);
+  BALLPISTON_EACH x[i] = hn::Add(h[i], e[i]);
+  BALLPISTON_EACH y[i] = hn::Sub(h[i], e[i]);
+  BALLPISTON_EACH tip[i] = hn::MulAdd(h[i], hn::Set(d, k.tip_h), c[i]);
+  BALLPISTON_EACH c[i] = hn::Sub(c[i], y[i]);
+  BALLPISTON_EACH foot[i] = hn::Sub(x[i], s[i]);
+  BALLPISTON_EACH tip[i] = hn::MulAdd(e[i], hn::Set(d, k.tip_e), tip[i]);
+  BALLPISTON_EACH chord[i] = hn::MulAdd(x[i], c[i], hn::Set(d, k.half_height));
+  BALLPISTON_EACH w[i] = hn::Or(foot[i], hn::Add(c[i], hn::Set(d, k.sqrt_2)));
+  BALLPISTON_EACH tip[i] = hn::And(tip[i], hn::Or(w[i], chord[i]));
+  BALLPISTON_EACH beside[i] = hn::Not(SignMask(d, tip[i]));
+  BALLPISTON_EACH c[i] = hn::Add(c[i], hn::IfThenZeroElse(beside[i], x[i]));
+  BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenZeroElse(beside[i], y[i]));
+  // Of a ray that rounding lets miss the disc the root is as good as 0.
+  BALLPISTON_EACH q[i] = hn::Abs(hn::NegMulAdd(c[i], c[i], hn::Set(d, T(2))));
+  BALLPISTON_EACH s[i] = hn::Sqrt(q[i]);
+  BALLPISTON_EACH unit[i] = hn::MulAdd(h[i], h[i], hn::Mul(e[i], e[i]));
+  BALLPISTON_EACH unit[i] =
+      hn::NegMulAdd(unit[i], hn::Set(d, k.length_squared), hn::Set(d, T(1.5)));
+  BALLPISTON_EACH p[i] = hn::MulSub(q[i], unit[i], unit[i]);
+  BALLPISTON_EACH r[i] = hn::Mul(c[i], unit[i]);
+  BALLPISTON_EACH w[i] = hn::Mul(e[i], p[i]);
+  BALLPISTON_EACH p[i] = hn::Mul(h[i], p[i]);
+  BALLPISTON_EACH b[i] = hn::Xor(b[i], mirror[i]);
+  BALLPISTON_EACH SwapIf(d, beside[i], a[i], b[i]);
+  BALLPISTON_EACH a[i] = hn::Neg(a[i]);
+  BALLPISTON_EACH b[i] = hn::Neg(b[i]);
+  BALLPISTON_EACH flip[i] = hn::IfThenElseZero(beside[i], sign);
+  BALLPISTON_EACH m[i] = hn::Xor(m[i], hn::Xor(mirror[i], flip[i]));
+  BALLPISTON_EACH c[i] = hn::Xor(c[i], flip[i]);
+  BALLPISTON_EACH r[i] = hn::Mul(r[i], s[i]);
+  BALLPISTON_EACH w[i] = hn::NegMulAdd(h[i], r[i], w[i]);
+  BALLPISTON_EACH h[i] = hn::MulAdd(e[i], r[i], p[i]);
+  BALLPISTON_EACH e[i] = w[i];
+  BALLPISTON_EACH SwapIf(d, beside[i], h[i], e[i]);
+  BALLPISTON_EACH length[i] = hn::Max(hn::Sub(foot[i], s[i]), zero);
+}
+
+// The balls' scale^2 (x - origin), x in the cell; `origin` scaled likewise.
+template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void Abscissae(D d, const FlightConstants<T>& k, const Balls<D, K>& balls, T origin,
+                          V (&x)[K]) {
+  const auto& [h, e, c, s, a, b, m] = balls;
+  // (q_x + q_y - 1)/2 and (q_x - q_y)/2, for x = (q - (1, 1)/2) . r.
+  V along[K], across[K];
+  BALLPISTON_EACH along[i] = hn::MulSub(s[i], h[i], hn::Set(d, k.half_height));
+  BALLPISTON_EACH across[i] = hn::Mul(s[i], e[i]);
+  BALLPISTON_EACH along[i] = hn::NegMulAdd(c[i], e[i], along[i]);
+  BALLPISTON_EACH across[i] = hn::MulAdd(c[i], h[i], across[i]);
+  BALLPISTON_EACH x[i] = hn::MulSub(a[i], along[i], hn::Set(d, origin));
+  BALLPISTON_EACH x[i] = hn::MulAdd(b[i], across[i], x[i]);
 }
 
 }  // namespace HWY_NAMESPACE

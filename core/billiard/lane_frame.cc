@@ -1,9 +1,29 @@
 #include "core/billiard/lane_frame.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ballpiston {
 namespace {
+
+constexpr double kOnATip = 1e-15;  // some ulps of a place in the cell
+
+// Which disc the ball leaves: the mirrors that bring the cell, seen from that disc's centre, into
+// the first quadrant. It is the disc of the ball's quadrant, unless rounding put a ball on a tip to
+// the other side of it: there it is the one that the ball does not fly into.
+Eigen::Vector2d MirrorsOfDisc(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) {
+  const Eigen::Vector2d quadrant = {position.x() > 0 ? -1 : 1, position.y() > 0 ? -1 : 1};
+  const auto leaves = [&](const Eigen::Vector2d& m) {
+    return direction.dot(position + m / 2) >= 0;
+  };
+  if (leaves(quadrant)) return quadrant;
+  for (const Eigen::Index axis : {0, 1}) {
+    Eigen::Vector2d beside = quadrant;
+    beside[axis] *= -1;
+    if (std::fabs(position[axis]) < kOnATip && leaves(beside)) return beside;
+  }
+  return quadrant;
+}
 
 // From components in the frame to components in the cell: x along r, y along r turned by a right
 // angle, the other way round in a mirror image.
@@ -15,8 +35,8 @@ Eigen::Vector2d InCell(const LaneFrame& frame, double x, double y) {
 }  // namespace
 
 LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) {
-  // Mirrors that bring the cell, seen from the disc's centre, into the first quadrant.
-  const double mx = position.x() > 0 ? -1 : 1, my = position.y() > 0 ? -1 : 1;
+  const Eigen::Vector2d mirrors = MirrorsOfDisc(position, direction);
+  const double mx = mirrors.x(), my = mirrors.y();
   const double ux = mx * direction.x(), uy = my * direction.y();
   const double qx = mx * position.x() + 0.5, qy = my * position.y() + 0.5;
   return {.h = (ux + uy) / 2,
@@ -26,6 +46,11 @@ LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector
           .a = mx,
           .b = mx,
           .m = mx * my};
+}
+
+LaneFrame Scaled(const LaneFrame& frame, double factor) {
+  return {frame.h * factor, frame.e * factor, frame.c * factor, frame.s * factor,
+          frame.a,          frame.b,          frame.m};
 }
 
 Eigen::Vector2d PositionInCell(const LaneFrame& frame) {

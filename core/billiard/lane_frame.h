@@ -26,6 +26,9 @@ struct LaneFrame {
 // A ball on the arc of the disc in its quadrant, flying away from it.
 LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector2d& direction);
 
+// h, e, c and s times a factor.
+LaneFrame Scaled(const LaneFrame& frame, double factor);
+
 Eigen::Vector2d PositionInCell(const LaneFrame& frame);
 Eigen::Vector2d DirectionInCell(const LaneFrame& frame);
 

@@ -7,8 +7,11 @@
 #include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <utility>
 #include <vector>
 
 #include "core/billiard/lane_flight-inl.h"
@@ -21,8 +24,12 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Vectors in flight at once: a flight is a chain of some 70 cycles, of which a vector fills 12.
-constexpr size_t kVectors = 6;
+// Vectors fly in two groups. While one flies, the flights that the other has just made have come to
+// their ends, so asking which of them are to be looked at breaks no chain of operations: a branch
+// mispredicted on the newest flight would throw away all those begun behind it.
+constexpr size_t kGroups = 2;
+constexpr size_t kVectorsInGroup = 2;
+constexpr size_t kVectors = kGroups * kVectorsInGroup;
 constexpr int kStepsBetweenLooks = 4096;  // at `stop`
 
 // What of an orbit is not in the lanes: its sums up to where the lane's own begin.
@@ -31,7 +38,7 @@ struct LaneOrbit {
   double ball_speed = 1;
   double piston_speed = 0;
   Contact sums;            // without `state`
-  double path = 0;         // the ball's, in lanes, since it entered them
+  double path = 0;         // the ball's since it entered the lanes, less what is in its lane
   double entry_phase = 0;  // the piston's, then
   uint64_t entry_step = 0;
 };
@@ -41,13 +48,11 @@ class LaneOrbits {
  public:
   LaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source)
       : geometry_(geometry),
-        constants_(geometry),
         wave_(geometry),
-        reach_(static_cast<T>(0.5 - geometry.piston_left())),
+        constants_(geometry, wave_),
         orbits_(orbits),
         source_(source),
-        width_(hn::Lanes(D())),
-        lanes_(width_ * kVectors),
+        lanes_(Width() * kVectors),
         memory_(hwy::AllocateAligned<T>(lanes_ * kArrays)),
         orbit_(lanes_) {
     std::fill(memory_.get(), memory_.get() + lanes_ * kArrays, T(0));
@@ -64,175 +69,298 @@ class LaneOrbits {
 
  private:
   using D = hn::ScalableTag<T>;
+  static constexpr size_t K = kVectorsInGroup;
   using V = hn::Vec<D>;
 
-  // One value a lane. kPath: the ball's since kPhase, the piston's phase, was taken. kReach: depth
-  // up to which this lane's ball can meet the piston.
-  enum Array { kH, kE, kC, kS, kA, kB, kM, kDepth, kPath, kPhase, kSpeedRatio, kReach, kArrays };
+  static size_t Width() { return hn::Lanes(D()); }
+  static size_t LanesInGroup() { return Width() * K; }
+
+  // One value a lane. What a flight changes is kept twice, before and after, and the two change
+  // places with every step. kX: the ball's distance from where the piston can reach it. kPhase: the
+  // piston's, in periods. kPath: the ball's, since it was last taken out. kRatio: periods of the
+  // piston in a unit of path.
+  enum Array {
+    kH,
+    kE,
+    kC,
+    kS,
+    kA,
+    kB,
+    kM,
+    kX,
+    kPhase,
+    kPath,
+    kFlying,
+    kRatio = 2 * kFlying,
+    kArrays
+  };
 
   // Rounding in the lanes must not hide a contact; what is looked at in vain costs little.
-  static constexpr T kSlack = sizeof(T) == 8 ? T(1e-11) : T(1e-4);
+  static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
+  // Single precision sums short paths only.
+  static constexpr T kLongestPath = sizeof(T) == 8 ? T(1e300) : T(256);
 
-  T* At(Array array, size_t lane) { return memory_.get() + array * lanes_ + lane; }
-  V Get(Array array, size_t lane) { return hn::Load(D(), At(array, lane)); }
-  void Put(V value, Array array, size_t lane) { hn::Store(value, D(), At(array, lane)); }
+  struct Constants {
+    Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
+      const double square = flight.scale * flight.scale;
+      left = static_cast<T>(square * (wave.left() - kSlack));
+      period = static_cast<T>(square * 2 * wave.stroke());
+    }
+    FlightConstants<T> flight;
+    T left;  // from here on the piston can reach the ball
+    T period;
+  };
+
+  // A bit a lane of a vector.
+  struct Flags {
+    uint8_t bytes[8] = {};
+    uint64_t Bits() const {
+      uint64_t bits;
+      std::memcpy(&bits, bytes, sizeof(bits));
+      return bits;
+    }
+    uint64_t Take() {
+      const uint64_t bits = Bits();
+      *this = {};
+      return bits;
+    }
+  };
+
+  // Its values lie group by group, then array by array. `before` and `After` a lane's last
+  // flight.
+  T* At(size_t array, size_t lane) {
+    return memory_.get() + (GroupOf(lane) * kArrays + array) * LanesInGroup() +
+           lane % LanesInGroup();
+  }
+
+  // Flights made by lanes of that group is step_[group]; its parity tells where the newest state
+  // is.
+  static size_t GroupOf(size_t lane) { return lane / LanesInGroup(); }
+  size_t Newest(size_t group) const { return (step_[group] % 2) * kFlying; }
+  T& After(Array array, size_t lane) { return *At(array + Newest(GroupOf(lane)), lane); }
+  T& Before(Array array, size_t lane) { return *At(array + kFlying - Newest(GroupOf(lane)), lane); }
 
   void Step() {
-    ++step_;
-    for (size_t first = 0; first < lanes_; first += width_) FlyVector(first);
+    FlyGroup(0);
+    LookAtGroup(1);
+    if (HWY_LIKELY(groups_ == kGroups)) FlyGroup(1);
+    LookAtGroup(0);
+    if (HWY_UNLIKELY(running_ + LanesInGroup() <= groups_ * LanesInGroup())) Compact();
   }
 
-  HWY_INLINE void FlyVector(size_t first) {
+  HWY_INLINE void FlyGroup(size_t group) {
+    const Constants constants = constants_;  // a copy that no store into the lanes can change
+    T* lanes = memory_.get() + group * kArrays * LanesInGroup();
+    const T* from = lanes + Newest(group) * LanesInGroup();
+    T* to = lanes + (kFlying - Newest(group)) * LanesInGroup();
+    ++step_[group];
+    FlyOnce(constants, from, to, lanes + kRatio * LanesInGroup(), flags_[group]);
+  }
+
+  static HWY_INLINE void Get(const T* lanes, Array array, V (&v)[K]) {
+    BALLPISTON_EACH v[i] = hn::Load(D(), lanes + array * LanesInGroup() + i * Width());
+  }
+  static HWY_INLINE void Put(const V (&v)[K], T* lanes, Array array) {
+    BALLPISTON_EACH { hn::Store(v[i], D(), lanes + array * LanesInGroup() + i * Width()); }
+  }
+
+  // `flags` tells the lanes to look at: ball and piston met, or may have.
+  static HWY_INLINE void FlyOnce(const Constants& k, const T* from, T* to, const T* ratios,
+                                 Flags* flags) {
     const D d;
-    const Ball<D> from = {Get(kH, first), Get(kE, first), Get(kC, first), Get(kS, first)};
-    const Compass<D> compass = {Get(kA, first), Get(kB, first), Get(kM, first)};
-    const Flight<D> flight = Fly(d, constants_, from);
-    const Compass<D> turned = Turned(d, compass, flight);
-    const V depth = DepthAtRightTip(d, flight.ball, turned);
-    const V nearest = hn::Min(depth, Get(kDepth, first));
-    const auto near = hn::Lt(nearest, Get(kReach, first));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
-      const auto meet = TakePhase(first, flight.length, nearest, near);
-      if (HWY_UNLIKELY(!hn::AllFalse(d, meet))) {
-        StoreFlight(first, flight, turned, depth);
-        Resolve(first, from, compass, meet);
-        return;
+    Balls<D, K> balls;
+    Get(from, kH, balls.h);
+    Get(from, kE, balls.e);
+    Get(from, kC, balls.c);
+    Get(from, kS, balls.s);
+    Get(from, kA, balls.a);
+    Get(from, kB, balls.b);
+    Get(from, kM, balls.m);
+    V length[K], x[K];
+    Fly(d, k.flight, balls, length);
+    Put(balls.h, to, kH);
+    Put(balls.e, to, kE);
+    Put(balls.c, to, kC);
+    Put(balls.s, to, kS);
+    Put(balls.a, to, kA);
+    Put(balls.b, to, kB);
+    Put(balls.m, to, kM);
+    Abscissae(d, k.flight, balls, k.left, x);
+    Put(x, to, kX);
+    V path[K], phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
+    Get(from, kPath, path);
+    BALLPISTON_EACH path[i] = hn::Add(path[i], length[i]);
+    Put(path, to, kPath);
+    Get(ratios, Array{}, ratio);
+    Get(from, kPhase, phase);
+    BALLPISTON_EACH phase[i] = hn::MulAdd(ratio[i], length[i], phase[i]);
+    BALLPISTON_EACH turns[i] = hn::Floor(phase[i]);
+    BALLPISTON_EACH phase[i] = hn::Sub(phase[i], turns[i]);
+    Put(phase, to, kPhase);
+    // Between them the distance is a concave function of time but where the piston turns at its
+    // left wall: they meet if the ball ends beyond the piston, or perhaps if the piston turned.
+    Get(from, kX, before);
+    BALLPISTON_EACH way[i] = hn::Min(phase[i], hn::Sub(hn::Set(d, T(1)), phase[i]));
+    BALLPISTON_EACH ball[i] = hn::NegMulAdd(way[i], hn::Set(d, k.period), x[i]);
+    BALLPISTON_EACH turns[i] = hn::Min(turns[i], hn::Max(x[i], before[i]));
+    BALLPISTON_EACH ball[i] = hn::Max(ball[i], turns[i]);
+    if constexpr (sizeof(T) == 4) {
+      BALLPISTON_EACH ball[i] = hn::Max(ball[i], hn::Sub(path[i], hn::Set(d, kLongestPath)));
+    }
+    BALLPISTON_EACH { hn::StoreMaskBits(d, hn::Gt(ball[i], hn::Zero(d)), flags[i].bytes); }
+  }
+
+  void LookAtGroup(size_t group) {
+    uint64_t any = 0;
+    for (const Flags& flags : flags_[group]) any |= flags.Bits();
+    if (HWY_LIKELY(any == 0)) return;
+    for (size_t vector = 0; vector < kVectorsInGroup; ++vector) {
+      for (uint64_t bits = flags_[group][vector].Take(); bits != 0; bits &= bits - 1) {
+        LookAt((group * kVectorsInGroup + vector) * Width() +
+               hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
       }
     }
-    StoreFlight(first, flight, turned, depth);
   }
 
-  HWY_INLINE void StoreFlight(size_t first, const Flight<D>& flight, const Compass<D>& compass,
-                              V depth) {
-    Put(flight.ball.h, kH, first);
-    Put(flight.ball.e, kE, first);
-    Put(flight.ball.c, kC, first);
-    Put(flight.ball.s, kS, first);
-    Put(compass.a, kA, first);
-    Put(compass.b, kB, first);
-    Put(compass.m, kM, first);
-    Put(depth, kDepth, first);
-    Put(hn::Add(Get(kPath, first), flight.length), kPath, first);
+  // At the lane's last flight.
+  void LookAt(size_t lane) {
+    if (MeetOnTheWay(lane)) return Leave(lane);
+    orbit_[lane].path += static_cast<double>(After(kPath, lane));
+    After(kPath, lane) = 0;
   }
 
-  // Takes the piston's phase at the beginning of the flights near it. Of these, the ones in which
-  // ball and piston may meet: the piston's leftmost position is left of the ball's rightmost.
-  hn::Mask<D> TakePhase(size_t first, V length, V nearest, hn::Mask<D> near) {
-    const D d;
-    const V period = hn::Set(d, static_cast<T>(2 * wave_.stroke()));
-    const V path = Get(kPath, first), ratio = Get(kSpeedRatio, first);
-    V phase = hn::MulAdd(ratio, path, Get(kPhase, first));
-    const V turns = hn::Floor(hn::Mul(phase, hn::Set(d, static_cast<T>(0.5 / wave_.stroke()))));
-    phase = hn::NegMulAdd(turns, period, phase);
-    Put(hn::IfThenElse(near, phase, Get(kPhase, first)), kPhase, first);
-    Put(hn::IfThenElse(near, hn::Zero(d), path), kPath, first);
-    alignas(64) T taken[HWY_MAX_BYTES / sizeof(T)] = {};
-    hn::Store(hn::IfThenElseZero(near, path), d, taken);
-    for (size_t i = 0; i < width_; ++i) orbit_[first + i].path += static_cast<double>(taken[i]);
-    // The wave's lowest point over the flight; below 0 if it turns at the left wall in between.
-    const V end = hn::MulAdd(ratio, length, phase);
-    const V lowest = hn::Min(hn::Min(phase, end), hn::Sub(period, hn::Max(phase, end)));
-    const V ball = hn::Sub(hn::Set(d, reach_ + kSlack), nearest);
-    return hn::And(near, hn::Lt(lowest, ball));
+  bool MeetOnTheWay(size_t lane) {
+    const double x0 = Before(kX, lane), x1 = After(kX, lane);
+    const double phase0 = Before(kPhase, lane), phase1 = After(kPhase, lane);
+    if (x1 > std::min(phase1, 1 - phase1) * constants_.period) return true;
+    const double length = static_cast<double>(After(kPath, lane)) - Before(kPath, lane);
+    const double way = *At(kRatio, lane) * length;
+    if (!(phase0 + way > 1 - kSlack)) return false;
+    // The first and the last moment of the flight when the piston was at its left wall.
+    const double first = std::clamp((1 - phase0) / way, 0.0, 1.0);
+    const double last = std::clamp(1 - phase1 / way, 0.0, 1.0);
+    return std::max(x0 + first * (x1 - x0), x0 + last * (x1 - x0)) > 0;
   }
 
-  void Resolve(size_t first, const Ball<D>& from, const Compass<D>& compass, hn::Mask<D> meet) {
-    const D d;
-    const V before[] = {from.h, from.e, from.c, from.s, compass.a, compass.b, compass.m};
-    alignas(64) T values[7][HWY_MAX_BYTES / sizeof(T)];
-    for (size_t i = 0; i < 7; ++i) hn::Store(before[i], d, values[i]);
-    alignas(64) T chosen[HWY_MAX_BYTES / sizeof(T)];
-    hn::Store(hn::IfThenElseZero(meet, hn::Set(d, T(1))), d, chosen);
-    for (size_t i = 0; i < width_; ++i) {
-      if (chosen[i] == 0) continue;
-      Leave(first + i, {values[0][i], values[1][i], values[2][i], values[3][i], values[4][i],
-                        values[5][i], values[6][i]});
-    }
-  }
-
-  // Out of the lanes, at the beginning of the flight that was just made.
-  void Leave(size_t lane, const LaneFrame& frame) {
+  // Out of the lanes, at the beginning of the last flight.
+  void Leave(size_t lane) {
     LaneOrbit& orbit = orbit_[lane];
-    const double phase = static_cast<double>(*At(kPhase, lane));
-    orbit.sums.time += orbit.path / orbit.ball_speed;
-    orbit.sums.ball_wall_hits += step_ - 1 - orbit.entry_step;
+    const double phase = Before(kPhase, lane) * 2 * wave_.stroke();
+    const double path = (orbit.path + Before(kPath, lane)) / constants_.flight.scale;
+    orbit.sums.time += path / orbit.ball_speed;
+    orbit.sums.ball_wall_hits += step_[GroupOf(lane)] - 1 - orbit.entry_step;
     orbit.sums.piston_wall_hits +=
-        wave_.Hits(orbit.entry_phase, orbit.path * (orbit.piston_speed / orbit.ball_speed));
-    FlyToWall(lane, {.position = PositionInCell(frame),
-                     .direction = DirectionInCell(frame),
-                     .ball_speed = orbit.ball_speed,
-                     .piston = wave_.Position(phase),
-                     .piston_velocity = wave_.Velocity(phase, orbit.piston_speed)});
+        wave_.Hits(orbit.entry_phase, path * (orbit.piston_speed / orbit.ball_speed));
+    const LaneFrame frame =
+        Scaled({Before(kH, lane), Before(kE, lane), Before(kC, lane), Before(kS, lane),
+                Before(kA, lane), Before(kB, lane), Before(kM, lane)},
+               1 / constants_.flight.scale);
+    if (FlyToWall(lane, {.position = PositionInCell(frame),
+                         .direction = DirectionInCell(frame),
+                         .ball_speed = orbit.ball_speed,
+                         .piston = wave_.Position(phase),
+                         .piston_velocity = wave_.Velocity(phase, orbit.piston_speed)})) {
+      return;
+    }
+    --running_;
+    Begin(lane);
   }
 
-  // Event by event until the ball is on a wall, through what collisions there are.
-  void FlyToWall(size_t lane, const PairState& state) {
+  // Event by event until the ball is on a wall, through what collisions there are. False if the
+  // orbit came to its end.
+  bool FlyToWall(size_t lane, const PairState& state) {
     ReferenceFlow flow(geometry_, state);
     Contact& sums = orbit_[lane].sums;
     for (;;) {
       const Event event = flow.Step();
       sums.Add(event);
-      if (event.kind == EventKind::kBallWall) return Enter(lane, flow.state());
+      if (event.kind == EventKind::kBallWall) {
+        Enter(lane, flow.state());
+        return true;
+      }
       if (event.kind == EventKind::kPistonWall) continue;
       sums.state = flow.state();
-      if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd) return End(lane);
+      if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd) return false;
       flow.ExchangeComponents();
       sums = {};
     }
   }
 
   void Enter(size_t lane, const PairState& state) {
-    const LaneFrame frame = FrameOfBallOnWall(state.position, state.direction);
-    const double values[] = {frame.h, frame.e, frame.c, frame.s, frame.a, frame.b, frame.m};
-    for (size_t i = 0; i < 7; ++i) *At(static_cast<Array>(i), lane) = static_cast<T>(values[i]);
     LaneOrbit& orbit = orbit_[lane];
     orbit.ball_speed = state.ball_speed;
     orbit.piston_speed = std::fabs(state.piston_velocity);
     orbit.path = 0;
     orbit.entry_phase = wave_.Phase(state);
-    orbit.entry_step = step_;
-    *At(kDepth, lane) = static_cast<T>(frame.a < 0 ? 0.5 - state.position.x() : 4);
-    *At(kPath, lane) = T(0);
-    *At(kPhase, lane) = static_cast<T>(orbit.entry_phase);
-    *At(kSpeedRatio, lane) = static_cast<T>(orbit.piston_speed / orbit.ball_speed);
-    *At(kReach, lane) = reach_;
+    orbit.entry_step = step_[GroupOf(lane)];
+    const double scale = constants_.flight.scale, period = 2 * wave_.stroke();
+    const LaneFrame f = Scaled(FrameOfBallOnWall(state.position, state.direction), scale);
+    const double x = scale * scale * state.position.x() - constants_.left;
+    const double values[kFlying] = {
+        f.h, f.e, f.c, f.s, f.a, f.b, f.m, x, orbit.entry_phase / period, 0};
+    for (size_t i = 0; i < kFlying; ++i) {
+      After(static_cast<Array>(i), lane) = static_cast<T>(values[i]);
+    }
+    *At(kRatio, lane) = static_cast<T>(orbit.piston_speed / orbit.ball_speed / (scale * period));
   }
 
+  // The next orbit that comes as far as a wall.
   void Begin(size_t lane) {
-    if (next_ == orbits_) return Park(lane);
-    orbit_[lane] = {};
-    orbit_[lane].orbit = next_;
-    ++running_;
-    FlyToWall(lane, source_.Start(next_++));
+    while (next_ < orbits_) {
+      orbit_[lane] = LaneOrbit();
+      orbit_[lane].orbit = next_++;
+      if (FlyToWall(lane, source_.Start(orbit_[lane].orbit))) {
+        ++running_;
+        return;
+      }
+    }
+    Park(lane);
   }
 
-  void End(size_t lane) {
-    --running_;
-    Begin(lane);
-  }
-
-  // A lane without an orbit flies back and forth between two discs, out of the piston's reach.
+  // A lane without an orbit flies between two discs; its piston stands at the right wall.
   void Park(size_t lane) {
-    orbit_[lane] = {};
-    Enter(lane,
-          {.position = {-geometry_.rho() * M_SQRT1_2 + 0.5, -geometry_.rho() * M_SQRT1_2 + 0.5}});
-    *At(kH, lane) = static_cast<T>(M_SQRT1_2);
-    *At(kReach, lane) = T(-1);
+    const double x = 0.5 - geometry_.rho() * M_SQRT1_2;
+    orbit_[lane] = LaneOrbit();
+    orbit_[lane].orbit = kNoOrbit;
+    Enter(lane, {.position = {x, x},
+                 .direction = {-M_SQRT1_2, -M_SQRT1_2},
+                 .piston = geometry_.piston_right()});
   }
+
+  // Brings the orbits that are left into the first groups, and leaves out the others.
+  void Compact() {
+    LookAtGroup(1);
+    groups_ = (running_ + LanesInGroup() - 1) / LanesInGroup();
+    size_t from = groups_ * LanesInGroup();
+    for (size_t to = 0; to < groups_ * LanesInGroup(); ++to) {
+      if (orbit_[to].orbit != kNoOrbit) continue;
+      while (from < lanes_ && orbit_[from].orbit == kNoOrbit) ++from;
+      if (from == lanes_) return;
+      Move(from, to);
+    }
+  }
+
+  // Between steps, when all groups have made as many.
+  void Move(size_t from, size_t to) {
+    std::swap(orbit_[from], orbit_[to]);
+    for (size_t array = 0; array < kArrays; ++array) std::swap(*At(array, from), *At(array, to));
+  }
+
+  static constexpr uint64_t kNoOrbit = ~uint64_t{0};
 
   PairGeometry geometry_;
-  FlightConstants<T> constants_;
   PistonWave wave_;
-  T reach_;
+  Constants constants_;
   uint64_t orbits_;
   OrbitSource& source_;
-  size_t width_;
   size_t lanes_;
   hwy::AlignedFreeUniquePtr<T[]> memory_;
   std::vector<LaneOrbit> orbit_;
+  size_t groups_ = kGroups;  // that are flown
+  uint64_t step_[kGroups] = {};
+  Flags flags_[kGroups][K];
   uint64_t next_ = 0;
   uint64_t running_ = 0;
-  uint64_t step_ = 0;
 };
 
 bool RunDouble(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,

@@ -16,6 +16,7 @@ class PistonWave {
   explicit PistonWave(const PairGeometry& geometry)
       : left_(geometry.piston_left()), stroke_(geometry.piston_right() - geometry.piston_left()) {}
 
+  double left() const { return left_; }
   double stroke() const { return stroke_; }
 
   double Phase(const PairState& state) const {

@@ -25,6 +25,7 @@
 
 #include "core/closed_form/circular_segment.h"
 #include "core/closed_form/kernel_moments.h"
+#include "core/geometry/elementary_functions.h"
 
 namespace ballpiston {
 
@@ -33,7 +34,7 @@ using std::numbers::pi;
 IngoingLaw::IngoingLaw(double ep)
     : ball_(std::sqrt(0.5 - ep)),
       excess_(std::max(2 * ep - 0.5, 0.0) / (std::sqrt(ep) + ball_)),
-      alpha_max_plus_(std::atan2(std::sqrt(std::max(0.5 - 2 * ep, 0.0)), std::sqrt(ep))),
+      alpha_max_plus_(Atan2(std::sqrt(std::max(0.5 - 2 * ep, 0.0)), std::sqrt(ep))),
       alpha_max_minus_(pi - alpha_max_plus_),
       normalisation_(4 * pi * PairCollisionRate(ep)),
       mean_cos_alpha_(pi * ball_ / normalisation_),

@@ -1,9 +1,9 @@
 #include "core/experiment/first_hit.h"
 
-#include <cmath>
 #include <utility>
 
 #include "core/experiment/return_orbits.h"
+#include "core/geometry/elementary_functions.h"
 
 namespace ballpiston {
 namespace {
@@ -17,7 +17,7 @@ void Record(const Return& hit, BlockResult* result) {
   result->moments[2].Add(hit.sigma);
   // With epsilon >= 1/4 an approaching piston always moves to the left; rounding may not add a law.
   const size_t index = hit.sigma > 0 && result->histograms.size() > 1 ? 1 : 0;
-  result->histograms[index].Add(std::atan2(hit.direction.y(), hit.direction.x()));
+  result->histograms[index].Add(Atan2(hit.direction.y(), hit.direction.x()));
 }
 
 KlDivergence RelativeEntropyTo(const std::vector<SignedHistogram>& histograms) {

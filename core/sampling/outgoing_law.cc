@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/geometry/elementary_functions.h"
 #include "core/sampling/direction.h"
 
 namespace ballpiston {
@@ -25,11 +26,11 @@ OutgoingLaw::OutgoingLaw(double epsilon, double exponent) : exponent_(exponent) 
 }
 
 double OutgoingLaw::Weight(double base) const {
-  // Whole exponents, the usual ones, without the C library, whose last bit differs by processor.
+  // Whole exponents, the usual ones, with fewer operations.
   if (exponent_ == std::floor(exponent_)) {
     return IntegerPower(base, static_cast<uint64_t>(exponent_));
   }
-  return std::pow(base, exponent_);
+  return Power(base, exponent_);
 }
 
 SignedDirection OutgoingLaw::Draw(CounterRandom& random) const {

@@ -8,6 +8,7 @@
 
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
+#include "server/execution/comparison_thread.h"
 #include "server/jobs/job_book.h"
 #include "server/observability/activity.h"
 
@@ -22,6 +23,7 @@ struct ServiceContext {
   JobBook& book;
   RpcExecutor& executor;
   WatchRegistry& watches;
+  ComparisonThread& comparisons;
   Activity& activity;
   const std::atomic<bool>& draining;
   std::string instance;  // of this server's life: numbers of changes mean nothing beyond it

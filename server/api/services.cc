@@ -1,5 +1,6 @@
 #include "server/api/services.h"
 
+#include "server/api/compare_methods.h"
 #include "server/api/methods.h"
 #include "server/api/unary_rpc.h"
 #include "server/api/watch_ensemble_job.h"
@@ -52,6 +53,11 @@ Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsR
                                       v1::EvaluatePairsResponse* response) {
   return RunUnary<v1::EvaluatePairsRequest, v1::EvaluatePairsResponse>(
       service_, context, request, response, &server::EvaluatePairs);
+}
+
+grpc::ServerWriteReactor<v1::MethodMeasurement>* MethodService::CompareMethods(
+    Context*, const v1::CompareMethodsRequest* request) {
+  return CompareMethodsReactor::Start(service_, *request);
 }
 
 }  // namespace ballpiston::server

@@ -1,15 +1,16 @@
-// The two gRPC services: each method runs its function of methods.h inside the frame of
-// unary_rpc.h; the watch has a reactor of its own.
+// The gRPC services: each unary method runs its function of methods.h inside the frame of
+// unary_rpc.h; the streams have reactors of their own.
 #ifndef BALLPISTON_SERVER_API_SERVICES_H_
 #define BALLPISTON_SERVER_API_SERVICES_H_
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "ballpiston/v1/method.grpc.pb.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {
 
-// `service` has to outlive both.
+// `service` has to outlive them all.
 class EnsembleService : public v1::EnsembleService::CallbackService {
  public:
   explicit EnsembleService(ServiceContext& service) : service_(service) {}
@@ -46,6 +47,17 @@ class AnalyticService : public v1::AnalyticService::CallbackService {
   grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
                                           const v1::EvaluatePairsRequest* request,
                                           v1::EvaluatePairsResponse* response) override;
+
+ private:
+  ServiceContext& service_;
+};
+
+class MethodService : public v1::MethodService::CallbackService {
+ public:
+  explicit MethodService(ServiceContext& service) : service_(service) {}
+
+  grpc::ServerWriteReactor<v1::MethodMeasurement>* CompareMethods(
+      grpc::CallbackServerContext* context, const v1::CompareMethodsRequest* request) override;
 
  private:
   ServiceContext& service_;

@@ -33,6 +33,7 @@ absl::Status JobAlreadyEnded(const std::string& name,
                              absl::string_view state);  // FAILED_PRECONDITION
 absl::Status JobStillActive(const std::string& name,
                             absl::string_view state);  // FAILED_PRECONDITION
+absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
 
 // Any status, with the reason and domain that clients look for.

@@ -116,7 +116,8 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"list", "--server", "nowhere"},
                                                {"analytic", "--rho", "0.53"},
                                                {"figure", "portrait", "--out", "x"},
-                                               {"figure", "mean-free-time"}};
+                                               {"figure", "mean-free-time"},
+                                               {"figure", "speed-accuracy"}};
   for (const auto& words : mistakes) {
     const Outcome outcome = Ballpiston(words);
     EXPECT_EQ(outcome.code, 2) << outcome.err;
@@ -124,6 +125,19 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
     EXPECT_EQ(outcome.err.rfind("ballpiston: ", 0), 0u) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
+}
+
+TEST_F(CommandLineTest, AFigureRefusesTheFlagsOfAnother) {
+  const Outcome chart = Ballpiston({"figure", "speed-accuracy", "--out", "x", "--samples", "9",
+                                    "--delta", "0.1,0.2", "--progress", "loud"});
+  EXPECT_EQ(chart.code, 2);
+  EXPECT_THAT(chart.err, HasSubstr("not valid, 3 violations"));
+  EXPECT_THAT(chart.err, HasSubstr("--samples: '9', but the figure speed-accuracy has no such"));
+  EXPECT_THAT(chart.err, HasSubstr("--delta: '0.1,0.2'"));
+  const Outcome times =
+      Ballpiston({"figure", "mean-free-time", "--out", "x", "--seconds", "9", "--epsilon", "0.1"});
+  EXPECT_THAT(times.err, HasSubstr("--seconds: '9', but the figure mean-free-time has no such"));
+  EXPECT_THAT(times.err, HasSubstr("--epsilon: '0.1', but"));
 }
 
 TEST_F(CommandLineTest, MistakesOfAllFlagsAreShownAtOnce) {

@@ -93,6 +93,16 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
   return grpc::Status::OK;
 }
 
+grpc::Status FakeMethodService::CompareMethods(grpc::ServerContext* context,
+                                               const v1::CompareMethodsRequest* request,
+                                               grpc::ServerWriter<v1::MethodMeasurement>* writer) {
+  asked.push_back(*request);
+  do {
+    for (const v1::MethodMeasurement& measurement : measurements) writer->Write(measurement);
+  } while (hangs && !context->IsCancelled());
+  return end;
+}
+
 FakeServer::FakeServer() {
   std::string pattern = (std::filesystem::temp_directory_path() / "client_test_XXXXXX").string();
   folder_ = mkdtemp(pattern.data());
@@ -109,6 +119,7 @@ void FakeServer::Start() {
   builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
+  builder.RegisterService(&method);
   server_ = builder.BuildAndStart();
 }
 

@@ -12,6 +12,7 @@
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "ballpiston/v1/method.grpc.pb.h"
 
 namespace ballpiston::client {
 
@@ -76,6 +77,19 @@ class FakeAnalyticService final : public v1::AnalyticService::Service {
   }
 };
 
+class FakeMethodService final : public v1::MethodService::Service {
+ public:
+  // What to play; with `hangs` again and again until the client leaves.
+  std::vector<v1::MethodMeasurement> measurements;
+  grpc::Status end;
+  bool hangs = false;
+  std::vector<v1::CompareMethodsRequest> asked;  // one comparison at a time
+
+  grpc::Status CompareMethods(grpc::ServerContext* context,
+                              const v1::CompareMethodsRequest* request,
+                              grpc::ServerWriter<v1::MethodMeasurement>* writer) override;
+};
+
 class FakeServer {
  public:
   FakeServer();
@@ -85,6 +99,7 @@ class FakeServer {
 
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
+  FakeMethodService method;
 
   std::string Address() const { return "unix:" + folder_ + "/socket"; }
   std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it

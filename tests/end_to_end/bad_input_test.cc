@@ -92,6 +92,12 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"figure portrait --out FOLDER/figure", 2, {"figure 'portrait'"}},
       {"figure mean-free-time --out FOLDER/broken.json", 2, {"--out: "}},
       {"figure mean-free-time --rho 0.4 --out FOLDER/figure", 2, {"rho[0]"}},
+      {"figure mean-free-time --seconds 3 --out FOLDER/figure", 2, {"--seconds: '3'"}},
+      {"figure speed-accuracy --samples 3 --out FOLDER/figure", 2, {"--samples: '3'"}},
+      {"figure speed-accuracy --delta 0.1,0.2 --out FOLDER/figure", 2, {"--delta: '0.1,0.2'"}},
+      {"figure speed-accuracy --delta 0.4 --epsilon 0.6 --seconds 0.001 --out FOLDER/figure",
+       2,
+       {"delta: ", "epsilon: ", "seconds_per_curve: "}},
       // specification files
       {"run --spec FOLDER/broken.json", 2, {"--spec FOLDER/broken.json: "}},
       {"run --spec FOLDER/unknown.json", 2, {"--spec FOLDER/unknown.json: ", "radius"}},

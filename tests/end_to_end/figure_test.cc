@@ -1,7 +1,9 @@
-// The paper's figure, from one command.
+// Figures, each from one command.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -61,6 +63,45 @@ TEST(Figure, LeavesDataScriptAndPicture) {
   EXPECT_THAT(svg, HasSubstr("</svg>"));
   EXPECT_THAT(svg, HasSubstr("δ = 0.1"));
   EXPECT_THAT(result.out, HasSubstr(folder + "/mean-free-time.svg\n"));
+}
+
+// With so little time that the numbers mean nothing: what is shown is that they arrive.
+TEST(Figure, SpeedIsChartedAgainstAccuracy) {
+  if (RunProgram({.command = {"sh", "-c", "command -v gnuplot"}, .environment = {}, .input = ""})
+          .exit_code != 0) {
+    GTEST_SKIP() << "gnuplot is not installed";
+  }
+  const TestServer server;
+  const std::string folder = server.folder().Path("figure");
+  const ProcessResult result = server.Client(
+      {"figure", "speed-accuracy", "--out", folder, "--seconds", "0.02", "--progress", "json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::string csv = Contents(folder + "/speed-accuracy.csv");
+  const auto rows = std::count(csv.begin(), csv.end(), '\n') - 1;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), rows);
+  for (const char* curve : {"fixed-step,0.01,mean-free-time", "billiard-reference,0,ingoing-law",
+                            "billiard-single,0,trajectory", "closed-form,0,mean-free-time"}) {
+    EXPECT_THAT(csv, HasSubstr(curve));
+  }
+  const std::string svg = Contents(folder + "/speed-accuracy.svg");
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  EXPECT_THAT(svg, HasSubstr("vector lanes, double"));
+  EXPECT_THAT(result.out, HasSubstr(folder + "/speed-accuracy.svg\n"));
+}
+
+TEST(Figure, CtrlCEndsAComparisonOnTheServerToo) {
+  const TestServer server;
+  const std::string folder = server.folder().Path("figure");
+  const auto client = server.StartClient(
+      {"figure", "speed-accuracy", "--out", folder, "--seconds", "60", "--progress", "json"});
+  ASSERT_TRUE(client->WaitForErr("MEAN_FREE_TIME"));
+  client->Signal(SIGINT);
+  EXPECT_EQ(client->Wait().exit_code, 130);
+  ProcessResult next;
+  do {  // the server may not have heard yet
+    next = server.Client({"figure", "speed-accuracy", "--out", folder, "--seconds", "0.01"});
+  } while (next.err.find("COMPARISON_RUNNING") != std::string::npos);
+  EXPECT_EQ(next.exit_code, 0) << next.err;
 }
 
 TEST(Figure, WithoutGnuplotLeavesDataAndScript) {

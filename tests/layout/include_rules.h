@@ -1,8 +1,8 @@
 // Which folder of the house may include what: the arrows between the layers, as a table.
 //
-//   core:    geometry <- closed_form, sampling <- billiard <- experiment; statistics knows no
-//            physics, and experiment alone joins it to the rest. Libraries: Eigen, Highway,
-//            Random123, Abseil and C++'s own, without threads.
+//   core:    geometry <- closed_form, sampling <- billiard <- experiment <- method_comparison;
+//            statistics knows no physics, and the last two alone join it to the rest. Libraries:
+//            Eigen, Highway, Random123, Boost's numbers, Abseil and C++'s own, without threads.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other.
 //   server/convert alone speaks of the core's physics and of the API's messages in one file.
 //

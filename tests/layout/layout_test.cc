@@ -126,6 +126,22 @@ TEST(IncludeRules, BilliardIncludesNoExperiment) {
   ExpectWrong("core/billiard/x.h", "\"core/statistics/moments.h\"");
 }
 
+TEST(IncludeRules, ExperimentsKnowNoComparisonOfMethods) {
+  ExpectWrong("core/experiment/x.cc", "\"core/method_comparison/method.h\"");
+  EXPECT_THAT(WrongIncludes("core/method_comparison/x.cc",
+                            "#include \"core/experiment/return_orbits.h\"\n"
+                            "#include \"core/statistics/moments.h\"\n#include <hwy/highway.h>\n"),
+              IsEmpty());
+}
+
+// Numbers of many bits are for those who compare precisions.
+TEST(IncludeRules, BoostIsForTheBilliardOnly) {
+  EXPECT_THAT(WrongIncludes("core/billiard/x.h", "#include <boost/multiprecision/eigen.hpp>\n"),
+              IsEmpty());
+  ExpectWrong("core/experiment/x.h", "<boost/multiprecision/eigen.hpp>");
+  ExpectWrong("core/method_comparison/x.h", "<boost/multiprecision/eigen.hpp>");
+}
+
 TEST(IncludeRules, StatisticsKnowsNoPhysics) {
   ExpectWrong("core/statistics/x.h", "\"core/geometry/pair_geometry.h\"");
   ExpectWrong("core/statistics/x.h", "\"core/closed_form/kernel.h\"");

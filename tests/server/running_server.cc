@@ -46,6 +46,7 @@ RunningServer::RunningServer(ServerOptions options) {
       grpc::CreateCustomChannel(server_->address(), grpc::InsecureChannelCredentials(), arguments);
   ensemble_ = v1::EnsembleService::NewStub(channel_);
   analytic_ = v1::AnalyticService::NewStub(channel_);
+  method_ = v1::MethodService::NewStub(channel_);
 }
 
 grpc::Status RunningServer::Create(const v1::CreateEnsembleJobRequest& request,

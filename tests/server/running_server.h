@@ -8,6 +8,7 @@
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "ballpiston/v1/method.grpc.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "grpcpp/channel.h"
 #include "server/ballpiston_server.h"
@@ -30,6 +31,7 @@ class RunningServer {
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
   v1::EnsembleService::Stub& ensemble() { return *ensemble_; }
   v1::AnalyticService::Stub& analytic() { return *analytic_; }
+  v1::MethodService::Stub& method() { return *method_; }
 
   grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job);
   std::string Submit(const v1::EnsembleSpec& spec);  // its name
@@ -45,6 +47,7 @@ class RunningServer {
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::EnsembleService::Stub> ensemble_;
   std::unique_ptr<v1::AnalyticService::Stub> analytic_;
+  std::unique_ptr<v1::MethodService::Stub> method_;
 };
 
 // An equilibrium run that the fake experiments take (fake_experiments.h): so many points, so many

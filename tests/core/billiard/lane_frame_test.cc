@@ -31,5 +31,28 @@ TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
   }
 }
 
+// Where two discs meet, a ball reflected by one may lie in the quadrant of the other by rounding.
+// To take it for a ball that leaves the other would be to let it fly through that disc.
+TEST(LaneFrame, OnATipIsThatOfTheDiscWhichTheBallLeaves) {
+  for (const double rho : {0.5 + 1e-12, 0.501, 0.529561127988977, 0.7}) {
+    const double tip = PairDeltaBound(rho);
+    for (const double offset : {-1e-16, -1e-17, -0.0, 0.0, 1e-17, 1e-16}) {
+      for (const double side : {-1.0, 1.0}) {
+        // Away from the disc on that side, into the one opposite.
+        const Eigen::Vector2d direction = {-0.1 * (1 - 2 * tip), -side};
+        for (const Eigen::Vector2d& place :
+             {Eigen::Vector2d{tip, offset}, Eigen::Vector2d{-tip, offset}}) {
+          const Eigen::Vector2d u =
+              Eigen::Vector2d{direction.x() * (place.x() > 0 ? 1 : -1), direction.y()}.normalized();
+          const LaneFrame frame = FrameOfBallOnWall(place, u);
+          EXPECT_GT(frame.s, 0.4) << "rho " << rho << " offset " << offset;
+          EXPECT_NEAR((PositionInCell(frame) - place).norm(), 0, 1e-15);
+          EXPECT_NEAR((DirectionInCell(frame) - u).norm(), 0, 1e-15);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

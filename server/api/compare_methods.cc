@@ -1,0 +1,103 @@
+#include "server/api/compare_methods.h"
+
+#include <utility>
+
+#include "server/convert/errors.h"
+#include "server/convert/method.h"
+
+namespace ballpiston::server {
+namespace {
+
+// What the comparison ended with, as the API says it.
+absl::Status EndOf(const absl::Status& status, bool draining) {
+  if (status.ok()) return status;
+  if (draining) return ShuttingDown();
+  if (absl::IsCancelled(status)) return status;  // the client is gone
+  return WithReason(absl::InternalError(status.message()), "INTERNAL");
+}
+
+}  // namespace
+
+CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
+                                                    const v1::CompareMethodsRequest& request) {
+  std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service));
+  reactor->self_ = reactor;
+  const absl::Status refused = reactor->Begin(request);
+  if (!refused.ok()) reactor->End(refused);
+  return reactor.get();
+}
+
+CompareMethodsReactor::CompareMethodsReactor(ServiceContext& service)
+    : service_(service), call_(service.activity.Begin()) {}
+
+absl::Status CompareMethodsReactor::Begin(const v1::CompareMethodsRequest& request) {
+  const CheckedComparison checked = CheckComparison(request);
+  if (!checked.violations.empty()) return InvalidRequest(checked.violations);
+  const ComparisonThread::Admission admission = service_.comparisons.Begin(
+      {.spec = checked.spec,
+       .stop = stop_,
+       .tell = [self = self_](const auto& made) { self->Tell(MeasurementMessage(made)); },
+       .ended =
+           [self = self_](const absl::Status& status) {
+             self->End(EndOf(status, self->service_.draining));
+           }});
+  if (admission == ComparisonThread::Admission::kBusy) return ComparisonRunning();
+  if (admission == ComparisonThread::Admission::kStopped) return ShuttingDown();
+  return absl::OkStatus();
+}
+
+// ---- reactions: on gRPC's threads ----
+
+void CompareMethodsReactor::OnWriteDone(bool ok) {
+  {
+    std::lock_guard lock(mutex_);
+    writing_ = false;
+    if (!ok) waiting_.clear();
+  }
+  if (!ok) stop_.request_stop();
+  Advance();
+}
+
+void CompareMethodsReactor::OnCancel() { stop_.request_stop(); }
+
+void CompareMethodsReactor::OnDone() {
+  self_.reset();  // may delete this
+}
+
+// ---- on the comparison's thread ----
+
+void CompareMethodsReactor::Tell(v1::MethodMeasurement message) {
+  {
+    std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(message));
+  }
+  Advance();
+}
+
+void CompareMethodsReactor::End(const absl::Status& status) {
+  {
+    std::lock_guard lock(mutex_);
+    end_ = status;
+  }
+  Advance();
+}
+
+// ---- writing ----
+
+void CompareMethodsReactor::Advance() {
+  std::unique_lock lock(mutex_);
+  if (writing_) return;
+  if (!waiting_.empty()) {
+    message_ = std::move(waiting_.front());
+    waiting_.pop_front();
+    writing_ = true;
+    lock.unlock();
+    StartWrite(&message_);
+  } else if (end_) {
+    const absl::Status end = *std::exchange(end_, std::nullopt);
+    lock.unlock();
+    Finish(GrpcStatus(end));
+  }
+}
+
+}  // namespace ballpiston::server

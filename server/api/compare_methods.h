@@ -1,0 +1,56 @@
+// CompareMethods: what the comparison's thread tells, in the order it is told.
+//
+// One write is outstanding; what is told meanwhile waits in a queue without a bound, because a
+// comparison has some 200 messages of 50 bytes: a reader that stalls costs 10 KB and holds up
+// nobody. The stream ends when the comparison has ended, also when its client is gone: a comparison
+// asked to stop does so in milliseconds.
+#ifndef BALLPISTON_SERVER_API_COMPARE_METHODS_H_
+#define BALLPISTON_SERVER_API_COMPARE_METHODS_H_
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "absl/status/status.h"
+#include "ballpiston/v1/method.pb.h"
+#include "grpcpp/support/server_callback.h"
+#include "server/api/service_context.h"
+
+namespace ballpiston::server {
+
+class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurement>,
+                              public std::enable_shared_from_this<CompareMethodsReactor> {
+ public:
+  // Owns itself until gRPC is done with it.
+  static CompareMethodsReactor* Start(ServiceContext& service,
+                                      const v1::CompareMethodsRequest& request);
+
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  explicit CompareMethodsReactor(ServiceContext& service);
+
+  absl::Status Begin(const v1::CompareMethodsRequest& request);  // what Start refuses with, if so
+  void Tell(v1::MethodMeasurement message);
+  void End(const absl::Status& status);
+  void Advance();  // writes or finishes, if it is time to
+
+  ServiceContext& service_;
+  const std::shared_ptr<void> call_;  // for Activity
+  std::stop_source stop_;
+  std::shared_ptr<CompareMethodsReactor> self_;
+  v1::MethodMeasurement message_;  // being written
+
+  std::mutex mutex_;  // never held while gRPC is called
+  std::deque<v1::MethodMeasurement> waiting_;
+  bool writing_ = false;
+  std::optional<absl::Status> end_;  // to be told when nothing waits any more
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_COMPARE_METHODS_H_

@@ -1,0 +1,112 @@
+#include "server/convert/method.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "core/geometry/number_text.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Message = v1::MethodMeasurement;
+
+class Violations {
+ public:
+  void Add(const char* field, const absl::Status& status) {
+    if (!status.ok()) list_.push_back({field, std::string(status.message())});
+  }
+  void AddOutside(const char* field, double value, const std::string& range) {
+    list_.push_back({field, absl::StrCat(NumberText(value), " is not in ", range)});
+  }
+  std::vector<FieldViolation> Taken() { return std::move(list_); }
+
+ private:
+  std::vector<FieldViolation> list_;
+};
+
+// False for NaN.
+bool IsWithin(double low, double value, double high) { return value >= low && value <= high; }
+
+std::vector<FieldViolation> Check(const MethodComparisonSpec& spec) {
+  Violations violations;
+  const absl::Status rho = ValidateRho(spec.rho);
+  violations.Add("rho", rho);
+  violations.Add(
+      "delta", rho.ok() ? ValidatePairDelta(spec.rho, spec.delta) : ValidateSomeDelta(spec.delta));
+  if (!(spec.epsilon > 0 && spec.epsilon < 0.5)) {
+    violations.AddOutside("epsilon", spec.epsilon, "(0, 1/2)");
+  }
+  if (!IsWithin(kMinSecondsPerCurve, spec.seconds_per_curve, kMaxSecondsPerCurve)) {
+    violations.AddOutside(
+        "seconds_per_curve", spec.seconds_per_curve,
+        absl::StrCat("[", NumberText(kMinSecondsPerCurve), ", ", NumberText(kMaxSecondsPerCurve),
+                     "], or 0 for ", NumberText(kDefaultSecondsPerCurve)));
+  }
+  return violations.Taken();
+}
+
+}  // namespace
+
+CheckedComparison CheckComparison(const v1::CompareMethodsRequest& request) {
+  CheckedComparison checked;
+  checked.spec.rho = request.rho();
+  checked.spec.delta = request.delta();
+  checked.spec.epsilon = request.epsilon();
+  checked.spec.seconds_per_curve =
+      request.seconds_per_curve() == 0 ? kDefaultSecondsPerCurve : request.seconds_per_curve();
+  checked.spec.seed = request.seed();
+  checked.violations = Check(checked.spec);
+  return checked;
+}
+
+v1::MethodMeasurement MeasurementMessage(const MethodMeasurement& measurement) {
+  v1::MethodMeasurement message;
+  message.set_method(MethodMessage(measurement.method));
+  message.set_time_step(measurement.time_step);
+  message.set_quantity(QuantityMessage(measurement.quantity));
+  message.set_samples(measurement.samples);
+  message.set_wall_hits(measurement.wall_hits);
+  message.set_work(measurement.work);
+  message.set_value(measurement.value);
+  message.set_statistical_error(measurement.statistical_error);
+  return message;
+}
+
+Message::Method MethodMessage(Method method) {
+  switch (method) {
+    case Method::kFixedStep:
+      return Message::FIXED_STEP;
+    case Method::kReferenceSingle:
+      return Message::BILLIARD_REFERENCE_SINGLE;
+    case Method::kReference:
+      return Message::BILLIARD_REFERENCE;
+    case Method::kReferenceLongDouble:
+      return Message::BILLIARD_REFERENCE_LONG_DOUBLE;
+    case Method::kReferenceQuadruple:
+      return Message::BILLIARD_REFERENCE_QUADRUPLE;
+    case Method::kLanes:
+      return Message::BILLIARD;
+    case Method::kLanesSingle:
+      return Message::BILLIARD_SINGLE;
+    case Method::kClosedForm:
+      return Message::CLOSED_FORM;
+  }
+  return Message::METHOD_UNSPECIFIED;
+}
+
+Message::Quantity QuantityMessage(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kMeanFreeTime:
+      return Message::MEAN_FREE_TIME;
+    case Quantity::kIngoingLaw:
+      return Message::INGOING_LAW;
+    case Quantity::kTrajectory:
+      return Message::TRAJECTORY;
+  }
+  return Message::QUANTITY_UNSPECIFIED;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,140 @@
+#include "client/figure/speed_accuracy_figure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using v1::MethodMeasurement;
+
+MethodMeasurement Measured(MethodMeasurement::Method method, MethodMeasurement::Quantity quantity,
+                           uint64_t samples, double work, double value, double error) {
+  MethodMeasurement measurement;
+  measurement.set_method(method);
+  measurement.set_quantity(quantity);
+  measurement.set_samples(samples);
+  measurement.set_wall_hits(100 * samples);
+  measurement.set_work(work);
+  measurement.set_value(value);
+  measurement.set_statistical_error(error);
+  return measurement;
+}
+
+MethodMeasurement FixedStep(double time_step, MethodMeasurement measurement) {
+  measurement.set_method(MethodMeasurement::FIXED_STEP);
+  measurement.set_time_step(time_step);
+  return measurement;
+}
+
+std::vector<MethodMeasurement> Measurements() {
+  using M = MethodMeasurement;
+  return {
+      FixedStep(0.01, Measured(M::FIXED_STEP, M::MEAN_FREE_TIME, 100, 0.001, 0.4, 0.2)),
+      FixedStep(0.01, Measured(M::FIXED_STEP, M::MEAN_FREE_TIME, 400, 0.004, 0.5, 0.1)),
+      Measured(M::BILLIARD, M::MEAN_FREE_TIME, 1600, 0.002, 0.0625, 0.03125),
+      Measured(M::CLOSED_FORM, M::MEAN_FREE_TIME, 0, 1e-7, 6e-15, 0),
+      Measured(M::BILLIARD, M::INGOING_LAW, 1600, 0.002, -0.001, 0.002),
+      Measured(M::CLOSED_FORM, M::INGOING_LAW, 0, 1e-4, 0, 0),
+      FixedStep(0.01, Measured(M::FIXED_STEP, M::TRAJECTORY, 64, 0.00064, 2.5, 0.25)),
+      Measured(M::BILLIARD, M::TRAJECTORY, 64, 1.6e-5, 31.5, 0.25),
+  };
+}
+
+TEST(SpeedAccuracyFigure, AsksForOneComparison) {
+  const v1::CompareMethodsRequest request = ComparisonRequest(
+      {.rho = 0.53, .delta = 0.2, .epsilon = 0.25, .seconds_per_curve = 3, .seed = 7});
+  EXPECT_EQ(request.rho(), 0.53);
+  EXPECT_EQ(request.delta(), 0.2);
+  EXPECT_EQ(request.epsilon(), 0.25);
+  EXPECT_EQ(request.seconds_per_curve(), 3);
+  EXPECT_EQ(request.seed(), 7u);
+}
+
+TEST(SpeedAccuracyFigure, WritesEveryMeasurementAndTellsBiasFromChance) {
+  const auto files = MakeFiles({}, Measurements());
+  ASSERT_TRUE(files.ok()) << files.status();
+  EXPECT_EQ(files->csv,
+            "method,time_step,quantity,samples,wall_hits,work_seconds,value,statistical_error,"
+            "bias_resolved\n"
+            "fixed-step,0.01,mean-free-time,100,10000,0.001,0.4,0.2,0\n"
+            "fixed-step,0.01,mean-free-time,400,40000,0.004,0.5,0.1,1\n"
+            "billiard,0,mean-free-time,1600,160000,0.002,0.0625,0.03125,0\n"
+            "closed-form,0,mean-free-time,0,0,1e-07,6e-15,0,1\n"
+            "billiard,0,ingoing-law,1600,160000,0.002,-0.001,0.002,0\n"
+            "closed-form,0,ingoing-law,0,0,1e-04,0,0,0\n"
+            "fixed-step,0.01,trajectory,64,6400,0.00064,2.5,0.25,\n"
+            "billiard,0,trajectory,64,6400,1.6e-05,31.5,0.25,\n");
+}
+
+TEST(SpeedAccuracyFigure, ABiasIsMoreThanThreeStatisticalErrors) {
+  using M = MethodMeasurement;
+  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::MEAN_FREE_TIME, 100, 1, 0.75, 0.25)));
+  EXPECT_TRUE(IsBiasResolved(Measured(M::BILLIARD, M::MEAN_FREE_TIME, 100, 1, 0.76, 0.25)));
+  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::INGOING_LAW, 100, 1, -0.76, 0.25)));
+  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::TRAJECTORY, 100, 1, 31, 0.25)));
+}
+
+TEST(SpeedAccuracyFigure, APanelWithoutRunsSaysHowToGetThem) {
+  std::vector<MethodMeasurement> measurements = Measurements();
+  for (MethodMeasurement& m : measurements) {
+    if (m.quantity() == MethodMeasurement::INGOING_LAW) m.set_samples(16);
+  }
+  const absl::Status status = MakeFiles({}, measurements).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("ingoing-law"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("--seconds"));
+}
+
+class SpeedAccuracyScriptTest : public testing::Test {
+ protected:
+  const std::string script_ = MakeFiles({.rho = 0.53}, Measurements())->script;
+};
+
+TEST_F(SpeedAccuracyScriptTest, HasEveryPanel) {
+  for (const char* title : {"{/:Bold a}  mean free time", "{/:Bold b}  law of the ingoing angle",
+                            "{/:Bold c}  single orbits"}) {
+    EXPECT_THAT(script_, HasSubstr(title));
+  }
+  for (const char* quantity : {"mean-free-time", "ingoing-law"}) {
+    EXPECT_THAT(script_, HasSubstr(std::string("quantity = \"") + quantity + "\""));
+  }
+  EXPECT_THAT(script_, Not(HasSubstr("$NAME")));
+}
+
+TEST_F(SpeedAccuracyScriptTest, HasACurveAMethodAndOneLegend) {
+  EXPECT_THAT(script_, HasSubstr("methods = \"fixed-step billiard closed-form\""));
+  EXPECT_THAT(script_, HasSubstr("array step = [0.01, 0, 0]"));
+  for (const char* title : {"fixed time step Δt", "vector lanes, double", "closed form"}) {
+    const std::string entry = std::string("title \"") + title + "\"";
+    EXPECT_THAT(script_, HasSubstr(entry));
+    EXPECT_EQ(script_.find(entry, script_.find(entry) + 1), std::string::npos);
+  }
+}
+
+// The longest run of the first curve resolves 0.5; both its runs had a smaller statistical error.
+TEST_F(SpeedAccuracyScriptTest, DrawsABiasThatIsResolvedFromWhereChanceIsSmaller) {
+  EXPECT_THAT(script_, HasSubstr("curve,x,y\n1,0.001,0.5\n1,0.0064,0.5\n"));
+  EXPECT_THAT(script_, HasSubstr("curve,x,y\nEOD"));  // none in panel b
+}
+
+TEST_F(SpeedAccuracyScriptTest, DrawsWhatIsTooSmallAtTheEdgeAndSaysHowSmall) {
+  EXPECT_THAT(script_, HasSubstr("1e-07,0.0125,≤ 6×10^{-15}\n"));  // 0.4 of 0.03125
+  EXPECT_THAT(script_, HasSubstr("edge = 0.0125\n"));
+}
+
+// 64 hits a run of 1.6e-5 s at 6400 hits: 2.5 ns.
+TEST_F(SpeedAccuracyScriptTest, AnOrbitsCostIsTheTimeOfAHit) {
+  EXPECT_THAT(script_, HasSubstr("2,2.5,31.5,0.25\n"));
+}
+
+// Can be moved and run again: no path but names of files beside it.
+TEST_F(SpeedAccuracyScriptTest, NamesFilesBesideIt) {
+  EXPECT_THAT(script_, HasSubstr("\"speed-accuracy.csv\""));
+  EXPECT_THAT(script_, Not(HasSubstr("/speed-accuracy")));
+}
+
+}  // namespace
+}  // namespace ballpiston::client

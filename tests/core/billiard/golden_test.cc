@@ -1,0 +1,198 @@
+// The same question gives the same bits: under every instruction set with fused multiply-add, in
+// any number of threads, in any order of the blocks, and as the last time.
+//
+// When bits change on purpose: raise kEngineVersion in core/engine_version.h, so that nobody merges
+// blocks of the two, run `core_test --gtest_filter='*Golden*'`, and put the lines that it prints
+// into golden_bits.h. A change that nobody meant is a defect.
+//
+// Of a summary, the closed forms beside the estimates and the relative entropy are not looked at:
+// their sines and logarithms are the C library's.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <iomanip>
+#include <iostream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/experiment/point_experiment.h"
+#include "tests/core/billiard/each_target.h"
+#include "tests/core/billiard/golden_bits.h"
+#include "tests/core/billiard/recorded_contacts.h"
+
+namespace ballpiston {
+namespace {
+
+// FNV-1a, by words.
+class Fingerprint {
+ public:
+  void Add(uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
+  void Add(double x) { Add(std::bit_cast<uint64_t>(x)); }
+
+  void Add(const Contact& contact) {
+    const PairState& state = contact.state;
+    for (const double x :
+         {contact.time, state.position.x(), state.position.y(), state.direction.x(),
+          state.direction.y(), state.ball_speed, state.piston, state.piston_velocity}) {
+      Add(x);
+    }
+    Add(contact.ball_wall_hits);
+    Add(contact.piston_wall_hits);
+  }
+
+  void Add(const BlockResult& result) {
+    Add(result.samples);
+    for (const Moments& m : result.moments) {
+      Add(m.count);
+      for (const double x : {m.mean, m.m2, m.m3, m.m4}) Add(x);
+    }
+    for (const BatchMeans& b : result.batch_means) {
+      Add(b.batches);
+      for (const double x : {b.mean_numerator, b.mean_denominator, b.c_nn, b.c_nd, b.c_dd}) Add(x);
+    }
+    for (const Histogram& h : result.histograms) {
+      Add(h.lower);
+      Add(h.upper);
+      for (const uint64_t count : h.counts) Add(count);
+    }
+    Add(result.health.escapes);
+    Add(result.health.max_energy_error);
+  }
+
+  void Add(const PointSummary& summary) {
+    Add(summary.samples);
+    for (const Estimate& estimate : summary.estimates) {
+      Add(estimate.value);
+      Add(estimate.standard_error.value_or(-1));
+    }
+  }
+
+  uint64_t hash() const { return hash_; }
+
+ private:
+  uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+void ExpectGolden(const std::string& of, const Fingerprint& fingerprint) {
+  const auto golden = kGoldenBits.find(of);
+  if (golden != kGoldenBits.end() && golden->second == fingerprint.hash()) return;
+  std::ostringstream line;
+  line << "{\"" << of << "\", 0x" << std::hex << std::setfill('0') << std::setw(16)
+       << fingerprint.hash() << "},";
+  static std::set<std::string> told;
+  if (told.insert(line.str()).second) std::cout << line.str() << "\n";
+  ADD_FAILURE() << "other bits than in golden_bits.h: " << line.str();
+}
+
+// What the lanes do has to be the same under every target with fused multiply-add.
+void ForEachFusedTarget(Engine engine, const std::function<void()>& test) {
+  if (engine == Engine::kReference) return test();
+  int targets = 0;
+  ForEachTarget([&](int64_t target) {
+    if (!HasFusedMultiplyAdd(target)) return;
+    ++targets;
+    test();
+  });
+  if (targets == 0) GTEST_SKIP() << "no fused multiply-add here";
+}
+
+const char* Name(Engine engine) {
+  return engine == Engine::kReference ? "reference"
+         : engine == Engine::kLanes   ? "lanes"
+                                      : "lanes single";
+}
+
+class Golden : public testing::TestWithParam<Engine> {};
+
+TEST_P(Golden, Orbits) {
+  const Engine engine = GetParam();
+  ForEachFusedTarget(engine, [engine] {
+    for (const double rho : {0.501, 0.529561127988977, 0.7}) {
+      const PairGeometry geometry = *PairGeometry::Create(rho, 0.4 * PairDeltaBound(rho));
+      const RecordedContacts recorded = Recorded(engine, geometry, 200, 4);
+      Fingerprint fingerprint;
+      for (const auto& orbit : recorded.by_orbit()) {
+        for (const Contact& contact : orbit) fingerprint.Add(contact);
+      }
+      ExpectGolden(absl::StrCat(Name(engine), ", orbits, rho ", rho), fingerprint);
+    }
+  });
+}
+
+std::vector<EnsembleSpec> SpecsOf(Engine engine) {
+  const Grid pair = {.rho = {0.529561127988977}, .delta = {0.2}};
+  Grid energy = pair, whole = pair, fraction = pair;
+  energy.epsilon = whole.epsilon = fraction.epsilon = {0.125};
+  whole.exponent = {5}, fraction.exponent = {2.5};
+  std::vector<EnsembleSpec> specs = {
+      {.experiment = Experiment::kEquilibrium, .grid = pair, .target = {.collisions = 1000}},
+      {.experiment = Experiment::kConditionalMeanFreeTime,
+       .grid = energy,
+       .target = {.samples = 1000}},
+      {.experiment = Experiment::kFirstHit, .grid = whole, .target = {.samples = 1000}},
+      {.experiment = Experiment::kFirstHit, .grid = fraction, .target = {.samples = 1000}}};
+  for (EnsembleSpec& spec : specs) {
+    spec.seed = 42;
+    spec.model = engine == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;
+    if (engine == Engine::kLanesSingle) spec.precision = Precision::kSingle;
+  }
+  return specs;
+}
+
+// The point's blocks, each computed by whichever thread is free, in a scrambled order.
+BlockResult RunInThreads(const PointExperiment& point, size_t threads) {
+  const size_t blocks = point.plan().Blocks(), step = 2 * (blocks / 3) + 1;
+  std::vector<std::optional<BlockResult>> results(blocks);
+  std::atomic<size_t> next = 0;
+  const auto work = [&] {
+    for (size_t i; (i = next++) < blocks;) {
+      const size_t block = (blocks - 1 - i) * step % blocks;
+      results[block] = point.RunBlock(block, {});
+    }
+  };
+  {
+    std::vector<std::jthread> workers;
+    for (size_t i = 0; i < threads; ++i) workers.emplace_back(work);
+  }
+  BlockResult merged;
+  for (const auto& result : results) merged.Merge(result.value());
+  return merged;
+}
+
+TEST_P(Golden, BlocksAndSummaries) {
+  const Engine engine = GetParam();
+  ForEachFusedTarget(engine, [engine] {
+    for (const EnsembleSpec& spec : SpecsOf(engine)) {
+      const auto point = PointExperiment::Create(spec, 0);
+      std::string of = absl::StrCat(Name(engine), ", ", Name(spec.experiment));
+      if (const auto exponent = point->parameters().exponent) absl::StrAppend(&of, " ", *exponent);
+      for (const size_t threads : {1, 2, 8}) {
+        SCOPED_TRACE(absl::StrCat(threads, " threads"));
+        const BlockResult merged = RunInThreads(*point, threads);
+        Fingerprint fingerprint;
+        fingerprint.Add(merged);
+        fingerprint.Add(point->Summarize(merged));
+        ExpectGolden(of, fingerprint);
+      }
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Engines, Golden,
+                         testing::Values(Engine::kReference, Engine::kLanes, Engine::kLanesSingle),
+                         [](const auto& test) -> std::string {
+                           return test.param == Engine::kReference ? "Reference"
+                                  : test.param == Engine::kLanes   ? "Lanes"
+                                                                   : "LanesSingle";
+                         });
+
+}  // namespace
+}  // namespace ballpiston

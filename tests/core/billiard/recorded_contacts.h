@@ -1,0 +1,48 @@
+// Orbits of a few collisions from equilibrium, and every contact that they told of.
+#ifndef BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
+#define BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/billiard/orbits.h"
+#include "core/sampling/invariant_measure.h"
+
+namespace ballpiston {
+
+class RecordedContacts : public OrbitSource {
+ public:
+  RecordedContacts(const PairGeometry& geometry, uint64_t orbits, size_t collisions)
+      : geometry_(geometry), collisions_(collisions), by_orbit_(orbits) {}
+
+  PairState Start(uint64_t orbit) override {
+    CounterRandom random(7, 8, orbit);
+    return DrawFromCollisionMeasure(geometry_, random);
+  }
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    by_orbit_[orbit].push_back(contact);
+    return by_orbit_[orbit].size() < collisions_ ? AfterContact::kGoOn : AfterContact::kEnd;
+  }
+
+  const std::vector<std::vector<Contact>>& by_orbit() const { return by_orbit_; }
+
+ private:
+  PairGeometry geometry_;
+  size_t collisions_;
+  std::vector<std::vector<Contact>> by_orbit_;
+};
+
+inline RecordedContacts Recorded(Engine engine, const PairGeometry& geometry, uint64_t orbits,
+                                 size_t collisions) {
+  RecordedContacts contacts(geometry, orbits, collisions);
+  EXPECT_TRUE(RunOrbits(engine, geometry, orbits, contacts, {}));
+  return contacts;
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_

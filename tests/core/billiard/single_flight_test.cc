@@ -1,0 +1,319 @@
+// One flight in lanes against one of the reference and both against one of 64 bits and more, from a
+// million states: anywhere, and where arcs meet or are touched.
+//
+// The bound. With u the rounding of a number next to 1, 2^-53 or in single precision 2^-24, an
+// engine knows the ray's impact
+// parameter c' on the next disc to some u: the cross product with the direction, of the ball's
+// place and of the disc's, each of a few rounded terms below 1, and rho^2 rounded. The flight ends
+// at the foot minus s', s'^2 = rho^2 - c'^2, so
+//     |error of the time| <= u (A + B/cos phi),   cos phi = s'/rho,
+// until cos phi is itself as small as its error, sqrt(2 B u): there the root's error is that.
+// An engine may take another arc than the exact one only if the exact ray decides by as little:
+//   tie    it reaches both arcs, at times that differ by no more than the two bounds;
+//   touch  it touches one of the two within B u, as a hit or as a miss.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/billiard/lane_frame.h"
+#include "core/billiard/reference_flow.h"
+#include "core/sampling/counter_random.h"
+#include "tests/core/billiard/each_target.h"
+#include "tests/oracle/exact_flight.h"
+#include "tests/oracle/lane_balls.h"
+
+namespace ballpiston {
+namespace {
+
+using Eigen::Vector2d;
+using Exact = oracle::ExactFlight<long double>;
+
+constexpr double kDouble = 0x1p-53, kSingle = 0x1p-24;  // u
+constexpr double kTimeUnits = 8;                        // A
+constexpr double kImpactUnits = 8;                      // B
+
+// The half width of a cell in which a place in single precision says something.
+constexpr double kSmallestInSingle = 1e-4;
+
+constexpr size_t kStatesOfAGeometry = 100'000;
+constexpr int kFlightsOfAStart = 4;
+
+double TimeBound(double unit, long double cosine) {
+  const double smallest = std::sqrt(2 * kImpactUnits * unit);
+  return unit * (kTimeUnits + kImpactUnits / std::max(static_cast<double>(cosine), smallest));
+}
+
+// From vanishing tips to a vanishing cell.
+std::vector<PairGeometry> Geometries() {
+  std::vector<PairGeometry> geometries;
+  for (const double rho : {0.5 + 1e-12, 0.5 + 1e-6, 0.501, 0.51, 0.529561127988977, 0.56, 0.6, 0.65,
+                           0.7, 0.70710678}) {
+    geometries.push_back(*PairGeometry::Create(rho, 0.1 * PairDeltaBound(rho)));
+  }
+  return geometries;
+}
+
+double RandomOffset(CounterRandom& random) {
+  const double sign = random.Bits() % 2 == 0 ? 1 : -1;
+  return sign * std::pow(10, -3 - static_cast<double>(random.Bits() % 15));
+}
+
+Vector2d Perpendicular(const Vector2d& a) { return {-a.y(), a.x()}; }
+
+// Balls alone about to leave a wall. All kinds are seen from the disc at lower left, then turned
+// into any other's frame by mirrors.
+class Starts {
+ public:
+  Starts(const PairGeometry& geometry, uint64_t stream)
+      : geometry_(geometry), tip_angle_(std::acos(0.5 / geometry.rho())), random_(5, stream, 0) {}
+
+  PairState Next() {
+    for (;;) {
+      const Vector2d position = Centre() + geometry_.rho() * Normal();
+      const Vector2d direction = Direction(position).normalized();
+      if (direction.dot(position - Centre()) <= 0 || position.maxCoeff() >= 0) continue;
+      const Vector2d mirror = {random_.Bits() % 2 == 0 ? 1 : -1, random_.Bits() % 2 == 0 ? 1 : -1};
+      return {.position = position.cwiseProduct(mirror),
+              .direction = direction.cwiseProduct(mirror),
+              .ball_speed = 1,
+              .piston = geometry_.piston_right()};
+    }
+  }
+
+ private:
+  static Vector2d Centre() { return {-0.5, -0.5}; }
+
+  // Anywhere on the arc, or next to one of its tips.
+  Vector2d Normal() {
+    double angle = tip_angle_ + (M_PI_2 - 2 * tip_angle_) * random_.Uniform();
+    if (random_.Bits() % 4 == 0) angle = tip_angle_ + std::fabs(RandomOffset(random_));
+    return {std::cos(angle), std::sin(angle)};
+  }
+
+  // Anywhere, at a tip, or touching a disc.
+  Vector2d Direction(const Vector2d& position) {
+    switch (random_.Bits() % 4) {
+      case 0: {
+        const double angle = 2 * M_PI * random_.Uniform();
+        return {std::cos(angle), std::sin(angle)};
+      }
+      case 1:
+        return AtTip(position);
+      default:
+        return Touching(position);
+    }
+  }
+
+  Vector2d AtTip(const Vector2d& position) {
+    const double t = geometry_.tip();
+    const Vector2d tips[] = {{t, 0}, {0, t}, {-t, 0}, {0, -t}};
+    const Vector2d way = tips[random_.Bits() % 4] - position;
+    return way + RandomOffset(random_) * Perpendicular(way);
+  }
+
+  Vector2d Touching(const Vector2d& position) {
+    const Vector2d way = oracle::DiscCentre(1 + static_cast<int>(random_.Bits() % 3)) - position;
+    const double sine = std::min(geometry_.rho() * (1 + RandomOffset(random_)) / way.norm(), 1.0);
+    const double side = random_.Bits() % 2 == 0 ? 1 : -1;
+    return way * std::sqrt((1 - sine) * (1 + sine)) + side * sine * Perpendicular(way);
+  }
+
+  PairGeometry geometry_;
+  double tip_angle_;  // of the tips, from the axes
+  CounterRandom random_;
+};
+
+struct ReferenceFlight {
+  PairState before, after;
+  int from;  // the disc on which it begins
+  double time;
+  int to;
+};
+
+// The disc from which the ball has just been reflected. Next to a tip its place alone does not
+// tell: the change of direction is along the arc's normal.
+int ReflectedBy(const PairGeometry& geometry, const PairState& before, const PairState& after) {
+  const Vector2d change = after.direction - before.direction;
+  const auto misfit = [&](int disc) {
+    const Vector2d normal = (after.position - oracle::DiscCentre(disc)) / geometry.rho();
+    return std::fabs(normal.norm() - 1) + (change - change.norm() * normal).norm();
+  };
+  int best = 0;
+  for (int disc = 1; disc < 4; ++disc) {
+    if (misfit(disc) < misfit(best)) best = disc;
+  }
+  return best;
+}
+
+std::vector<ReferenceFlight> ReferenceFlights(const PairGeometry& geometry, uint64_t stream) {
+  std::vector<ReferenceFlight> flights;
+  Starts starts(geometry, stream);
+  while (flights.size() < kStatesOfAGeometry) {
+    const PairState start = starts.Next();
+    ReferenceFlow flow(geometry, start);
+    int from = oracle::DiscOfQuadrant(start.position);
+    for (int i = 0; i < kFlightsOfAStart; ++i) {
+      const PairState before = flow.state();
+      const Event event = flow.Step();
+      EXPECT_EQ(event.kind, EventKind::kBallWall);
+      const int to = ReflectedBy(geometry, before, flow.state());
+      flights.push_back({before, flow.state(), from, event.duration, to});
+      from = to;
+    }
+  }
+  return flights;
+}
+
+// The centre of the frame's disc, (-1/2, -1/2) there as seen from the cell's centre, in the cell.
+int DiscOf(const LaneFrame& frame) {
+  return (frame.a < 0 ? 1 : 0) | (frame.m * frame.b < 0 ? 2 : 0);
+}
+
+struct Tally {
+  size_t states = 0, ties = 0, touches = 0, wrong = 0, parted = 0;
+  std::string a_wrong_one = {};
+  double worst_time = 0;        // of the engine against the exact flight, in bounds
+  double worst_impact = 0;      // in units
+  double worst_difference = 0;  // of the two engines' times, in the sum of their bounds
+  double worst_place = 0;       // likewise
+  double worst_direction = 0;   // likewise
+
+  void Add(const Tally& other) {
+    states += other.states, ties += other.ties, touches += other.touches;
+    wrong += other.wrong, parted += other.parted;
+    if (other.wrong > 0) a_wrong_one = other.a_wrong_one;
+    worst_time = std::max(worst_time, other.worst_time);
+    worst_impact = std::max(worst_impact, other.worst_impact);
+    worst_difference = std::max(worst_difference, other.worst_difference);
+    worst_place = std::max(worst_place, other.worst_place);
+    worst_direction = std::max(worst_direction, other.worst_direction);
+  }
+};
+
+std::ostream& operator<<(std::ostream& out, const Tally& t) {
+  return out << t.states << " flights, another arc at " << t.ties << " ties and " << t.touches
+             << " touches; worst error of the time " << std::setprecision(3) << t.worst_time
+             << " bounds, of the impact parameter " << t.worst_impact << " units";
+}
+
+// Whether the exact ray takes `disc` as well as its own, within rounding.
+void JudgeArc(double unit, const Exact& exact, double rho, int disc, Tally& tally) {
+  const auto &taken = exact.Of(disc), &right = exact.First();
+  const auto touched = [unit, rho](const Exact::Disc& d) {
+    return std::fabs(std::fabs(d.impact) - rho) <= kImpactUnits * unit;
+  };
+  if (std::fabs(taken.length - right.length) <=
+      TimeBound(unit, taken.cosine) + TimeBound(unit, right.cosine)) {
+    ++tally.ties;
+  } else if (touched(taken) || touched(right)) {
+    ++tally.touches;
+  } else {
+    ++tally.wrong;
+    tally.a_wrong_one =
+        absl::StrCat("arc ", disc, " instead of ", exact.first, ", which is hit at ",
+                     static_cast<double>(right.length), " and not at ",
+                     static_cast<double>(taken.length), ", impact parameters ",
+                     static_cast<double>(right.impact), " and ", static_cast<double>(taken.impact));
+  }
+}
+
+void Judge(double unit, const Exact& exact, double rho, int disc, double time, Tally& tally) {
+  ++tally.states;
+  if (disc != exact.first) return JudgeArc(unit, exact, rho, disc, tally);
+  const auto error = static_cast<double>(std::fabs(time - exact.First().length));
+  tally.worst_time = std::max(tally.worst_time, error / TimeBound(unit, exact.First().cosine));
+}
+
+Tally JudgeReference(const PairGeometry& geometry, const std::vector<ReferenceFlight>& flights) {
+  Tally tally;
+  for (const ReferenceFlight& flight : flights) {
+    const Exact exact(geometry, flight.before.position, flight.before.direction, flight.from);
+    Judge(kDouble, exact, geometry.rho(), flight.to, flight.time, tally);
+  }
+  return tally;
+}
+
+// The ball's place is along the ray as uncertain as the time; its direction turns by the angle to
+// the normal twice, each uncertain by as much over rho > 1/2.
+void CompareEngines(double bounds, const ReferenceFlight& reference, const oracle::LaneBall& lane,
+                    Tally& tally) {
+  const Vector2d place = PositionInCell(lane.frame), direction = DirectionInCell(lane.frame);
+  const auto worsen = [bounds](double& worst, double difference) {
+    worst = std::max(worst, std::fabs(difference) / bounds);
+  };
+  worsen(tally.worst_difference, lane.length - reference.time);
+  worsen(tally.worst_place, (place - reference.after.position).norm());
+  worsen(tally.worst_place, lane.x - reference.after.position.x());
+  worsen(tally.worst_direction, (direction - reference.after.direction).norm() / 4);
+}
+
+Tally JudgeLanes(double unit, const PairGeometry& geometry,
+                 const std::vector<ReferenceFlight>& flights) {
+  std::vector<oracle::LaneBall> balls;
+  for (const ReferenceFlight& flight : flights) {
+    balls.push_back({.frame = FrameOfBallOnWall(flight.before.position, flight.before.direction)});
+  }
+  (unit == kDouble ? oracle::FlyInLanes : oracle::FlyInLanesSingle)(geometry, 1, balls);
+  Tally tally;
+  for (size_t i = 0; i < flights.size(); ++i) {
+    const ReferenceFlight& flight = flights[i];
+    const Exact exact(geometry, flight.before.position, flight.before.direction, flight.from);
+    const int disc = DiscOf(balls[i].frame);
+    Judge(unit, exact, geometry.rho(), disc, balls[i].length, tally);
+    if (disc == exact.first) {
+      const long double impact = std::fabs(exact.First().impact);
+      tally.worst_impact =
+          std::max(tally.worst_impact,
+                   static_cast<double>(std::fabs(std::fabs(balls[i].frame.c) - impact)) / unit);
+    }
+    if (disc != flight.to) {
+      ++tally.parted;
+    } else {
+      CompareEngines(2 * TimeBound(unit, exact.Of(disc).cosine), flight, balls[i], tally);
+    }
+  }
+  return tally;
+}
+
+TEST(SingleFlight, InLanesEndsWhereAndWhenTheReferenceDoes) {
+  const std::vector<PairGeometry> geometries = Geometries();
+  std::vector<std::vector<ReferenceFlight>> flights;
+  Tally reference;
+  for (const PairGeometry& geometry : geometries) {
+    flights.push_back(ReferenceFlights(geometry, flights.size()));
+    reference.Add(JudgeReference(geometry, flights.back()));
+  }
+  std::cout << "reference: " << reference << "\n";
+  EXPECT_GE(reference.states, 1'000'000u);
+  EXPECT_GE(reference.ties + reference.touches, 1000u);  // the starts are as degenerate as meant
+  EXPECT_EQ(reference.wrong, 0u) << reference.a_wrong_one;
+  EXPECT_LE(reference.worst_time, 1);
+  ForEachTarget([&](int64_t target) {
+    for (const double unit : {kDouble, kSingle}) {
+      Tally lanes;
+      for (size_t i = 0; i < flights.size(); ++i) {
+        if (geometries[i].tip() < kSmallestInSingle && unit == kSingle) continue;
+        lanes.Add(JudgeLanes(unit, geometries[i], flights[i]));
+      }
+      std::cout << hwy::TargetName(target) << (unit == kDouble ? ": " : " single: ") << lanes
+                << "; " << lanes.parted << " on another arc than the reference, else times, places "
+                << "and directions within " << lanes.worst_difference << ", " << lanes.worst_place
+                << ", " << lanes.worst_direction << " of both bounds\n";
+      EXPECT_EQ(lanes.wrong, 0u) << lanes.a_wrong_one;
+      EXPECT_LE(lanes.worst_time, 1);
+      EXPECT_LE(lanes.worst_impact, kImpactUnits);
+      EXPECT_LE(lanes.worst_difference, 1);
+      EXPECT_LE(lanes.worst_place, 1);
+      EXPECT_LE(lanes.worst_direction, 1);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace ballpiston

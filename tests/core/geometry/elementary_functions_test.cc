@@ -1,0 +1,99 @@
+#include "core/geometry/elementary_functions.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <numbers>
+
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+namespace {
+
+// |value - exact| in units in the last place of the exact one. A long double has at least eleven
+// bits more, so the C library's rounding of `exact` is a thousandth of a unit.
+double UlpError(double value, long double exact) {
+  static_assert(std::numeric_limits<long double>::digits >= 64);
+  const int exponent = exact == 0 ? -1021 : std::ilogb(exact);
+  return static_cast<double>(std::ldexp(std::fabs(value - exact), 52 - exponent));
+}
+
+constexpr int kSamples = 500'000;
+
+TEST(ElementaryFunctions, AnglesAreWithinTheirBound) {
+  CounterRandom random(1, 0, 0);
+  double worst = 0;
+  const auto compare = [&worst](double y, double x) {
+    worst = std::max(worst, UlpError(Atan2(y, x), std::atan2<long double>(y, x)));
+  };
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = 2 * random.Uniform() - 1, y = 2 * random.Uniform() - 1;
+    const double tiny = std::exp2(-200 * random.Uniform());
+    for (const double factor : {1.0, tiny}) {  // every octant, and next to every axis
+      compare(factor * y, x);
+      compare(y, factor * x);
+      compare(x + factor * y, x);  // and diagonal
+    }
+    const double eighth = (std::floor(9 * random.Uniform()) + 0.5) / 8;
+    compare(eighth * (1 + 0x1p-40 * y), 1);  // where the table's entry changes
+  }
+  std::cout << "worst error of an angle: " << worst << " ulp\n";
+  EXPECT_LE(worst, kAtan2UlpError);
+  EXPECT_GT(worst, 0.5);  // the comparison sees rounding
+}
+
+TEST(ElementaryFunctions, PowersAreWithinTheirBound) {
+  CounterRandom random(2, 0, 0);
+  double worst = 0;
+  const auto compare = [&worst](double base, double exponent) {
+    const long double exact = std::pow(static_cast<long double>(base), exponent);
+    if (exact < 1e-300L) return;
+    worst = std::max(worst, UlpError(Power(base, exponent), exact));
+  };
+  for (int i = 0; i < kSamples; ++i) {
+    const double base = random.Uniform(), exponent = random.Uniform();
+    for (const double scale : {1e-9, 0.5, 10.0, 1000.0}) compare(base, scale * exponent);
+    compare(std::exp2(-900 * base), exponent);
+    compare(1 - std::exp2(-53 * base), 1000 * exponent);  // next to 1
+    compare((6.5 + std::floor(10 * base)) / 16, 100 * exponent);
+    compare(std::exp(-690 * base / (1000 * exponent)), 1000 * exponent);
+  }
+  std::cout << "worst error of a power: " << worst << " ulp\n";
+  EXPECT_LE(worst, kPowerUlpError);
+  EXPECT_GT(worst, 0.5);
+}
+
+TEST(ElementaryFunctions, AnglesOnAxesAndDiagonals) {
+  using std::numbers::pi;
+  for (const double r : {1e-150, 1.0, 0.3, 1e150}) {
+    EXPECT_EQ(Atan2(0.0, r), 0);
+    EXPECT_EQ(Atan2(r, r), pi / 4);
+    EXPECT_EQ(Atan2(r, 0.0), pi / 2);
+    EXPECT_EQ(Atan2(r, -0.0), pi / 2);
+    EXPECT_EQ(Atan2(r, -r), 3 * pi / 4);
+    EXPECT_EQ(Atan2(0.0, -r), pi);
+    EXPECT_EQ(Atan2(-0.0, -r), -pi);
+    EXPECT_EQ(Atan2(-r, -r), -3 * pi / 4);
+    EXPECT_EQ(Atan2(-r, 0.0), -pi / 2);
+    EXPECT_EQ(Atan2(-r, r), -pi / 4);
+    EXPECT_TRUE(std::signbit(Atan2(-0.0, r)));
+  }
+  EXPECT_EQ(Atan2(0.0, 0.0), 0);
+}
+
+TEST(ElementaryFunctions, PowersOfOne) {
+  for (const double n : {0.0, 1e-300, 0.5, 1.0, 1000.0}) EXPECT_EQ(Power(1, n), 1);
+  for (const double base : {1e-290, 0.1, 0.75, 1 - 0x1p-53}) {
+    EXPECT_EQ(Power(base, 0), 1);
+    EXPECT_EQ(Power(base, 1), base);
+  }
+  EXPECT_EQ(Power(0.25, 0.5), 0.5);
+  EXPECT_EQ(Power(1e-16, 1000), 0);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,150 @@
+#include "core/method_comparison/method_comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The smallest comparison: some tenths of a second in all.
+constexpr MethodComparisonSpec kSpec = {
+    .rho = 0.529561127988977, .delta = 0.2, .epsilon = 0.125, .seconds_per_curve = 0.01, .seed = 4};
+
+std::vector<MethodMeasurement> Compare(const MethodComparisonSpec& spec) {
+  std::vector<MethodMeasurement> measurements;
+  EXPECT_TRUE(CompareMethods(spec, {}, [&](const MethodMeasurement& m) {
+                measurements.push_back(m);
+              }).ok());
+  return measurements;
+}
+
+const std::vector<MethodMeasurement>& Measurements() {
+  static const auto* const measurements = new std::vector<MethodMeasurement>(Compare(kSpec));
+  return *measurements;
+}
+
+auto Curve(const MethodMeasurement& m) { return std::tuple(m.quantity, m.method, -m.time_step); }
+
+TEST(MethodComparison, EveryMethodAnswersWhatItCan) {
+  std::set<std::tuple<Quantity, Method, double>> curves;
+  for (const MethodMeasurement& m : Measurements()) curves.insert(Curve(m));
+  // Four time steps and six engines for each of the three, the closed form for two.
+  EXPECT_EQ(curves.size(), 3 * 10 + 2);
+  EXPECT_FALSE(curves.contains({Quantity::kTrajectory, Method::kClosedForm, -0.0}));
+}
+
+TEST(MethodComparison, CurvesComeOneAfterTheOtherWithMoreAndMoreSamples) {
+  const std::vector<MethodMeasurement>& all = Measurements();
+  for (size_t i = 1; i < all.size(); ++i) {
+    const auto before = Curve(all[i - 1]), now = Curve(all[i]);
+    ASSERT_LE(before, now) << i;
+    if (before == now) {
+      ASSERT_GT(all[i].samples, all[i - 1].samples) << i;
+    }
+  }
+}
+
+TEST(MethodComparison, WorkIsMeasuredAndErrorsAreTold) {
+  for (const MethodMeasurement& m : Measurements()) {
+    const bool closed = m.method == Method::kClosedForm;
+    EXPECT_GT(m.work, 0);
+    EXPECT_EQ(m.samples == 0, closed);
+    EXPECT_EQ(m.wall_hits == 0, closed);
+    EXPECT_EQ(m.statistical_error == 0, closed);
+    EXPECT_EQ(m.time_step > 0, m.method == Method::kFixedStep);
+  }
+}
+
+// Some 60 measurements: one in 2e3 seeds would fail, and the seed is fixed.
+TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
+  for (const MethodMeasurement& m : Measurements()) {
+    if (m.method == Method::kFixedStep || m.method == Method::kClosedForm) continue;
+    if (m.quantity == Quantity::kTrajectory) continue;
+    EXPECT_LE(m.value, 4.5 * m.statistical_error)
+        << static_cast<int>(m.quantity) << " by " << static_cast<int>(m.method) << " of "
+        << m.samples;
+  }
+}
+
+// How many rungs there are depends on the processor's mood; what is on them does not.
+TEST(MethodComparison, ValuesFollowFromTheSpec) {
+  std::map<std::tuple<std::tuple<Quantity, Method, double>, uint64_t>, MethodMeasurement> first;
+  for (const MethodMeasurement& m : Measurements()) first[{Curve(m), m.samples}] = m;
+  int compared = 0;
+  for (const MethodMeasurement& m : Compare(kSpec)) {
+    const auto same = first.find({Curve(m), m.samples});
+    if (same == first.end()) continue;
+    ++compared;
+    EXPECT_EQ(m.value, same->second.value);
+    EXPECT_EQ(m.statistical_error, same->second.statistical_error);
+    EXPECT_EQ(m.wall_hits, same->second.wall_hits);
+  }
+  EXPECT_GT(compared, 32);
+}
+
+void ExpectInvalid(const MethodComparisonSpec& spec, const std::string& name,
+                   const std::string& value, const std::string& range) {
+  int told = 0;
+  const absl::Status status = CompareMethods(spec, {}, [&](const MethodMeasurement&) { ++told; });
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), HasSubstr(name + " is " + value));
+  EXPECT_THAT(std::string(status.message()), HasSubstr(range));
+  EXPECT_EQ(told, 0);
+}
+
+MethodComparisonSpec With(double MethodComparisonSpec::*field, double value) {
+  MethodComparisonSpec spec = kSpec;
+  spec.*field = value;
+  return spec;
+}
+
+TEST(MethodComparison, InvalidSpecsAreRefusedByFieldValueAndRange) {
+  ExpectInvalid(With(&MethodComparisonSpec::rho, 0.3), "rho", "0.3", "1/2 < rho < 1/sqrt(2)");
+  ExpectInvalid(With(&MethodComparisonSpec::delta, 0.4), "delta", "0.4", "0 < delta <=");
+  ExpectInvalid(With(&MethodComparisonSpec::delta, 0), "delta", "0", "0 < delta <=");
+  for (const double epsilon : {0.0, 0.5, -1.0}) {
+    ExpectInvalid(With(&MethodComparisonSpec::epsilon, epsilon), "epsilon", "",
+                  "0 < epsilon < 1/2");
+  }
+  ExpectInvalid(With(&MethodComparisonSpec::epsilon, std::nan("")), "epsilon", "nan",
+                "0 < epsilon < 1/2");
+  ExpectInvalid(With(&MethodComparisonSpec::seconds_per_curve, 0.009), "seconds_per_curve", "0.009",
+                "[0.01, 60]");
+  ExpectInvalid(With(&MethodComparisonSpec::seconds_per_curve, 61), "seconds_per_curve", "61",
+                "[0.01, 60]");
+}
+
+TEST(MethodComparison, StopCancels) {
+  for (const int last : {0, 1, 30, 60}) {
+    std::stop_source stop;
+    int told = 0;
+    if (last == 0) stop.request_stop();
+    const absl::Status status =
+        CompareMethods(kSpec, stop.get_token(), [&](const MethodMeasurement&) {
+          if (++told == last) stop.request_stop();
+        });
+    EXPECT_EQ(status.code(), absl::StatusCode::kCancelled) << status;
+    EXPECT_EQ(told, last);
+  }
+}
+
+// The mean free time grows as 1/delta^2: what cannot be done in time is left out at once.
+TEST(MethodComparison, ARareCollisionLeavesOutWhatTakesTooLong) {
+  std::set<Method> methods;
+  for (const MethodMeasurement& m : Compare(With(&MethodComparisonSpec::delta, 1e-9))) {
+    if (m.quantity == Quantity::kMeanFreeTime) methods.insert(m.method);
+  }
+  EXPECT_EQ(methods, std::set<Method>{Method::kClosedForm});
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,56 @@
+// Whether two samples are of one law: the two classical tests, as numbers that the same law keeps
+// small. Samples are independent, of each other too.
+#ifndef BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
+#define BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ballpiston::oracle {
+
+// Of two histograms over the same cells: sum over cells of (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m),
+// with N and M in all, is distributed as chi^2 with one degree of freedom less than cells. Given
+// here as the normal variable of the same probability, by Wilson and Hilferty's cube root: above 4
+// in 3e-5 of all cases. Neighbouring cells are joined until they hold kFewest.
+inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const uint64_t> second) {
+  constexpr double kFewest = 20;
+  double totals[2] = {0, 0};
+  for (const uint64_t n : first) totals[0] += static_cast<double>(n);
+  for (const uint64_t n : second) totals[1] += static_cast<double>(n);
+  const double ratio = std::sqrt(totals[1] / totals[0]);
+  double square = 0, cells = 0, n = 0, m = 0;
+  for (size_t i = 0; i < first.size(); ++i) {
+    n += static_cast<double>(first[i]), m += static_cast<double>(second[i]);
+    if (n + m < kFewest) continue;
+    const double difference = ratio * n - m / ratio;
+    square += difference * difference / (n + m);
+    cells += 1, n = 0, m = 0;
+  }
+  const double degrees = cells - 1, width = 2 / (9 * degrees);
+  return (std::cbrt(square / degrees) - (1 - width)) / std::sqrt(width);
+}
+
+// Kolmogorov's and Smirnov's: the largest distance of the two distribution functions, times
+// sqrt(N M/(N + M)). Above x in 2 exp(-2 x^2) of all cases: above 2.3 in 5e-5.
+inline double KolmogorovSmirnov(std::vector<double> first, std::vector<double> second) {
+  std::sort(first.begin(), first.end());
+  std::sort(second.begin(), second.end());
+  const auto n = static_cast<double>(first.size()), m = static_cast<double>(second.size());
+  double largest = 0;
+  size_t i = 0, j = 0;
+  while (i < first.size() && j < second.size()) {
+    const double x = std::min(first[i], second[j]);
+    while (i < first.size() && first[i] == x) ++i;
+    while (j < second.size() && second[j] == x) ++j;
+    largest = std::max(largest, std::fabs(static_cast<double>(i) / n - static_cast<double>(j) / m));
+  }
+  return largest * std::sqrt(n * m / (n + m));
+}
+
+}  // namespace ballpiston::oracle
+
+#endif  // BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_

@@ -1,0 +1,109 @@
+#include "tests/stability/pair_methods.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "core/billiard/orbits.h"
+#include "core/billiard/precise_flow.h"
+#include "core/billiard/reference_flow.h"
+#include "tests/oracle/textbook_flow.h"
+#include "tests/stability/event_methods.h"
+#include "tests/stability/fixed_step_events.h"
+#include "tests/stability/pair_watch.h"
+
+namespace ballpiston::stability {
+namespace {
+
+using oracle::TextbookFlow;
+using oracle::TextbookRule;
+
+// An orbit that goes on for longer has lost its piston: a batch of aimed orbits takes milliseconds.
+constexpr std::chrono::seconds kPatience(60);
+
+// Ends orbits that would never end. Nothing depends on it as long as no collision is missed.
+class Watchdog {
+ public:
+  Watchdog()
+      : thread_([this](const std::stop_token& done) {
+          std::unique_lock lock(mutex_);
+          std::condition_variable_any().wait_for(lock, done, kPatience, [] { return false; });
+          if (!done.stop_requested()) orbits_.request_stop();
+        }) {}
+
+  std::stop_token token() const { return orbits_.get_token(); }
+
+ private:
+  std::stop_source orbits_;
+  std::mutex mutex_;
+  std::jthread thread_;
+};
+
+template <Engine engine, typename Real>
+Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> starts,
+                     uint64_t collisions) {
+  CollisionWatch watch(geometry, std::numeric_limits<Real>::epsilon(), starts, collisions);
+  const Watchdog watchdog;
+  RunOrbits(engine, geometry, starts.size(), watch, watchdog.token());
+  return watch.Finish();
+}
+
+template <typename Flow>
+void RunWatched(const PairGeometry& geometry, const PairState& start, uint64_t collisions,
+                Failures& failures) {
+  constexpr uint64_t kMostEvents = 100'000'000;
+  Flow flow(geometry, RoundedTo<RealOf<Flow>>(start));
+  PairWatch watch(geometry, kEpsilon<Flow>);
+  ++failures.orbits;
+  for (uint64_t events = 0; collisions > 0; ++events) {
+    if (events == kMostEvents) {
+      ++failures.missed;
+      return;
+    }
+    const auto event = flow.Step();
+    if (!watch.See(RoundedTo<double>(flow.state()), event.kind, static_cast<double>(event.duration),
+                   failures))
+      return;
+    if (event.kind != EventKind::kBallPiston) continue;
+    --collisions;
+    flow.ExchangeComponents();
+    watch.SeeExchanged(RoundedTo<double>(flow.state()), failures);
+  }
+}
+
+template <typename Flow>
+Failures RunByEvents(const PairGeometry& geometry, std::span<const PairState> starts,
+                     uint64_t collisions) {
+  Failures failures;
+  for (const PairState& start : starts) RunWatched<Flow>(geometry, start, collisions, failures);
+  return failures;
+}
+
+}  // namespace
+
+const std::vector<PairMethod>& PairMethods() {
+  constexpr double kAny = 0, kOfSingle = 1e-3;
+  static const auto* const methods = new std::vector<PairMethod>{
+      {"lanes", 1, kAny, true, RunByEngine<Engine::kLanes, double>},
+      {"lanes, single", 0.1, kOfSingle, false, RunByEngine<Engine::kLanesSingle, float>},
+      {"reference", 1, kAny, true, RunByEvents<ReferenceFlow>},
+      {"reference, single", 0.02, kOfSingle, false, RunByEvents<EventFlow<float>>},
+      {"reference, 64 bits", 0.02, kAny, true, RunByEvents<EventFlow<long double>>},
+      {"reference, 113 bits", 1e-3, kAny, true, RunByEvents<EventFlow<Quadruple>>},
+      {"nearest root", 0.02, kOfSingle, false,
+       RunByEvents<TextbookFlow<TextbookRule::kPositiveRoot>>},
+      {"nearest root, no threshold", 0.02, kOfSingle, false,
+       RunByEvents<TextbookFlow<TextbookRule::kAnyRoot>>},
+      {"approaching disc", 0.02, kOfSingle, false,
+       RunByEvents<TextbookFlow<TextbookRule::kApproaching>>},
+      {"fixed steps of 1e-3", 2e-4, kOfSingle, false, RunByEvents<FixedStepEvents>},
+  };
+  return *methods;
+}
+
+}  // namespace ballpiston::stability

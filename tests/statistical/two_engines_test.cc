@@ -1,0 +1,130 @@
+// The billiard in lanes against the reference, in law: two independent samples of a million first
+// hits each, at twenty points from cusps to vanishing cells, over energies and outgoing laws.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <vector>
+
+#include "core/closed_form/ingoing_law.h"
+#include "core/experiment/return_orbits.h"
+#include "core/geometry/elementary_functions.h"
+#include "core/statistics/histogram.h"
+#include "core/statistics/moments.h"
+#include "tests/oracle/two_sample.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr uint64_t kSamples = 1'000'000;
+constexpr uint64_t kSamplesOfARun = 50'000;  // as many as a block may have, about
+constexpr size_t kBins = 1000;
+
+struct Point {
+  double rho;
+  double share;  // delta in its bound: large ones, where a return takes some ten to hundred events
+  double epsilon;
+  double exponent;
+};
+
+class FirstHits {
+ public:
+  explicit FirstHits(double epsilon) {
+    const IngoingLaw law(epsilon);
+    for (const int sigma : {-1, 1}) {
+      const double width = law.AlphaMax(sigma);
+      histograms_.push_back(Histogram::OfBins(-width, width, width > 0 ? kBins : 1));
+    }
+  }
+
+  void Add(const Return& hit) {
+    escapes_ += hit.escaped;
+    means_[0].Add(hit.time);
+    means_[1].Add(hit.direction.x());
+    means_[2].Add(hit.sigma);
+    times_.push_back(hit.time);
+    Histogram& histogram = histograms_[hit.sigma > 0 ? 1 : 0];
+    if (histogram.upper > 0) {
+      histogram.Add(Atan2(hit.direction.y(), hit.direction.x()));
+    } else {
+      ++histogram.counts[0];
+    }
+  }
+
+  uint64_t escapes() const { return escapes_; }
+  const std::array<Moments, 3>& means() const { return means_; }  // of time, cos alpha, sigma
+  const std::vector<double>& times() const { return times_; }
+  // Over the cells of alpha and sigma.
+  std::vector<uint64_t> Counts() const {
+    std::vector<uint64_t> counts = histograms_[0].counts;
+    counts.insert(counts.end(), histograms_[1].counts.begin(), histograms_[1].counts.end());
+    return counts;
+  }
+
+ private:
+  uint64_t escapes_ = 0;
+  std::array<Moments, 3> means_;
+  std::vector<double> times_;
+  std::vector<Histogram> histograms_;
+};
+
+// The seed is the engine's, so that the two samples are independent.
+FirstHits Sample(Engine engine, const Point& point) {
+  const PairGeometry geometry =
+      *PairGeometry::Create(point.rho, point.share * PairDeltaBound(point.rho));
+  FirstHits hits(point.epsilon);
+  for (uint64_t first = 0; first < kSamples; first += kSamplesOfARun) {
+    ReturnOrbits orbits(geometry, {point.epsilon, point.exponent},
+                        {.seed = static_cast<uint64_t>(engine), .stream = 77}, first,
+                        kSamplesOfARun);
+    EXPECT_TRUE(RunOrbits(engine, geometry, kSamplesOfARun, orbits, {}));
+    for (const Return& hit : orbits.returns()) hits.Add(hit);
+  }
+  return hits;
+}
+
+double Score(const Moments& first, const Moments& second) {
+  const double error = std::hypot(*first.StandardError(), *second.StandardError());
+  return error == 0 ? (first.mean == second.mean ? 0 : INFINITY)
+                    : (second.mean - first.mean) / error;
+}
+
+class TwoEngines : public testing::TestWithParam<Point> {};
+
+// Means within 4 combined standard errors, 6e-5 false alarms each; the ingoing law by chi^2, 3e-5,
+// the law of the return times by Kolmogorov and Smirnov, 5e-5: over the 20 points 0.5 percent.
+TEST_P(TwoEngines, AgreeInMeansAndLaws) {
+  const FirstHits reference = Sample(Engine::kReference, GetParam());
+  const FirstHits lanes = Sample(Engine::kLanes, GetParam());
+  double scores[3];
+  for (size_t i = 0; i < 3; ++i) scores[i] = Score(reference.means()[i], lanes.means()[i]);
+  const double square = oracle::ChiSquareScore(reference.Counts(), lanes.Counts());
+  const double distance = oracle::KolmogorovSmirnov(reference.times(), lanes.times());
+  std::cout << std::fixed << std::setprecision(2) << "z: time " << scores[0] << "  cos "
+            << scores[1] << "  sigma " << scores[2] << "  ingoing law " << square
+            << "; return times " << distance << "\n";
+  EXPECT_EQ(reference.escapes() + lanes.escapes(), 0u);
+  for (const double score : scores) EXPECT_LT(std::fabs(score), 4);
+  EXPECT_LT(square, 4);
+  EXPECT_LT(distance, 2.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(FromCuspsToVanishingCells, TwoEngines,
+                         testing::Values(Point{0.500001, 1, 0.25, 1}, Point{0.501, 1, 0.125, 1},
+                                         Point{0.501, 0.7, 0.375, 10},
+                                         Point{0.505, 0.7, 0.46875, 1}, Point{0.505, 1, 0.03125, 5},
+                                         Point{0.51, 1, 0.125, 10}, Point{0.51, 0.5, 0.46875, 1},
+                                         Point{0.529561127988977, 1, 0.125, 1},
+                                         Point{0.529561127988977, 1, 0.03125, 0},
+                                         Point{0.529561127988977, 0.7, 0.25, 10},
+                                         Point{0.529561127988977, 0.5, 0.375, 0.5},
+                                         Point{0.529561127988977, 0.3, 0.46875, 5},
+                                         Point{0.56, 1, 0.03125, 1}, Point{0.56, 0.7, 0.375, 0},
+                                         Point{0.6, 1, 0.125, 5}, Point{0.6, 0.7, 0.46875, 2.5},
+                                         Point{0.65, 1, 0.25, 1}, Point{0.69, 1, 0.375, 5},
+                                         Point{0.7, 1, 0.46875, 1}, Point{0.705, 1, 0.499, 10}));
+
+}  // namespace
+}  // namespace ballpiston
