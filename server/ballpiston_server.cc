@@ -121,13 +121,14 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   draining_ = true;
   if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
   watches_.LookNow();
-  comparisons_.Stop();
+  comparisons_.AskToStop();
   book_.Shutdown();
   store_->Flush().IgnoreError();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
   watches_.Stop();
   store_->Close();
+  comparisons_.Stop();  // last: nothing waits for how soon it looks
 }
 
 }  // namespace ballpiston::server

@@ -10,7 +10,7 @@
 // The two meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) > 0, hits
 // the disc at (1, 0). One above hits it only with a chord that lies between the tips:
 //   c1 > -rho, f1 > 0 and the chord's foot 1 - ... at height -u_x c1 < 1/2.
-// So "beside" is a matter of four signs. Then, with the c' of the disc that is hit,
+// So which it is, is a matter of four signs. Then, with the c' of the disc that is hit,
 // s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
 // In the next disc's frame the cell lies toward (-, +) after (1, 0) and (-, -) after (1, 1): one
@@ -74,17 +74,17 @@ struct Balls {
   hn::Vec<D> a[K], b[K], m[K];
 };
 
-// Exchanges x and y where `mask` is set.
+// Exchanges x and y where `mask` is not set.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void SwapIf(D d, hn::Mask<D> mask, V& x, V& y) {
+HWY_INLINE void SwapUnless(D d, hn::Mask<D> mask, V& x, V& y) {
 #if HWY_TARGET <= HWY_AVX3
   (void)d;
   const V before = x;
-  x = hn::IfThenElse(mask, y, x);
-  y = hn::IfThenElse(mask, before, y);
+  x = hn::IfThenElse(mask, x, y);
+  y = hn::IfThenElse(mask, y, before);
 #else
   // A select is three operations on some processors, and these are four for both.
-  const V difference = hn::And(hn::VecFromMask(d, mask), hn::Xor(x, y));
+  const V difference = hn::AndNot(hn::VecFromMask(d, mask), hn::Xor(x, y));
   x = hn::Xor(x, difference);
   y = hn::Xor(y, difference);
 #endif
@@ -108,7 +108,7 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   const V sign = hn::SignBit(d), zero = hn::Zero(d);
   auto& [h, e, c, s, a, b, m] = balls;
   V mirror[K], x[K], y[K], tip[K], chord[K], foot[K], unit[K], q[K], p[K], r[K], w[K], flip[K];
-  hn::Mask<D> beside[K];
+  hn::Mask<D> ahead[K];  // hits the disc at (1, 1)
   BALLPISTON_EACH mirror[i] = hn::And(hn::Add(c[i], e[i]), sign);
   BALLPISTON_EACH c[i] = hn::Xor(c[i], mirror[i]);
   BALLPISTON_EACH e[i] = hn::Xor(e[i], mirror[i]);
@@ -121,9 +121,9 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   BALLPISTON_EACH chord[i] = hn::MulAdd(x[i], c[i], hn::Set(d, k.half_height));
   BALLPISTON_EACH w[i] = hn::Or(foot[i], hn::Add(c[i], hn::Set(d, k.sqrt_2)));
   BALLPISTON_EACH tip[i] = hn::And(tip[i], hn::Or(w[i], chord[i]));
-  BALLPISTON_EACH beside[i] = hn::Not(SignMask(d, tip[i]));
-  BALLPISTON_EACH c[i] = hn::Add(c[i], hn::IfThenZeroElse(beside[i], x[i]));
-  BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenZeroElse(beside[i], y[i]));
+  BALLPISTON_EACH ahead[i] = SignMask(d, tip[i]);
+  BALLPISTON_EACH c[i] = hn::Add(c[i], hn::IfThenElseZero(ahead[i], x[i]));
+  BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenElseZero(ahead[i], y[i]));
   // Of a ray that rounding lets miss the disc the root is as good as 0.
   BALLPISTON_EACH q[i] = hn::Abs(hn::NegMulAdd(c[i], c[i], hn::Set(d, T(2))));
   BALLPISTON_EACH s[i] = hn::Sqrt(q[i]);
@@ -135,17 +135,17 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   BALLPISTON_EACH w[i] = hn::Mul(e[i], p[i]);
   BALLPISTON_EACH p[i] = hn::Mul(h[i], p[i]);
   BALLPISTON_EACH b[i] = hn::Xor(b[i], mirror[i]);
-  BALLPISTON_EACH SwapIf(d, beside[i], a[i], b[i]);
+  BALLPISTON_EACH SwapUnless(d, ahead[i], a[i], b[i]);
   BALLPISTON_EACH a[i] = hn::Neg(a[i]);
   BALLPISTON_EACH b[i] = hn::Neg(b[i]);
-  BALLPISTON_EACH flip[i] = hn::IfThenElseZero(beside[i], sign);
+  BALLPISTON_EACH flip[i] = hn::IfThenZeroElse(ahead[i], sign);
   BALLPISTON_EACH m[i] = hn::Xor(m[i], hn::Xor(mirror[i], flip[i]));
   BALLPISTON_EACH c[i] = hn::Xor(c[i], flip[i]);
   BALLPISTON_EACH r[i] = hn::Mul(r[i], s[i]);
   BALLPISTON_EACH w[i] = hn::NegMulAdd(h[i], r[i], w[i]);
   BALLPISTON_EACH h[i] = hn::MulAdd(e[i], r[i], p[i]);
   BALLPISTON_EACH e[i] = w[i];
-  BALLPISTON_EACH SwapIf(d, beside[i], h[i], e[i]);
+  BALLPISTON_EACH SwapUnless(d, ahead[i], h[i], e[i]);
   BALLPISTON_EACH length[i] = hn::Max(hn::Sub(foot[i], s[i]), zero);
 }
 

@@ -98,7 +98,7 @@ class LaneOrbits {
   // Rounding in the lanes must not hide a contact; what is looked at in vain costs little.
   static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
   // Single precision sums short paths only.
-  static constexpr T kLongestPath = sizeof(T) == 8 ? T(1e300) : T(256);
+  static constexpr T kLongestPath = T(256);
 
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
@@ -119,6 +119,10 @@ class LaneOrbits {
       std::memcpy(&bits, bytes, sizeof(bits));
       return bits;
     }
+    void Add(const Flags& others) {
+      const uint64_t bits = Bits() | others.Bits();
+      std::memcpy(bytes, &bits, sizeof(bits));
+    }
     uint64_t Take() {
       const uint64_t bits = Bits();
       *this = {};
@@ -126,17 +130,16 @@ class LaneOrbits {
     }
   };
 
-  // Its values lie group by group, then array by array. `before` and `After` a lane's last
-  // flight.
+  // The memory lies group by group, then array by array.
   T* At(size_t array, size_t lane) {
     return memory_.get() + (GroupOf(lane) * kArrays + array) * LanesInGroup() +
            lane % LanesInGroup();
   }
 
-  // Flights made by lanes of that group is step_[group]; its parity tells where the newest state
-  // is.
+  // A group has made step_[group] flights; the parity tells where the newest state is.
   static size_t GroupOf(size_t lane) { return lane / LanesInGroup(); }
   size_t Newest(size_t group) const { return (step_[group] % 2) * kFlying; }
+  // Before and after the lane's last flight.
   T& After(Array array, size_t lane) { return *At(array + Newest(GroupOf(lane)), lane); }
   T& Before(Array array, size_t lane) { return *At(array + kFlying - Newest(GroupOf(lane)), lane); }
 
@@ -164,10 +167,10 @@ class LaneOrbits {
     BALLPISTON_EACH { hn::Store(v[i], D(), lanes + array * LanesInGroup() + i * Width()); }
   }
 
-  // `flags` tells the lanes to look at: ball and piston met, or may have.
   static HWY_INLINE void FlyOnce(const Constants& k, const T* from, T* to, const T* ratios,
                                  Flags* flags) {
     const D d;
+    V length[K], x[K], path[K];
     Balls<D, K> balls;
     Get(from, kH, balls.h);
     Get(from, kE, balls.e);
@@ -176,7 +179,6 @@ class LaneOrbits {
     Get(from, kA, balls.a);
     Get(from, kB, balls.b);
     Get(from, kM, balls.m);
-    V length[K], x[K];
     Fly(d, k.flight, balls, length);
     Put(balls.h, to, kH);
     Put(balls.e, to, kE);
@@ -187,27 +189,40 @@ class LaneOrbits {
     Put(balls.m, to, kM);
     Abscissae(d, k.flight, balls, k.left, x);
     Put(x, to, kX);
-    V path[K], phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
     Get(from, kPath, path);
     BALLPISTON_EACH path[i] = hn::Add(path[i], length[i]);
     Put(path, to, kPath);
-    Get(ratios, Array{}, ratio);
+    MovePistons(k, from, to, ratios, length, x, flags);
+    if constexpr (sizeof(T) == 4) FlagLongPaths(path, flags);
+  }
+
+  // `flags` tells the lanes to look at: ball and piston met, or may have. The distance between them
+  // is a concave function of time but where the piston turns at its left wall: so they met if the
+  // ball ends beyond the piston, and perhaps if the piston turned while the ball was in its reach.
+  static HWY_INLINE void MovePistons(const Constants& k, const T* from, T* to, const T* ratios,
+                                     const V (&length)[K], const V (&x)[K], Flags* flags) {
+    const D d;
+    V phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
+    BALLPISTON_EACH ratio[i] = hn::Load(d, ratios + i * Width());
     Get(from, kPhase, phase);
     BALLPISTON_EACH phase[i] = hn::MulAdd(ratio[i], length[i], phase[i]);
     BALLPISTON_EACH turns[i] = hn::Floor(phase[i]);
     BALLPISTON_EACH phase[i] = hn::Sub(phase[i], turns[i]);
     Put(phase, to, kPhase);
-    // Between them the distance is a concave function of time but where the piston turns at its
-    // left wall: they meet if the ball ends beyond the piston, or perhaps if the piston turned.
     Get(from, kX, before);
     BALLPISTON_EACH way[i] = hn::Min(phase[i], hn::Sub(hn::Set(d, T(1)), phase[i]));
     BALLPISTON_EACH ball[i] = hn::NegMulAdd(way[i], hn::Set(d, k.period), x[i]);
     BALLPISTON_EACH turns[i] = hn::Min(turns[i], hn::Max(x[i], before[i]));
     BALLPISTON_EACH ball[i] = hn::Max(ball[i], turns[i]);
-    if constexpr (sizeof(T) == 4) {
-      BALLPISTON_EACH ball[i] = hn::Max(ball[i], hn::Sub(path[i], hn::Set(d, kLongestPath)));
-    }
     BALLPISTON_EACH { hn::StoreMaskBits(d, hn::Gt(ball[i], hn::Zero(d)), flags[i].bytes); }
+  }
+
+  static HWY_INLINE void FlagLongPaths(const V (&path)[K], Flags* flags) {
+    BALLPISTON_EACH {
+      Flags longer;
+      hn::StoreMaskBits(D(), hn::Gt(path[i], hn::Set(D(), kLongestPath)), longer.bytes);
+      flags[i].Add(longer);
+    }
   }
 
   void LookAtGroup(size_t group) {
@@ -327,7 +342,7 @@ class LaneOrbits {
                  .piston = geometry_.piston_right()});
   }
 
-  // Brings the orbits that are left into the first groups, and leaves out the others.
+  // Brings the orbits that are left into the first group. Between steps: both have made as many.
   void Compact() {
     LookAtGroup(1);
     groups_ = (running_ + LanesInGroup() - 1) / LanesInGroup();
@@ -340,7 +355,6 @@ class LaneOrbits {
     }
   }
 
-  // Between steps, when all groups have made as many.
   void Move(size_t from, size_t to) {
     std::swap(orbit_[from], orbit_[to]);
     for (size_t array = 0; array < kArrays; ++array) std::swap(*At(array, from), *At(array, to));

@@ -10,7 +10,7 @@ namespace ballpiston {
 namespace {
 
 constexpr double kReferenceEventsPerBlock = 0x1p20;
-constexpr double kLaneEventsPerBlock = 0x1p24;
+constexpr double kLaneEventsPerBlock = 0x1p25;
 constexpr double kShareWithATolerance = 0.125;
 constexpr uint64_t kMaxBlockSize = uint64_t{1} << 16;
 

@@ -1,7 +1,7 @@
 // How a point's samples are cut into blocks.
 //
 // The block size follows from the engine, the target and the predicted cost of a sample alone,
-// never from threads or machines: some 2^20 events a block for the reference, 2^24 in lanes, so
+// never from threads or machines: some 2^20 events a block for the reference, 2^25 in lanes, so
 // that a block takes about 0.05 s, and an eighth of that with a tolerance, which is looked at after
 // each block from the 16th on. It is a power of two, so that a rounding difference in the
 // prediction does not change the plan, and small enough that a point has at least kMinBlocks of

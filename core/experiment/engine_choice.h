@@ -7,9 +7,9 @@
 
 namespace ballpiston {
 
-// AUTO stays with the reference until the lanes have been through every degenerate case.
+// The lanes and the reference are both exact; AUTO takes the quicker.
 inline Engine EngineFor(const EnsembleSpec& spec) {
-  if (spec.model != Model::kBilliard) return Engine::kReference;
+  if (spec.model == Model::kBilliardReference) return Engine::kReference;
   return spec.precision == Precision::kSingle ? Engine::kLanesSingle : Engine::kLanes;
 }
 

@@ -159,7 +159,8 @@ void CheckModel(const EnsembleSpec& spec, Found* found) {
          absl::StrCat("is ", Name(spec.model), ", which cannot answer ", Name(spec.experiment),
                       " in this version; permitted: auto, billiard, billiard_reference")});
   }
-  if (spec.precision == Precision::kSingle && spec.model != Model::kBilliard) {
+  if (spec.precision == Precision::kSingle && spec.model != Model::kAuto &&
+      spec.model != Model::kBilliard) {
     found->push_back({"precision", absl::StrCat("is single; permitted with model ",
                                                 Name(spec.model), ": double")});
   }

@@ -22,6 +22,7 @@ CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
                                                     const v1::CompareMethodsRequest& request) {
   std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service));
   reactor->self_ = reactor;
+  service.watches.Add(reactor.get());
   const absl::Status refused = reactor->Begin(request);
   if (!refused.ok()) reactor->End(refused);
   return reactor.get();
@@ -46,29 +47,39 @@ absl::Status CompareMethodsReactor::Begin(const v1::CompareMethodsRequest& reque
   return absl::OkStatus();
 }
 
-// ---- reactions: on gRPC's threads ----
+// ---- reactions: on gRPC's threads, and on that of the registry ----
+
+void CompareMethodsReactor::Look(std::chrono::steady_clock::time_point) {
+  if (!service_.draining) return;
+  {
+    std::lock_guard lock(mutex_);
+    if (end_) return;
+  }
+  service_.executor.Post([self = shared_from_this()] { self->Cut(ShuttingDown()); });
+}
 
 void CompareMethodsReactor::OnWriteDone(bool ok) {
   {
     std::lock_guard lock(mutex_);
     writing_ = false;
-    if (!ok) waiting_.clear();
   }
-  if (!ok) stop_.request_stop();
-  Advance();
+  if (ok) return Advance();
+  OnCancel();
 }
 
-void CompareMethodsReactor::OnCancel() { stop_.request_stop(); }
+void CompareMethodsReactor::OnCancel() { Cut(absl::CancelledError("the client is gone")); }
 
 void CompareMethodsReactor::OnDone() {
+  service_.watches.Remove(this);
   self_.reset();  // may delete this
 }
 
-// ---- on the comparison's thread ----
+// ---- what to say ----
 
 void CompareMethodsReactor::Tell(v1::MethodMeasurement message) {
   {
     std::lock_guard lock(mutex_);
+    if (end_) return;
     waiting_.push_back(std::move(message));
   }
   Advance();
@@ -77,16 +88,23 @@ void CompareMethodsReactor::Tell(v1::MethodMeasurement message) {
 void CompareMethodsReactor::End(const absl::Status& status) {
   {
     std::lock_guard lock(mutex_);
-    end_ = status;
+    if (!end_) end_ = status;
   }
   Advance();
 }
 
-// ---- writing ----
+void CompareMethodsReactor::Cut(const absl::Status& status) {
+  stop_.request_stop();
+  {
+    std::lock_guard lock(mutex_);
+    waiting_.clear();
+  }
+  End(status);
+}
 
 void CompareMethodsReactor::Advance() {
   std::unique_lock lock(mutex_);
-  if (writing_) return;
+  if (writing_ || finished_) return;
   if (!waiting_.empty()) {
     message_ = std::move(waiting_.front());
     waiting_.pop_front();
@@ -94,7 +112,8 @@ void CompareMethodsReactor::Advance() {
     lock.unlock();
     StartWrite(&message_);
   } else if (end_) {
-    const absl::Status end = *std::exchange(end_, std::nullopt);
+    finished_ = true;
+    const absl::Status end = *end_;
     lock.unlock();
     Finish(GrpcStatus(end));
   }

@@ -2,11 +2,12 @@
 //
 // One write is outstanding; what is told meanwhile waits in a queue without a bound, because a
 // comparison has some 200 messages of 50 bytes: a reader that stalls costs 10 KB and holds up
-// nobody. The stream ends when the comparison has ended, also when its client is gone: a comparison
-// asked to stop does so in milliseconds.
+// nobody. If the client leaves or the server stops, the stream ends at once, whatever waits, and
+// the comparison is asked to stop: it does so when it looks.
 #ifndef BALLPISTON_SERVER_API_COMPARE_METHODS_H_
 #define BALLPISTON_SERVER_API_COMPARE_METHODS_H_
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -21,11 +22,14 @@
 namespace ballpiston::server {
 
 class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurement>,
+                              public Watch,
                               public std::enable_shared_from_this<CompareMethodsReactor> {
  public:
   // Owns itself until gRPC is done with it.
   static CompareMethodsReactor* Start(ServiceContext& service,
                                       const v1::CompareMethodsRequest& request);
+
+  void Look(std::chrono::steady_clock::time_point now) override;  // whether the server stops
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
@@ -36,8 +40,9 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
 
   absl::Status Begin(const v1::CompareMethodsRequest& request);  // what Start refuses with, if so
   void Tell(v1::MethodMeasurement message);
-  void End(const absl::Status& status);
-  void Advance();  // writes or finishes, if it is time to
+  void End(const absl::Status& status);  // when all is written; the first one counts
+  void Cut(const absl::Status& status);  // now
+  void Advance();                        // writes or finishes, if it is time to
 
   ServiceContext& service_;
   const std::shared_ptr<void> call_;  // for Activity
@@ -48,7 +53,8 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
   std::mutex mutex_;  // never held while gRPC is called
   std::deque<v1::MethodMeasurement> waiting_;
   bool writing_ = false;
-  std::optional<absl::Status> end_;  // to be told when nothing waits any more
+  std::optional<absl::Status> end_;
+  bool finished_ = false;
 };
 
 }  // namespace ballpiston::server

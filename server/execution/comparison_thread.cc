@@ -19,13 +19,15 @@ ComparisonThread::Admission ComparisonThread::Begin(Comparison comparison) {
   return Admission::kBegun;
 }
 
+void ComparisonThread::AskToStop() {
+  std::lock_guard lock(mutex_);
+  stopping_ = true;
+  if (running_) running_->stop.request_stop();
+  changed_.notify_one();
+}
+
 void ComparisonThread::Stop() {
-  {
-    std::lock_guard lock(mutex_);
-    stopping_ = true;
-    if (running_) running_->stop.request_stop();
-    changed_.notify_one();
-  }
+  AskToStop();
   if (thread_.joinable()) thread_.join();
 }
 

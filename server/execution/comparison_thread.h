@@ -43,8 +43,10 @@ class ComparisonThread {
   // `ended` follows if and only if it was begun.
   Admission Begin(Comparison comparison);
 
-  // Asks a comparison in progress to stop, waits until it has ended, and begins none any more. May
-  // be called more than once.
+  // Asks a comparison in progress to stop, and begins none any more.
+  void AskToStop();
+
+  // The same, and waits until it has ended. May be called more than once.
   void Stop();
 
  private:

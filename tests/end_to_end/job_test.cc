@@ -35,7 +35,7 @@ TEST(Run, PrintsATableWithExactValues) {
   const ProcessResult result = server.Client({"run", "equilibrium", "--rho", "0.529561127988977",
                                               "--delta", "0.2", "--collisions", "5000"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, StartsWith("equilibrium, model billiard-reference, seed 0, "));
+  EXPECT_THAT(result.out, StartsWith("equilibrium, model billiard, seed 0, "));
   EXPECT_THAT(result.out, HasSubstr("mean_free_time_ball_piston"));
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5);
   EXPECT_EQ(result.err, "");  // not a terminal: no progress
@@ -56,7 +56,7 @@ TEST(Run, JsonHasTheContractsShape) {
     EXPECT_EQ(At(json, "points", i, "parameters", "delta").number_value(), i == 0 ? 0.2 : 0.1);
     EXPECT_EQ(At(json, "points", i, "parameters", "epsilon").number_value(), 0.1);
     EXPECT_EQ(At(json, "points", i, "parameters", "exponent").number_value(), 1);
-    EXPECT_EQ(At(json, "points", i, "model").string_value(), "BILLIARD_REFERENCE");
+    EXPECT_EQ(At(json, "points", i, "model").string_value(), "BILLIARD");
     EXPECT_EQ(At(json, "points", i, "samples").number_value(), 2000);
     EXPECT_EQ(At(json, "points", i, "estimates", 0, "name").string_value(), "mean_hit_time");
     EXPECT_GT(At(json, "points", i, "estimates", 0, "standard_error").number_value(), 0);

@@ -430,7 +430,7 @@ TEST_F(EnsembleServiceTest, TheBasicViewHasNoHistograms) {
     ASSERT_EQ(response.points_size(), 6);
     EXPECT_EQ(response.points(0).histograms().empty(), view == v1::ListResultsRequest::BASIC);
     EXPECT_GT(response.points(0).estimates_size(), 0);
-    EXPECT_EQ(response.points(0).model(), v1::EnsembleSpec::BILLIARD_REFERENCE);
+    EXPECT_EQ(response.points(0).model(), v1::EnsembleSpec::BILLIARD);
   }
 }
 

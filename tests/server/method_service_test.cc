@@ -3,6 +3,8 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -176,6 +178,23 @@ TEST_F(MethodServiceTest, AStoppingServerEndsTheComparison) {
   const grpc::Status status = stream.End();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
   EXPECT_EQ(DetailsOf(status).reason, "SHUTTING_DOWN");
+}
+
+// One that looks for a stop rarely.
+TEST_F(MethodServiceTest, AStreamEndsBeforeItsComparisonDoes) {
+  std::promise<void> seen;
+  StartWith([&](const auto&, const std::stop_token&, const auto& tell) {
+    tell({});
+    seen.get_future().wait();
+    tell({});  // to nobody
+    return absl::CancelledError("stopped");
+  });
+  Stream stream(*server_);
+  ASSERT_TRUE(stream.Next());
+  std::thread stopping([&] { server_->server().Shutdown(std::chrono::seconds(60)); });
+  EXPECT_EQ(stream.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  seen.set_value();
+  stopping.join();
 }
 
 TEST_F(MethodServiceTest, AServerIsNotIdleDuringAComparison) {

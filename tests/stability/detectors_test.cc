@@ -57,6 +57,7 @@ Failures Watched(Tampered::Change change) {
 TEST(Detectors, CollisionsAsTheyAreGiveNoFailure) {
   const Failures failures = Watched([](Contact&) {});
   EXPECT_EQ(failures.hits, 2000u);
+  EXPECT_GT(failures.looked_back, 300u);
   EXPECT_EQ(failures.Total(), 0u);
 }
 

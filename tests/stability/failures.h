@@ -15,6 +15,7 @@ struct Failures {
   uint64_t negative_times = 0;  // events before their predecessors
   uint64_t loops = 0;           // orbits that stand still, see tip_sequence.h
   uint64_t inward = 0;          // hits after which the ball still flies into what it hit
+  uint64_t looked_back = 0;     // hits on the piston of which is known whether one was missed
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   double deepest = 0;           // inside a disc, of orbits that did not escape
@@ -29,6 +30,7 @@ struct Failures {
     negative_times += other.negative_times;
     loops += other.loops;
     inward += other.inward;
+    looked_back += other.looked_back;
     missed += other.missed;
     phantoms += other.phantoms;
     deepest = std::max(deepest, other.deepest);

@@ -52,7 +52,8 @@ bool PairWatch::See(const PairState& state, EventKind kind, double duration, Fai
   failures.deepest = std::max(failures.deepest, ball_.Depth(state.position));
   if (kind == EventKind::kBallWall)
     failures.inward += ball_.HeadsInward(state.position, state.direction);
-  if (kind == EventKind::kBallPiston) ++failures.hits;
+  failures.hits += kind == EventKind::kBallPiston;
+  failures.looked_back += kind == EventKind::kBallPiston;
   standstill_ = duration < short_ ? standstill_ + 1 : 0;
   failures.loops += standstill_ > longest_standstill_;
   // Where a corner is worked off in no time, the ball may be beyond until its collision is told.
@@ -110,6 +111,7 @@ AfterContact CollisionWatch::Meet(uint64_t i, const Contact& contact) {
 void CollisionWatch::LookBack(const PairState& departure, const Contact& contact) {
   constexpr uint64_t kFewHits = 6;
   if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
+  ++failures_.looked_back;
   std::array<double, 3> overlaps, gaps, beyond;
   for (size_t i = 0; i < 3; ++i) {
     const double angle = 1e3 * epsilon_ * (static_cast<double>(i) - 1);

@@ -54,15 +54,15 @@ std::string BallTable(const std::vector<CaseResult>& cases) {
 
 std::string PairTable(const std::vector<CaseResult>& cases) {
   MarkdownTable table({"case", "method", "starts", "piston hits", "escapes", "negative times",
-                       "loops", "still inward", "missed", "phantoms", "worst dE/E"});
+                       "loops", "still inward", "looked back", "missed", "phantoms", "worst dE/E"});
   for (const CaseResult& result : cases) {
     for (size_t i = 0; i < result.methods.size(); ++i) {
       const auto& [method, promised, f] = result.methods[i];
       if (f.orbits == 0) continue;
       table.Add({Group(result, i), method, CountText(f.orbits), CountText(f.hits),
                  CountText(f.escapes), CountText(f.negative_times), CountText(f.loops),
-                 CountText(f.inward), CountText(f.missed), CountText(f.phantoms),
-                 ErrorText(f.energy)});
+                 CountText(f.inward), CountText(f.looked_back), CountText(f.missed),
+                 CountText(f.phantoms), ErrorText(f.energy)});
     }
   }
   return table.Text(2);
