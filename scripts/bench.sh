@@ -1,5 +1,6 @@
 #!/bin/bash
-# Runs the benchmarks, one after the other, pinned to the first core this process may use.
+# Runs the benchmarks, one after the other, pinned to the first core this process may use; then what
+# a second core adds, if there is one.
 #
 #   scripts/bench.sh FOLDER_OF_PROGRAMS [BENCHMARK_FLAG...]
 set -euo pipefail
@@ -17,3 +18,7 @@ for benchmark in "${benchmarks[@]}"; do
   echo "== $(basename "$benchmark") on core $core"
   taskset -c "$core" "$benchmark" "$@"
 done
+if (($(nproc) > 1)); then
+  echo "== engine_benchmark on two cores"
+  "$folder/engine_benchmark" --threads 2
+fi

@@ -308,7 +308,7 @@ plot for [i=1:n] $$orbits using (of_curve(i, column("x"))):(column("y") - column
        (0):(2*column("error")) with vectors nohead lw 1 lc rgb colour(i), \
      for [i=1:n] $$orbits using (of_curve(i, column("x"))):"y" \
        with points pt marker[i] ps 1 lw 1.5 lc rgb colour(i), \
-     $$steps using "x":"y":"text" with labels center offset 0,0.9 font ",12" tc rgb "#d55e00"
+     $$steps using "x":"y":"text" with labels right offset 0.6,0.9 font ",12" tc rgb "#d55e00"
 )gnuplot";
 
 constexpr char kLegend[] = R"gnuplot(

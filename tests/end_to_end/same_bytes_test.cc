@@ -10,10 +10,10 @@
 namespace ballpiston {
 namespace {
 
-// Four points of 64 blocks or more each; some seconds of one core.
+// Four points of 16 blocks or more each; some seconds of one core, so that kills come in between.
 const std::vector<std::string> kQuestion = {
     "first-hit",  "--rho", "0.529561127988977", "--delta", "0.1,0.05", "--epsilon", "0.1,0.4",
-    "--exponent", "1",     "--samples",         "40000",   "--seed",   "11"};
+    "--exponent", "1",     "--samples",         "300000",  "--seed",   "11"};
 
 std::string Points(const TestServer& server, const std::string& job) {
   const ProcessResult result = server.Client({"result", job, "--format", "json"});

@@ -23,16 +23,17 @@ namespace {
 using oracle::TextbookFlow;
 using oracle::TextbookRule;
 
-// An orbit that goes on for longer has lost its piston: a batch of aimed orbits takes milliseconds.
-constexpr std::chrono::seconds kPatience(60);
+// With a batch of orbits, for each collision of theirs. An orbit that goes on for longer has lost
+// its piston: if it was aimed at it, a batch takes milliseconds.
+constexpr std::chrono::seconds kPatience(10);
 
 // Ends orbits that would never end. Nothing depends on it as long as no collision is missed.
 class Watchdog {
  public:
-  Watchdog()
-      : thread_([this](const std::stop_token& done) {
+  explicit Watchdog(std::chrono::seconds patience)
+      : thread_([this, patience](const std::stop_token& done) {
           std::unique_lock lock(mutex_);
-          std::condition_variable_any().wait_for(lock, done, kPatience, [] { return false; });
+          std::condition_variable_any().wait_for(lock, done, patience, [] { return false; });
           if (!done.stop_requested()) orbits_.request_stop();
         }) {}
 
@@ -48,7 +49,7 @@ template <Engine engine, typename Real>
 Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> starts,
                      uint64_t collisions) {
   CollisionWatch watch(geometry, std::numeric_limits<Real>::epsilon(), starts, collisions);
-  const Watchdog watchdog;
+  const Watchdog watchdog(kPatience * collisions);
   RunOrbits(engine, geometry, starts.size(), watch, watchdog.token());
   return watch.Finish();
 }
