@@ -7,16 +7,17 @@
 // mirrored if need be, it passes below, so that of the two discs beside only the one at (1, 0) can
 // be hit:
 //   c1 = c - u_y, foot f1 = u_x - s;        beyond it (1, 1):  c2 = c1 + u_x, f2 = f1 + u_y.
-// The two meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) > 0, hits
-// the disc at (1, 0). One above hits it only with a chord that lies between the tips:
-//   c1 > -rho, f1 > 0 and the chord's foot 1 - ... at height -u_x c1 < 1/2.
+// The two meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) =
+// c + e - u_y (1/2 - lambda/2) > 0, hits the disc at (1, 0). One above hits it only with a chord
+// that lies between the tips:
+//   c1 > -rho, f1 > 0 and the chord's foot at height -u_x c1 < 1/2.
 // So which it is, is a matter of four signs. Then, with the c' of the disc that is hit,
 // s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
 // In the next disc's frame the cell lies toward (-, +) after (1, 0) and (-, -) after (1, 1): one
-// more turn by -90 or 180 degrees. In terms of (h, e) a turn by an angle is (h cos - e sin,
-// e cos + h sin) with the sign of sin reversed; with U = -(h cos + e sin), W = -(e cos - h sin) the
-// next frame has (U, W, c') after (1, 1), and after (1, 0), mirrored, (W, U, -c').
+// more turn by -90 or 180 degrees. In all, (h, e) becomes -(h cos + e sin, e cos - h sin) after
+// (1, 1); after (1, 0) the mirrored frame is taken, which is the same with h and e exchanged and
+// c' reversed beforehand.
 //
 // h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c': no factor,
 // and the cosine need not wait for the root.
@@ -56,15 +57,13 @@ struct FlightConstants {
         sqrt_2(static_cast<T>(M_SQRT2)),
         half_height(static_cast<T>(scale * scale / 2)),
         length_squared(static_cast<T>(1 / (scale * scale))),
-        tip_h(static_cast<T>(geometry.lambda() / 2 - 0.5)),
-        tip_e(static_cast<T>(1.5 - geometry.lambda() / 2)) {}
+        tip(static_cast<T>(0.5 - geometry.lambda() / 2)) {}
 
   double scale;  // of h, e, c, s and lengths in lanes
   T sqrt_2;      // rho
   T half_height;
   T length_squared;
-  T tip_h;  // u x t = h tip_h + e tip_e
-  T tip_e;
+  T tip;  // from the cell's centre
 };
 
 // K vectors of balls on walls.
@@ -102,6 +101,16 @@ HWY_INLINE hn::Mask<D> SignMask(D d, V v) {
 #endif
 }
 
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V IfNegative(D d, V v, V yes, V no) {
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+  (void)d;
+  return hn::IfThenElse(hn::MaskFromVec(v), yes, no);  // there it looks at sign bits only
+#else
+  return hn::IfThenElse(SignMask(d, v), yes, no);
+#endif
+}
+
 // Flies every ball to the next wall, and reflects it there.
 template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&length)[K]) {
@@ -109,20 +118,20 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   auto& [h, e, c, s, a, b, m] = balls;
   V mirror[K], x[K], y[K], tip[K], chord[K], foot[K], unit[K], q[K], p[K], r[K], w[K], flip[K];
   hn::Mask<D> ahead[K];  // hits the disc at (1, 1)
-  BALLPISTON_EACH mirror[i] = hn::And(hn::Add(c[i], e[i]), sign);
-  BALLPISTON_EACH c[i] = hn::Xor(c[i], mirror[i]);
+  BALLPISTON_EACH c[i] = hn::Add(c[i], e[i]);
+  BALLPISTON_EACH mirror[i] = hn::And(c[i], sign);
+  BALLPISTON_EACH c[i] = hn::Abs(c[i]);
   BALLPISTON_EACH e[i] = hn::Xor(e[i], mirror[i]);
-  BALLPISTON_EACH x[i] = hn::Add(h[i], e[i]);
   BALLPISTON_EACH y[i] = hn::Sub(h[i], e[i]);
-  BALLPISTON_EACH tip[i] = hn::MulAdd(h[i], hn::Set(d, k.tip_h), c[i]);
-  BALLPISTON_EACH c[i] = hn::Sub(c[i], y[i]);
+  BALLPISTON_EACH x[i] = hn::Add(h[i], e[i]);
+  BALLPISTON_EACH tip[i] = hn::NegMulAdd(y[i], hn::Set(d, k.tip), c[i]);
+  BALLPISTON_EACH c[i] = hn::Sub(c[i], h[i]);  // c1
   BALLPISTON_EACH foot[i] = hn::Sub(x[i], s[i]);
-  BALLPISTON_EACH tip[i] = hn::MulAdd(e[i], hn::Set(d, k.tip_e), tip[i]);
   BALLPISTON_EACH chord[i] = hn::MulAdd(x[i], c[i], hn::Set(d, k.half_height));
   BALLPISTON_EACH w[i] = hn::Or(foot[i], hn::Add(c[i], hn::Set(d, k.sqrt_2)));
   BALLPISTON_EACH tip[i] = hn::And(tip[i], hn::Or(w[i], chord[i]));
   BALLPISTON_EACH ahead[i] = SignMask(d, tip[i]);
-  BALLPISTON_EACH c[i] = hn::Add(c[i], hn::IfThenElseZero(ahead[i], x[i]));
+  BALLPISTON_EACH c[i] = IfNegative(d, tip[i], hn::Add(c[i], x[i]), c[i]);
   BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenElseZero(ahead[i], y[i]));
   // Of a ray that rounding lets miss the disc the root is as good as 0.
   BALLPISTON_EACH q[i] = hn::Abs(hn::NegMulAdd(c[i], c[i], hn::Set(d, T(2))));
@@ -130,6 +139,10 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   BALLPISTON_EACH unit[i] = hn::MulAdd(h[i], h[i], hn::Mul(e[i], e[i]));
   BALLPISTON_EACH unit[i] =
       hn::NegMulAdd(unit[i], hn::Set(d, k.length_squared), hn::Set(d, T(1.5)));
+  // Into the mirrored frame after (1, 0), then the turn.
+  BALLPISTON_EACH flip[i] = hn::IfThenZeroElse(ahead[i], sign);
+  BALLPISTON_EACH c[i] = hn::Xor(c[i], flip[i]);
+  BALLPISTON_EACH SwapUnless(d, ahead[i], h[i], e[i]);
   BALLPISTON_EACH p[i] = hn::MulSub(q[i], unit[i], unit[i]);
   BALLPISTON_EACH r[i] = hn::Mul(c[i], unit[i]);
   BALLPISTON_EACH w[i] = hn::Mul(e[i], p[i]);
@@ -138,14 +151,11 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   BALLPISTON_EACH SwapUnless(d, ahead[i], a[i], b[i]);
   BALLPISTON_EACH a[i] = hn::Neg(a[i]);
   BALLPISTON_EACH b[i] = hn::Neg(b[i]);
-  BALLPISTON_EACH flip[i] = hn::IfThenZeroElse(ahead[i], sign);
   BALLPISTON_EACH m[i] = hn::Xor(m[i], hn::Xor(mirror[i], flip[i]));
-  BALLPISTON_EACH c[i] = hn::Xor(c[i], flip[i]);
   BALLPISTON_EACH r[i] = hn::Mul(r[i], s[i]);
   BALLPISTON_EACH w[i] = hn::NegMulAdd(h[i], r[i], w[i]);
   BALLPISTON_EACH h[i] = hn::MulAdd(e[i], r[i], p[i]);
   BALLPISTON_EACH e[i] = w[i];
-  BALLPISTON_EACH SwapUnless(d, ahead[i], h[i], e[i]);
   BALLPISTON_EACH length[i] = hn::Max(hn::Sub(foot[i], s[i]), zero);
 }
 

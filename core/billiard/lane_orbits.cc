@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -111,24 +110,18 @@ class LaneOrbits {
     T period;
   };
 
-  // A bit a lane of a vector.
-  struct Flags {
-    uint8_t bytes[8] = {};
-    uint64_t Bits() const {
-      uint64_t bits;
-      std::memcpy(&bits, bytes, sizeof(bits));
-      return bits;
+  static HWY_INLINE uint64_t Bits(hn::Mask<D> mask) {
+    uint8_t low, high = 0;  // of 16 lanes at most
+    if constexpr (hn::MaxLanes(D()) > 8) {
+      uint8_t bytes[2];
+      hn::StoreMaskBits(D(), mask, bytes);
+      low = bytes[0];
+      high = bytes[1];
+    } else {
+      hn::StoreMaskBits(D(), mask, &low);
     }
-    void Add(const Flags& others) {
-      const uint64_t bits = Bits() | others.Bits();
-      std::memcpy(bytes, &bits, sizeof(bits));
-    }
-    uint64_t Take() {
-      const uint64_t bits = Bits();
-      *this = {};
-      return bits;
-    }
-  };
+    return low | uint64_t{high} << 8;
+  }
 
   // The memory lies group by group, then array by array.
   T* At(size_t array, size_t lane) {
@@ -168,7 +161,7 @@ class LaneOrbits {
   }
 
   static HWY_INLINE void FlyOnce(const Constants& k, const T* from, T* to, const T* ratios,
-                                 Flags* flags) {
+                                 uint64_t& flags) {
     const D d;
     V length[K], x[K], path[K];
     Balls<D, K> balls;
@@ -200,7 +193,7 @@ class LaneOrbits {
   // is a concave function of time but where the piston turns at its left wall: so they met if the
   // ball ends beyond the piston, and perhaps if the piston turned while the ball was in its reach.
   static HWY_INLINE void MovePistons(const Constants& k, const T* from, T* to, const T* ratios,
-                                     const V (&length)[K], const V (&x)[K], Flags* flags) {
+                                     const V (&length)[K], const V (&x)[K], uint64_t& flags) {
     const D d;
     V phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
     BALLPISTON_EACH ratio[i] = hn::Load(d, ratios + i * Width());
@@ -214,26 +207,19 @@ class LaneOrbits {
     BALLPISTON_EACH ball[i] = hn::NegMulAdd(way[i], hn::Set(d, k.period), x[i]);
     BALLPISTON_EACH turns[i] = hn::Min(turns[i], hn::Max(x[i], before[i]));
     BALLPISTON_EACH ball[i] = hn::Max(ball[i], turns[i]);
-    BALLPISTON_EACH { hn::StoreMaskBits(d, hn::Gt(ball[i], hn::Zero(d)), flags[i].bytes); }
+    uint64_t bits = 0;
+    BALLPISTON_EACH bits |= Bits(hn::Gt(ball[i], hn::Zero(d))) << (i * Width());
+    flags = bits;
   }
 
-  static HWY_INLINE void FlagLongPaths(const V (&path)[K], Flags* flags) {
-    BALLPISTON_EACH {
-      Flags longer;
-      hn::StoreMaskBits(D(), hn::Gt(path[i], hn::Set(D(), kLongestPath)), longer.bytes);
-      flags[i].Add(longer);
-    }
+  static HWY_INLINE void FlagLongPaths(const V (&path)[K], uint64_t& flags) {
+    BALLPISTON_EACH { flags |= Bits(hn::Gt(path[i], hn::Set(D(), kLongestPath))) << (i * Width()); }
   }
 
   void LookAtGroup(size_t group) {
-    uint64_t any = 0;
-    for (const Flags& flags : flags_[group]) any |= flags.Bits();
-    if (HWY_LIKELY(any == 0)) return;
-    for (size_t vector = 0; vector < kVectorsInGroup; ++vector) {
-      for (uint64_t bits = flags_[group][vector].Take(); bits != 0; bits &= bits - 1) {
-        LookAt((group * kVectorsInGroup + vector) * Width() +
-               hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      }
+    if (HWY_LIKELY(flags_[group] == 0)) return;
+    for (uint64_t bits = std::exchange(flags_[group], 0); bits != 0; bits &= bits - 1) {
+      LookAt(group * LanesInGroup() + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
     }
   }
 
@@ -372,7 +358,7 @@ class LaneOrbits {
   std::vector<LaneOrbit> orbit_;
   size_t groups_ = kGroups;  // that are flown
   uint64_t step_[kGroups] = {};
-  Flags flags_[kGroups][K];
+  uint64_t flags_[kGroups] = {};  // a bit a lane: to be looked at
   uint64_t next_ = 0;
   uint64_t running_ = 0;
 };

@@ -61,9 +61,9 @@ const std::vector<PairCase>& PairCases() {
       {"tip and piston at one instant", geometries, AimedAtTipAndPiston, 100'000, 1},
       {"in the wedge between wall and piston", geometries, InTheWedge, 100'000, 1},
       {"slow ball: ep = 1/2 - 1e-3 ... 1e-17 and 1/2", AtShares({kPaperRho, 0.6}, shares), SlowBall,
-       100'000, 2},
+       100'000, 1},
       {"slow piston: ep = 1e-3 ... 1e-17 and 0", AtShares({kPaperRho, 0.6}, shares), SlowPiston,
-       100'000, 2},
+       100'000, 1},
       {"piston at delta = 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8",
        AtDeltas({0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8}), AimedAtPiston, 100'000, 1},
   };

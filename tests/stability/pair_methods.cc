@@ -70,6 +70,7 @@ void RunWatched(const PairGeometry& geometry, const PairState& start, uint64_t c
     if (!watch.See(RoundedTo<double>(flow.state()), event.kind, static_cast<double>(event.duration),
                    failures))
       return;
+    failures.energy = std::max(failures.energy, std::fabs(SignedEnergyError(flow.state())));
     if (event.kind != EventKind::kBallPiston) continue;
     --collisions;
     flow.ExchangeComponents();
