@@ -25,7 +25,7 @@
 // |u| would do a random walk by rounding; one Newton step a flight, of the direction before, keeps
 // h^2 + e^2 at 1/2.
 //
-// K vectors fly at once, operation by operation: a flight is a chain of some 70 cycles, and vector
+// K vectors fly at once, operation by operation: a flight is a chain of some 60 cycles, and vector
 // after vector a processor would see hardly more than one chain at a time.
 #if defined(BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_

@@ -6,7 +6,9 @@
 namespace ballpiston {
 namespace {
 
-constexpr double kOnATip = 1e-15;  // some ulps of a place in the cell
+// A ball this near to a tip may be across it by rounding: by ulps, by the root of an ulp if it
+// grazes, by 1e-4 in single precision.
+constexpr double kOnATip = 1e-3;
 
 // Which disc the ball leaves: the mirrors that bring the cell, seen from that disc's centre, into
 // the first quadrant. It is the disc of the ball's quadrant, unless rounding put a ball on a tip to

@@ -45,25 +45,27 @@ struct LaneOrbit {
 template <typename T>
 class LaneOrbits {
  public:
-  LaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source)
+  LaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
+             const std::stop_token& stop)
       : geometry_(geometry),
         wave_(geometry),
         constants_(geometry, wave_),
         orbits_(orbits),
         source_(source),
+        stop_(stop),
         lanes_(Width() * kVectors),
         memory_(hwy::AllocateAligned<T>(lanes_ * kArrays)),
         orbit_(lanes_) {
     std::fill(memory_.get(), memory_.get() + lanes_ * kArrays, T(0));
   }
 
-  bool Run(const std::stop_token& stop) {
+  bool Run() {
     for (size_t lane = 0; lane < lanes_; ++lane) Begin(lane);
-    while (running_ > 0) {
+    while (running_ > 0 && !stopped_) {
       for (int i = 0; i < kStepsBetweenLooks && running_ > 0; ++i) Step();
-      if (stop.stop_requested()) return false;
+      LookAtStop();
     }
-    return true;
+    return !stopped_;
   }
 
  private:
@@ -267,12 +269,16 @@ class LaneOrbits {
     Begin(lane);
   }
 
+  void LookAtStop() { stopped_ = stopped_ || stop_.stop_requested(); }
+
   // Event by event until the ball is on a wall, through what collisions there are. False if the
-  // orbit came to its end.
+  // orbit came to its end, or to a stop: the piston may turn long before a slow ball is anywhere.
   bool FlyToWall(size_t lane, const PairState& state) {
     ReferenceFlow flow(geometry_, state);
     Contact& sums = orbit_[lane].sums;
-    for (;;) {
+    for (int events = 1;; ++events) {
+      if (events % kStepsBetweenLooks == 0) LookAtStop();
+      if (stopped_) return false;
       const Event event = flow.Step();
       sums.Add(event);
       if (event.kind == EventKind::kBallWall) {
@@ -307,7 +313,7 @@ class LaneOrbits {
 
   // The next orbit that comes as far as a wall.
   void Begin(size_t lane) {
-    while (next_ < orbits_) {
+    while (next_ < orbits_ && !stopped_) {
       orbit_[lane] = LaneOrbit();
       orbit_[lane].orbit = next_++;
       if (FlyToWall(lane, source_.Start(orbit_[lane].orbit))) {
@@ -353,6 +359,8 @@ class LaneOrbits {
   Constants constants_;
   uint64_t orbits_;
   OrbitSource& source_;
+  const std::stop_token& stop_;
+  bool stopped_ = false;
   size_t lanes_;
   hwy::AlignedFreeUniquePtr<T[]> memory_;
   std::vector<LaneOrbit> orbit_;
@@ -365,12 +373,12 @@ class LaneOrbits {
 
 bool RunDouble(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
                const std::stop_token& stop) {
-  return LaneOrbits<double>(geometry, orbits, source).Run(stop);
+  return LaneOrbits<double>(geometry, orbits, source, stop).Run();
 }
 
 bool RunSingle(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
                const std::stop_token& stop) {
-  return LaneOrbits<float>(geometry, orbits, source).Run(stop);
+  return LaneOrbits<float>(geometry, orbits, source, stop).Run();
 }
 
 }  // namespace HWY_NAMESPACE

@@ -2,10 +2,10 @@
 //
 // Two engines do the same work behind one interface.
 //   kReference  one orbit after the other by ReferenceFlow, every event resolved.
-//   kLanes      the ball's flight between walls in vector lanes, without positions; the piston's
-//               position, a triangle wave in time, is looked at only when a flight begins or ends
-//               where the piston can reach. Where the two may meet within a flight, ReferenceFlow
-//               resolves that flight, and the first one after each collision.
+//   kLanes      the ball's flight between walls in vector lanes, without positions; the piston is
+//               not stepped: it is a triangle wave in time, and whether a flight met it is seen
+//               from where both are at its end and whether the piston turned meanwhile.
+//               ReferenceFlow resolves the flights that did, and the first one after a collision.
 //
 // An orbit's numbers do not depend on the lane it ran in, on how many lanes there are, or on what
 // runs beside it: every operation is elementwise, and exact, correctly rounded or fused as written.

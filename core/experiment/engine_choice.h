@@ -7,7 +7,7 @@
 
 namespace ballpiston {
 
-// The lanes and the reference are both exact; AUTO takes the quicker.
+// In double precision the lanes are as exact as the reference; AUTO takes the quicker.
 inline Engine EngineFor(const EnsembleSpec& spec) {
   if (spec.model == Model::kBilliardReference) return Engine::kReference;
   return spec.precision == Precision::kSingle ? Engine::kLanesSingle : Engine::kLanes;

@@ -3,9 +3,9 @@
 //
 // A block is many orbits of a few collisions, each started from the return map's invariant measure,
 // so nothing has to be burnt in, and orbits are independent; each is one batch of the batch means:
+//   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
 // No error is given below kCollisionsForAnError: with a few long flights the ratio's law is skewed,
 // and its error too small (the z-scores of 100 seeds with 64 collisions had variance 1.35).
-//   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
 #ifndef BALLPISTON_CORE_EXPERIMENT_EQUILIBRIUM_H_
 #define BALLPISTON_CORE_EXPERIMENT_EQUILIBRIUM_H_
 

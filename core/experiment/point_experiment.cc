@@ -10,6 +10,7 @@
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
+
 PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
                                  const BlockPlan& plan)
     : parameters_(parameters),

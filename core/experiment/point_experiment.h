@@ -3,8 +3,8 @@
 //
 //   for b in [0, blocks):  merged.Merge(RunBlock(b));  stop once TargetReached(b + 1, merged)
 //
-// RunBlock depends on nothing but (experiment, point, seed, target's kind and size, block): not on
-// the other points of the grid, on threads or on earlier calls. Immutable; safe to share between
+// RunBlock depends on nothing but (experiment, point, model, precision, seed, target, block): not
+// on the other points of the grid, on threads or on earlier calls. Immutable; safe to share between
 // threads.
 #ifndef BALLPISTON_CORE_EXPERIMENT_POINT_EXPERIMENT_H_
 #define BALLPISTON_CORE_EXPERIMENT_POINT_EXPERIMENT_H_

@@ -85,8 +85,8 @@ bool FixedStepFlow::RepairPiston() {
 }
 
 bool FixedStepFlow::IsLost() const {
-  return std::fabs(position_.x()) > 0.5 || std::fabs(position_.y()) > 0.5 ||
-         steps_inside_ > kWedged;
+  const bool inside = std::fabs(position_.x()) <= 0.5 && std::fabs(position_.y()) <= 0.5;
+  return !inside || steps_inside_ > kWedged;  // not a number is not inside
 }
 
 PairState FixedStepFlow::state() const {

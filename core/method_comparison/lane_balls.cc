@@ -15,8 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 
-// As many balls as the engine has in flight: groups of vectors that fly at once. They stay in
-// memory between flights, as the engine's do.
+// Two groups of three vectors: without a piston to watch, three still fit. They stay in memory
+// between flights, as the engine's do.
 template <typename T>
 class LaneBalls {
  public:

@@ -1,5 +1,5 @@
-// Balls alone in the cell, flown in vector lanes by the flights of billiard/lane_flight-inl.h, as
-// many at once as the engine flies.
+// Balls alone in the cell, flown in vector lanes by the flights of billiard/lane_flight-inl.h, six
+// vectors at a time.
 #ifndef BALLPISTON_CORE_METHOD_COMPARISON_LANE_BALLS_H_
 #define BALLPISTON_CORE_METHOD_COMPARISON_LANE_BALLS_H_
 

@@ -18,6 +18,8 @@
 //   kIngoingLaw    that of chi-squared, sqrt((cells - 1)/2)/samples; of a biased law, where the
 //                  divergence is larger, sqrt(2 value/samples) besides.
 //   kTrajectory    from the scatter of the orbits.
+// Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
+// their work are counted.
 // The closed form has no samples and no statistical error; its value is the bound of its rounding
 // errors, its work that of one evaluation: of one mean, of the probabilities of all cells. It knows
 // no orbits.

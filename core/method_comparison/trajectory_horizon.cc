@@ -129,8 +129,8 @@ std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t
                                      TwinOrbits& twins) {
   for (size_t k = 0; k < places.size(); ++k) {
     if (!std::isfinite(places[k].time)) return k;
-    const double apart = (places[k].position - twins.PositionAt(orbit, places[k].time)).norm();
-    if (!(apart <= kParted)) return k;
+    const std::optional<Eigen::Vector2d> twin = twins.PositionAt(orbit, places[k].time);
+    if (!twin || !((places[k].position - *twin).norm() <= kParted)) return k;
   }
   if (places.size() < hits) return places.size();  // lost
   return std::nullopt;
@@ -138,9 +138,10 @@ std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t
 
 // The horizons, empty if some orbit is with its twin to the end; then at the most hits that counts
 // as its horizon.
-std::optional<Moments> Horizons(const Itineraries& itineraries, uint64_t hits, TwinOrbits& twins) {
+std::optional<Moments> Horizons(const Itineraries& itineraries, uint64_t hits, TwinOrbits& twins,
+                                const std::stop_token& stop) {
   Moments moments;
-  for (size_t i = 0; i < itineraries.orbits.size(); ++i) {
+  for (size_t i = 0; i < itineraries.orbits.size() && !stop.stop_requested(); ++i) {
     const std::optional<uint64_t> together = HitsTogether(itineraries.orbits[i], hits, i, twins);
     if (!together && hits < kMostHits) return std::nullopt;
     moments.Add(static_cast<double>(together.value_or(hits)));
@@ -161,9 +162,9 @@ TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& ge
   for (uint64_t hits = 16;; hits *= 2) {
     const Itineraries itineraries = Fly(variant, geometry, twins, hits, stop);
     if (stop.stop_requested()) return {};
-    if (const std::optional<Moments> horizons = Horizons(itineraries, hits, twins)) {
-      return {*horizons, HitsIn(itineraries), itineraries.seconds};
-    }
+    const std::optional<Moments> horizons = Horizons(itineraries, hits, twins, stop);
+    if (stop.stop_requested()) return {};
+    if (horizons) return {*horizons, HitsIn(itineraries), itineraries.seconds};
   }
 }
 

@@ -18,9 +18,10 @@
 
 namespace ballpiston {
 
-// No orbit is followed further: of 113 bits all have parted long before, where the twin itself
-// still is right.
-inline constexpr uint64_t kMostHits = 512;
+// No orbit is followed further: of 113 bits all have parted before, where the twin itself still is
+// right. Only where the cell is hardly larger than kParted (rho near 1/sqrt(2)) some do not part;
+// this then counts as their horizon.
+inline constexpr uint64_t kMostHits = 128;
 
 struct TrajectoryHorizon {
   Moments hits;            // until an orbit and its twin are kParted apart, by orbit

@@ -43,9 +43,10 @@ bool TwinOrbits::FlyAhead(size_t hits, const std::stop_token& stop) {
   return true;
 }
 
-Eigen::Vector2d TwinOrbits::PositionAt(size_t orbit, double time) {
+std::optional<Eigen::Vector2d> TwinOrbits::PositionAt(size_t orbit, double time) {
   std::vector<BallAt>& places = orbits_[orbit].places;
-  while (places.back().time < time) Step(&orbits_[orbit]);
+  while (places.back().time < time && places.size() <= kMostTwinHits) Step(&orbits_[orbit]);
+  if (places.back().time < time) return std::nullopt;
   const auto end = std::lower_bound(places.begin(), places.end(), time,
                                     [](const BallAt& at, double t) { return at.time < t; });
   if (end == places.begin()) return end->position;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
+
+inline constexpr size_t kMostTwinHits = 256;
 
 // A place on an orbit.
 struct BallAt {
@@ -36,8 +39,9 @@ class TwinOrbits {
   // Flies the first `hits` hits of every orbit. False if `stop` came before the end.
   bool FlyAhead(size_t hits, const std::stop_token& stop);
 
-  // Where the twin is then; flies on as far as needed. time >= 0.
-  Eigen::Vector2d PositionAt(size_t orbit, double time);
+  // Where the twin is then, time >= 0; flies on as far as needed, up to its hit kMostTwinHits.
+  // Empty if it takes more.
+  std::optional<Eigen::Vector2d> PositionAt(size_t orbit, double time);
 
  private:
   struct Orbit {

@@ -1,5 +1,5 @@
-// Balls alone in the cell, flown in vector lanes as the engine flies them: for tests, the stability
-// table and benchmarks of the flight itself.
+// Balls alone in the cell, flown in vector lanes as the engine flies them: for tests and the
+// stability table.
 #ifndef BALLPISTON_TESTS_ORACLE_LANE_BALLS_H_
 #define BALLPISTON_TESTS_ORACLE_LANE_BALLS_H_
 

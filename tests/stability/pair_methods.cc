@@ -57,7 +57,8 @@ Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> st
 template <typename Flow>
 void RunWatched(const PairGeometry& geometry, const PairState& start, uint64_t collisions,
                 Failures& failures) {
-  constexpr uint64_t kMostEvents = 100'000'000;
+  // A ball of speed 3e-9 lets the piston pass some 1e9 times on its way through the cell.
+  constexpr uint64_t kMostEvents = 10'000'000'000;
   Flow flow(geometry, RoundedTo<RealOf<Flow>>(start));
   PairWatch watch(geometry, kEpsilon<Flow>);
   ++failures.orbits;

@@ -38,7 +38,7 @@ TEST(LaneEngine, GivesTheExactMeansFromCuspsToVanishingCells) {
   }
 }
 
-// The paper's hardest column, at its noise floor: KL within 4 errors of it at each energy.
+// At its noise floor: KL within 4 errors of it at each energy.
 TEST(LaneEngine, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
   EnsembleSpec spec = {.experiment = Experiment::kFirstHit,
                        .grid = {.rho = {0.529561127988977},

@@ -2,10 +2,9 @@
 // million states: anywhere, and where arcs meet or are touched.
 //
 // The bound. With u the rounding of a number next to 1, 2^-53 or in single precision 2^-24, an
-// engine knows the ray's impact
-// parameter c' on the next disc to some u: the cross product with the direction, of the ball's
-// place and of the disc's, each of a few rounded terms below 1, and rho^2 rounded. The flight ends
-// at the foot minus s', s'^2 = rho^2 - c'^2, so
+// engine knows the ray's impact parameter c' on the next disc to some u: the cross product with the
+// direction, of the ball's place and of the disc's, each of a few rounded terms below 1, and rho^2
+// rounded. The flight ends at the foot minus s', s'^2 = rho^2 - c'^2, so
 //     |error of the time| <= u (A + B/cos phi),   cos phi = s'/rho,
 // until cos phi is itself as small as its error, sqrt(2 B u): there the root's error is that.
 // An engine may take another arc than the exact one only if the exact ray decides by as little:

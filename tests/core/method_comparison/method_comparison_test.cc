@@ -124,7 +124,7 @@ TEST(MethodComparison, InvalidSpecsAreRefusedByFieldValueAndRange) {
 }
 
 TEST(MethodComparison, StopCancels) {
-  for (const int last : {0, 1, 30, 60}) {
+  for (const int last : {0, 1, 12, 30}) {
     std::stop_source stop;
     int told = 0;
     if (last == 0) stop.request_stop();

@@ -100,8 +100,9 @@ TEST(TwinOrbits, PlacesLieOnTheOrbit) {
   EXPECT_EQ(twins.PositionAt(0, 0), start);
   const double duration = static_cast<double>(flow.Step().duration);
   const Eigen::Vector2d hit = RoundedTo<double>(flow.state()).position;
-  EXPECT_NEAR((twins.PositionAt(0, duration / 2) - (start + hit) / 2).norm(), 0, 1e-15);
-  EXPECT_NEAR((twins.PositionAt(0, duration) - hit).norm(), 0, 1e-15);
+  EXPECT_NEAR((*twins.PositionAt(0, duration / 2) - (start + hit) / 2).norm(), 0, 1e-15);
+  EXPECT_NEAR((*twins.PositionAt(0, duration) - hit).norm(), 0, 1e-15);
+  EXPECT_EQ(twins.PositionAt(0, 1e9), std::nullopt);
 }
 
 }  // namespace
