@@ -15,7 +15,6 @@
 #define BALLPISTON_CORE_BILLIARD_ORBITS_H_
 
 #include <cstdint>
-#include <optional>
 #include <stop_token>
 
 #include "core/billiard/reference_flow.h"

@@ -2,22 +2,18 @@
 
 #include <utility>
 
+#include "core/experiment/ingoing_cells.h"
 #include "core/experiment/return_orbits.h"
-#include "core/geometry/elementary_functions.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr int kSigmas[] = {-1, +1};  // by index of the histogram
 
 void Record(const Return& hit, BlockResult* result) {
   ++result->samples;
   result->moments[0].Add(hit.time);
   result->moments[1].Add(hit.direction.x());
   result->moments[2].Add(hit.sigma);
-  // With epsilon >= 1/4 an approaching piston always moves to the left; rounding may not add a law.
-  const size_t index = hit.sigma > 0 && result->histograms.size() > 1 ? 1 : 0;
-  result->histograms[index].Add(Atan2(hit.direction.y(), hit.direction.x()));
+  CountIngoing(hit, result->histograms);
 }
 
 KlDivergence RelativeEntropyTo(const std::vector<SignedHistogram>& histograms) {
@@ -44,16 +40,12 @@ FirstHitExperiment::FirstHitExperiment(const EnsembleSpec& spec, const PointPara
       geometry_(geometry),
       equilibrium_(*point.epsilon),
       return_time_(geometry, *point.epsilon),
-      expected_(ExpectedProbabilities()) {}
+      expected_(IngoingBinProbabilities(equilibrium_)) {}
 
 BlockResult FirstHitExperiment::EmptyResult() const {
   BlockResult result;
   result.moments.resize(3);
-  for (const int sigma : kSigmas) {
-    const double half_width = equilibrium_.AlphaMax(sigma);
-    if (half_width == 0) continue;
-    result.histograms.push_back(Histogram::OfBins(-half_width, half_width, kIngoingBins));
-  }
+  result.histograms = EmptyIngoingHistograms(equilibrium_);
   return result;
 }
 
@@ -69,25 +61,11 @@ std::optional<BlockResult> FirstHitExperiment::RunBlock(uint64_t block,
   return result;
 }
 
-std::vector<std::vector<double>> FirstHitExperiment::ExpectedProbabilities() const {
-  std::vector<std::vector<double>> expected;
-  const BlockResult empty = EmptyResult();
-  for (size_t i = 0; i < empty.histograms.size(); ++i) {
-    const Histogram& histogram = empty.histograms[i];
-    std::vector<double>& bins = expected.emplace_back(kIngoingBins);
-    for (size_t bin = 0; bin < kIngoingBins; ++bin) {
-      bins[bin] =
-          equilibrium_.BinProbability(kSigmas[i], histogram.Edge(bin), histogram.Edge(bin + 1));
-    }
-  }
-  return expected;
-}
-
 std::vector<SignedHistogram> FirstHitExperiment::LabelledHistograms(
     const BlockResult& merged) const {
   std::vector<SignedHistogram> labelled;
   for (size_t i = 0; i < merged.histograms.size(); ++i) {
-    labelled.push_back({"alpha", kSigmas[i], merged.histograms[i], expected_[i]});
+    labelled.push_back({"alpha", kIngoingSigmas[i], merged.histograms[i], expected_[i]});
   }
   return labelled;
 }

@@ -15,8 +15,6 @@
 
 namespace ballpiston {
 
-inline constexpr size_t kIngoingBins = 1000;
-
 class FirstHitExperiment : public PointExperiment {
  public:
   FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point,
@@ -28,7 +26,6 @@ class FirstHitExperiment : public PointExperiment {
 
  private:
   BlockResult EmptyResult() const;
-  std::vector<std::vector<double>> ExpectedProbabilities() const;
   std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const;
 
   PairGeometry geometry_;

@@ -2,23 +2,10 @@
 
 #include <cmath>
 
-#include "core/experiment/first_hit.h"
-#include "core/geometry/elementary_functions.h"
+#include "core/experiment/ingoing_cells.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr int kSigmas[] = {-1, +1};
-
-std::vector<Histogram> EmptyHistograms(const IngoingLaw& law) {
-  std::vector<Histogram> histograms;
-  for (const int sigma : kSigmas) {
-    const double half_width = law.AlphaMax(sigma);
-    if (half_width == 0) continue;
-    histograms.push_back(Histogram::OfBins(-half_width, half_width, kIngoingBins));
-  }
-  return histograms;
-}
 
 // The noise. With counts n in cells of q each,
 //   2 N D = G = sum of g(n, N q),   g(n, m) = 2 (n log(n/m) - n + m).
@@ -85,25 +72,17 @@ DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> prob
 }
 
 std::vector<double> IngoingProbabilities(double epsilon) {
-  const IngoingLaw law(epsilon);
-  const std::vector<Histogram> histograms = EmptyHistograms(law);
   std::vector<double> probabilities;
-  for (size_t i = 0; i < histograms.size(); ++i) {
-    for (size_t bin = 0; bin < kIngoingBins; ++bin) {
-      probabilities.push_back(
-          law.BinProbability(kSigmas[i], histograms[i].Edge(bin), histograms[i].Edge(bin + 1)));
-    }
+  for (const std::vector<double>& bins : IngoingBinProbabilities(IngoingLaw(epsilon))) {
+    probabilities.insert(probabilities.end(), bins.begin(), bins.end());
   }
   return probabilities;
 }
 
-IngoingCounts::IngoingCounts(double epsilon) : histograms_(EmptyHistograms(IngoingLaw(epsilon))) {}
+IngoingCounts::IngoingCounts(double epsilon)
+    : histograms_(EmptyIngoingHistograms(IngoingLaw(epsilon))) {}
 
-void IngoingCounts::Add(const Return& hit) {
-  // With epsilon >= 1/4 an approaching piston always moves to the left; rounding may not add a law.
-  const size_t index = hit.sigma > 0 && histograms_.size() > 1 ? 1 : 0;
-  histograms_[index].Add(Atan2(hit.direction.y(), hit.direction.x()));
-}
+void IngoingCounts::Add(const Return& hit) { CountIngoing(hit, histograms_); }
 
 std::vector<uint64_t> IngoingCounts::Counts() const {
   std::vector<uint64_t> counts;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/stability/drawn_starts.h"
 #include "tests/stability/tip_sequence.h"
 #include "tests/stability/wall_starts.h"
 
@@ -12,17 +13,6 @@ namespace {
 constexpr double kPaperRho = 0.529561127988977;
 constexpr uint64_t kSeed = 20;
 constexpr uint64_t kBatch = 4096;
-
-std::vector<PairState> Starts(const BallCase& ball_case, const PairGeometry& geometry,
-                              uint64_t first, uint64_t count) {
-  std::vector<PairState> starts;
-  starts.reserve(count);
-  for (uint64_t i = first; i < first + count; ++i) {
-    CounterRandom random(kSeed, 0, i);
-    starts.push_back(ball_case.start(geometry, random));
-  }
-  return starts;
-}
 
 }  // namespace
 
@@ -70,7 +60,9 @@ Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double eff
     const uint64_t hits = ball_case.hits > 0 ? ball_case.hits : LongestTipSequence(geometry) + 4;
     for (uint64_t first = 0; first < starts; first += kBatch) {
       failures.Merge(method.fly(
-          geometry, Starts(ball_case, geometry, first, std::min(kBatch, starts - first)), hits));
+          geometry,
+          DrawnStarts(*ball_case.start, geometry, kSeed, first, std::min(kBatch, starts - first)),
+          hits));
     }
   }
   return failures;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/stability/drawn_starts.h"
 #include "tests/stability/pair_starts.h"
 
 namespace ballpiston::stability {
@@ -36,17 +37,6 @@ std::vector<PairGeometry> Joined(std::vector<PairGeometry> some,
   return some;
 }
 
-std::vector<PairState> Starts(const PairCase& pair_case, const PairGeometry& geometry,
-                              uint64_t first, uint64_t count) {
-  std::vector<PairState> starts;
-  starts.reserve(count);
-  for (uint64_t i = first; i < first + count; ++i) {
-    CounterRandom random(kSeed, 0, i);
-    starts.push_back(pair_case.start(geometry, random));
-  }
-  return starts;
-}
-
 }  // namespace
 
 const std::vector<PairCase>& PairCases() {
@@ -77,9 +67,10 @@ Failures RunCase(const PairCase& pair_case, const PairMethod& method, double eff
   for (const PairGeometry& geometry : pair_case.geometries) {
     if (geometry.delta() < method.smallest_delta) continue;
     for (uint64_t first = 0; first < starts; first += kBatch) {
-      failures.Merge(
-          method.run(geometry, Starts(pair_case, geometry, first, std::min(kBatch, starts - first)),
-                     pair_case.collisions));
+      failures.Merge(method.run(
+          geometry,
+          DrawnStarts(*pair_case.start, geometry, kSeed, first, std::min(kBatch, starts - first)),
+          pair_case.collisions));
     }
   }
   return failures;
