@@ -20,6 +20,7 @@ constexpr char kFooter[] =
 
 void AddVerbs(CLI::App& app, Action& action) {
   AddAnalytic(app, action);
+  AddPlan(app, action);
   AddRun(app, action);
   AddSubmit(app, action);
   AddWatch(app, action);
@@ -40,7 +41,7 @@ std::string Verbs(const CLI::App& app) {
 // Verbs that the command line's contract names and this version lacks: whatever follows them, the
 // answer is the same. `app` has to outlive the action.
 void AddLaterVerbs(CLI::App& app, Action& action) {
-  for (const std::string name : {"plan", "trace"}) {
+  for (const std::string name : {"trace"}) {
     CLI::App* verb = app.add_subcommand(name)->group("")->prefix_command();
     verb->set_help_flag();
     verb->callback([&app, &action, name] {

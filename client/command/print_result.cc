@@ -34,12 +34,11 @@ absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::st
   if (!job.ok()) return job.status();
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
   writer->Begin(*job);
-  const auto view =
-      ShowsHistograms(format) ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
-  const absl::Status status = client.ForEachResult(name, view, [&](const v1::PointResult& point) {
-    writer->Add(point);
-    WarnOfEscapes(point, terminal.err);
-  });
+  const absl::Status status =
+      client.ForEachResult(name, ViewFor(format), [&](const v1::PointResult& point) {
+        writer->Add(point);
+        WarnOfEscapes(point, terminal.err);
+      });
   if (!status.ok()) return status;
   writer->End();
   terminal.out.flush();

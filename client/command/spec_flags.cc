@@ -24,8 +24,7 @@ using Spec = v1::EnsembleSpec;
 constexpr double kMaxBudget = 315576000000;  // seconds in a google.protobuf.Duration: 10,000 years
 
 // Experiments that the command line's contract names; this version's proto may lack some.
-constexpr absl::string_view kLaterExperiments[] = {"energy-relaxation", "gas-equilibrium",
-                                                   "gas-conduction"};
+constexpr absl::string_view kLaterExperiments[] = {"gas-equilibrium", "gas-conduction"};
 
 absl::Status UnknownExperiment(const std::string& text) {
   const std::string name = absl::StrReplaceAll(text, {{"_", "-"}});
@@ -95,11 +94,13 @@ absl::Status CheckOneTarget(const SpecFlags& flags) {
   if (flags.samples) given.push_back("--samples");
   if (flags.collisions) given.push_back("--collisions");
   if (flags.tolerance) given.push_back("--tolerance");
+  const size_t kinds = given.size();
   if (flags.budget) given.push_back("--budget");
-  if (given.size() <= 1) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(absl::StrJoin(given, " and "),
-                                                 " exclude each other: give at most one of "
-                                                 "--samples, --collisions, --tolerance, --budget"));
+  if (given.size() <= 1 || (kinds == 1 && flags.tolerance)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(absl::StrJoin(given, " and "),
+                   " exclude each other: give at most one of --samples, --collisions, --tolerance, "
+                   "--budget; only --tolerance and --budget may stand together"));
 }
 
 absl::Status SetTarget(const SpecFlags& flags, Spec& spec) {
@@ -117,6 +118,7 @@ absl::Status SetTarget(const SpecFlags& flags, Spec& spec) {
 }
 
 absl::Status SetRest(const SpecFlags& flags, Spec& spec) {
+  spec.set_verify(flags.verify);
   return Violations(
              {Take("--seed", flags.seed, ParseSeed, [&](uint64_t seed) { spec.set_seed(seed); }),
               Take("--model", flags.model, Choice<Spec::Model>, [&](auto m) { spec.set_model(m); }),
@@ -142,7 +144,7 @@ bool AnyButFile(const SpecFlags& flags) {
         &flags.model, &flags.precision}) {
     if (flag->has_value()) return true;
   }
-  return false;
+  return flags.verify;
 }
 
 }  // namespace
@@ -152,18 +154,27 @@ void SpecFlags::AddTo(CLI::App& verb) {
   const std::string grid_group = "Grid (LIST: a,b,c or from:to:count or from:to:count:log)";
   verb.add_option("--rho", rho, "disc radii, 1/2 < rho < 1/sqrt(2)")->group(grid_group);
   verb.add_option("--delta", delta, "piston's penetrations")->group(grid_group);
-  verb.add_option("--epsilon", epsilon, "piston's energies, 0 to 1/2")->group(grid_group);
+  verb.add_option("--epsilon", epsilon, "piston's energies, 0 to 1/2; energy-relaxation needs none")
+      ->group(grid_group);
   verb.add_option("--exponent", exponent, "n of the outgoing law h^(n)")->group(grid_group);
   verb.add_option("--cells", cells, "sides of the gas, in cells")->group(grid_group);
-  const std::string target_group = "Target (at most one)";
-  verb.add_option("--samples", samples, "first hits a point")->group(target_group);
+  const std::string target_group = "Target (at most one, but for --tolerance with --budget)";
+  verb.add_option("--samples", samples, "first hits, or orbits, a point")->group(target_group);
   verb.add_option("--collisions", collisions, "ball-piston collisions a point")
       ->group(target_group);
-  verb.add_option("--tolerance", tolerance, "relative standard error of the first estimate")
+  verb.add_option("--tolerance", tolerance,
+                  "relative standard error of the first estimate: a point ends once it is reached")
       ->group(target_group);
-  verb.add_option("--budget", budget, "seconds")->group(target_group);
+  verb.add_option("--budget", budget,
+                  "seconds with all workers, shared evenly by the points: the best answer in that "
+                  "time; with --tolerance, the job fails if they do not suffice")
+      ->group(target_group);
   verb.add_option("--seed", seed, "of the random numbers; 0 if not given");
   verb.add_option("--model", model, absl::StrJoin(Spellings<Spec::Model>(), " | "));
+  verb.add_flag(
+      "--verify", verify,
+      "with --model auto: simulate also what a closed form answers, with the exact values "
+      "beside it");
   verb.add_option("--precision", precision, absl::StrJoin(Spellings<Spec::Precision>(), " | "));
   verb.add_option("--spec", file, "file with all of the above as JSON, - for standard input");
 }
@@ -171,8 +182,8 @@ void SpecFlags::AddTo(CLI::App& verb) {
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const SpecFlags& flags) {
   if (flags.file && AnyButFile(flags)) {
     return absl::InvalidArgumentError(
-        "--spec holds the whole specification: give no EXPERIMENT, grid, target, --seed, --model "
-        "or --precision with it");
+        "--spec holds the whole specification: give no EXPERIMENT, grid, target, --seed, "
+        "--model, --verify or --precision with it");
   }
   absl::StatusOr<Spec> spec = flags.file ? ReadSpecFile(*flags.file) : FromFlags(flags);
   if (!spec.ok()) return spec;

@@ -15,12 +15,13 @@
 
 namespace ballpiston::client {
 
-// The flags' texts; absent if not given.
+// The flags' texts; absent if not given. Of the targets only a tolerance and a budget go together.
 struct SpecFlags {
   std::optional<std::string> experiment;
   std::optional<std::string> rho, delta, epsilon, exponent, cells;
   std::optional<std::string> samples, collisions, tolerance, budget;
   std::optional<std::string> seed, model, precision;
+  bool verify = false;
   std::optional<std::string> file;
 
   void AddTo(CLI::App& verb);

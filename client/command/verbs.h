@@ -21,6 +21,7 @@ struct Terminal {
 using Action = std::function<absl::StatusOr<ExitCode>(Terminal&)>;
 
 void AddAnalytic(CLI::App& app, Action& action);
+void AddPlan(CLI::App& app, Action& action);
 void AddRun(CLI::App& app, Action& action);
 void AddSubmit(CLI::App& app, Action& action);
 void AddWatch(CLI::App& app, Action& action);

@@ -105,8 +105,11 @@ absl::StatusOr<std::string> ExactCsv(const MeanFreeTimeAnswers& answers) {
   return csv;
 }
 
+// The billiard by name: left to choose, the service would answer with the closed form that the
+// figure is to test.
 v1::EnsembleSpec CommonSpec(const MeanFreeTimeQuestion& question) {
   v1::EnsembleSpec spec;
+  spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_grid()->add_rho(question.rho);
   spec.mutable_grid()->mutable_delta()->Add(question.delta.begin(), question.delta.end());
   spec.set_seed(question.seed);

@@ -30,6 +30,13 @@ absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& s
   return CallUnary(*stub_, &Stub::CreateEnsembleJob, request, timeout_);
 }
 
+absl::StatusOr<v1::PlanEnsembleJobResponse> EnsembleClient::Plan(
+    const v1::EnsembleSpec& spec) const {
+  v1::PlanEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  return CallUnary(*stub_, &Stub::PlanEnsembleJob, request, timeout_);
+}
+
 absl::StatusOr<v1::EnsembleJob> EnsembleClient::Get(const std::string& name) const {
   v1::GetEnsembleJobRequest request;
   request.set_name(name);

@@ -40,6 +40,9 @@ class EnsembleClient {
   absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
                                          const std::string& request_id) const;
 
+  // What each model would cost and how well it would answer. Runs nothing.
+  absl::StatusOr<v1::PlanEnsembleJobResponse> Plan(const v1::EnsembleSpec& spec) const;
+
   absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
   absl::StatusOr<std::vector<v1::EnsembleJob>> List() const;  // all pages, newest first
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;

@@ -61,6 +61,24 @@ MeasuredText Measured(double value, std::optional<double> error, std::optional<d
   return text;
 }
 
+std::string TwoDigits(double error) { return Measured(error, error).error; }
+
+std::string DurationText(double seconds) {
+  struct Unit {
+    double seconds;
+    const char* name;
+  };
+  constexpr Unit kUnits[] = {{1e-9, "ns"}, {1e-6, "µs"}, {1e-3, "ms"}, {1, "s"},
+                             {60, "min"},  {3600, "h"},  {86400, "d"}, {31557600, "y"}};
+  if (seconds == 0) return "0 s";
+  const Unit* unit = kUnits;
+  for (const Unit& next : kUnits) {
+    if (seconds >= 0.9995 * next.seconds) unit = &next;  // 999.6 µs is 1.0 ms
+  }
+  const double count = seconds / unit->seconds;
+  return absl::StrFormat("%.*f %s", count < 9.95 ? 1 : 0, count, unit->name);
+}
+
 std::string ClockText(absl::Duration time) {
   const int64_t seconds = absl::ToInt64Seconds(absl::Ceil(time, absl::Seconds(1)));
   const int64_t minutes = seconds / 60;

@@ -23,6 +23,13 @@ struct MeasuredText {
 MeasuredText Measured(double value, std::optional<double> error,
                       std::optional<double> exact = std::nullopt);
 
+// An error by itself, to the two significant digits that MeasuredText gives it: 0.0012, 1.2e-05, 0.
+std::string TwoDigits(double error);
+
+// A computing time with the unit that suits it, from ns to years, to two significant digits or
+// three: 4.8 ns, 120 µs, 59 s, 3.2 min.
+std::string DurationText(double seconds);
+
 // 0:35, 12:04, 3:25:10; whole seconds, rounded up, so that it ends with 0:00 at the end only.
 std::string ClockText(absl::Duration time);
 

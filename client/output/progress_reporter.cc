@@ -13,6 +13,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
 #include "client/output/json.h"
+#include "client/output/number_text.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/spelling.h"
@@ -55,6 +56,7 @@ class BarReporter : public ProgressReporter {
     if (name_.empty()) WriteLine(job.name());
     name_ = job.name();
     state_ = job.state();
+    work_ = job.work();
     meter_.Update(job.progress(), absl::Now());
     Draw();
   }
@@ -75,9 +77,9 @@ class BarReporter : public ProgressReporter {
   void OnEnd() override {
     const std::lock_guard lock(mutex_);
     if (name_.empty()) return;
-    WriteLine(absl::StrFormat("%s: %d of %d points, %.6g samples", Spelling(state_),
+    WriteLine(absl::StrFormat("%s: %d of %d points, %.6g samples%s", Spelling(state_),
                               meter_.progress().points_done(), meter_.progress().points(),
-                              meter_.progress().samples()));
+                              meter_.progress().samples(), WorkText()));
   }
 
   void Note(absl::string_view text) override {
@@ -86,6 +88,11 @@ class BarReporter : public ProgressReporter {
   }
 
  private:
+  // In a plan's words; a server that was started again does not know of the work before.
+  std::string WorkText() const {
+    return work_ == 0 ? "" : absl::StrCat(", ", DurationText(work_), " of one core");
+  }
+
   // One column stays free: some terminals wrap when the last one is written.
   void Draw() { Redraw(ProgressLine(meter_, point_, TerminalWidth() - 1)); }
   void Redraw(absl::string_view line) { err_ << '\r' << line << "\x1b[K" << std::flush; }
@@ -98,6 +105,7 @@ class BarReporter : public ProgressReporter {
   std::ostream& err_;
   std::string name_;
   v1::EnsembleJob::State state_ = v1::EnsembleJob::STATE_UNSPECIFIED;
+  double work_ = 0;  // seconds of one core
   ProgressMeter meter_;
   std::optional<v1::PointResult> point_;
 };

@@ -8,6 +8,9 @@ ResultRow RowOf(const v1::Estimate& estimate) {
   if (estimate.has_standard_error()) row.standard_error = estimate.standard_error();
   if (estimate.has_exact()) row.exact = estimate.exact();
   if (estimate.has_z_score()) row.z_score = estimate.z_score();
+  if (estimate.has_model_error()) row.model_error = estimate.model_error();
+  if (estimate.has_noise_floor()) row.noise_floor = estimate.noise_floor();
+  if (estimate.has_limit()) row.limit = estimate.limit();
   return row;
 }
 

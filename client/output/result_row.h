@@ -19,6 +19,9 @@ struct ResultRow {
   std::optional<double> standard_error;
   std::optional<double> exact;
   std::optional<double> z_score;
+  std::optional<double> model_error;
+  std::optional<double> noise_floor;
+  std::optional<double> limit;
 };
 
 // The estimates in their order, then kl_divergence and kl_noise_floor where they exist.

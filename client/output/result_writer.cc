@@ -1,15 +1,19 @@
 #include "client/output/result_writer.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/output/json.h"
+#include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
+#include "client/output/parameter_text.h"
 #include "client/output/result_row.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
@@ -19,33 +23,25 @@ namespace {
 
 std::string ExactOrEmpty(std::optional<double> x) { return x ? ExactText(*x) : ""; }
 
-std::optional<double> EpsilonOf(const v1::PointResult& point) {
-  if (!point.parameters().has_epsilon()) return std::nullopt;
-  return point.parameters().epsilon();
-}
-
-std::optional<double> ExponentOf(const v1::PointResult& point) {
-  if (!point.parameters().has_exponent()) return std::nullopt;
-  return point.parameters().exponent();
-}
-
 class CsvWriter : public ResultWriter {
  public:
   explicit CsvWriter(std::ostream& out) : out_(out) {}
 
   void Begin(const v1::EnsembleJob&) override {
-    out_ << "rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score\n";
+    out_ << "rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,"
+            "model_error,noise_floor,limit\n";
   }
   void Add(const v1::PointResult& point) override {
-    const std::string prefix =
-        absl::StrJoin({ExactText(point.parameters().rho()), ExactText(point.parameters().delta()),
-                       ExactOrEmpty(EpsilonOf(point)), ExactOrEmpty(ExponentOf(point)),
-                       Spelling(point.model()), ExactText(point.samples())},
-                      ",");
+    std::vector<std::string> cells = ParameterColumns(point.parameters());
+    cells.insert(cells.end(), {Spelling(point.model()), ExactText(point.samples())});
+    const std::string prefix = absl::StrJoin(cells, ",");
     for (const ResultRow& row : ResultRows(point)) {
-      out_ << prefix << ',' << row.name << ',' << ExactText(row.value) << ','
-           << ExactOrEmpty(row.standard_error) << ',' << ExactOrEmpty(row.exact) << ','
-           << ExactOrEmpty(row.z_score) << '\n';
+      out_ << prefix << ',' << row.name << ',' << ExactText(row.value);
+      for (const auto& x : {row.standard_error, row.exact, row.z_score, row.model_error,
+                            row.noise_floor, row.limit}) {
+        out_ << ',' << ExactOrEmpty(x);
+      }
+      out_ << '\n';
     }
   }
   void End() override {}
@@ -84,6 +80,23 @@ class JsonWriter : public ResultWriter {
   bool first_ = true;
 };
 
+// Columns that a table has only if some estimate has them.
+struct ExtraColumn {
+  const char* title;
+  std::optional<double> ResultRow::*value;
+  // In the places of the estimate beside it; an error has its own two digits.
+  bool is_error;
+};
+constexpr ExtraColumn kExtraColumns[] = {{"model_error", &ResultRow::model_error, true},
+                                         {"noise_floor", &ResultRow::noise_floor, false},
+                                         {"limit", &ResultRow::limit, false}};
+
+std::string ExtraCell(const ExtraColumn& column, const ResultRow& row) {
+  const std::optional<double> x = row.*column.value;
+  if (!x) return "";
+  return column.is_error ? TwoDigits(*x) : Measured(row.value, row.standard_error, x).exact;
+}
+
 // Keeps the rows until the end, when the columns' widths are known.
 class TableWriter : public ResultWriter {
  public:
@@ -93,20 +106,36 @@ class TableWriter : public ResultWriter {
 
   void Add(const v1::PointResult& point) override {
     models_.insert(Spelling(point.model()));
-    has_epsilon_ = has_epsilon_ || point.parameters().has_epsilon();
-    has_exponent_ = has_exponent_ || point.parameters().has_exponent();
+    parameters_.Include(point.parameters());
+    reasons_.Add(point.parameters(), point.model(), point.reason());
     points_.push_back(point);
     points_.back().clear_histograms();
+    points_.back().clear_curves();
   }
 
   void End() override {
+    FindExtraColumns();
     out_ << Heading() << '\n';
     TextTable table(Columns());
     for (const v1::PointResult& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
+    reasons_.Print(out_);
   }
 
  private:
+  bool HasSeveralModels() const { return models_.size() > 1; }
+
+  void FindExtraColumns() {
+    for (const ExtraColumn& column : kExtraColumns) {
+      const bool present = std::any_of(points_.begin(), points_.end(), [&](const auto& point) {
+        const std::vector<ResultRow> rows = ResultRows(point);
+        return std::any_of(rows.begin(), rows.end(),
+                           [&](const ResultRow& row) { return (row.*column.value).has_value(); });
+      });
+      if (present) extra_columns_.push_back(column);
+    }
+  }
+
   std::string Heading() const {
     return absl::StrCat(Spelling(job_.spec().experiment()), ", ",
                         models_.empty() ? "no finished points"
@@ -118,33 +147,30 @@ class TableWriter : public ResultWriter {
   }
 
   std::vector<TextTable::Column> Columns() const {
-    std::vector<TextTable::Column> columns = {{"rho"}, {"delta"}};
-    if (has_epsilon_) columns.push_back({"epsilon"});
-    if (has_exponent_) columns.push_back({"exponent"});
+    std::vector<TextTable::Column> columns;
+    for (const std::string& title : parameters_.Titles()) columns.push_back({title});
+    if (HasSeveralModels()) columns.push_back({"model", TextTable::Column::kLeft});
     columns.push_back({"samples"});
     columns.push_back({"estimate", TextTable::Column::kLeft});
     for (const char* title : {"value", "error", "exact", "z"}) columns.push_back({title});
+    for (const ExtraColumn& column : extra_columns_) columns.push_back({column.title});
     return columns;
   }
 
-  std::vector<std::string> ParameterCells(const v1::PointResult& point) const {
-    const auto cell = [](double x) { return absl::StrFormat("%.10g", x); };
-    std::vector<std::string> cells = {cell(point.parameters().rho()),
-                                      cell(point.parameters().delta())};
-    const auto epsilon = EpsilonOf(point);
-    const auto exponent = ExponentOf(point);
-    if (has_epsilon_) cells.push_back(epsilon ? cell(*epsilon) : "");
-    if (has_exponent_) cells.push_back(exponent ? cell(*exponent) : "");
+  std::vector<std::string> PointCells(const v1::PointResult& point) const {
+    std::vector<std::string> cells = parameters_.Cells(point.parameters());
+    if (HasSeveralModels()) cells.push_back(Spelling(point.model()));
     cells.push_back(ExactText(point.samples()));
     return cells;
   }
 
   void AddRows(const v1::PointResult& point, TextTable& table) const {
     for (const ResultRow& row : ResultRows(point)) {
-      std::vector<std::string> cells = ParameterCells(point);
+      std::vector<std::string> cells = PointCells(point);
       const MeasuredText text = Measured(row.value, row.standard_error, row.exact);
       const std::string z = row.z_score ? absl::StrFormat("%+.2f", *row.z_score) : "";
       cells.insert(cells.end(), {row.name, text.value, text.error, text.exact, z});
+      for (const ExtraColumn& column : extra_columns_) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
   }
@@ -153,8 +179,9 @@ class TableWriter : public ResultWriter {
   v1::EnsembleJob job_;
   std::vector<v1::PointResult> points_;
   std::set<std::string> models_;
-  bool has_epsilon_ = false;
-  bool has_exponent_ = false;
+  ParametersShown parameters_;
+  ModelReasons reasons_;
+  std::vector<ExtraColumn> extra_columns_;
 };
 
 }  // namespace
@@ -173,6 +200,9 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) 
   return std::make_unique<TableWriter>(out);
 }
 
-bool ShowsHistograms(Format format) { return format == Format::kJson || format == Format::kJsonl; }
+v1::ListResultsRequest::View ViewFor(Format format) {
+  const bool is_json = format == Format::kJson || format == Format::kJsonl;
+  return is_json ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
+}
 
 }  // namespace ballpiston::client

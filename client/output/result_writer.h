@@ -3,10 +3,13 @@
 //   table   a heading with experiment and model, then one row for each point and estimate
 //   json    {"job": {...}, "points": [...]}, one point a line
 //   jsonl   one point a line
-//   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score
+//   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
+//           model_error,noise_floor,limit
 //
 // In tables and CSV a Kullback-Leibler divergence becomes two rows of its own, kl_divergence and
-// kl_noise_floor. What does not exist stays empty. The same points give the same bytes.
+// kl_noise_floor. What does not exist stays empty; a table has the columns model, model_error,
+// noise_floor and limit only where they tell something, and below it the reasons for the models
+// (model_reasons.h). Histograms and curves are in JSON only. The same points give the same bytes.
 #ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 #define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 
@@ -25,14 +28,14 @@ class ResultWriter {
 
   virtual void Begin(const v1::EnsembleJob& job) = 0;
   virtual void Add(const v1::PointResult& point) = 0;
-  virtual void End() = 0;
+  virtual void End() = 0;  // once, after all points
 };
 
 // `out` has to outlive the writer.
 std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out);
 
-// Whether the format shows histograms, so that they have to be fetched.
-bool ShowsHistograms(Format format);
+// What has to be fetched: with histograms and curves where the format shows them.
+v1::ListResultsRequest::View ViewFor(Format format);
 
 }  // namespace ballpiston::client
 

@@ -7,6 +7,16 @@
 #include "absl/strings/str_cat.h"
 
 namespace ballpiston::client {
+namespace {
+
+// Characters, not bytes: of a character in UTF-8 (µs) all bytes but the first begin with the
+// bits 10.
+size_t Width(const std::string& text) {
+  return static_cast<size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
+}
+
+}  // namespace
 
 TextTable::TextTable(std::vector<Column> columns)
     : columns_(std::move(columns)), widths_(columns_.size(), 0) {
@@ -17,14 +27,14 @@ TextTable::TextTable(std::vector<Column> columns)
 
 void TextTable::AddRow(std::vector<std::string> row) {
   row.resize(columns_.size());
-  for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], row[i].size());
+  for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], Width(row[i]));
   rows_.push_back(std::move(row));
 }
 
 std::string TextTable::Line(const std::vector<std::string>& row, size_t indent) const {
   std::string line(indent, ' ');
   for (size_t i = 0; i < row.size(); ++i) {
-    const std::string padding(widths_[i] - row[i].size(), ' ');
+    const std::string padding(widths_[i] - Width(row[i]), ' ');
     const bool left = columns_[i].alignment == Column::kLeft;
     absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, row[i], left ? padding : "");
   }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,7 @@ class LaneOrbits {
         orbits_(orbits),
         source_(source),
         stop_(stop),
+        limit_(source.TimeLimit()),
         lanes_(Width() * kVectors),
         memory_(hwy::AllocateAligned<T>(lanes_ * kArrays)),
         orbit_(lanes_) {
@@ -64,6 +66,7 @@ class LaneOrbits {
     while (running_ > 0 && !stopped_) {
       for (int i = 0; i < kStepsBetweenLooks && running_ > 0; ++i) Step();
       LookAtStop();
+      if (limit_ < std::numeric_limits<double>::infinity()) LookAtLimits();
     }
     return !stopped_;
   }
@@ -271,6 +274,32 @@ class LaneOrbits {
 
   void LookAtStop() { stopped_ = stopped_ || stop_.stop_requested(); }
 
+  // Between steps.
+  void LookAtLimits() {
+    LookAtGroup(1);
+    for (size_t lane = 0; lane < groups_ * LanesInGroup() && !stopped_; ++lane) {
+      if (orbit_[lane].orbit != kNoOrbit && Elapsed(lane) > limit_) Expire(lane);
+    }
+  }
+
+  double Elapsed(size_t lane) {
+    const LaneOrbit& orbit = orbit_[lane];
+    const double path = orbit.path + static_cast<double>(After(kPath, lane));
+    return orbit.sums.time + path / constants_.flight.scale / orbit.ball_speed;
+  }
+
+  void Expire(size_t lane) {
+    orbit_[lane].sums.time = Elapsed(lane);
+    TellExpired(orbit_[lane]);
+    --running_;
+    Begin(lane);
+  }
+
+  void TellExpired(LaneOrbit& orbit) {
+    orbit.sums.expired = true;
+    source_.Meet(orbit.orbit, orbit.sums);
+  }
+
   // Event by event until the ball is on a wall, through what collisions there are. False if the
   // orbit came to its end, or to a stop: the piston may turn long before a slow ball is anywhere.
   bool FlyToWall(size_t lane, const PairState& state) {
@@ -285,7 +314,11 @@ class LaneOrbits {
         Enter(lane, flow.state());
         return true;
       }
-      if (event.kind == EventKind::kPistonWall) continue;
+      if (event.kind == EventKind::kPistonWall) {
+        if (!(sums.time > limit_)) continue;
+        TellExpired(orbit_[lane]);
+        return false;
+      }
       sums.state = flow.state();
       if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd) return false;
       flow.ExchangeComponents();
@@ -361,6 +394,7 @@ class LaneOrbits {
   OrbitSource& source_;
   const std::stop_token& stop_;
   bool stopped_ = false;
+  double limit_;  // time without a collision
   size_t lanes_;
   hwy::AlignedFreeUniquePtr<T[]> memory_;
   std::vector<LaneOrbit> orbit_;

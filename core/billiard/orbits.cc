@@ -12,11 +12,13 @@ constexpr uint64_t kEventsBetweenLooks =
 bool RunReferenceOrbit(const PairGeometry& geometry, uint64_t orbit, OrbitSource& source,
                        const std::stop_token& stop) {
   ReferenceFlow flow(geometry, source.Start(orbit));
+  const double limit = source.TimeLimit();
   Contact contact;
   for (uint64_t events = 1;; ++events) {
     const Event event = flow.Step();
     contact.Add(event);
-    if (event.kind == EventKind::kBallPiston || event.kind == EventKind::kEscape) {
+    contact.expired = event.kind != EventKind::kBallPiston && contact.time > limit;
+    if (event.kind == EventKind::kBallPiston || contact.escaped || contact.expired) {
       contact.state = flow.state();
       if (source.Meet(orbit, contact) == AfterContact::kEnd) return true;
       flow.ExchangeComponents();

@@ -15,6 +15,7 @@
 #define BALLPISTON_CORE_BILLIARD_ORBITS_H_
 
 #include <cstdint>
+#include <limits>
 #include <stop_token>
 
 #include "core/billiard/reference_flow.h"
@@ -32,6 +33,7 @@ struct Contact {
   uint64_t ball_wall_hits = 0;
   uint64_t piston_wall_hits = 0;
   bool escaped = false;  // the orbit left the cell: nothing else here means anything
+  bool expired = false;  // no contact: the orbit's time limit passed first; `state` means nothing
 
   void Add(const Event& event);  // one more on the way
 };
@@ -47,8 +49,12 @@ class OrbitSource {
   // The pair at the start of that orbit.
   virtual PairState Start(uint64_t orbit) = 0;
   // A collision of that orbit. kGoOn: ball and piston exchange components and the orbit goes on;
-  // not after an escape.
+  // not after an escape, nor when its time limit passed.
   virtual AfterContact Meet(uint64_t orbit, const Contact& contact) = 0;
+  // Time without a collision after which an orbit is of no more use: its source is told some time
+  // after that. What keeps slow pistons, slow balls, and those at rest for ever, from being waited
+  // for.
+  virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
 };
 
 // Runs orbits 0 ... orbits - 1 to their ends. False if `stop` came before that.

@@ -11,23 +11,27 @@ namespace {
 
 constexpr double kReferenceEventsPerBlock = 0x1p20;
 constexpr double kLaneEventsPerBlock = 0x1p25;
-constexpr double kShareWithATolerance = 0.125;
+constexpr double kShareOfAnOpenEnd = 0.125;
 constexpr uint64_t kMaxBlockSize = uint64_t{1} << 16;
 
-uint64_t SamplesAskedFor(const Target& target) {
-  if (target.tolerance) return kMaxSamples;
-  return static_cast<uint64_t>(
-      target.samples.value_or(target.collisions.value_or(kDefaultSamples)));
-}
+bool IsOpenEnded(const Target& target) { return target.tolerance || target.budget_seconds; }
 
 }  // namespace
 
-BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample) {
+uint64_t SamplesAskedFor(const Target& target, double collisions_per_sample) {
+  if (IsOpenEnded(target)) return kMaxSamples;
+  if (!target.collisions) return static_cast<uint64_t>(target.samples.value_or(kDefaultSamples));
+  return static_cast<uint64_t>(
+      std::ceil(static_cast<double>(*target.collisions) / collisions_per_sample));
+}
+
+BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample,
+                     double collisions_per_sample) {
   const Target& target = spec.target;
-  const uint64_t samples = SamplesAskedFor(target);
+  const uint64_t samples = SamplesAskedFor(target, collisions_per_sample);
   const double events =
       (EngineFor(spec) == Engine::kReference ? kReferenceEventsPerBlock : kLaneEventsPerBlock) *
-      (target.tolerance ? kShareWithATolerance : 1);
+      (IsOpenEnded(target) ? kShareOfAnOpenEnd : 1);
   const double affordable =
       std::clamp(events / events_per_sample, 1.0, static_cast<double>(kMaxBlockSize));
   const uint64_t divisible = std::max<uint64_t>(samples / kMinBlocks, 1);

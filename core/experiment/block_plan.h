@@ -2,10 +2,10 @@
 //
 // The block size follows from the engine, the target and the predicted cost of a sample alone,
 // never from threads or machines: some 2^20 events a block for the reference, 2^25 in lanes, so
-// that a block takes about 0.05 s, and an eighth of that with a tolerance, which is looked at after
-// each block from the 16th on. It is a power of two, so that a rounding difference in the
-// prediction does not change the plan, and small enough that a point has at least kMinBlocks of
-// them to share out.
+// that a block takes about 0.05 s, and an eighth of that with a tolerance or a budget: a tolerance
+// is looked at after each block from the 16th on. It is a power of two, so that a rounding
+// difference in the prediction does not change the plan, and small enough that a point has at least
+// kMinBlocks of them to share out.
 #ifndef BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 #define BALLPISTON_CORE_EXPERIMENT_BLOCK_PLAN_H_
 
@@ -19,7 +19,8 @@ namespace ballpiston {
 inline constexpr uint64_t kMinBlocks = 16;
 
 struct BlockPlan {
-  uint64_t samples = 0;     // in all; with a tolerance the most that will be computed
+  // In all; with a tolerance or a budget the most that will be computed. 0: the answer needs none.
+  uint64_t samples = 0;
   uint64_t block_size = 1;  // samples in each block but the last
   std::optional<double> tolerance = {};
   double events_per_sample = 1;  // predicted cost
@@ -29,8 +30,12 @@ struct BlockPlan {
   uint64_t SamplesIn(uint64_t block) const;
 };
 
+// That a target asks for at a point, where a sample takes so many collisions.
+uint64_t SamplesAskedFor(const Target& target, double collisions_per_sample = 1);
+
 // events_per_sample > 0, finite.
-BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample);
+BlockPlan PlanBlocks(const EnsembleSpec& spec, double events_per_sample,
+                     double collisions_per_sample = 1);
 
 }  // namespace ballpiston
 

@@ -1,5 +1,6 @@
 #include "core/experiment/conditional_mean_free_time.h"
 
+#include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
 
 namespace ballpiston {
@@ -12,7 +13,8 @@ constexpr double kInvariantExponent = 1;
 ConditionalMeanFreeTimeExperiment::ConditionalMeanFreeTimeExperiment(const EnsembleSpec& spec,
                                                                      const PointParameters& point,
                                                                      const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerReturn(geometry, *point.epsilon))),
+    : PointExperiment(spec, point,
+                      PlanBlocks(spec, HitsPerReturn(geometry, *point.epsilon).Events())),
       geometry_(geometry),
       return_time_(geometry, *point.epsilon) {}
 

@@ -12,6 +12,10 @@ absl::string_view Name(Experiment experiment) {
       return "conditional-mean-free-time";
     case Experiment::kFirstHit:
       return "first-hit";
+    case Experiment::kEnergyRelaxation:
+      return "energy-relaxation";
+    case Experiment::kMarkovProperty:
+      return "markov-property";
   }
   return "unknown";
 }
@@ -22,6 +26,8 @@ absl::string_view Name(Model model) {
       return "auto";
     case Model::kClosedForm:
       return "closed_form";
+    case Model::kSpectrum:
+      return "spectrum";
     case Model::kMarkov:
       return "markov";
     case Model::kBilliard:

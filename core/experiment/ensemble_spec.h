@@ -15,8 +15,17 @@
 
 namespace ballpiston {
 
-enum class Experiment { kUnspecified, kEquilibrium, kConditionalMeanFreeTime, kFirstHit };
-enum class Model { kAuto, kClosedForm, kMarkov, kBilliard, kBilliardReference };
+// The numbers decide the random stream of a point: fixed for ever.
+enum class Experiment {
+  kUnspecified = 0,
+  kEquilibrium = 1,
+  kConditionalMeanFreeTime = 2,
+  kFirstHit = 3,
+  kEnergyRelaxation = 4,
+  kMarkovProperty = 5,
+};
+// kMarkov: the jump process of the limit delta -> 0, sampled. kSpectrum: by its generator.
+enum class Model { kAuto, kClosedForm, kSpectrum, kMarkov, kBilliard, kBilliardReference };
 enum class Precision { kDouble, kSingle };
 
 // Names as users write them, e.g. "first-hit", "billiard_reference".
@@ -39,9 +48,12 @@ inline constexpr int64_t kMaxSamples = 1'000'000'000'000;
 inline constexpr int64_t kMaxPoints = 100'000;
 inline constexpr double kMaxExponent = 1000;
 
-// At most one member is set; none asks for kDefaultSamples samples or collisions.
+inline constexpr double kMaxBudgetSeconds = 1e6;
+
+// At most one member is set, but for a budget, which may stand beside a tolerance; none asks for
+// kDefaultSamples samples or collisions.
 struct Target {
-  std::optional<int64_t> samples = {};     // first hits a point
+  std::optional<int64_t> samples = {};     // first hits, or orbits, a point
   std::optional<int64_t> collisions = {};  // ball-piston collisions a point
   std::optional<double> tolerance = {};    // relative standard error of the first estimate
   std::optional<double> budget_seconds = {};
@@ -54,6 +66,7 @@ struct EnsembleSpec {
   uint64_t seed = 0;
   Model model = Model::kAuto;
   Precision precision = Precision::kDouble;
+  bool verify = false;  // AUTO takes no closed form
 };
 
 struct FieldViolation {

@@ -5,15 +5,11 @@
 
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
+#include "core/experiment/predicted_hits.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
-
-double EventsPerCollision(const PairGeometry& geometry) {
-  const MeanFreeTimes tau = MeanFreeTimesOf(geometry);
-  return 1 + tau.ball_piston / tau.ball_wall + tau.ball_piston / tau.piston_wall;
-}
 
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
                       double exact) {
@@ -94,7 +90,7 @@ class EquilibriumOrbits : public OrbitSource {
 
 EquilibriumExperiment::EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point,
                                              const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(geometry))),
+    : PointExperiment(spec, point, PlanBlocks(spec, HitsPerCollision(geometry).Events())),
       geometry_(geometry) {}
 
 std::optional<BlockResult> EquilibriumExperiment::RunBlock(uint64_t block,

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/experiment/ingoing_cells.h"
+#include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
 
 namespace ballpiston {
@@ -36,7 +37,8 @@ Estimate Mean(std::string name, const Moments& moments) {
 
 FirstHitExperiment::FirstHitExperiment(const EnsembleSpec& spec, const PointParameters& point,
                                        const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerReturn(geometry, *point.epsilon))),
+    : PointExperiment(spec, point,
+                      PlanBlocks(spec, HitsPerReturn(geometry, *point.epsilon).Events())),
       geometry_(geometry),
       equilibrium_(*point.epsilon),
       return_time_(geometry, *point.epsilon),

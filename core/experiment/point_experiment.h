@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 
 #include "core/billiard/orbits.h"
 #include "core/experiment/block_plan.h"
@@ -24,21 +25,36 @@
 
 namespace ballpiston {
 
+// Which model answers, and what is known of it.
+struct Answer {
+  Model model = Model::kBilliard;  // not kAuto
+  std::string reason = {};         // why that one, where the service chose
+  // How far its first estimate may be from the billiard's, relatively and sampling apart. Empty
+  // where that is not known.
+  std::optional<double> model_error = 0.0;
+};
+
 class PointExperiment {
  public:
   virtual ~PointExperiment() = default;
 
-  // The spec must have no violations; index < PointCount(spec).
+  // The spec must have no violations; index < PointCount(spec). With the spec's own model; AUTO is
+  // the billiard, which answers everything.
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
+  // With the model of `answer`, which has to be one that the experiment can be answered by.
+  static std::unique_ptr<const PointExperiment> Create(EnsembleSpec spec, size_t index,
+                                                       Answer answer);
 
+  // A plan without blocks: the answer is there without running one, and `merged` is empty.
   const BlockPlan& plan() const { return plan_; }
   const PointParameters& parameters() const { return parameters_; }
-  Model model() const;  // the one that answers
+  const Answer& answer() const { return answer_; }
 
   // Empty only if `stop` was requested. A block takes some 0.05 s (one sample at least).
   virtual std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const = 0;
 
-  // What a tolerance refers to. Requires at least one merged block, as Summarize does.
+  // What a tolerance refers to. Requires at least one merged block, if there are any,
+  // as Summarize does.
   virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;
 
   // Everything that was measured; its first estimate is FirstEstimate.
@@ -56,6 +72,7 @@ class PointExperiment {
 
  private:
   PointParameters parameters_;
+  Answer answer_;
   Engine engine_;
   BlockPlan plan_;
   RandomStream random_;

@@ -18,6 +18,9 @@ struct Estimate {
   double value = 0;
   std::optional<double> standard_error = {};  // empty with too few samples
   std::optional<double> exact = {};           // the closed form, where there is one
+  std::optional<double> limit = {};           // its value as delta -> 0, where that is known
+  // Of a distance between laws, which is never below 0: its mean if the two were the same.
+  std::optional<double> noise_floor = {};
 
   // (value - exact)/standard_error; empty unless both exist and the error is not 0.
   std::optional<double> ZScore() const;
@@ -31,11 +34,25 @@ struct SignedHistogram {
   std::vector<double> expected_probabilities;  // of each bin; over both signs they sum to 1
 };
 
+// A function of time.
+struct CurvePoint {
+  double time = 0;
+  double value = 0;
+  std::optional<double> standard_error = {};
+  std::optional<double> limit = {};  // its value as delta -> 0
+};
+
+struct Curve {
+  std::string name;
+  std::vector<CurvePoint> points = {};
+};
+
 struct PointSummary {
   uint64_t samples = 0;
   std::vector<Estimate> estimates = {};  // the first one is what a tolerance refers to
   std::optional<KlDivergence> kl_divergence = {};
   std::vector<SignedHistogram> histograms = {};
+  std::vector<Curve> curves = {};
   Health health = {};
 };
 

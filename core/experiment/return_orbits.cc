@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/closed_form/conditional_rate.h"
-#include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_state.h"
 #include "core/sampling/collision_surface.h"
 
@@ -48,15 +45,6 @@ bool Healthy(const Return& sample, Health& health) {
   }
   health.max_energy_error = std::max(health.max_energy_error, sample.energy_error);
   return true;
-}
-
-double EventsPerReturn(const PairGeometry& geometry, double epsilon) {
-  // Rate of hits on a wall of area |dG| at fixed speed: speed/pi |dG|/|G| for the ball, whose
-  // direction is uniform in its plane, and speed/2 |dG|/|G| for the piston.
-  const PairMeasures measures = Measures(geometry);
-  const double ball = std::sqrt(1 - 2 * epsilon) * measures.area_ball_wall * std::numbers::inv_pi;
-  const double piston = std::sqrt(2 * epsilon) * measures.area_piston_wall / 2;
-  return 1 + ConditionalMeanFreeTime(geometry, epsilon) * (ball + piston) / measures.volume;
 }
 
 }  // namespace ballpiston

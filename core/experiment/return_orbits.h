@@ -54,9 +54,6 @@ class ReturnOrbits : public OrbitSource {
 // Adds the sample's health to the block's; true if it may be counted.
 bool Healthy(const Return& sample, Health& health);
 
-// Predicted events of one return: mean return time times the rates of wall hits at these energies.
-double EventsPerReturn(const PairGeometry& geometry, double epsilon);
-
 }  // namespace ballpiston
 
 #endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_

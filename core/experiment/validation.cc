@@ -5,34 +5,45 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "core/closed_form/pair_measures.h"
+#include "core/experiment/answering_models.h"
 #include "core/experiment/ensemble_spec.h"
 #include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/markov/relaxation_spectrum.h"
 
 namespace ballpiston {
 namespace {
 
 using Found = std::vector<FieldViolation>;
 
-struct Needs {
-  bool epsilon;
-  bool exponent;
-};
+enum class Use { kNone, kOptional, kNeeded };
 
-Needs GridOf(Experiment experiment) {
-  return {.epsilon = experiment != Experiment::kEquilibrium,
-          .exponent = experiment == Experiment::kFirstHit};
+Use UseOfEpsilon(Experiment experiment) {
+  switch (experiment) {
+    case Experiment::kConditionalMeanFreeTime:
+    case Experiment::kFirstHit:
+      return Use::kNeeded;
+    case Experiment::kEnergyRelaxation:
+      return Use::kOptional;
+    default:
+      return Use::kNone;
+  }
+}
+
+Use UseOfExponent(Experiment experiment) {
+  return experiment == Experiment::kFirstHit ? Use::kNeeded : Use::kNone;
 }
 
 std::string At(absl::string_view list, size_t i) { return absl::StrFormat("grid.%s[%d]", list, i); }
 
-void CheckUse(Experiment experiment, absl::string_view list, bool used, size_t size, Found* found) {
-  if (used && size == 0) {
+void CheckUse(Experiment experiment, absl::string_view list, Use use, size_t size, Found* found) {
+  if (use == Use::kNeeded && size == 0) {
     found->push_back({absl::StrCat("grid.", list),
                       absl::StrCat("is empty; ", Name(experiment), " needs at least one value")});
   }
-  if (!used && size != 0) {
+  if (use == Use::kNone && size != 0) {
     found->push_back({absl::StrCat("grid.", list),
                       absl::StrCat("has ", size, " values; ", Name(experiment), " takes none")});
   }
@@ -91,12 +102,13 @@ void CheckPointCount(const Grid& grid, Found* found) {
 }
 
 void CheckGrid(const EnsembleSpec& spec, Found* found) {
-  const Needs needs = GridOf(spec.experiment);
-  CheckUse(spec.experiment, "rho", true, spec.grid.rho.size(), found);
-  CheckUse(spec.experiment, "delta", true, spec.grid.delta.size(), found);
-  CheckUse(spec.experiment, "epsilon", needs.epsilon, spec.grid.epsilon.size(), found);
-  CheckUse(spec.experiment, "exponent", needs.exponent, spec.grid.exponent.size(), found);
-  CheckUse(spec.experiment, "cells", false, spec.grid.cells.size(), found);
+  CheckUse(spec.experiment, "rho", Use::kNeeded, spec.grid.rho.size(), found);
+  CheckUse(spec.experiment, "delta", Use::kNeeded, spec.grid.delta.size(), found);
+  CheckUse(spec.experiment, "epsilon", UseOfEpsilon(spec.experiment), spec.grid.epsilon.size(),
+           found);
+  CheckUse(spec.experiment, "exponent", UseOfExponent(spec.experiment), spec.grid.exponent.size(),
+           found);
+  CheckUse(spec.experiment, "cells", Use::kNone, spec.grid.cells.size(), found);
   CheckPointCount(spec.grid, found);
 }
 
@@ -114,55 +126,111 @@ void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Fo
 }
 
 void CheckTargetKind(const EnsembleSpec& spec, Found* found) {
-  const bool counts_collisions = spec.experiment == Experiment::kEquilibrium;
+  const Experiment experiment = spec.experiment;
+  const bool counts_collisions =
+      experiment == Experiment::kEquilibrium || experiment == Experiment::kMarkovProperty;
   if (counts_collisions && spec.target.samples) {
-    found->push_back({"target.samples", "equilibrium counts collisions; use target.collisions"});
+    found->push_back({"target.samples",
+                      absl::StrCat(Name(experiment), " counts collisions; use target.collisions")});
   }
-  if (!counts_collisions && spec.target.collisions) {
+  if (!counts_collisions && experiment != Experiment::kEnergyRelaxation && spec.target.collisions) {
     found->push_back({"target.collisions",
-                      absl::StrCat(Name(spec.experiment), " counts samples; use target.samples")});
+                      absl::StrCat(Name(experiment), " counts samples; use target.samples")});
   }
 }
 
-bool HasRestingPiston(const EnsembleSpec& spec) {
-  return std::find(spec.grid.epsilon.begin(), spec.grid.epsilon.end(), 0.0) !=
-         spec.grid.epsilon.end();
+// Returns whose mean has no error to reach.
+bool StartsFromRestingPiston(const EnsembleSpec& spec) {
+  return UseOfEpsilon(spec.experiment) == Use::kNeeded &&
+         std::find(spec.grid.epsilon.begin(), spec.grid.epsilon.end(), 0.0) !=
+             spec.grid.epsilon.end();
 }
 
-void CheckTarget(const EnsembleSpec& spec, Found* found) {
-  const Target& target = spec.target;
-  const int kinds = target.samples.has_value() + target.collisions.has_value() +
-                    target.tolerance.has_value() + target.budget_seconds.has_value();
-  if (kinds > 1) found->push_back({"target", "more than one kind is set; permitted: one"});
-  CheckTargetKind(spec, found);
-  CheckCount("samples", target.samples, found);
-  CheckCount("collisions", target.collisions, found);
-  if (target.tolerance && !(*target.tolerance > 0 && *target.tolerance < 1)) {
-    found->push_back({"target.tolerance", absl::StrCat("is ", NumberText(*target.tolerance),
+// Whether the point is answered without sampling.
+bool NeedsNoSamples(const EnsembleSpec& spec) {
+  return spec.model == Model::kClosedForm ||
+         (spec.model == Model::kAuto && !spec.verify && HasClosedForm(spec.experiment));
+}
+
+void CheckTolerance(const EnsembleSpec& spec, Found* found) {
+  if (!spec.target.tolerance) return;
+  if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
+    found->push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
                                                        "; permitted: 0 < tolerance < 1")});
   }
-  if (target.tolerance && HasRestingPiston(spec)) {
+  if (StartsFromRestingPiston(spec) && !NeedsNoSamples(spec)) {
     found->push_back({"target.tolerance",
                       "cannot be reached at epsilon = 0, where the return time has no variance; "
                       "permitted: samples"});
   }
-  if (target.budget_seconds) {
-    found->push_back({"target.budget",
-                      "not offered by this version; permitted: samples, collisions, tolerance"});
+  if (spec.experiment == Experiment::kMarkovProperty) {
+    found->push_back({"target.tolerance",
+                      "is relative, and markov-property measures what tends to 0; permitted: "
+                      "collisions, budget"});
   }
 }
 
-void CheckModel(const EnsembleSpec& spec, Found* found) {
-  if (spec.model == Model::kClosedForm || spec.model == Model::kMarkov) {
+void CheckBudget(const Target& target, Found* found) {
+  if (!target.budget_seconds) return;
+  if (!(*target.budget_seconds > 0 && *target.budget_seconds <= kMaxBudgetSeconds)) {
+    found->push_back({"target.budget", absl::StrCat("is ", NumberText(*target.budget_seconds),
+                                                    " s; permitted: 0 < budget <= ",
+                                                    NumberText(kMaxBudgetSeconds), " s")});
+  }
+  if (target.samples || target.collisions) {
+    found->push_back({"target.budget",
+                      "stands beside a number of samples or collisions; "
+                      "permitted: alone, or with a tolerance"});
+  }
+}
+
+void CheckTarget(const EnsembleSpec& spec, Found* found) {
+  const Target& target = spec.target;
+  const int kinds =
+      target.samples.has_value() + target.collisions.has_value() + target.tolerance.has_value();
+  if (kinds > 1) found->push_back({"target", "more than one kind is set; permitted: one"});
+  CheckTargetKind(spec, found);
+  CheckCount("samples", target.samples, found);
+  CheckCount("collisions", target.collisions, found);
+  CheckTolerance(spec, found);
+  CheckBudget(target, found);
+}
+
+// The energy it relaxes to has nowhere to relax from.
+void CheckInitialEnergy(const EnsembleSpec& spec, Found* found) {
+  constexpr double kTooNear = 1e-6;
+  if (spec.experiment != Experiment::kEnergyRelaxation) return;
+  for (size_t i = 0; i < spec.grid.epsilon.size(); ++i) {
+    if (!(std::fabs(spec.grid.epsilon[i] - kMeanPistonEnergy) < kTooNear)) continue;
     found->push_back(
-        {"model",
-         absl::StrCat("is ", Name(spec.model), ", which cannot answer ", Name(spec.experiment),
-                      " in this version; permitted: auto, billiard, billiard_reference")});
+        {At("epsilon", i), absl::StrCat("is ", NumberText(spec.grid.epsilon[i]),
+                                        ", the mean energy 1/6 itself, so there is no decay; "
+                                        "permitted: [0, 1/2] without 1/6 +- 1e-6")});
+  }
+}
+
+std::string AnsweringModels(Experiment experiment) {
+  std::vector<absl::string_view> names;
+  for (const Model model : kAllModels) {
+    if (Answers(model, experiment)) names.push_back(Name(model));
+  }
+  return absl::StrJoin(names, ", ");
+}
+
+void CheckModel(const EnsembleSpec& spec, Found* found) {
+  if (!Answers(spec.model, spec.experiment)) {
+    found->push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
+                                            Name(spec.experiment),
+                                            "; permitted: ", AnsweringModels(spec.experiment))});
   }
   if (spec.precision == Precision::kSingle && spec.model != Model::kAuto &&
       spec.model != Model::kBilliard) {
     found->push_back({"precision", absl::StrCat("is single; permitted with model ",
                                                 Name(spec.model), ": double")});
+  }
+  if (spec.verify && spec.model != Model::kAuto) {
+    found->push_back({"verify", absl::StrCat("is set, and model ", Name(spec.model),
+                                             " is given; permitted with model auto")});
   }
 }
 
@@ -172,11 +240,13 @@ std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
   Found found;
   if (spec.experiment == Experiment::kUnspecified) {
     found.push_back({"experiment",
-                     "is missing; permitted: equilibrium, conditional-mean-free-time, first-hit"});
+                     "is missing; permitted: equilibrium, conditional-mean-free-time, first-hit, "
+                     "energy-relaxation, markov-property"});
   } else {
     CheckGrid(spec, &found);
     CheckTarget(spec, &found);
     CheckModel(spec, &found);
+    CheckInitialEnergy(spec, &found);
   }
   CheckValues(spec.grid, &found);
   return found;

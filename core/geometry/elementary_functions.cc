@@ -107,7 +107,7 @@ Split Logarithm(double x) {
   return Sum(high.high, whole.low + high.low + (low + series));
 }
 
-// exp(x.high + x.low), x.high <= 0.
+// exp(x.high + x.low), x.high <= 700.
 double Exponential(const Split& x) {
   if (x.high < kLeastExponent) return 0;
   const double k = std::floor(x.high * kOneOverLog2 + 0.5);
@@ -147,6 +147,13 @@ double Atan2(double y, double x) {
 double Power(double base, double exponent) {
   const Split log = Logarithm(base), product = Product(exponent, log.high);
   return Exponential(Sum(product.high, product.low + exponent * log.low));
+}
+
+double Exp(double x) { return Exponential({x, 0}); }
+
+double Log(double x) {
+  const Split log = Logarithm(x);
+  return log.high + log.low;
 }
 
 }  // namespace ballpiston

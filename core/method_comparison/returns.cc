@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/closed_form/conditional_rate.h"
+#include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
 #include "core/method_comparison/method_orbits.h"
 #include "core/method_comparison/processor_time.h"
@@ -86,7 +87,7 @@ double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geomet
                         uint64_t samples) {
   const double events = variant.method == Method::kFixedStep
                             ? ConditionalMeanFreeTime(geometry, epsilon) / variant.time_step
-                            : EventsPerReturn(geometry, epsilon);
+                            : HitsPerReturn(geometry, epsilon).Events();
   return static_cast<double>(samples) * events * PredictedSecondsPerEvent(variant.method);
 }
 

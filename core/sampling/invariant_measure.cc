@@ -17,24 +17,45 @@ PairState WithVelocity(const Eigen::Vector2d& position, double piston, double v1
   return state;
 }
 
-}  // namespace
+struct Positions {
+  Eigen::Vector2d ball;
+  double piston;
+};
 
-PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random) {
+// Uniform on Gamma.
+Positions UniformPositions(const PairGeometry& geometry, CounterRandom& random) {
   const double half_width = geometry.tip();
   const double stroke = geometry.piston_right() - geometry.piston_left();
   for (;;) {
     const Eigen::Vector2d ball = {(2 * random.Uniform() - 1) * half_width,
                                   (2 * random.Uniform() - 1) * half_width};
     const double piston = geometry.piston_left() + stroke * random.Uniform();
-    if (!InsideCell(geometry, ball) || ball.x() >= piston) continue;
-    // Archimedes: a coordinate of a uniform point of the sphere is uniform.
-    const double v3 = 2 * random.Uniform() - 1;
-    return {.position = ball,
-            .direction = UniformDirection(random),
-            .ball_speed = std::sqrt((1 - v3) * (1 + v3)),
-            .piston = piston,
-            .piston_velocity = v3};
+    if (InsideCell(geometry, ball) && ball.x() < piston) return {ball, piston};
   }
+}
+
+}  // namespace
+
+PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random) {
+  const Positions positions = UniformPositions(geometry, random);
+  // Archimedes: a coordinate of a uniform point of the sphere is uniform.
+  const double v3 = 2 * random.Uniform() - 1;
+  return {.position = positions.ball,
+          .direction = UniformDirection(random),
+          .ball_speed = std::sqrt((1 - v3) * (1 + v3)),
+          .piston = positions.piston,
+          .piston_velocity = v3};
+}
+
+PairState DrawFromFlowMeasureAt(const PairGeometry& geometry, double epsilon,
+                                CounterRandom& random) {
+  const Positions positions = UniformPositions(geometry, random);
+  const double speed = std::sqrt(2 * epsilon);
+  return {.position = positions.ball,
+          .direction = UniformDirection(random),
+          .ball_speed = std::sqrt(1 - 2 * epsilon),
+          .piston = positions.piston,
+          .piston_velocity = random.Uniform() < 0.5 ? -speed : speed};
 }
 
 PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random) {

@@ -13,6 +13,10 @@ namespace ballpiston {
 // From mu: anywhere in the flow's phase space.
 PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random);
 
+// From mu at a piston energy in [0, 1/2]: anywhere, in any direction, with these speeds.
+PairState DrawFromFlowMeasureAt(const PairGeometry& geometry, double epsilon,
+                                CounterRandom& random);
+
 // From nu_bp: just after a ball-piston collision.
 PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random);
 

@@ -111,7 +111,9 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"cancel", "ABC"},
                                                {"delete", std::string(64, 'a')},
                                                {"plan"},
-                                               {"plan", "equilibrium", "--rho", "0.53"},
+                                               {"plan", "brownian"},
+                                               {"plan", "equilibrium", "--progress", "bar"},
+                                               {"plan", "equilibrium", "--format", "xml"},
                                                {"trace", "--events", "5"},
                                                {"list", "--server", "nowhere"},
                                                {"analytic", "--rho", "0.53"},
@@ -168,16 +170,15 @@ TEST_F(CommandLineTest, WhatIsNotAJobsNameIsShownEscaped) {
 }
 
 TEST_F(CommandLineTest, VerbsOfLaterVersionsAreKnownAsSuch) {
-  for (const auto& words : {std::vector<std::string>{"plan", "equilibrium", "--tolerance", "0.1"},
-                            {"plan", "--help"},
-                            {"plan", "run", "list"}}) {
+  for (const auto& words : {std::vector<std::string>{"trace", "--rho", "0.53", "--events", "9"},
+                            {"trace", "--help"},
+                            {"trace", "run", "list"}}) {
     const Outcome outcome = Ballpiston(words);
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.err,
-              "ballpiston: plan is not offered by this version; it offers analytic, run, submit, "
-              "watch, result, list, cancel, delete, figure\n");
+              "ballpiston: trace is not offered by this version; it offers analytic, plan, run, "
+              "submit, watch, result, list, cancel, delete, figure\n");
   }
-  EXPECT_THAT(Ballpiston({"trace"}).err, HasSubstr("trace is not offered by this version"));
 }
 
 // A server that answers with bytes that are no text; Protocol Buffers would log it.
@@ -244,7 +245,7 @@ TEST_F(CommandLineTest, RunPrintsTheResult) {
   server_.Start();
   const Outcome outcome = WithServer({"run", "first-hit", "--format", "csv"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time,1.5,,,\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time,1.5,,,,,,\n"));
 }
 
 TEST_F(CommandLineTest, TablesAreAskedForWithoutHistograms) {
@@ -269,14 +270,26 @@ TEST_F(CommandLineTest, ResultOfAnActiveJobSaysSo) {
 
 TEST_F(CommandLineTest, AFailedJobExitsWithFourAndItsReason) {
   job().set_state(v1::EnsembleJob::FAILED);
-  job().mutable_error()->set_message("the disk is full");
+  job().mutable_error()->set_message("tolerance not reached within the budget: point 0");
   server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
   server_.Start();
   for (const auto& words :
        {std::vector<std::string>{"run", "first-hit"}, {"watch", "abc"}, {"result", "abc"}}) {
     const Outcome outcome = WithServer(words);
     EXPECT_EQ(outcome.code, 4);
-    EXPECT_THAT(outcome.err, HasSubstr("ensembleJobs/abc failed: the disk is full\n"));
+    EXPECT_THAT(outcome.err, HasSubstr("ensembleJobs/abc failed: tolerance not reached within the "
+                                       "budget: point 0\n"));
+  }
+}
+
+TEST_F(CommandLineTest, WhatAFailedJobFinishedIsPrinted) {
+  job().set_state(v1::EnsembleJob::FAILED);
+  server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
+  server_.Start();
+  for (const auto& words : {std::vector<std::string>{"run", "first-hit"}, {"result", "abc"}}) {
+    const Outcome outcome = WithServer(words);
+    EXPECT_EQ(outcome.code, 4);
+    EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time"));
   }
 }
 
@@ -302,6 +315,39 @@ TEST_F(CommandLineTest, EscapedOrbitsAreNotPassedOverInSilence) {
   server_.ensemble.points[0].mutable_health()->set_escapes(3);
   server_.Start();
   EXPECT_THAT(WithServer({"result", "abc"}).err, HasSubstr("point 0: 3 orbits left the cell"));
+}
+
+TEST_F(CommandLineTest, PlanPrintsTheLadderAndMakesNoJob) {
+  v1::PointPlan* point = server_.ensemble.plan.add_points();
+  point->set_model(v1::EnsembleSpec::SPECTRUM);
+  point->add_models()->set_model(v1::EnsembleSpec::SPECTRUM);
+  server_.Start();
+  const Outcome outcome = WithServer({"plan", "energy-relaxation", "--rho", "0.53", "--tolerance",
+                                      "1e-3", "--budget", "10", "--verify", "--format", "csv"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("\n0,0,,,spectrum,true,false,,,,,\n"));
+  EXPECT_EQ(outcome.err, "");
+  const auto asked = server_.ensemble.Asked();
+  EXPECT_TRUE(asked.create.empty());
+  ASSERT_EQ(asked.plan.size(), 1u);
+  const v1::EnsembleSpec& spec = asked.plan[0].spec();
+  EXPECT_EQ(spec.experiment(), v1::EnsembleSpec::ENERGY_RELAXATION);
+  EXPECT_EQ(spec.target().tolerance(), 1e-3);
+  EXPECT_EQ(spec.target().budget().seconds(), 10);
+  EXPECT_TRUE(spec.verify());
+}
+
+TEST_F(CommandLineTest, APlanForWhatIsNotValidExitsWithTwo) {
+  server_.ensemble.plan_end = InvalidSpec("spec.target.tolerance", "-1 is not in (0, 1)");
+  server_.Start();
+  const Outcome outcome = WithServer({"plan", "equilibrium", "--tolerance", "-1"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "ballpiston: spec.target.tolerance: -1 is not in (0, 1) (INVALID_SPEC)\n");
+}
+
+TEST_F(CommandLineTest, APlanWithoutAServerExitsWithThree) {
+  EXPECT_EQ(WithServer({"plan", "equilibrium"}).code, 3);
 }
 
 TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {

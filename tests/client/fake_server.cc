@@ -81,6 +81,15 @@ grpc::Status FakeEnsembleService::WatchEnsembleJob(
   return script.end;
 }
 
+grpc::Status FakeEnsembleService::PlanEnsembleJob(grpc::ServerContext*,
+                                                  const v1::PlanEnsembleJobRequest* request,
+                                                  v1::PlanEnsembleJobResponse* response) {
+  const std::lock_guard lock(mutex_);
+  asked_.plan.push_back(*request);
+  *response = plan;
+  return plan_end;
+}
+
 grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
                                               const v1::ListResultsRequest* request,
                                               v1::ListResultsResponse* page) {
@@ -125,12 +134,32 @@ void FakeServer::Start() {
 
 std::shared_ptr<grpc::Channel> FakeServer::Channel() const { return *OpenChannel(Address()); }
 
-grpc::Status JobNotFound(const std::string& name) {
+namespace {
+
+google::rpc::Status WithReason(const std::string& reason) {
   google::rpc::ErrorInfo info;
-  info.set_reason("JOB_NOT_FOUND");
+  info.set_reason(reason);
   info.set_domain("ballpiston");
   google::rpc::Status details;
   details.add_details()->PackFrom(info);
+  return details;
+}
+
+}  // namespace
+
+grpc::Status InvalidSpec(const std::string& field, const std::string& description) {
+  google::rpc::BadRequest request;
+  auto* violation = request.add_field_violations();
+  violation->set_field(field);
+  violation->set_description(description);
+  google::rpc::Status details = WithReason("INVALID_SPEC");
+  details.add_details()->PackFrom(request);
+  return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "the specification is not valid",
+                      details.SerializeAsString());
+}
+
+grpc::Status JobNotFound(const std::string& name) {
+  const google::rpc::Status details = WithReason("JOB_NOT_FOUND");
   return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
                       details.SerializeAsString());
 }

@@ -29,6 +29,8 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<WatchScript> watches;  // the last one is played again and again
   std::vector<v1::EnsembleJob> jobs;
   std::vector<v1::PointResult> points;
+  v1::PlanEnsembleJobResponse plan;
+  grpc::Status plan_end;
   int unavailable_creates = 0;  // so many attempts fail first
   int page_size = 2;            // whatever was asked for
 
@@ -37,6 +39,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     std::vector<v1::WatchEnsembleJobRequest> watch;
     std::vector<v1::CreateEnsembleJobRequest> create;
     std::vector<v1::CancelEnsembleJobRequest> cancel;
+    std::vector<v1::PlanEnsembleJobRequest> plan;
     std::vector<v1::ListResultsRequest> results;
   };
   Requests Asked() const;
@@ -53,6 +56,8 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                  google::protobuf::Empty*) override;
   grpc::Status WatchEnsembleJob(grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,
                                 grpc::ServerWriter<v1::WatchEnsembleJobResponse>* writer) override;
+  grpc::Status PlanEnsembleJob(grpc::ServerContext*, const v1::PlanEnsembleJobRequest* request,
+                               v1::PlanEnsembleJobResponse* response) override;
   grpc::Status ListResults(grpc::ServerContext*, const v1::ListResultsRequest* request,
                            v1::ListResultsResponse* page) override;
 
@@ -109,6 +114,9 @@ class FakeServer {
   std::string folder_;
   std::unique_ptr<grpc::Server> server_;
 };
+
+// INVALID_ARGUMENT with the details a server attaches: one violation.
+grpc::Status InvalidSpec(const std::string& field, const std::string& description);
 
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);

@@ -41,6 +41,12 @@ TEST(MeanFreeTimeFigure, AsksForThePapersSweep) {
   EXPECT_EQ(equilibrium.target().collisions(), 100'000);
 }
 
+// Left to choose, the service would answer with the closed forms that the figure is to test.
+TEST(MeanFreeTimeFigure, AsksForTheBilliardByName) {
+  EXPECT_EQ(ConditionalSpec({}).model(), v1::EnsembleSpec::BILLIARD);
+  EXPECT_EQ(EquilibriumSpec({}).model(), v1::EnsembleSpec::BILLIARD);
+}
+
 TEST(MeanFreeTimeFigure, TheCurveStaysWithinTheBoundOnDelta) {
   const MeanFreeTimeQuestion question;
   const v1::EvaluatePairsRequest request = CurveRequest(question, 0.3255);

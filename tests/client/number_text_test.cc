@@ -55,6 +55,34 @@ TEST(Measured, WithoutAnErrorSixDigits) {
   EXPECT_EQ(Measured(1.0 / 3, 0.0).error, "0");
 }
 
+TEST(TwoDigits, IsAnErrorAsItStandsBesideAValue) {
+  EXPECT_EQ(TwoDigits(0.1234), "0.12");
+  EXPECT_EQ(TwoDigits(123.4), "123");
+  EXPECT_EQ(TwoDigits(1.234e-5), "1.2e-05");
+  EXPECT_EQ(TwoDigits(0), "0");
+}
+
+TEST(DurationText, HasTheUnitThatSuits) {
+  EXPECT_EQ(DurationText(0), "0 s");
+  EXPECT_EQ(DurationText(1e-10), "0.1 ns");
+  EXPECT_EQ(DurationText(4.84e-9), "4.8 ns");
+  EXPECT_EQ(DurationText(12.3e-6), "12 µs");
+  EXPECT_EQ(DurationText(0.123), "123 ms");
+  EXPECT_EQ(DurationText(1.5), "1.5 s");
+  EXPECT_EQ(DurationText(192), "3.2 min");
+  EXPECT_EQ(DurationText(9000), "2.5 h");
+  EXPECT_EQ(DurationText(1e6), "12 d");
+  EXPECT_EQ(DurationText(1e9), "32 y");
+}
+
+// No 1000 µs, and no digit more than its neighbours have.
+TEST(DurationText, RoundsUpIntoTheNextUnit) {
+  EXPECT_EQ(DurationText(999.4e-6), "999 µs");
+  EXPECT_EQ(DurationText(999.6e-6), "1.0 ms");
+  EXPECT_EQ(DurationText(9.94), "9.9 s");
+  EXPECT_EQ(DurationText(9.96), "10 s");
+}
+
 TEST(ClockText, CountsMinutesThenHours) {
   EXPECT_EQ(ClockText(absl::ZeroDuration()), "0:00");
   EXPECT_EQ(ClockText(absl::Milliseconds(34200)), "0:35");

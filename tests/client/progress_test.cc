@@ -127,6 +127,17 @@ TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
   EXPECT_THAT(text, HasSubstr("\rsucceeded: 100 of 100 points, 2000 samples\x1b[K\n"));
 }
 
+// So that it can be laid beside what the plan said.
+TEST(ProgressBar, EndsWithTheWorkWhereTheServerTellsIt) {
+  std::ostringstream err;
+  const auto reporter = NewProgressReporter(ProgressStyle::kBar, err);
+  v1::EnsembleJob job = RunningJob();
+  job.set_work(192);
+  reporter->OnJob(job);
+  reporter->OnEnd();
+  EXPECT_THAT(err.str(), HasSubstr("0 samples, 3.2 min of one core\x1b[K\n"));
+}
+
 // The server sends the point that changed last first.
 TEST(ProgressBar, ShowsThePointThatChangedLast) {
   std::ostringstream err;

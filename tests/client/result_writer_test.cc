@@ -40,13 +40,30 @@ std::vector<v1::PointResult> Points() {
             estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
 }
 
-std::string Written(Format format) {
+std::string Written(Format format, const std::vector<v1::PointResult>& points = Points()) {
   std::ostringstream out;
   const auto writer = NewResultWriter(format, out);
   writer->Begin(Job());
-  for (const v1::PointResult& point : Points()) writer->Add(point);
+  for (const v1::PointResult& point : points) writer->Add(point);
   writer->End();
   return out.str();
+}
+
+// Two models, and all that an estimate can have.
+std::vector<v1::PointResult> PointsOfTheLadder() {
+  return {FromText<v1::PointResult>(R"(
+            index: 0 parameters { rho: 0.53 delta: 0.1 } model: BILLIARD samples: 1e6
+            estimates { name: "relaxation_time" value: 3.21098 standard_error: 0.0123
+                        model_error: 0 limit: 3.14159 }
+            reason: "the limit is off by 2.1e-02"
+            curves { name: "energy_autocorrelation" points { time: 0 value: 1 } })"),
+          FromText<v1::PointResult>(R"(
+            index: 1 parameters { rho: 0.53 delta: 0.0125 } model: MARKOV samples: 1e6
+            estimates { name: "relaxation_time" value: 3.14213 standard_error: 0.0123
+                        model_error: 0.00234 limit: 3.14159 }
+            estimates { name: "kernel_distance" value: 0.00213 standard_error: 0.00043
+                        noise_floor: 0.00198 }
+            reason: "the limit is off by 7.3e-04")")};
 }
 
 TEST(ResultTable, AlignsAndRounds) {
@@ -59,6 +76,19 @@ TEST(ResultTable, AlignsAndRounds) {
 0.53    0.2        0         1    10000  kl_divergence       0.005
 0.53    0.2        0         1    10000  kl_noise_floor     0.0025
 0.53    0.1     0.25         1    10000  mean_hit_time   1.000e-07  2.0e-09
+)");
+}
+
+TEST(ResultTable, HasColumnsForWhatTheLadderTells) {
+  EXPECT_EQ(
+      Written(Format::kTable, PointsOfTheLadder()),
+      R"(first-hit, model billiard, markov, seed 7, engine 1  (ensembleJobs/abc, succeeded, 2 of 2 points)
+ rho   delta  model     samples  estimate           value    error  exact  z  model_error  noise_floor  limit
+0.53     0.1  billiard  1000000  relaxation_time    3.211    0.012                      0               3.142
+0.53  0.0125  markov    1000000  relaxation_time    3.142    0.012                 0.0023               3.142
+0.53  0.0125  markov    1000000  kernel_distance  0.00213  0.00043                            0.00198
+billiard (rho 0.53, delta 0.1): the limit is off by 2.1e-02
+markov (rho 0.53, delta 0.0125): the limit is off by 7.3e-04
 )");
 }
 
@@ -76,23 +106,43 @@ TEST(ResultTable, WithoutPointsIsAHeading) {
 }
 
 TEST(ResultCsv, HasARowForEachPointAndEstimate) {
-  EXPECT_EQ(Written(Format::kCsv),
-            R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score
-0.53,0.2,0,1,billiard-reference,10000,mean_hit_time,21.63214,0.1234,21.62257,0.0775527
-0.53,0.2,0,1,billiard-reference,10000,mean_sigma,-0.25,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,,,
-0.53,0.1,0.25,1,billiard-reference,10000,mean_hit_time,1e-07,2e-09,,
+  EXPECT_EQ(
+      Written(Format::kCsv),
+      R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
+0.53,0.2,0,1,billiard-reference,10000,mean_hit_time,21.63214,0.1234,21.62257,0.0775527,,,
+0.53,0.2,0,1,billiard-reference,10000,mean_sigma,-0.25,,,,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,,,,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,,,,,,
+0.53,0.1,0.25,1,billiard-reference,10000,mean_hit_time,1e-07,2e-09,,,,,
 )");
+}
+
+TEST(ResultCsv, HasWhatTheLadderTellsInItsLastColumns) {
+  EXPECT_EQ(
+      Written(Format::kCsv, PointsOfTheLadder()),
+      R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
+0.53,0.1,,,billiard,1000000,relaxation_time,3.21098,0.0123,,,0,,3.14159
+0.53,0.0125,,,markov,1000000,relaxation_time,3.14213,0.0123,,,0.00234,,3.14159
+0.53,0.0125,,,markov,1000000,kernel_distance,0.00213,0.00043,,,,0.00198,
+)");
+}
+
+TEST(ResultJson, HasReasonsAndCurves) {
+  const std::string text = Written(Format::kJsonl, PointsOfTheLadder());
+  EXPECT_NE(text.find(R"("reason":"the limit is off by 2.1e-02","curves":[{"name":)"
+                      R"("energy_autocorrelation","points":[{"time":0,"value":1}]}])"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(R"("model_error":0,"limit":3.14159)"), std::string::npos) << text;
 }
 
 TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
   EXPECT_EQ(
       Written(Format::kJson),
-      R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED"},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1"},
+      R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0},
 "points": [
-{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12}},
-{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[]}
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[]},
+{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[]}
 ]}
 )");
 }
@@ -103,7 +153,8 @@ TEST(ResultJson, WithoutPointsIsStillADocument) {
   writer->Begin(v1::EnsembleJob());
   writer->End();
   EXPECT_EQ(out.str(),
-            "{\"job\": {\"name\":\"\",\"state\":\"STATE_UNSPECIFIED\",\"engine_version\":\"\"},\n"
+            "{\"job\": "
+            "{\"name\":\"\",\"state\":\"STATE_UNSPECIFIED\",\"engine_version\":\"\",\"work\":0},\n"
             "\"points\": [\n]}\n");
 }
 
@@ -112,6 +163,13 @@ TEST(ResultJsonl, HasAPointALine) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
   EXPECT_EQ(text.rfind("{\"index\":0,", 0), 0u);
   EXPECT_NE(text.find("\n{\"index\":1,"), std::string::npos);
+}
+
+TEST(ResultWriter, HistogramsAndCurvesAreFetchedForJsonAlone) {
+  EXPECT_EQ(ViewFor(Format::kJson), v1::ListResultsRequest::FULL);
+  EXPECT_EQ(ViewFor(Format::kJsonl), v1::ListResultsRequest::FULL);
+  EXPECT_EQ(ViewFor(Format::kTable), v1::ListResultsRequest::BASIC);
+  EXPECT_EQ(ViewFor(Format::kCsv), v1::ListResultsRequest::BASIC);
 }
 
 TEST(ResultWriter, SamePointsGiveTheSameBytes) {

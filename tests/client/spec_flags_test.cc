@@ -48,11 +48,13 @@ TEST(SpecFlags, EveryFlagReachesItsField) {
   flags.samples = "1e6";
   flags.seed = "18446744073709551615";
   flags.model = "billiard_reference";
+  flags.verify = true;
   flags.precision = "single";
   ExpectSpec(flags,
              "experiment: FIRST_HIT grid { rho: 0.53 delta: [0.1, 0.2] epsilon: 0.25 "
              "exponent: [0, 1, 2] cells: 4 } target { samples: 1000000 } "
-             "seed: 18446744073709551615 model: BILLIARD_REFERENCE precision: SINGLE");
+             "seed: 18446744073709551615 model: BILLIARD_REFERENCE precision: SINGLE "
+             "verify: true");
 }
 
 TEST(SpecFlags, WhatIsNotGivenIsNotSet) { ExpectSpec(FirstHit(), "experiment: FIRST_HIT grid {}"); }
@@ -70,11 +72,29 @@ TEST(SpecFlags, TargetsOfEachKind) {
              "experiment: FIRST_HIT grid {} target { budget { seconds: 90 nanos: 500000000 } }");
 }
 
-TEST(SpecFlags, TwoTargetsExcludeEachOther) {
+TEST(SpecFlags, ABudgetMayStandBesideATolerance) {
+  SpecFlags flags = FirstHit();
+  flags.tolerance = "1e-3";
+  flags.budget = "10";
+  ExpectSpec(flags,
+             "experiment: FIRST_HIT grid {} target { tolerance: 1e-3 budget { seconds: 10 } }");
+}
+
+TEST(SpecFlags, OtherTargetsExcludeEachOther) {
   SpecFlags flags = FirstHit();
   flags.samples = "10";
   flags.tolerance = "0.1";
-  ExpectError(flags, "--samples and --tolerance exclude each other");
+  ExpectError(flags,
+              "--samples and --tolerance exclude each other: give at most one of --samples, "
+              "--collisions, --tolerance, --budget; only --tolerance and --budget may stand "
+              "together");
+  flags.budget = "1";
+  ExpectError(flags, "--samples and --tolerance and --budget exclude each other");
+  flags.tolerance.reset();
+  ExpectError(flags, "--samples and --budget exclude each other");
+  flags.samples.reset();
+  flags.collisions = "10";
+  ExpectError(flags, "--collisions and --budget exclude each other");
 }
 
 TEST(SpecFlags, ExperimentsAreReadInBothSpellings) {
@@ -83,6 +103,21 @@ TEST(SpecFlags, ExperimentsAreReadInBothSpellings) {
   ExpectSpec(flags, "experiment: CONDITIONAL_MEAN_FREE_TIME grid {}");
   flags.experiment = "equilibrium";
   ExpectSpec(flags, "experiment: EQUILIBRIUM grid {}");
+  flags.experiment = "energy-relaxation";
+  ExpectSpec(flags, "experiment: ENERGY_RELAXATION grid {}");
+  flags.experiment = "markov_property";
+  ExpectSpec(flags, "experiment: MARKOV_PROPERTY grid {}");
+}
+
+TEST(SpecFlags, EveryModelOfTheLadderHasItsName) {
+  for (const auto& [name, field] : {std::pair("closed-form", "CLOSED_FORM"),
+                                    {"spectrum", "SPECTRUM"},
+                                    {"markov", "MARKOV"},
+                                    {"billiard", "BILLIARD"}}) {
+    SpecFlags flags = FirstHit();
+    flags.model = name;
+    ExpectSpec(flags, std::string("experiment: FIRST_HIT grid {} model: ") + field);
+  }
 }
 
 TEST(SpecFlags, UnknownNamesListWhatThereIs) {
@@ -148,6 +183,9 @@ TEST(SpecFlags, AFileComesAlone) {
   ExpectError(flags, "--spec holds the whole specification");
   flags.rho.reset();
   flags.seed = "1";
+  ExpectError(flags, "--spec holds the whole specification");
+  flags.seed.reset();
+  flags.verify = true;
   ExpectError(flags, "--spec holds the whole specification");
 }
 

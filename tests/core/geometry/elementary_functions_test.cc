@@ -67,6 +67,43 @@ TEST(ElementaryFunctions, PowersAreWithinTheirBound) {
   EXPECT_GT(worst, 0.5);
 }
 
+TEST(ElementaryFunctions, ExponentialsAreWithinTheirBound) {
+  CounterRandom random(3, 0, 0);
+  double worst = 0;
+  const auto compare = [&worst](double x) {
+    worst = std::max(worst, UlpError(Exp(x), std::exp(static_cast<long double>(x))));
+  };
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = random.Uniform(), sign = random.Uniform() < 0.5 ? -1 : 1;
+    for (const double scale : {1e-300, 1e-16, 1e-3, 1.0, 30.0, 700.0}) compare(sign * scale * x);
+    compare(sign * std::exp2(-60 * x));
+    // Where the power of two beside exp r changes.
+    compare((std::floor(1000 * x) - 500.5) * std::numbers::ln2 * (1 + 0x1p-50 * sign));
+  }
+  std::cout << "worst error of an exponential: " << worst << " ulp\n";
+  EXPECT_LE(worst, kExpUlpError);
+  EXPECT_GT(worst, 0.5);
+}
+
+TEST(ElementaryFunctions, LogarithmsAreWithinTheirBound) {
+  CounterRandom random(4, 0, 0);
+  double worst = 0;
+  const auto compare = [&worst](double x) {
+    worst = std::max(worst, UlpError(Log(x), std::log(static_cast<long double>(x))));
+  };
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = random.Uniform(), sign = random.Uniform() < 0.5 ? -1 : 1;
+    compare(x);
+    compare(1 + x);
+    compare(std::exp2(960 * sign * x));
+    compare(1 + sign * std::exp2(-53 * x));                           // next to 1
+    compare((6.5 + std::floor(10 * x)) / 16 * (1 + 0x1p-50 * sign));  // the table's entry changes
+  }
+  std::cout << "worst error of a logarithm: " << worst << " ulp\n";
+  EXPECT_LE(worst, kLogUlpError);
+  EXPECT_GT(worst, 0.5);
+}
+
 TEST(ElementaryFunctions, AnglesOnAxesAndDiagonals) {
   using std::numbers::pi;
   for (const double r : {1e-150, 1.0, 0.3, 1e150}) {
@@ -93,6 +130,16 @@ TEST(ElementaryFunctions, PowersOfOne) {
   }
   EXPECT_EQ(Power(0.25, 0.5), 0.5);
   EXPECT_EQ(Power(1e-16, 1000), 0);
+}
+
+TEST(ElementaryFunctions, ExponentialOfZeroAndLogarithmOfOne) {
+  EXPECT_EQ(Exp(0), 1);
+  EXPECT_EQ(Exp(-0.0), 1);
+  EXPECT_EQ(Exp(-1e-300), 1);
+  EXPECT_EQ(Exp(-700.1), 0);
+  EXPECT_EQ(Exp(-std::numeric_limits<double>::infinity()), 0);
+  EXPECT_EQ(Log(1), 0);
+  EXPECT_FALSE(std::signbit(Log(1)));
 }
 
 }  // namespace

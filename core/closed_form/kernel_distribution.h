@@ -1,0 +1,55 @@
+// The stochastic kernel's distribution function: the fraction of the collisions at given energies
+// that leave the piston with less than a given energy.
+//
+//   F(ep_out | eb, ep) = int_0^ep_out W(eb, ep -> x) dx / f(eb, ep)      eqs. kernel, intkernelnuf
+//       = sqrt(ep) a / (p + q)                       for ep_out <= ep,  a = arcsin sqrt(ep_out/eb)
+//       = 1 - sqrt(eb - ep_out) / (p + q)            above,
+//   p = sqrt(ep) arcsin sqrt(min(ep/eb, 1)),  q = sqrt(max(eb - ep, 0)),  f = (p + q)/pi.
+//
+// Where W is the law of a collision, F(ep_out) is uniform on [0, 1] whatever the energies before.
+//
+// Symbols: eb and ep are the energies of ball and piston before the collision. Domain: eb and ep in
+// [0, 1e290], eb of at least 1e-290 or 0; ep_out >= 0. From eb on F is 1. OfPair is the same at
+// total energy 1/2, with the digits of eb = 1/2 - ep that its rounding drops; ep in [0, 1/2].
+//
+// Properties, each with the test that bears its name:
+//   1. AccurateAtRandomEnergies: relative error of F and of the rate below
+//      kKernelDistributionRelativeError; and AccurateWhereTheBallIsLeftWithLittle.
+//   2. RisesFromZeroToOne, which is at ep_out = eb, never falling but by rounding.
+//   3. SlopeIsTheKernelOverItsRate.
+//   4. DetailedBalanceOfCollisions: in equilibrium a collision that takes the piston from below x
+//      to below y is as frequent as one from below y to below x.
+// Made of +, -, *, /, sqrt and Atan2 alone: the same bits on every processor.
+//
+// Immutable: safe to share between threads.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_
+#define BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_
+
+namespace ballpiston {
+
+inline constexpr double kKernelDistributionRelativeError = 2e-15;
+
+class KernelDistribution {
+ public:
+  KernelDistribution(double eb, double ep) : KernelDistribution(eb, 0, ep) {}
+  static KernelDistribution OfPair(double ep);
+
+  // f, in the units of kernel_moments.h.
+  double CollisionRate() const;
+  // F
+  double Below(double ep_out) const;
+
+ private:
+  KernelDistribution(double eb, double eb_low, double ep);
+
+  double eb_;      // the ball's energy,
+  double eb_low_;  // and what its rounding dropped
+  double ep_;
+  double piston_speed_;  // sqrt(ep)
+  double p_;
+  double q_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_

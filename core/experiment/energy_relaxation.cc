@@ -1,0 +1,319 @@
+#include "core/experiment/energy_relaxation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/closed_form/mean_free_time.h"
+#include "core/experiment/predicted_hits.h"
+#include "core/markov/jump_process.h"
+#include "core/sampling/invariant_measure.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kForEver = std::numeric_limits<double>::infinity();
+
+// Time origins of the curve lie so many lags apart: half a mean free time, in which the energy
+// forgets most, so that more of them would say little more.
+constexpr size_t kLagsBetweenOrigins = 2;
+
+// A walker that is slower than the others keeps all of a group walking.
+constexpr uint64_t kWalkersInStep = 256;
+
+double EventsPerOrbit(const EnsembleSpec& spec, const PairGeometry& geometry,
+                      const PointParameters& point) {
+  // A jump and what is measured of it take as long as some 25 wall hits in lanes.
+  constexpr double kEventsPerJump = 25;
+  return CollisionsPerOrbit(point) *
+         (spec.model == Model::kMarkov ? kEventsPerJump : HitsPerCollision(geometry).Events());
+}
+
+// Measurements of a block's orbits, by orbit.
+class OrbitMeasurements {
+ public:
+  OrbitMeasurements(const EnergyRelaxation& relaxation, uint64_t orbits)
+      : relaxation_(relaxation), values_(orbits) {}
+
+  void Set(uint64_t orbit, const StepFunction& energy) {
+    values_[orbit] = relaxation_.Measure(energy);
+  }
+
+  // Those that were set.
+  BlockResult Result() const {
+    BlockResult result;
+    result.moments.resize(1 + kLags);
+    for (const std::vector<double>& values : values_) {
+      if (values.empty()) continue;
+      ++result.samples;
+      for (size_t i = 0; i < values.size(); ++i) result.moments[i].Add(values[i]);
+    }
+    return result;
+  }
+
+ private:
+  const EnergyRelaxation& relaxation_;
+  std::vector<std::vector<double>> values_;
+};
+
+class RelaxingOrbits : public OrbitSource {
+ public:
+  RelaxingOrbits(const PairGeometry& geometry, const EnergyRelaxation& relaxation,
+                 const RandomStream& random, uint64_t first, uint64_t orbits)
+      : geometry_(geometry),
+        relaxation_(relaxation),
+        random_(random),
+        first_(first),
+        energies_(orbits),
+        measurements_(relaxation, orbits) {}
+
+  PairState Start(uint64_t orbit) override {
+    CounterRandom random = random_.Sample(first_ + orbit);
+    const PairState state = relaxation_.epsilon()
+                                ? DrawFromFlowMeasureAt(geometry_, *relaxation_.epsilon(), random)
+                                : DrawFromFlowMeasure(geometry_, random);
+    energies_[orbit].emplace(state.piston_velocity * state.piston_velocity / 2);
+    return state;
+  }
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    std::optional<StepFunction>& energy = energies_[orbit];
+    if (contact.escaped) {
+      ++health_.escapes;
+      energy.reset();
+      return AfterContact::kEnd;
+    }
+    if (!contact.expired) {
+      // The piston leaves with what was the ball's normal component.
+      const double v = contact.state.ball_speed * contact.state.direction.x();
+      energy->Add(contact.time, v * v / 2);
+      health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
+      if (energy->last_jump() < relaxation_.orbit_time()) return AfterContact::kGoOn;
+    }
+    measurements_.Set(orbit, *energy);
+    energy.reset();
+    return AfterContact::kEnd;
+  }
+
+  double TimeLimit() const override { return relaxation_.orbit_time(); }
+
+  BlockResult Result() const {
+    BlockResult result = measurements_.Result();
+    result.health = health_;
+    return result;
+  }
+
+ private:
+  PairGeometry geometry_;
+  const EnergyRelaxation& relaxation_;
+  RandomStream random_;
+  uint64_t first_;
+  std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
+  OrbitMeasurements measurements_;
+  Health health_;
+};
+
+std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
+                                    const RandomStream& random, uint64_t first, uint64_t count) {
+  std::vector<double> u(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    u[i] = epsilon ? std::sqrt(2 * *epsilon) : random.Sample(first + i).Uniform();
+  }
+  return u;
+}
+
+// Energies of `count` walkers up to orbit_time, in units of the geometry.
+std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
+                                       const RandomStream& random, uint64_t first, uint64_t count) {
+  const std::vector<double> starts = StartsOfWalkers(relaxation.epsilon(), random, first, count);
+  JumpWalkers walkers(random.seed, random.stream, first, starts);
+  std::vector<StepFunction> energies;
+  for (const double u : starts) energies.emplace_back(u * u / 2);
+  for (bool walking = true; walking;) {
+    walkers.Jump();
+    walking = false;
+    for (uint64_t i = 0; i < count; ++i) {
+      if (energies[i].last_jump() >= relaxation.orbit_time()) continue;
+      const double u = walkers.u()[i];
+      energies[i].Add(relaxation.unit() * walkers.waiting_times()[i], u * u / 2);
+      walking = true;
+    }
+  }
+  return energies;
+}
+
+}  // namespace
+
+double CollisionsPerOrbit(const PointParameters& point) {
+  return point.epsilon ? kWindowTimes : kOriginTimes + kWindowTimes;
+}
+
+// ---- scales and estimates ----
+
+EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point)
+    : epsilon_(point.epsilon),
+      mean_free_time_(MeanFreeTimesOf(geometry).ball_piston),
+      unit_(mean_free_time_ / 4) {}
+
+double EnergyRelaxation::orbit_time() const {
+  return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
+}
+
+std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const {
+  if (epsilon_) {
+    std::vector<double> values = energy.Samples(Lag(1), kLags);
+    values.insert(values.begin(), energy.Integral(kMeanPistonEnergy, window()));
+    return values;
+  }
+  std::vector<double> values(1 + kLags);
+  values[0] =
+      energy.CorrelationIntegral(kMeanPistonEnergy, kOriginTimes * mean_free_time_, window()) /
+      kVarianceOfPistonEnergy;
+  const auto steps = static_cast<size_t>((kLags - 1) * kOriginTimes / kWindowTimes);
+  std::vector<double> samples = energy.Samples(Lag(1), steps + kLags - 1);
+  for (double& sample : samples) sample -= kMeanPistonEnergy;
+  for (size_t origin = 0; origin < steps; origin += kLagsBetweenOrigins) {
+    for (size_t lag = 0; lag < kLags; ++lag) {
+      values[1 + lag] += samples[origin] * samples[origin + lag];
+    }
+  }
+  const double origins = static_cast<double>(steps / kLagsBetweenOrigins);
+  for (size_t lag = 0; lag < kLags; ++lag) {
+    values[1 + lag] /= origins * kVarianceOfPistonEnergy;
+  }
+  return values;
+}
+
+SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {
+  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
+  if (!epsilon_) {
+    const SpectralValue time = spectrum.CorrelationTime(window / unit_);
+    return {unit_ * time.value, unit_ * time.error};
+  }
+  const double scale = unit_ / (*epsilon_ - kMeanPistonEnergy);
+  const SpectralValue integral = spectrum.DecayIntegral(*epsilon_, window / unit_);
+  return {scale * integral.value, std::fabs(scale) * integral.error};
+}
+
+SpectralValue EnergyRelaxation::LimitOfRelaxationTime() const { return IntegralOfLimit(kForEver); }
+
+Estimate EnergyRelaxation::RelaxationTime(const BlockResult& merged) const {
+  const double scale = epsilon_ ? 1 / (*epsilon_ - kMeanPistonEnergy) : 1;
+  const double limit = LimitOfRelaxationTime().value;
+  const double remainder = limit - IntegralOfLimit(window()).value;
+  Estimate estimate = {.name = "relaxation_time",
+                       .value = scale * merged.moments[0].mean + remainder,
+                       .limit = limit};
+  const std::optional<double> error = merged.moments[0].StandardError();
+  if (error) estimate.standard_error = std::fabs(scale) * *error;
+  return estimate;
+}
+
+std::string EnergyRelaxation::CurveName() const {
+  return epsilon_ ? "mean_energy" : "energy_autocorrelation";
+}
+
+SpectralValue EnergyRelaxation::CurveOfLimitAt(double time) const {
+  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
+  return epsilon_ ? spectrum.MeanEnergy(*epsilon_, time / unit_)
+                  : spectrum.Autocorrelation(time / unit_);
+}
+
+Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
+  Curve curve = {.name = CurveName()};
+  for (size_t i = 0; i < kLags; ++i) {
+    const Moments& measured = merged.moments[1 + i];
+    curve.points.push_back({.time = Lag(i),
+                            .value = measured.mean,
+                            .standard_error = measured.StandardError(),
+                            .limit = CurveOfLimitAt(Lag(i)).value});
+  }
+  return curve;
+}
+
+Curve EnergyRelaxation::CurveOfLimit() const {
+  Curve curve = {.name = CurveName()};
+  for (size_t i = 0; i < kLags; ++i) {
+    const SpectralValue limit = CurveOfLimitAt(Lag(i));
+    curve.points.push_back({.time = Lag(i),
+                            .value = limit.value,
+                            .standard_error = limit.error,
+                            .limit = limit.value});
+  }
+  return curve;
+}
+
+// ---- experiments ----
+
+EnergyRelaxationExperiment::EnergyRelaxationExperiment(const EnsembleSpec& spec,
+                                                       const PointParameters& point,
+                                                       const PairGeometry& geometry)
+    : PointExperiment(
+          spec, point,
+          PlanBlocks(spec, EventsPerOrbit(spec, geometry, point), CollisionsPerOrbit(point))),
+      geometry_(geometry),
+      relaxation_(geometry, point) {}
+
+std::optional<BlockResult> EnergyRelaxationExperiment::RunBlock(uint64_t block,
+                                                                std::stop_token stop) const {
+  return answer().model == Model::kMarkov ? RunJumpProcess(block, stop) : RunBilliard(block, stop);
+}
+
+std::optional<BlockResult> EnergyRelaxationExperiment::RunBilliard(
+    uint64_t block, const std::stop_token& stop) const {
+  const uint64_t count = plan().SamplesIn(block);
+  RelaxingOrbits orbits(geometry_, relaxation_, random(), plan().FirstSample(block), count);
+  if (!RunOrbits(engine(), geometry_, count, orbits, stop)) return std::nullopt;
+  return orbits.Result();
+}
+
+std::optional<BlockResult> EnergyRelaxationExperiment::RunJumpProcess(
+    uint64_t block, const std::stop_token& stop) const {
+  const uint64_t first = plan().FirstSample(block), count = plan().SamplesIn(block);
+  OrbitMeasurements measurements(relaxation_, count);
+  for (uint64_t done = 0; done < count; done += kWalkersInStep) {
+    if (stop.stop_requested()) return std::nullopt;
+    const uint64_t together = std::min(kWalkersInStep, count - done);
+    const auto energies = WalkTogether(relaxation_, random(), first + done, together);
+    for (uint64_t i = 0; i < together; ++i) measurements.Set(done + i, energies[i]);
+  }
+  return measurements.Result();
+}
+
+Estimate EnergyRelaxationExperiment::FirstEstimate(const BlockResult& merged) const {
+  Estimate estimate = relaxation_.RelaxationTime(merged);
+  // The jump process is the limit.
+  if (answer().model == Model::kMarkov) estimate.exact = estimate.limit;
+  return estimate;
+}
+
+namespace {
+
+Estimate SpectralGap() {
+  const SpectralValue gap = RelaxationSpectrum::Get().Gap();
+  return {.name = "spectral_gap", .value = gap.value, .standard_error = gap.error};
+}
+
+}  // namespace
+
+PointSummary EnergyRelaxationExperiment::Summarize(const BlockResult& merged) const {
+  PointSummary summary = {.samples = merged.samples, .health = merged.health};
+  summary.estimates.push_back(FirstEstimate(merged));
+  if (answer().model == Model::kMarkov) summary.estimates.push_back(SpectralGap());
+  summary.curves.push_back(relaxation_.MeasuredCurve(merged));
+  return summary;
+}
+
+PointSummary EnergyRelaxationBySpectrum(const PairGeometry& geometry,
+                                        const PointParameters& point) {
+  const EnergyRelaxation relaxation(geometry, point);
+  const SpectralValue time = relaxation.LimitOfRelaxationTime();
+  return {.estimates = {{.name = "relaxation_time",
+                         .value = time.value,
+                         .standard_error = time.error,
+                         .limit = time.value},
+                        SpectralGap()},
+          .curves = {relaxation.CurveOfLimit()}};
+}
+
+}  // namespace ballpiston

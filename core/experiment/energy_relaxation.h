@@ -1,0 +1,97 @@
+// How the piston's energy relaxes, by the billiard or by the jump process of its limit.
+//
+// Without epsilon: the autocorrelation C(t) = <ep(0) ep(t)> - 1/36 in equilibrium, from orbits that
+// start from the flow's invariant measure; time origins over kOriginTimes mean free times, lags up
+// to kWindowTimes of them. relaxation_time is the integral time int_0^W C dt/C(0), W the window,
+// and what the limit's spectrum adds beyond it (0.03 %). C(0) = 1/45 and the mean 1/6 are exact at
+// every delta, and used.
+//
+// With epsilon: E[ep(t)] from that energy, ball and piston anywhere; relaxation_time is
+// int_0^W (E[ep(t)] - 1/6) dt/(epsilon - 1/6), with the limit's remainder.
+//
+// The window matters. A piston of speed u is out of the ball's reach for a time of up to
+// 2 lambda/u, whatever delta: so in the billiard C has a tail of order lambda/t from slow pistons,
+// whose integral grows with the logarithm of W. It has no part in the limit: at a fixed W/tau it
+// vanishes with lambda/tau, as delta^2.
+//
+// Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. A sample is one orbit.
+#ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
+#define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment/point_experiment.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/markov/relaxation_spectrum.h"
+#include "core/statistics/step_function.h"
+
+namespace ballpiston {
+
+// In mean free times of ball and piston.
+inline constexpr double kWindowTimes = 8;
+inline constexpr double kOriginTimes = 32;
+
+inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
+
+// What all ways of computing it share: the scales, and what an orbit and all of them say.
+class EnergyRelaxation {
+ public:
+  EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point);
+
+  const std::optional<double>& epsilon() const { return epsilon_; }
+  double unit() const { return unit_; }
+  double orbit_time() const;  // how far an orbit is followed
+
+  // The numbers of one orbit: as many as there are moments.
+  std::vector<double> Measure(const StepFunction& energy) const;
+
+  Estimate RelaxationTime(const BlockResult& merged) const;
+  Curve MeasuredCurve(const BlockResult& merged) const;
+
+  // Of the limit, with the error of its computation.
+  SpectralValue LimitOfRelaxationTime() const;
+  Curve CurveOfLimit() const;
+
+ private:
+  std::string CurveName() const;
+  double window() const { return kWindowTimes * mean_free_time_; }
+  double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
+  SpectralValue CurveOfLimitAt(double time) const;
+  // int_0^window of the limit's curve, normalised as the relaxation time is.
+  SpectralValue IntegralOfLimit(double window) const;
+
+  std::optional<double> epsilon_;
+  double mean_free_time_;
+  double unit_;  // |G|/|dG_bp|: the spectrum's unit of time
+};
+
+// Ball-piston collisions in an orbit, in the mean.
+double CollisionsPerOrbit(const PointParameters& point);
+
+class EnergyRelaxationExperiment : public PointExperiment {
+ public:
+  // Model: billiard, billiard_reference or markov.
+  EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point,
+                             const PairGeometry& geometry);
+
+  std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  Estimate FirstEstimate(const BlockResult& merged) const override;
+  PointSummary Summarize(const BlockResult& merged) const override;
+
+ private:
+  std::optional<BlockResult> RunBilliard(uint64_t block, const std::stop_token& stop) const;
+  std::optional<BlockResult> RunJumpProcess(uint64_t block, const std::stop_token& stop) const;
+
+  PairGeometry geometry_;
+  EnergyRelaxation relaxation_;
+};
+
+// The same by the spectrum: no samples. Standard errors are those of the discretisation.
+PointSummary EnergyRelaxationBySpectrum(const PairGeometry& geometry, const PointParameters& point);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_

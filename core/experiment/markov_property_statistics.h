@@ -1,0 +1,61 @@
+// Whether a sequence of energy exchanges is the limit's Markov jump process: the counts of an
+// experiment, whatever the orbits come from.
+//
+// In the limit an exchange is e_k -> (waiting time tau_k, energy e_{k+1}), e the piston's energy,
+// and with the exact laws of both (eqs. cnuep, kernel)
+//   T_k = 1 - exp(-r(e_k) tau_k)      r the collision rate
+//   V_k = F(e_{k+1} | e_k)            F the kernel's distribution function
+// are uniform on [0, 1], independent of each other, of e_k and of all that was before. By detailed
+// balance so is B_k = F(e_{k-1} | e_k), read backward, and B_k, V_k are independent if the energy
+// before last does not matter. Measured:
+//   hitting_time_ks_distance       of T_k to the uniform law
+//   transition_divergence          of V_k to the uniform law, given a cell of e_k; its law is exact
+//                                  at every delta, as the invariant law at fixed energies is its
+//                                  own ingoing law: this one tests what makes the orbits
+//   memory_divergence              of (B_k, V_k) to the uniform law of the square
+//   memory_correlation             of B_k and V_k
+//   waiting_outcome_correlation    of T_k and V_k
+//   waiting_memory_correlation     of T_{k-1} and T_k
+// A correlation is 12 <(x - 1/2)(y - 1/2)>, its error from the scatter between orbits. Distances
+// have the noise floors that the Markov process would have.
+//
+// In a BlockResult: histograms [0] T; then kEnergyRows rows of V by u = sqrt(2 e), and kMemoryBins
+// rows of V by B. Batch means, an orbit each: [0] memory, [1] waiting-outcome, [2] waiting-memory.
+// Units: times in |G|/|dG_bp|, total energy 1/2. Property, with a test of its name:
+//   1. JumpProcessHasNoMemory: sampled as it is defined, every estimate is noise.
+#ifndef BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
+#define BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/experiment/block_result.h"
+#include "core/experiment/point_summary.h"
+
+namespace ballpiston {
+
+inline constexpr size_t kWaitingBins = 1024;
+inline constexpr size_t kEnergyRows = 16;
+inline constexpr size_t kOutcomeBins = 32;  // of V, in the rows by energy
+inline constexpr size_t kMemoryBins = 16;
+
+struct Exchange {
+  double waiting_time = 0;
+  double energy = 0;  // of the piston, after the collision; in [0, 1/2]
+};
+
+BlockResult EmptyMarkovPropertyCounts();
+
+// One orbit: the piston's energy at its start, just after a collision, and its exchanges in order.
+void CountOrbit(double energy, std::span<const Exchange> exchanges, BlockResult& counts);
+
+// In this order: memory_correlation, the other correlations, the distances. `exact_correlation` is
+// 0 where the orbits are the jump process itself. Distances are left out if nothing was counted.
+std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
+                                              std::optional<double> exact_correlation);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_

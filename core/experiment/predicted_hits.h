@@ -1,0 +1,25 @@
+// How many wall hits come between two collisions of ball and piston: what a sample will cost.
+#ifndef BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
+#define BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
+
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+struct PredictedHits {
+  double ball_wall;
+  double piston_wall;
+
+  // With the collision itself.
+  double Events() const { return 1 + ball_wall + piston_wall; }
+};
+
+// In equilibrium.
+PredictedHits HitsPerCollision(const PairGeometry& geometry);
+
+// In a return to the collision surface at fixed energies.
+PredictedHits HitsPerReturn(const PairGeometry& geometry, double epsilon);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_

@@ -1,0 +1,89 @@
+// The generator of the pair's jump process, discretised: how the energies relax.
+//
+//   (L g)(u) = int_0^s K(u, u') (g(u') - g(u)) du',  K = max(u, u')/(sqrt(2) pi sqrt(1 - u^2 -
+//   u'^2))
+//
+// with u = sqrt(2 ep) and s = sqrt(1 - u^2); eq. meq in the variable in which its kernel (eq.
+// kernel) is symmetric and the stationary law uniform on [0, 1]. -L is self-adjoint and not
+// negative; 0 belongs to the stationary law. Its continuum is the range of the jump rate,
+// [1/(sqrt(2) pi), 1/(2 sqrt(2))]: K is compact beside it, being weakly singular.
+//
+// Method: Galerkin, with polynomials in theta = arcsin u on a mesh that is symmetric under
+// theta -> pi/2 - theta. Then the kernel's singularity u^2 + u'^2 = 1 runs through corners and
+// diagonals of the mesh's squares only, where substitutions take it out, and matrix elements are
+// exact to rounding. Eigenfunctions are not smooth at u = 0 and 1 (u^2 log u) and, on one side, at
+// 1/sqrt(2) (power 3/2): there the mesh is graded. Eigenvalues below the continuum converge from
+// above, with the square of their functions' error.
+//
+// Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Properties, each with the test that bears its name:
+//   1. ConservesProbability: L 1 = 0 to kGeneratorRoundingError; and it is symmetric to that.
+//   2. RatesConvergeFromAbove as degree and levels grow.
+//
+// Immutable; safe to share between threads.
+#ifndef BALLPISTON_CORE_MARKOV_GENERATOR_H_
+#define BALLPISTON_CORE_MARKOV_GENERATOR_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace ballpiston {
+
+inline constexpr double kGeneratorRoundingError = 1e-13;
+
+// Ends of the continuum of -L: the least and the largest jump rate, at u = 0 and u = 1.
+inline constexpr double kContinuumBottom = std::numbers::inv_pi / std::numbers::sqrt2;
+inline constexpr double kContinuumTop = std::numbers::sqrt2 / 4;
+
+struct Discretisation {
+  int degree = 10;  // of the polynomials, 1 to 20
+  int levels = 5;   // of the mesh's grading, 1 to 8; 4 (levels + 1) elements
+
+  friend bool operator==(const Discretisation&, const Discretisation&) = default;
+};
+
+class Generator {
+ public:
+  explicit Generator(const Discretisation& discretisation);
+
+  Eigen::Index size() const { return rates_.size(); }
+
+  // Eigenvalues of -L, ascending; the first is 0 but for rounding.
+  const Eigen::VectorXd& rates() const { return rates_; }
+
+  // Coefficients of a function of u by eigenfunction, orthonormal in du on [0, 1]. `function` may
+  // have kinks at 0, 1/sqrt(2) and 1, not elsewhere.
+  Eigen::VectorXd Coefficients(const std::function<double(double)>& function) const;
+
+  // Those of a unit mass at u in [0, 1]: <coefficients, At(u)> is the function's value there.
+  Eigen::VectorXd At(double u) const;
+
+  // |L 1|, and the largest difference of the matrix from its transpose: what quadrature and
+  // rounding leave.
+  double conservation_error() const { return conservation_error_; }
+  double asymmetry() const { return asymmetry_; }
+
+ private:
+  Eigen::Index First(size_t element) const {
+    return static_cast<Eigen::Index>(element) * (degree_ + 1);
+  }
+  // The element's basis at theta.
+  Eigen::VectorXd Basis(size_t element, double theta) const;
+  void OrthonormaliseBases();
+  // int K(u, u') basis(u') du' of the bases below u' = 1/sqrt(2); the others follow by symmetry.
+  Eigen::VectorXd KernelRow(double theta) const;
+  Eigen::MatrixXd MinusL() const;
+
+  int degree_;
+  std::vector<double> edges_;                 // of the elements, in theta
+  std::vector<Eigen::MatrixXd> orthonormal_;  // by element: from Legendre's to the basis
+  Eigen::VectorXd rates_;
+  Eigen::MatrixXd functions_;  // eigenfunctions by column, in the bases
+  double conservation_error_ = 0;
+  double asymmetry_ = 0;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_MARKOV_GENERATOR_H_

@@ -1,0 +1,28 @@
+// JumpFrom in vector lanes, from words of random bits; see jump_process.h.
+#ifndef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_
+#define BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ballpiston {
+
+// Walkers come in groups of so many: a whole number of vectors on every processor.
+inline constexpr size_t kJumpGroup = 32;
+
+// Words 4 block, ..., 4 block + 3 of the sequences of CounterRandom for samples first, first + 1,
+// ...: by word, then by sample.
+struct JumpWords {
+  uint64_t words[4][kJumpGroup];
+};
+void DrawJumpWords(uint64_t seed, uint64_t stream, uint64_t first, uint64_t block,
+                   JumpWords& drawn);
+
+// Replaces the u of a group by those after a jump, and fills in the times waited. The uniform
+// numbers are those that CounterRandom makes of the words.
+void JumpInLanes(const uint64_t* waiting_words, const uint64_t* target_words, double* u,
+                 double* waiting_times);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_MARKOV_JUMP_PROCESS_LANES_H_

@@ -1,0 +1,99 @@
+#include "core/markov/relaxation_spectrum.h"
+
+#include <cmath>
+
+namespace ballpiston {
+namespace {
+
+constexpr Discretisation kInUse = {.degree = 10, .levels = 5};
+constexpr double kTold = 1e-8;
+
+double SquareRootOfTwice(double epsilon) { return std::sqrt(2 * epsilon); }
+
+// int_0^window exp(-rate t) dt; the limit as rate -> 0 is not asked for.
+Eigen::ArrayXd Integrals(const Eigen::ArrayXd& rates, double window) {
+  if (std::isinf(window)) return 1 / rates;
+  return -(-rates * window).unaryExpr([](double x) { return std::expm1(x); }) / rates;
+}
+
+// Without the stationary law, whose rate is 0.
+auto Decaying(const Eigen::VectorXd& values) { return values.tail(values.size() - 1).array(); }
+
+Discretisation Coarser(const Discretisation& fine) {
+  return {.degree = fine.degree - 2, .levels = fine.levels - 1};
+}
+
+}  // namespace
+
+RelaxationSpectrum::Level::Level(const Discretisation& discretisation)
+    : generator(discretisation),
+      energy(generator.Coefficients([](double u) { return u * u / 2 - kMeanPistonEnergy; })) {}
+
+double RelaxationSpectrum::Level::Correlation(double t) const {
+  const Eigen::ArrayXd decay = (-Decaying(generator.rates()) * t).exp();
+  return (Decaying(energy).square() * decay).sum() / kVarianceOfPistonEnergy;
+}
+
+double RelaxationSpectrum::Level::CorrelationIntegral(double window) const {
+  const Eigen::ArrayXd integrals = Integrals(Decaying(generator.rates()), window);
+  return (Decaying(energy).square() * integrals).sum() / kVarianceOfPistonEnergy;
+}
+
+double RelaxationSpectrum::Level::Energy(double u, double t) const {
+  const Eigen::ArrayXd decay = (-Decaying(generator.rates()) * t).exp();
+  return kMeanPistonEnergy + (Decaying(energy) * Decaying(generator.At(u)) * decay).sum();
+}
+
+double RelaxationSpectrum::Level::EnergyIntegral(double u, double window) const {
+  const Eigen::ArrayXd integrals = Integrals(Decaying(generator.rates()), window);
+  return (Decaying(energy) * Decaying(generator.At(u)) * integrals).sum();
+}
+
+RelaxationSpectrum::RelaxationSpectrum(const Discretisation& discretisation)
+    : fine_(discretisation), coarse_(Coarser(discretisation)) {}
+
+const RelaxationSpectrum& RelaxationSpectrum::Get() {
+  static const auto* const spectrum = new RelaxationSpectrum(kInUse);
+  return *spectrum;
+}
+
+template <typename Value>
+SpectralValue RelaxationSpectrum::Compared(Value value) const {
+  const double fine = value(fine_);
+  return {fine, std::fabs(fine - value(coarse_))};
+}
+
+SpectralValue RelaxationSpectrum::Gap() const {
+  return Compared([](const Level& level) { return level.generator.rates()[1]; });
+}
+
+std::vector<SpectralValue> RelaxationSpectrum::IsolatedRates() const {
+  std::vector<SpectralValue> rates;
+  for (Eigen::Index k = 1; k < coarse_.generator.size(); ++k) {
+    const SpectralValue rate =
+        Compared([k](const Level& level) { return level.generator.rates()[k]; });
+    if (rate.error > kTold || rate.value >= kContinuumBottom) break;
+    rates.push_back(rate);
+  }
+  return rates;
+}
+
+SpectralValue RelaxationSpectrum::Autocorrelation(double t) const {
+  return Compared([t](const Level& level) { return level.Correlation(t); });
+}
+
+SpectralValue RelaxationSpectrum::CorrelationTime(double window) const {
+  return Compared([window](const Level& level) { return level.CorrelationIntegral(window); });
+}
+
+SpectralValue RelaxationSpectrum::MeanEnergy(double epsilon, double t) const {
+  const double u = SquareRootOfTwice(epsilon);
+  return Compared([u, t](const Level& level) { return level.Energy(u, t); });
+}
+
+SpectralValue RelaxationSpectrum::DecayIntegral(double epsilon, double window) const {
+  const double u = SquareRootOfTwice(epsilon);
+  return Compared([u, window](const Level& level) { return level.EnergyIntegral(u, window); });
+}
+
+}  // namespace ballpiston

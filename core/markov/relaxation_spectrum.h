@@ -1,0 +1,80 @@
+// How the piston's energy relaxes where ball and piston rarely meet, by the generator's spectrum.
+//
+//   C(t) = <ep(0) ep(t)> - <ep>^2 = sum_k c_k^2 exp(-rate_k t),   c_k = <function_k, ep>
+//   int_0^inf C dt/C(0) = sum_k c_k^2/rate_k / C(0)               the integral time
+//   E[ep(t) | u at 0] = sum_k c_k function_k(u) exp(-rate_k t)
+//
+// in equilibrium, where <ep> = 1/6 and C(0) = 1/45; from the eigenfunctions of generator.h. The
+// spectral gap is the least rate above 0: how fast every distribution of energies is forgotten in
+// the end. What begins as 1 % of the energy's correlation decays with it; the most of it decays
+// faster, in the continuum.
+//
+// Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Errors are what a coarser discretisation differs by,
+// which is more than what the finer one is off. Properties, each with a test of its name:
+//   1. GapAgreesBetweenDiscretisations to kSpectralGapError.
+//   2. DecaysOverThreeDecadesAsItsOwnGeneratorSays: semigroup and derivative at 0, which is
+//      -<h>/2 of the kernel's moments.
+//   3. MeanEnergyStartsAtTheInitialEnergyAndForgetsIt.
+//
+// Immutable; safe to share between threads.
+#ifndef BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_
+#define BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_
+
+#include <vector>
+
+#include "core/markov/generator.h"
+
+namespace ballpiston {
+
+inline constexpr double kMeanPistonEnergy = 1.0 / 6;
+inline constexpr double kVarianceOfPistonEnergy = 1.0 / 45;
+inline constexpr double kSpectralGapError = 1e-12;
+
+struct SpectralValue {
+  double value;
+  double error;  // of the discretisation
+};
+
+class RelaxationSpectrum {
+ public:
+  explicit RelaxationSpectrum(const Discretisation& discretisation);
+
+  // The one in use, made when it is first asked for (some 0.1 s).
+  static const RelaxationSpectrum& Get();
+
+  SpectralValue Gap() const;
+  // The isolated rates below the continuum that are told to 1e-8, ascending; the gap is the first.
+  // There are more: they accumulate at the continuum's bottom.
+  std::vector<SpectralValue> IsolatedRates() const;
+
+  // C(t)/C(0), t >= 0.
+  SpectralValue Autocorrelation(double t) const;
+  // int_0^window C dt/C(0); window may be infinite.
+  SpectralValue CorrelationTime(double window) const;
+  // E[ep(t)] from `epsilon` in [0, 1/2].
+  SpectralValue MeanEnergy(double epsilon, double t) const;
+  // int_0^window (E[ep(t)] - 1/6) dt; window may be infinite.
+  SpectralValue DecayIntegral(double epsilon, double window) const;
+
+ private:
+  struct Level {
+    explicit Level(const Discretisation& discretisation);
+    double Correlation(double t) const;
+    double CorrelationIntegral(double window) const;
+    double Energy(double u, double t) const;
+    double EnergyIntegral(double u, double window) const;
+
+    Generator generator;
+    Eigen::VectorXd energy;  // coefficients of ep - 1/6
+  };
+
+  template <typename Value>
+  SpectralValue Compared(Value value) const;
+
+  Level fine_;
+  Level coarse_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_

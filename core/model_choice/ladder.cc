@@ -1,0 +1,296 @@
+#include "core/model_choice/ladder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/experiment/answering_models.h"
+#include "core/experiment/block_plan.h"
+#include "core/experiment/energy_relaxation.h"
+#include "core/experiment/predicted_hits.h"
+#include "core/geometry/number_text.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/model_choice/sampling_cost.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+
+// A pilot is not worth its time if the limit is expected to be so many times beyond the tolerance.
+constexpr double kHopeless = 2;
+
+std::string Rounded(double x) { return absl::StrFormat("%.2g", x); }
+
+bool IsOfTheLimit(Model model) { return model == Model::kSpectrum || model == Model::kMarkov; }
+
+// One point's question.
+class Question {
+ public:
+  Question(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine)
+      : spec_(spec),
+        point_(point),
+        machine_(machine),
+        budget_(spec.target.budget_seconds ? BudgetOfAPoint(spec, machine.workers) : 0),
+        geometry_(PairGeometry::Create(point.rho, point.delta).value()) {
+    spec_.grid = {.rho = {point.rho}, .delta = {point.delta}};
+    if (point.epsilon) spec_.grid.epsilon = {*point.epsilon};
+    if (point.exponent) spec_.grid.exponent = {*point.exponent};
+  }
+
+  const EnsembleSpec& spec() const { return spec_; }
+  const PointParameters& point() const { return point_; }
+  const Target& target() const { return spec_.target; }
+  bool relaxes() const { return spec_.experiment == Experiment::kEnergyRelaxation; }
+
+  double SecondsBy(Model model) const {
+    return SecondsPerSample(By(model), geometry_, point_, machine_.rates);
+  }
+
+  // That the target takes by a model that samples.
+  double SamplesBy(Model model) const {
+    double samples =
+        static_cast<double>(SamplesAskedFor(target(), relaxes() ? CollisionsPerOrbit(point_) : 1));
+    if (target().tolerance) samples = std::min(samples, SamplesForTolerance(model));
+    if (target().budget_seconds) samples = std::min(samples, SamplesInBudget(model));
+    return samples;
+  }
+
+  double SamplesInBudget(Model model) const {
+    return std::max(std::floor(budget_ / SecondsBy(model)), 1.0);
+  }
+
+  // At least the blocks before the first look.
+  double SamplesForTolerance(Model model) const {
+    const double block =
+        static_cast<double>(PointExperiment::Create(By(model), 0)->plan().block_size);
+    const double blocks = std::ceil(SamplesFor(*target().tolerance) / block);
+    return std::max(blocks, static_cast<double>(kMinBlocks)) * block;
+  }
+
+  double SamplesFor(double tolerance) const {
+    const double ratio = ErrorOf(1) / tolerance;
+    return ratio * ratio;
+  }
+
+  double ErrorOf(double samples) const {
+    return RelativeErrorOfOneSample(spec_.experiment, geometry_, point_) / std::sqrt(samples);
+  }
+
+ private:
+  EnsembleSpec By(Model model) const {
+    EnsembleSpec by = spec_;
+    by.model = model;
+    return by;
+  }
+
+  EnsembleSpec spec_;  // of this point alone
+  PointParameters point_;
+  Machine machine_;
+  double budget_;
+  PairGeometry geometry_;
+};
+
+// ---- which model ----
+
+// What a pilot costs and the billiard itself would, in wall hits: not in this machine's seconds, so
+// that every machine chooses alike.
+double HitsOf(const PointParameters& point, double orbits) {
+  constexpr double kHitsThatACollisionCosts = 100;
+  const PairGeometry geometry = PairGeometry::Create(point.rho, point.delta).value();
+  return orbits * CollisionsPerOrbit(point) *
+         (HitsPerCollision(geometry).ball_wall + kHitsThatACollisionCosts);
+}
+
+PointParameters PointOf(const PilotPlace& place) {
+  return {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
+}
+
+Answer Billiard(std::string reason) { return {Model::kBilliard, std::move(reason), 0.0}; }
+
+// Why the pilot need not even be asked for; empty if it has to be.
+std::string WithoutAPilot(const Question& question) {
+  const double tolerance = *question.target().tolerance;
+  const PilotPlace place = PilotPlaceFor(question.point());
+  const double expected = ExpectedLimitError(question.point());
+  if (expected > kHopeless * tolerance) {
+    return absl::StrCat("the limit's error, some ", Rounded(expected), ", is beyond the tolerance");
+  }
+  const Pilot predicted = PredictedPilot(place);
+  const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
+  if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
+    return "a pilot could not establish the limit's error to this tolerance";
+  }
+  if (HitsOf(question.point(), question.SamplesFor(tolerance)) <
+      HitsOf(PointOf(place), static_cast<double>(kPilotOrbits))) {
+    return "it reaches the tolerance sooner than a pilot would establish the limit's error";
+  }
+  return "";
+}
+
+std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
+  return absl::StrCat(
+      pilot.predicted ? "expected of a pilot at delta = " : "by a pilot at delta = ",
+      Rounded(place.delta));
+}
+
+std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
+  if (const std::string why = WithoutAPilot(question); !why.empty()) {
+    return Billiard(absl::StrCat("exact; ", why));
+  }
+  const PilotPlace place = PilotPlaceFor(question.point());
+  const std::optional<Pilot> pilot = pilots(place);
+  if (!pilot) return std::nullopt;
+  const double error = LimitErrorBound(*pilot, place, question.point());
+  const std::string found =
+      absl::StrCat("the limit's error is at most ", Rounded(error), ", ", FoundBy(*pilot, place));
+  if (error > *question.target().tolerance) {
+    return Billiard(absl::StrCat("exact; ", found, ": beyond the tolerance"));
+  }
+  return Answer{Model::kSpectrum, absl::StrCat(found, ": within the tolerance"), error};
+}
+
+// Whichever is nearer to the truth in that time. Runs no pilot, which would take of it.
+Answer ByBudget(const Question& question) {
+  const double limit = ExpectedLimitError(question.point());
+  const double billiard = question.ErrorOf(question.SamplesInBudget(Model::kBilliard));
+  const std::string compared =
+      absl::StrCat("the billiard's error after this budget is some ", Rounded(billiard),
+                   ", the limit's some ", Rounded(limit));
+  if (billiard <= limit) return Billiard(absl::StrCat("exact; ", compared));
+  return {Model::kSpectrum, compared, limit};
+}
+
+std::optional<Answer> RelaxationBy(const Question& question, const PilotSource& pilots) {
+  if (question.target().tolerance) return ByTolerance(question, pilots);
+  if (question.target().budget_seconds) return ByBudget(question);
+  return Billiard("exact; without a tolerance the limit's error cannot be weighed");
+}
+
+std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pilots) {
+  const EnsembleSpec& spec = question.spec();
+  if (HasClosedForm(spec.experiment)) {
+    if (!spec.verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
+    return Billiard("asked to verify the closed form");
+  }
+  if (question.relaxes()) return RelaxationBy(question, pilots);
+  return Billiard(absl::StrCat("exact; nothing cheaper answers ", Name(spec.experiment)));
+}
+
+Answer ExplicitAnswer(const Question& question) {
+  const Model model = question.spec().model;
+  if (!IsOfTheLimit(model)) return {model, "", 0.0};
+  if (!question.relaxes()) return {model, "", std::nullopt};
+  return {model, "", ExpectedLimitError(question.point())};
+}
+
+// ---- all rungs ----
+
+std::string CannotAnswer(Model model, Experiment experiment) {
+  return absl::StrCat("there is no ", model == Model::kClosedForm ? "closed form" : "answer by it",
+                      " for ", Name(experiment));
+}
+
+void PredictWithoutSamples(const Question& question, const Machine& machine, Rung& rung) {
+  const bool closed = rung.model == Model::kClosedForm;
+  rung.samples = 0;
+  rung.work = closed ? machine.rates.closed_form : machine.rates.spectrum;
+  rung.statistical_error = 0;
+  if (closed) {
+    rung.model_error = 0;
+    rung.reason = "exact at every delta";
+  }
+}
+
+void PredictSamples(const Question& question, Rung& rung) {
+  rung.samples = question.SamplesBy(rung.model);
+  rung.work = *rung.samples * question.SecondsBy(rung.model);
+  const double error = question.ErrorOf(*rung.samples);
+  if (std::isfinite(error)) rung.statistical_error = error;
+  if (!IsOfTheLimit(rung.model)) {
+    rung.model_error = 0;
+    rung.reason = "exact";
+  }
+}
+
+// What is known of the limit's error: a pilot, if one was run; else what is expected.
+void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
+  rung.reason = "the limit delta -> 0";
+  if (!question.relaxes()) return;
+  const PilotPlace place = PilotPlaceFor(question.point());
+  const std::optional<Pilot> pilot = pilots(place);
+  const bool known = pilot && !pilot->predicted;
+  rung.model_error = known ? LimitErrorBound(*pilot, place, question.point())
+                           : ExpectedLimitError(question.point());
+  rung.reason = known ? absl::StrCat("the limit; at most so far off, ", FoundBy(*pilot, place))
+                      : "the limit; expected to be so far off, by its scaling with delta";
+}
+
+Rung RungFor(Model model, const Question& question, const Machine& machine,
+             const PilotSource& pilots) {
+  Rung rung = {.model = model, .answers = Answers(model, question.spec().experiment)};
+  if (!rung.answers) {
+    rung.reason = CannotAnswer(model, question.spec().experiment);
+    return rung;
+  }
+  if (model == Model::kClosedForm || model == Model::kSpectrum) {
+    PredictWithoutSamples(question, machine, rung);
+  } else {
+    PredictSamples(question, rung);
+  }
+  if (IsOfTheLimit(model)) SetLimitError(question, pilots, rung);
+  return rung;
+}
+
+}  // namespace
+
+double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
+  return *spec.target.budget_seconds * workers / static_cast<double>(PointCount(spec));
+}
+
+std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
+                                   const Machine& machine, const PilotSource& pilots) {
+  const Question question(spec, point, machine);
+  return spec.model == Model::kAuto ? AutoAnswer(question, pilots) : ExplicitAnswer(question);
+}
+
+const Rung& Ladder::Chosen() const {
+  return *std::find_if(rungs.begin(), rungs.end(),
+                       [this](const Rung& rung) { return rung.model == answer.model; });
+}
+
+Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
+                 const PilotSource& pilots) {
+  const PilotSource known_or_predicted = [&pilots](const PilotPlace& place) {
+    const std::optional<Pilot> known = pilots(place);
+    return known ? known : PredictedPilot(place);
+  };
+  const Question question(spec, point, machine);
+  Ladder ladder;
+  for (const Model model : kLadder) {
+    ladder.rungs.push_back(RungFor(model, question, machine, known_or_predicted));
+  }
+  ladder.answer = *ChooseAnswer(spec, point, machine, known_or_predicted);
+  return ladder;
+}
+
+std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
+  if (!spec.target.tolerance) return {};
+  const double tolerance = *spec.target.tolerance;
+  double error = spec.model == Model::kClosedForm ? kClosedFormError : 0;
+  if (IsOfTheLimit(spec.model) && spec.experiment == Experiment::kEnergyRelaxation) {
+    for (size_t i = 0; i < PointCount(spec); ++i) {
+      error = std::max(error, ExpectedLimitError(PointAt(spec, i)));
+    }
+  }
+  if (!(tolerance < error)) return {};
+  return {{"target.tolerance",
+           absl::StrCat("is ", NumberText(tolerance), ", below what ", Name(spec.model),
+                        " is off by itself; permitted with model ", Name(spec.model),
+                        ": tolerance >= ", Rounded(error), "; or model auto or billiard")}};
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,170 @@
+#include "client/output/plan_output.h"
+
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/json_util.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+namespace ballpiston::client {
+namespace {
+
+template <typename Message>
+Message FromText(const std::string& text) {
+  Message message;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message));
+  return message;
+}
+
+v1::EnsembleSpec Question(const std::string& target = "tolerance: 1e-2 budget { seconds: 90 }") {
+  return FromText<v1::EnsembleSpec>("experiment: ENERGY_RELAXATION target {" + target + "}");
+}
+
+// The relaxation time near the limit, where the reduced models answer, and far from it.
+constexpr char kLadders[] = R"(
+    points {
+      parameters { rho: 0.529561127988977 delta: 0.0125 }
+      models { model: CLOSED_FORM reason: "no closed form is known" }
+      models { model: SPECTRUM answers: true work: 0.0123 statistical_error: 0 model_error: 2.1e-3
+               reason: "pilot, 3.0e-04" }
+      models { model: MARKOV answers: true samples: 40123 work: 0.21 statistical_error: 1e-2
+               model_error: 2.1e-3 }
+      models { model: BILLIARD answers: true samples: 40123 work: 192 statistical_error: 1e-2
+               model_error: 0 }
+      model: SPECTRUM reason: "cheapest within the tolerance" }
+    points {
+      parameters { rho: 0.529561127988977 delta: 0.2 epsilon: 0.1 }
+      models { model: SPECTRUM work: 120e-6 statistical_error: 0 model_error: 0.34
+               reason: "off by 3.4e-01, \"too much\"" }
+      models { model: BILLIARD answers: true samples: 4.0123e8 work: 15 statistical_error: 1e-2
+               model_error: 0 }
+      model: BILLIARD reason: "the billiard itself" }
+    point_count: 2 work: 15.0123 time: 7.6 workers: 2
+    rates { jump: 2e-8 })";
+
+v1::PlanEnsembleJobResponse Plan() { return FromText<v1::PlanEnsembleJobResponse>(kLadders); }
+
+std::string Printed(Format format, const v1::PlanEnsembleJobResponse& plan = Plan(),
+                    const v1::EnsembleSpec& spec = Question()) {
+  std::ostringstream out;
+  PrintPlan(spec, plan, format, out);
+  return out.str();
+}
+
+TEST(PlanTable, ShowsTheLadderOfEachPointAndMarksTheChoice) {
+  EXPECT_EQ(Printed(Format::kTable), R"(energy-relaxation, tolerance 0.01, budget 90 s, 2 points
+
+rho 0.529561128, delta 0.0125
+    model        answers  samples     work  stat. error  model error  remark
+    closed-form  no                                                   no closed form is known
+ >  spectrum     yes                 12 ms            0      2.1e-03  pilot, 3.0e-04
+    markov       yes        40123   210 ms      1.0e-02      2.1e-03
+    billiard     yes        40123  3.2 min      1.0e-02            0
+ > spectrum: cheapest within the tolerance
+
+rho 0.529561128, delta 0.2, epsilon 0.1
+    model     answers  samples    work  stat. error  model error  remark
+    spectrum  no                120 µs            0      3.4e-01  off by 3.4e-01, "too much"
+ >  billiard  yes      4.0e+08    15 s      1.0e-02            0
+ > billiard: the billiard itself
+
+2 points: 15 s of one core, 7.6 s with this server's 2 workers
+)");
+}
+
+TEST(PlanTable, NamesTheTargetThatWasGiven) {
+  const auto heading = [](const std::string& target) {
+    const std::string text = Printed(Format::kTable, {}, Question(target));
+    return text.substr(0, text.find('\n'));
+  };
+  EXPECT_EQ(heading(""), "energy-relaxation, 0 points");
+  EXPECT_EQ(heading("samples: 1000000"), "energy-relaxation, 1000000 samples a point, 0 points");
+  EXPECT_EQ(heading("collisions: 5"), "energy-relaxation, 5 collisions a point, 0 points");
+  EXPECT_EQ(heading("budget { nanos: 500000000 }"), "energy-relaxation, budget 0.5 s, 0 points");
+}
+
+TEST(PlanTable, WhereNoModelAnswersItSaysSo) {
+  const std::string text =
+      Printed(Format::kTable, FromText<v1::PlanEnsembleJobResponse>(
+                                  R"(points { models { model: MARKOV } reason: "out of reach" }
+                             point_count: 1 workers: 1)"));
+  EXPECT_NE(text.find("\n    markov  no\n > none: out of reach\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n1 point: 0 s of one core, 0 s with this server's 1 worker\n"),
+            std::string::npos)
+      << text;
+}
+
+v1::PlanEnsembleJobResponse PlanOfMany(int points) {
+  v1::PlanEnsembleJobResponse plan;
+  const auto two = Plan();
+  for (int i = 0; i < points; ++i) *plan.add_points() = two.points(i == 0 ? 0 : 1);
+  plan.set_point_count(points);
+  plan.set_workers(2);
+  return plan;
+}
+
+TEST(PlanTable, ManyPointsHaveARowEach) {
+  const std::string text = Printed(Format::kTable, PlanOfMany(kMostLadders + 1));
+  EXPECT_EQ(text.rfind(R"(energy-relaxation, tolerance 0.01, budget 90 s, 9 points
+
+        rho   delta  epsilon  model     samples   work  stat. error  model error
+0.529561128  0.0125           spectrum           12 ms            0      2.1e-03
+0.529561128     0.2      0.1  billiard  4.0e+08   15 s      1.0e-02            0
+)",
+                       0),
+            0u)
+      << text;
+  EXPECT_NE(text.find("\nspectrum (rho 0.529561128, delta 0.0125): cheapest within the tolerance\n"
+                      "billiard (rho 0.529561128, delta 0.2, epsilon 0.1 and 7 more points): the "
+                      "billiard itself\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(Printed(Format::kTable, PlanOfMany(kMostLadders)).find("more points"),
+            std::string::npos);
+}
+
+TEST(PlanTable, SaysWhenTheServerShowsOnlyTheFirstPoints) {
+  v1::PlanEnsembleJobResponse plan = Plan();
+  plan.set_point_count(5000);
+  const std::string text = Printed(Format::kTable, plan);
+  EXPECT_NE(text.find("\nShown: the first 2 of the grid.\n5000 points: "), std::string::npos)
+      << text;
+}
+
+TEST(PlanCsv, HasARowForEachPointAndModel) {
+  EXPECT_EQ(
+      Printed(Format::kCsv),
+      R"(rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,model_error,reason
+0.529561127988977,0.0125,,,closed-form,false,false,,,,,no closed form is known
+0.529561127988977,0.0125,,,spectrum,true,true,,0.0123,0,0.0021,"cheapest within the tolerance; pilot, 3.0e-04"
+0.529561127988977,0.0125,,,markov,false,true,40123,0.21,0.01,0.0021,
+0.529561127988977,0.0125,,,billiard,false,true,40123,192,0.01,0,
+0.529561127988977,0.2,0.1,,spectrum,false,false,,0.00012,0,0.34,"off by 3.4e-01, ""too much"""
+0.529561127988977,0.2,0.1,,billiard,true,true,401230000,15,0.01,0,the billiard itself
+)");
+}
+
+TEST(PlanJson, IsTheResponseWithTheProtosNames) {
+  const std::string text = Printed(Format::kJson);
+  v1::PlanEnsembleJobResponse read;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text, &read).ok()) << text;
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(read, Plan())) << text;
+  EXPECT_NE(text.find("\"statistical_error\":0.01"), std::string::npos) << text;
+  EXPECT_NE(text.find("\"point_count\":2"), std::string::npos) << text;
+  EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(PlanJsonl, HasAPointALine) {
+  const std::string text = Printed(Format::kJsonl);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_EQ(text.rfind("{\"parameters\":{\"rho\":0.529561127988977,", 0), 0u);
+  EXPECT_NE(text.find("\"model\":\"BILLIARD\",\"reason\":\"the billiard itself\"}\n"),
+            std::string::npos)
+      << text;
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,40 @@
+#include "client/output/text_table.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace ballpiston::client {
+namespace {
+
+std::string Printed(const TextTable& table) {
+  std::ostringstream out;
+  table.Print(out, 1);
+  return out.str();
+}
+
+TEST(TextTable, AlignsNumbersRightAndTextLeft) {
+  TextTable table({{"name", TextTable::Column::kLeft}, {"value"}});
+  table.AddRow({"a", "1"});
+  table.AddRow({"longer", "22.5"});
+  table.AddRow({"b"});
+  EXPECT_EQ(Printed(table),
+            " name    value\n"
+            " a           1\n"
+            " longer   22.5\n"
+            " b\n");
+}
+
+// µ has two bytes.
+TEST(TextTable, CountsCharactersNotBytes) {
+  TextTable table({{"work"}, {"n"}});
+  table.AddRow({"120 µs", "1"});
+  table.AddRow({"3.2 min", "2"});
+  EXPECT_EQ(Printed(table),
+            "    work  n\n"
+            "  120 µs  1\n"
+            " 3.2 min  2\n");
+}
+
+}  // namespace
+}  // namespace ballpiston::client

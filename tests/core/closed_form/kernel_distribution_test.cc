@@ -1,0 +1,162 @@
+#include "core/closed_form/kernel_distribution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/closed_form/kernel.h"
+#include "core/closed_form/kernel_moments.h"
+#include "gtest/gtest.h"
+#include "tests/oracle/gauss_legendre.h"
+#include "tests/oracle/printed_formulas.h"
+#include "tests/oracle/quad_precision.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Asin;
+using oracle::Quad;
+using oracle::QuadPi;
+using oracle::RelativeError;
+using oracle::Sqrt;
+
+// pi times the integral of W from 0 to ep_out, as it is found on paper: the arcsine part up to ep,
+// the root's part beyond.
+Quad IntegratedKernel(Quad eb, Quad ep, Quad ep_out) {
+  const Quad arc_end = std::min({eb, ep, ep_out});
+  Quad sum = eb > 0 ? Sqrt(ep) * Asin(Sqrt(arc_end / eb)) : Quad{0};
+  if (eb > ep && ep_out > ep) sum += Sqrt(eb - ep) - Sqrt(eb - std::min(eb, ep_out));
+  return sum;
+}
+
+Quad ExactBelow(Quad eb, Quad ep, Quad ep_out) {
+  return IntegratedKernel(eb, ep, ep_out) / IntegratedKernel(eb, ep, eb);
+}
+
+Quad PairBall(double ep) { return Quad{1} / 2 - Quad{ep}; }
+
+// F of the pair and, where 1/2 - ep is exact anyway, of two energies.
+double WorstError(double ep, double ep_out) {
+  const double eb = 0.5 - ep;
+  return std::max(
+      RelativeError(KernelDistribution::OfPair(ep).Below(ep_out),
+                    ExactBelow(PairBall(ep), ep, ep_out)),
+      RelativeError(KernelDistribution(eb, ep).Below(ep_out), ExactBelow(eb, ep, ep_out)));
+}
+
+TEST(KernelDistribution, AccurateAtRandomEnergies) {
+  std::mt19937_64 random(20240701);
+  std::uniform_real_distribution<double> exponent(-14, 0);
+  double worst = 0, worst_rate = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double small = 0.5 * std::pow(10, exponent(random));
+    const double share = std::pow(10, exponent(random));
+    for (const double ep : {small, 0.25 - small / 2, 0.25 + small / 2, 0.5 - small}) {
+      const double eb = 0.5 - ep;
+      for (const double out : {eb * share, eb * (1 - share), ep * (1 + share), ep * (1 - share)}) {
+        worst = std::max(worst, WorstError(ep, out));
+      }
+      worst_rate =
+          std::max(worst_rate,
+                   RelativeError(KernelDistribution::OfPair(ep).CollisionRate(),
+                                 oracle::CollisionRateAsPrinted(PairBall(ep), Quad{ep}, QuadPi())));
+    }
+  }
+  EXPECT_LE(worst, kKernelDistributionRelativeError);
+  EXPECT_LE(worst_rate, kKernelDistributionRelativeError);
+  EXPECT_GT(worst, 1e-16);  // the comparison sees rounding
+}
+
+// There F is 1 less a root: an energy left that is wrong by an ulp of 1/2 would show as 1e-8.
+TEST(KernelDistribution, AccurateWhereTheBallIsLeftWithLittle) {
+  std::mt19937_64 random(20240702);
+  std::uniform_real_distribution<double> exponent(-17, -1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 5000; ++i) {
+    const double ep =
+        i % 3 == 0 ? 0.25 - 0.25 * std::pow(10, exponent(random)) : 0.5 * unit(random);
+    const double out = (0.5 - ep) * (1 - std::pow(10, exponent(random)));
+    EXPECT_LE(WorstError(ep, out), kKernelDistributionRelativeError) << ep << " " << out;
+  }
+}
+
+TEST(KernelDistribution, IsOneRateForEveryWayToWriteIt) {
+  for (const double ep : {0.0, 1e-300, 1e-9, 0.1, 0.2499999, 0.25, 0.3, 0.5}) {
+    EXPECT_DOUBLE_EQ(KernelDistribution::OfPair(ep).CollisionRate(), PairCollisionRate(ep));
+    EXPECT_DOUBLE_EQ(KernelDistribution(3, 6 * ep).CollisionRate(), CollisionRate(3, 6 * ep));
+  }
+}
+
+TEST(KernelDistribution, RisesFromZeroToOne) {
+  for (const double ep :
+       {0.0, 1e-300, 1e-12, 0.03, 0.2499999999, 0.25, 0.26, 0.49, 0.5 - 0x1p-54}) {
+    const KernelDistribution law = KernelDistribution::OfPair(ep);
+    const double eb = 0.5 - ep;
+    EXPECT_EQ(law.Below(0), 0) << ep;
+    EXPECT_EQ(law.Below(std::nextafter(eb, 1.0)), 1) << ep;
+    EXPECT_EQ(law.Below(0.5), 1) << ep;
+    EXPECT_NEAR(law.Below(eb), 1, 1e-8) << ep;  // 1/2 - ep is rounded: the root of an ulp
+    double before = 0;
+    for (int i = 1; i <= 10'000; ++i) {
+      const double now = law.Below(eb * i / 10'000);
+      // On either side of ep the two forms may differ by an ulp.
+      EXPECT_GE(now, before - 0x1p-52) << ep << " " << i;
+      before = now;
+    }
+  }
+  EXPECT_EQ(KernelDistribution(0.3, 0.1).Below(0.3), 1);
+  EXPECT_EQ(KernelDistribution(0, 0.5).Below(0), 1);  // a ball at rest gives nothing
+  EXPECT_EQ(KernelDistribution::OfPair(0.5).Below(0), 1);
+}
+
+TEST(KernelDistribution, SlopeIsTheKernelOverItsRate) {
+  for (const double eb : {0.01, 0.3, 2.0}) {
+    for (const double ep : {0.0, 1e-6, 0.05, 0.2, 0.5, 3.0}) {
+      const KernelDistribution law(eb, ep);
+      for (const double share : {0.01, 0.2, 0.6, 0.95}) {
+        const double out = share * eb, step = 1e-5 * out * (1 - share);
+        if (std::fabs(out - ep) <= step) continue;
+        const double slope = (law.Below(out + step) - law.Below(out - step)) / (2 * step);
+        // The third derivative times step^2, and rounding over step.
+        EXPECT_NEAR(slope * law.CollisionRate() / Kernel(eb, ep, out), 1, 1e-6)
+            << eb << " " << ep << " " << out;
+      }
+    }
+  }
+}
+
+// Integral over u in [from, to] of r(u)/(1/4) F(y | u): collisions from there to below y.
+double CollisionsFromTo(double from, double to, double y) {
+  const auto integrand = [&](Quad u) {
+    const double ep = static_cast<double>(u * u / 2);
+    return 4 * PairCollisionRate(ep) * KernelDistribution::OfPair(ep).Below(y);
+  };
+  double sum = 0;
+  // The two kinks are at ep = y and, beyond it, at ep + y = 1/2 and ep = 1/4; root singularities
+  // there need small panels.
+  double ends[] = {from, std::sqrt(2 * y), std::sqrt(0.5), std::sqrt(std::max(1 - 2 * y, 0.0)), to};
+  for (double& end : ends) end = std::clamp(end, from, to);
+  std::sort(std::begin(ends), std::end(ends));
+  for (size_t i = 0; i + 1 < std::size(ends); ++i) {
+    const Quad middle = (ends[i] + ends[i + 1]) / 2, half = (ends[i + 1] - ends[i]) / 2;
+    // u = middle + half sin t: roots at the ends become smooth.
+    const auto mapped = [&](Quad t) {
+      return integrand(middle + half * oracle::Sin(t)) * half * oracle::Cos(t);
+    };
+    sum += static_cast<double>(oracle::Integrate(mapped, -QuadPi() / 2, QuadPi() / 2));
+  }
+  return sum;
+}
+
+TEST(KernelDistribution, DetailedBalanceOfCollisions) {
+  for (const double x : {0.001, 0.07, 0.2, 0.3}) {
+    for (const double y : {0.02, 0.15, 0.4}) {
+      EXPECT_NEAR(CollisionsFromTo(0, std::sqrt(2 * x), y),
+                  CollisionsFromTo(0, std::sqrt(2 * y), x), 1e-10)
+          << x << " " << y;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

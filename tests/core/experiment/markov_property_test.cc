@@ -1,0 +1,243 @@
+#include "core/experiment/markov_property.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/closed_form/kernel_moments.h"
+#include "core/experiment/markov_property_statistics.h"
+#include "core/geometry/elementary_functions.h"
+#include "core/sampling/counter_random.h"
+#include "core/statistics/moments.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kPaperRho = 0.529561127988977;
+
+const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {
+  for (const Estimate& estimate : estimates) {
+    if (estimate.name == name) return estimate;
+  }
+  ADD_FAILURE() << "no " << name;
+  return estimates.front();
+}
+
+// The energy below which a share v of the kernel lies, from the two forms of W's integral.
+double EnergyAt(double v, double ep) {
+  const double eb = 0.5 - ep, q = std::sqrt(std::fmax(eb - ep, 0));
+  const double angle = ep < eb ? std::asin(std::sqrt(ep / eb)) : M_PI / 2;
+  const double below = v * (std::sqrt(ep) * angle + q);
+  if (below < std::sqrt(ep) * angle) return eb * std::pow(std::sin(below / std::sqrt(ep)), 2);
+  return eb - std::pow(std::sqrt(ep) * angle + q - below, 2);
+}
+
+// Jumps after which an orbit's first energy is that of equilibrium.
+constexpr size_t kBurnIn = 50;
+
+// Counts orbits of a process that draws v and the waiting time's exponent by what they were before.
+template <typename Outcome, typename Exponent>
+BlockResult CountsOfProcess(uint64_t seed, int orbits, Outcome outcome, Exponent exponent) {
+  BlockResult counts = EmptyMarkovPropertyCounts();
+  for (int i = 0; i < orbits; ++i) {
+    CounterRandom random(seed, 0, static_cast<uint64_t>(i));
+    double energy = random.Uniform() / 2, v = 0.5, x = 1;
+    for (size_t k = 0; k < kBurnIn; ++k) energy = EnergyAt(random.Uniform(), energy);
+    std::vector<Exchange> exchanges(kExchangesPerOrbit);
+    const double first = energy;
+    for (Exchange& exchange : exchanges) {
+      x = exponent(random, x);
+      v = outcome(random, v, x);
+      exchange.waiting_time = x / PairCollisionRate(energy);
+      exchange.energy = energy = EnergyAt(v, energy);
+    }
+    CountOrbit(first, exchanges, counts);
+  }
+  return counts;
+}
+
+double Uniform(CounterRandom& random) { return random.Uniform(); }
+double Exponential(CounterRandom& random) { return -Log(random.Uniform()); }
+
+BlockResult CountsOfJumpProcess(uint64_t seed, int orbits) {
+  return CountsOfProcess(
+      seed, orbits, [](CounterRandom& random, double, double) { return Uniform(random); },
+      [](CounterRandom& random, double) { return Exponential(random); });
+}
+
+// 4 standard errors for three correlations and two divergences, 6e-5 false alarms each; sqrt(N) D
+// above 2.5 has a probability of 2 exp(-12.5) = 7e-6.
+TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
+  const BlockResult counts = CountsOfJumpProcess(1, 20'000);
+  ASSERT_EQ(counts.samples, 640'000u);
+  const std::vector<Estimate> estimates = MarkovPropertyEstimates(counts, 0);
+  ASSERT_EQ(estimates.size(), 6u);
+  for (const Estimate& estimate : estimates) {
+    if (estimate.name == "hitting_time_ks_distance") {
+      EXPECT_LT(estimate.value, 2.5 / std::sqrt(640'000));
+    } else {
+      EXPECT_NEAR(estimate.value, estimate.noise_floor.value_or(0), 4 * *estimate.standard_error)
+          << estimate.name;
+    }
+    EXPECT_NE(estimate.exact.has_value(), estimate.noise_floor.has_value()) << estimate.name;
+  }
+}
+
+// 100 repetitions: the mean is known to a tenth of one's error, the scatter to 7 percent. Windows 4
+// of these: false alarms 6e-5 each. The noise floor is the first term in 1/N; the next one,
+// bins^2/(12 (N share of a row)^2), is given below and of the size of one such tenth.
+TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
+  const std::pair<std::string_view, double> next_terms[] = {{"transition_divergence", 1.3e-4},
+                                                            {"memory_divergence", 3.5e-5}};
+  for (const auto& [name, next_term] : next_terms) {
+    Moments excess, errors;
+    for (uint64_t seed = 0; seed < 100; ++seed) {
+      const auto estimates = MarkovPropertyEstimates(CountsOfJumpProcess(100 + seed, 400), 0);
+      const Estimate& divergence = Named(name, estimates);
+      excess.Add(divergence.value - *divergence.noise_floor);
+      errors.Add(*divergence.standard_error);
+    }
+    EXPECT_NEAR(excess.mean, next_term, 4 * *excess.StandardError()) << name;
+    EXPECT_NEAR(std::sqrt(*excess.Variance()) / errors.mean, 1, 4 * std::sqrt(1 / 200.0)) << name;
+  }
+}
+
+// Each way to fail shows in its own estimate.
+TEST(MarkovPropertyStatistics, SeesWhatIsNotMarkov) {
+  const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };
+  const auto exponential = [](CounterRandom& random, double) { return Exponential(random); };
+  const auto estimates = [](const BlockResult& counts) {
+    return MarkovPropertyEstimates(counts, std::nullopt);
+  };
+  const auto regular = estimates(CountsOfProcess(
+      2, 1000, uniform, [](CounterRandom& random, double) { return 0.5 + Uniform(random); }));
+  EXPECT_NEAR(Named("hitting_time_ks_distance", regular).value, 1 - std::exp(-0.5), 0.001);
+
+  const auto lagging =
+      estimates(CountsOfProcess(3, 1000, uniform, [](CounterRandom& random, double before) {
+        return Uniform(random) < 0.5 ? before : Exponential(random);
+      }));
+  EXPECT_NEAR(Named("waiting_memory_correlation", lagging).value, 0.5, 0.03);
+
+  const auto hasty = estimates(CountsOfProcess(
+      4, 1000, [](CounterRandom&, double, double x) { return 1 - std::exp(-x); }, exponential));
+  EXPECT_NEAR(Named("waiting_outcome_correlation", hasty).value, 1, 0.02);
+
+  const auto low = estimates(CountsOfProcess(
+      5, 1000, [](CounterRandom& random, double, double) { return std::sqrt(Uniform(random)); },
+      exponential));
+  EXPECT_NEAR(Named("transition_divergence", low).value, std::log(2) - 0.5, 0.02);  // density 2 v
+
+  const auto sluggish = estimates(CountsOfProcess(
+      6, 1000,
+      [](CounterRandom& random, double before, double) {
+        return Uniform(random) < 0.5 ? before : Uniform(random);
+      },
+      exponential));
+  const Estimate& memory = Named("memory_divergence", sluggish);
+  EXPECT_GT(memory.value, 20 * *memory.noise_floor);
+  EXPECT_GT(std::fabs(Named("memory_correlation", sluggish).value), 0.1);
+}
+
+// An orbit to and fro between two energies: what comes next is what was before, so B = V.
+TEST(MarkovPropertyStatistics, ReadBackwardIsTheLawReadForward) {
+  BlockResult counts = EmptyMarkovPropertyCounts();
+  for (uint64_t i = 0; i < 1000; ++i) {
+    CounterRandom random(7, 0, i);
+    const double here = random.Uniform() / 2, there = EnergyAt(random.Uniform(), here);
+    std::vector<Exchange> exchanges(kExchangesPerOrbit, {.waiting_time = 1, .energy = there});
+    for (size_t k = 1; k < exchanges.size(); k += 2) exchanges[k].energy = here;
+    CountOrbit(here, exchanges, counts);
+  }
+  const std::span rows = std::span(counts.histograms).last(kMemoryBins);
+  for (size_t row = 0; row < kMemoryBins; ++row) {
+    EXPECT_GT(rows[row].counts[row], 0u);
+    EXPECT_EQ(rows[row].counts[row], rows[row].Total());
+  }
+}
+
+TEST(MarkovPropertyStatistics, EnergiesAtBothEndsAreCounted) {
+  BlockResult counts = EmptyMarkovPropertyCounts();
+  const std::vector<Exchange> exchanges = {{.waiting_time = 1e-300, .energy = 0.5},
+                                           {.waiting_time = 1e300, .energy = 0},
+                                           {.waiting_time = 0, .energy = 1e-300},
+                                           {.waiting_time = 1, .energy = 0.25}};
+  CountOrbit(0, exchanges, counts);
+  EXPECT_EQ(counts.samples, 4u);
+  for (const Estimate& estimate : MarkovPropertyEstimates(counts, 0)) {
+    EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
+  }
+}
+
+struct Point {
+  EnsembleSpec spec;
+  MarkovPropertyExperiment experiment;
+
+  explicit Point(int64_t collisions, Model model = Model::kBilliard)
+      : spec({.experiment = Experiment::kMarkovProperty,
+              .grid = {.rho = {kPaperRho}, .delta = {0.2}},
+              .target = {.collisions = collisions},
+              .seed = 42,
+              .model = model}),
+        experiment(spec, PointAt(spec, 0), *PairGeometry::Create(kPaperRho, 0.2)) {}
+
+  BlockResult RunAll() const {
+    BlockResult merged;
+    for (uint64_t block = 0; block < experiment.plan().Blocks(); ++block) {
+      merged.Merge(*experiment.RunBlock(block, {}));
+    }
+    return merged;
+  }
+};
+
+TEST(MarkovProperty, CountsEveryCollisionOnce) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+    for (const int64_t collisions : {1, 33, 1000, 40'000}) {
+      const Point point(collisions, model);
+      const BlockResult merged = point.RunAll();
+      const PointSummary summary = point.experiment.Summarize(merged);
+      EXPECT_EQ(summary.samples, static_cast<uint64_t>(collisions));
+      EXPECT_EQ(merged.histograms[0].Total(), summary.samples);
+      EXPECT_EQ(summary.health.escapes, 0u);
+      EXPECT_LT(summary.health.max_energy_error, 1e-14);
+      EXPECT_EQ(summary.estimates.front().name, "memory_correlation");
+      EXPECT_EQ(summary.estimates.front().value, point.experiment.FirstEstimate(merged).value);
+      for (const Estimate& estimate : summary.estimates) {
+        EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
+        if (collisions >= 1000) {
+          ASSERT_TRUE(estimate.standard_error) << estimate.name;
+        }
+      }
+    }
+  }
+}
+
+// Also that every orbit's own exchanges are counted after its own start. 4 standard errors of the
+// noise: 6e-5 false alarms.
+TEST(MarkovProperty, TransitionsFollowTheKernel) {
+  const Point point(40'000);
+  const auto estimates = point.experiment.Summarize(point.RunAll()).estimates;
+  const Estimate& divergence = Named("transition_divergence", estimates);
+  EXPECT_NEAR(divergence.value, *divergence.noise_floor, 4 * *divergence.standard_error);
+}
+
+TEST(MarkovProperty, BlocksAreAPureFunctionOfTheirIndex) {
+  const Point point(40'000);
+  const BlockResult later = *point.experiment.RunBlock(7, {});
+  EXPECT_NE(*point.experiment.RunBlock(0, {}), later);
+  EXPECT_EQ(*point.experiment.RunBlock(7, {}), later);
+  EXPECT_EQ(*Point(40'000).experiment.RunBlock(7, {}), later);
+}
+
+TEST(MarkovProperty, StopEndsABlock) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_FALSE(Point(40'000).experiment.RunBlock(0, stop.get_token()));
+}
+
+}  // namespace
+}  // namespace ballpiston

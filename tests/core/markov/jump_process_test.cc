@@ -1,0 +1,276 @@
+#include "core/markov/jump_process.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/closed_form/kernel_moments.h"
+#include "core/sampling/counter_random.h"
+#include "tests/core/billiard/each_target.h"
+#include "tests/oracle/gauss_legendre.h"
+#include "tests/oracle/quad_precision.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Asin;
+using oracle::Quad;
+using oracle::Sqrt;
+
+// From nothing to all, through the point where the two parts of the law part, 1/sqrt 2.
+std::vector<double> Energies() {
+  std::vector<double> us = {0, std::numeric_limits<double>::denorm_min(), 1e-300, 1e-160, 1e-30};
+  for (int k = 1; k <= 16; ++k) {
+    const double small = std::pow(10.0, -k);
+    for (const double u : {small, M_SQRT1_2 - small, M_SQRT1_2 + small, 1 - small}) {
+      if (u >= 0 && u <= 1) us.push_back(u);
+    }
+  }
+  for (int k = 1; k < 64; ++k) us.push_back(k / 64.0);
+  for (const double u : {M_SQRT1_2, std::nextafter(1.0, 0.0), 1.0}) us.push_back(u);
+  return us;
+}
+
+// In (0, 1), with the least and the greatest that CounterRandom gives.
+std::vector<double> UniformNumbers() {
+  std::vector<double> vs = {0x1p-53, 0x1.8p-52, 1 - 0x1p-53, 1 - 0x1.8p-52};
+  for (int k = 1; k <= 15; ++k) {
+    vs.push_back(std::pow(10.0, -k));
+    vs.push_back(1 - std::pow(10.0, -k));
+  }
+  for (int k = 1; k < 64; ++k) vs.push_back(k / 64.0);
+  return vs;
+}
+
+// The distribution function of u' after a jump from u, as in the header, with 113 bits.
+class ExactLaw {
+ public:
+  explicit ExactLaw(double u) : u_(u), s2_(1 - u_ * u_), s_(Sqrt(s2_)) {
+    const Quad q2 = 1 - 2 * u_ * u_;
+    c_ = q2 > 0 ? Sqrt(q2) + u_ * Asin(u_ / s_) : u_ * oracle::QuadPi() / 2;
+  }
+  Quad Below(Quad next) const {
+    if (next >= s_) return 1;
+    if (next <= u_) return u_ * Asin(next / s_) / c_;
+    return 1 - Sqrt(s2_ - next * next) / c_;
+  }
+  Quad rate() const { return c_ / (Sqrt(Quad{2}) * oracle::QuadPi()); }
+
+ private:
+  Quad u_, s2_, s_, c_;
+};
+
+// v lies between the probabilities of what is a relative kJumpError below and above. Below
+// (u/s)/c times 1e-290 the quantile itself is no normal number.
+void ExpectQuantile(double u, double v, double next) {
+  SCOPED_TRACE(testing::Message() << "u " << u << " v " << v << " u' " << next);
+  EXPECT_TRUE(next >= 0 && next <= 1);
+  const ExactLaw law(u);
+  const Quad error = kJumpError;
+  EXPECT_TRUE(u == 1 ? next == 0 : law.Below(Quad{next} * (1 - error)) <= v);
+  EXPECT_TRUE(law.Below(Quad{next} * (1 + error)) >= v);
+}
+
+TEST(JumpProcess, InvertsTheDistributionOfW) {
+  for (const double u : Energies()) {
+    for (const double v : UniformNumbers()) ExpectQuantile(u, v, JumpFrom(u, 0.5, v).u);
+  }
+}
+
+TEST(JumpProcess, JumpsFurtherUpForAGreaterUniformNumber) {
+  for (const double u : Energies()) {
+    for (int k = 1; k + 1 < 1000; ++k) {
+      ASSERT_LE(JumpFrom(u, 0.5, k / 1000.0).u, JumpFrom(u, 0.5, (k + 1) / 1000.0).u);
+    }
+  }
+}
+
+TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
+  for (const double u : Energies()) {
+    const ExactLaw law(u);
+    for (const double v : UniformNumbers()) {
+      const double time = JumpFrom(u, v, 0.5).waiting_time;
+      ASSERT_TRUE(time > 0 && std::isfinite(time));
+      EXPECT_LE(oracle::RelativeError(time, -Quad{std::log(v)} / law.rate()), kJumpError) << u;
+    }
+  }
+  // The closed form's rate; u^2/2 rounds.
+  for (int k = 0; k <= 64; ++k) {
+    const double u = k / 64.0;
+    EXPECT_NEAR(-std::log(0.5) / JumpFrom(u, 0.5, 0.5).waiting_time / PairCollisionRate(u * u / 2),
+                1, kJumpError + kKernelMomentsRelativeError);
+  }
+}
+
+TEST(JumpProcess, ABallAtRestIsLeftByAPistonAtRest) {
+  for (const double v : UniformNumbers()) EXPECT_EQ(JumpFrom(1, 0.5, v).u, 0);
+}
+
+double Rate(double u) { return std::log(2.0) / JumpFrom(u, 0.5, 0.5).waiting_time; }
+
+// The probability of a jump from u to below `end`, found by bisection.
+double Below(double u, double end) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (JumpFrom(u, 0.5, middle).u < end ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+struct Interval {
+  double from, to;
+};
+
+// Jumps a unit of time from one to the other, where u is uniform.
+double Flux(const Interval& a, const Interval& b) {
+  return static_cast<double>(oracle::Integrate(
+      [&](Quad x) {
+        const auto u = static_cast<double>(x);
+        return Rate(u) * (Below(u, b.to) - Below(u, b.from));
+      },
+      a.from, a.to));
+}
+
+// Intervals with nothing singular in between: u^2 + u'^2 < 1, on either side of 1/sqrt 2. Each
+// probability is right to some 1e-16, of fluxes of 1e-3 and more.
+TEST(JumpProcess, DetailedBalance) {
+  const std::vector<Interval> intervals = {{0, 0.1},    {0.1, 0.3}, {0.3, 0.45},
+                                           {0.45, 0.6}, {0.6, 0.7}, {0.72, 0.8}};
+  for (size_t i = 0; i < intervals.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      const Interval &a = intervals[i], &b = intervals[j];
+      if (a.to * a.to + b.to * b.to > 0.95) continue;
+      EXPECT_NEAR(Flux(a, b) / Flux(b, a), 1, 1e-12) << a.from << " " << b.from;
+    }
+  }
+}
+
+// CounterRandom's uniform number, and a word that gives it.
+double UniformOf(uint64_t word) { return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52; }
+uint64_t WordOf(double v) { return static_cast<uint64_t>(v * 0x1p52) << 12; }
+
+struct Group {
+  uint64_t waiting_words[kJumpGroup];
+  uint64_t target_words[kJumpGroup];
+  double u[kJumpGroup];
+  double waiting_times[kJumpGroup];
+
+  void Jump() { JumpInLanes(waiting_words, target_words, u, waiting_times); }
+};
+
+void ExpectLaneIsScalar(const Group& before, const Group& after, size_t i) {
+  const double v = UniformOf(before.target_words[i]);
+  const Jump jump = JumpFrom(before.u[i], UniformOf(before.waiting_words[i]), v);
+  SCOPED_TRACE(testing::Message() << "u " << before.u[i] << " v " << v);
+  ASSERT_TRUE(after.u[i] >= 0 && after.u[i] <= 1);
+  ASSERT_TRUE(after.waiting_times[i] > 0 && std::isfinite(after.waiting_times[i]));
+  EXPECT_NEAR(after.u[i], jump.u, kJumpError * jump.u);
+  EXPECT_NEAR(after.waiting_times[i], jump.waiting_time, kJumpError * jump.waiting_time);
+}
+
+TEST(JumpProcess, LanesAreTheScalarDefinition) {
+  const std::vector<double> us = Energies(), vs = UniformNumbers();
+  ForEachTarget([&](int64_t) {
+    size_t shift = 0;
+    for (size_t j = 0; j < vs.size(); ++j, ++shift) {
+      for (size_t begin = 0; begin < us.size(); begin += kJumpGroup) {
+        Group before = {};
+        for (size_t i = 0; i < kJumpGroup; ++i) {
+          before.u[i] = us[(begin + i) % us.size()];
+          before.target_words[i] = WordOf(vs[j]);
+          before.waiting_words[i] = WordOf(vs[(j + i) % vs.size()]);
+        }
+        Group after = before;
+        after.Jump();
+        for (size_t i = 0; i < kJumpGroup; ++i) ExpectLaneIsScalar(before, after, i);
+      }
+    }
+  });
+}
+
+std::vector<double> Starts(size_t count) {
+  std::vector<double> us(count);
+  for (size_t i = 0; i < count; ++i) us[i] = static_cast<double>(i % 65) / 64;
+  return us;
+}
+
+TEST(JumpWalkers, TakeTheirWordsFromTheirSamples) {
+  constexpr uint64_t kSeed = 7, kStream = 8, kFirst = 1000;
+  const std::vector<double> starts = Starts(50);
+  JumpWalkers walkers(kSeed, kStream, kFirst, starts);
+  std::vector<CounterRandom> randoms;
+  for (size_t i = 0; i < starts.size(); ++i) {
+    randoms.emplace_back(kSeed, kStream, kFirst + i);
+    for (int word = 0; word < 4; ++word) randoms[i].Bits();
+  }
+  for (int n = 0; n < 9; ++n) {
+    const std::vector<double> before(walkers.u().begin(), walkers.u().end());
+    walkers.Jump();
+    for (size_t i = 0; i < starts.size(); ++i) {
+      const double waiting = randoms[i].Uniform(), target = randoms[i].Uniform();
+      const Jump jump = JumpFrom(before[i], waiting, target);
+      ASSERT_NEAR(walkers.u()[i], jump.u, kJumpError * jump.u);
+      ASSERT_NEAR(walkers.waiting_times()[i], jump.waiting_time, kJumpError * jump.waiting_time);
+    }
+  }
+}
+
+// Energies and times after some jumps, as bits.
+std::vector<uint64_t> BitsOf(const JumpWalkers& walkers) {
+  std::vector<uint64_t> bits;
+  for (const double x : walkers.u()) bits.push_back(std::bit_cast<uint64_t>(x));
+  for (const double x : walkers.waiting_times()) bits.push_back(std::bit_cast<uint64_t>(x));
+  return bits;
+}
+
+std::vector<uint64_t> BitsAfter(int jumps, uint64_t first, std::vector<double> starts) {
+  JumpWalkers walkers(3, 4, first, std::move(starts));
+  for (int n = 0; n < jumps; ++n) walkers.Jump();
+  return BitsOf(walkers);
+}
+
+TEST(JumpWalkers, DoesNotDependOnWhoElseWalks) {
+  const std::vector<double> starts = Starts(100);
+  const std::vector<uint64_t> all = BitsAfter(7, 5, starts);
+  for (const size_t count : {1u, 2u, 31u, 32u, 33u, 64u, 99u}) {
+    for (const size_t from : {0u, 1u, 40u}) {
+      const size_t to = std::min(from + count, starts.size());
+      const std::vector<uint64_t> some = BitsAfter(
+          7, 5 + from,
+          {starts.begin() + static_cast<long>(from), starts.begin() + static_cast<long>(to)});
+      for (size_t i = 0; i < to - from; ++i) {
+        ASSERT_EQ(some[i], all[from + i]);
+        ASSERT_EQ(some[to - from + i], all[100 + from + i]);
+      }
+    }
+  }
+  EXPECT_TRUE(BitsAfter(3, 0, {}).empty());
+}
+
+// FNV-1a.
+uint64_t Hash(const std::vector<uint64_t>& words) {
+  uint64_t hash = 0xcbf29ce484222325;
+  for (const uint64_t word : words) hash = (hash ^ word) * 0x100000001b3;
+  return hash;
+}
+
+// What they were when they were last meant to change; the failure prints the new value.
+constexpr uint64_t kFirstJump = 0x49c16fa40bbb71, kTenthJump = 0x52df7e3171c109d0;
+
+TEST(JumpWalkers, SameBitsOnEveryProcessor) {
+  ForEachTarget([&](int64_t target) {
+    if (!HasFusedMultiplyAdd(target)) return;
+    EXPECT_EQ(Hash(BitsAfter(1, 0, Starts(10'000))), kFirstJump);
+    // Jumps contract differences, so the bits of one tell the most; later ones the words' order.
+    EXPECT_EQ(Hash(BitsAfter(10, 0, Starts(1000))), kTenthJump);
+  });
+}
+
+}  // namespace
+}  // namespace ballpiston

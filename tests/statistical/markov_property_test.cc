@@ -1,0 +1,92 @@
+// The Markov property of the billiard's energy exchanges, and how it fails at a delta that is not
+// small: every estimate of the experiment at delta = 0.3, 0.2, 0.1, 0.05.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/statistical/run_point.h"
+
+namespace ballpiston {
+namespace {
+
+using Estimates = std::map<std::string, Estimate>;
+
+constexpr double kDeltas[] = {0.3, 0.2, 0.1, 0.05};
+
+Estimates At(double delta, int64_t collisions) {
+  EnsembleSpec spec = {.experiment = Experiment::kMarkovProperty,
+                       .grid = {.rho = {0.529561127988977}, .delta = {delta}},
+                       .target = {.collisions = collisions}};
+  spec.seed = 30;
+  Estimates estimates;
+  for (const Estimate& estimate : RunPoint(spec).estimates) estimates[estimate.name] = estimate;
+  return estimates;
+}
+
+// By index of kDeltas, sampled once for all tests.
+const std::vector<Estimates>& Measured() {
+  static const auto* const measured = [] {
+    auto* const all = new std::vector<Estimates>;
+    for (const double delta : kDeltas) {
+      all->push_back(At(delta, 4'000'000));
+      std::cout << "delta " << delta << std::setprecision(3);
+      for (const auto& [name, estimate] : all->back()) {
+        std::cout << "  " << name << " " << estimate.value << " +- " << *estimate.standard_error;
+        if (estimate.noise_floor) std::cout << " (" << *estimate.noise_floor << ")";
+      }
+      std::cout << "\n";
+    }
+    return all;
+  }();
+  return *measured;
+}
+
+// Distance above the noise floor, in standard errors.
+double Signal(const Estimate& estimate) {
+  return (estimate.value - estimate.noise_floor.value_or(0)) / *estimate.standard_error;
+}
+
+// At every delta, as the invariant law at fixed energies is its own ingoing law: 4 standard errors
+// of the noise, 6e-5 false alarms each.
+TEST(MarkovProperty, TransitionsFollowTheKernelAtEveryDelta) {
+  for (const Estimates& at : Measured()) {
+    EXPECT_LT(std::fabs(Signal(at.at("transition_divergence"))), 4);
+  }
+}
+
+// As delta^2, within a factor of two (there is a logarithm beside it): each distance at most (and
+// at least) what the step in delta makes of the one before. The least is 5 noise floors: no false
+// alarm to speak of.
+TEST(MarkovProperty, HittingTimesBecomeExponential) {
+  for (size_t i = 1; i < std::size(kDeltas); ++i) {
+    const Estimate& before = Measured()[i - 1].at("hitting_time_ks_distance");
+    const Estimate& here = Measured()[i].at("hitting_time_ks_distance");
+    const double step = std::pow(kDeltas[i] / kDeltas[i - 1], 2);
+    EXPECT_LT(here.value, 2 * step * before.value) << kDeltas[i];
+    EXPECT_GT(here.value, 0.5 * step * before.value) << kDeltas[i];
+    EXPECT_GT(here.value, 5 * *here.noise_floor) << kDeltas[i];
+  }
+}
+
+// Well above the noise at delta = 0.3 and less by more than 4 standard errors at each smaller one
+// as long as anything can be seen: 6e-5 false alarms each.
+TEST(MarkovProperty, MemoryFadesWithDelta) {
+  for (const char* name : {"memory_divergence", "memory_correlation"}) {
+    EXPECT_GT(Signal(Measured()[0].at(name)), 40) << name;
+    for (size_t i = 1; i < std::size(kDeltas); ++i) {
+      const Estimate& before = Measured()[i - 1].at(name);
+      const Estimate& here = Measured()[i].at(name);
+      const double error = std::hypot(*before.standard_error, *here.standard_error);
+      if (Signal(before) < 10) break;
+      EXPECT_LT(here.value, before.value - 4 * error) << name << " at " << kDeltas[i];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston
