@@ -11,7 +11,6 @@
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
-#include "server/execution/core_experiments.h"
 #include "server/jobs/job_name.h"
 
 namespace ballpiston::server {
@@ -24,7 +23,6 @@ constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
 
 ServerOptions Completed(ServerOptions options) {
-  if (!options.factory) options.factory = CoreExperiments();
   if (!options.compare) options.compare = CoreComparer();
   return options;
 }
@@ -68,10 +66,12 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       address_(std::move(address)),
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
-      book_(*store_, options_.workers, options_.factory, [this] { watches_.LookNow(); }),
+      ladder_(*store_, options_.workers),
+      book_(*store_, options_.workers,
+            options_.factory ? options_.factory : ladder_.ChosenExperiments(), [this] { watches_.LookNow(); }),
       executor_(kRpcThreads),
       comparisons_(options_.compare),
-      context_{book_,     executor_, watches_,   comparisons_,
+      context_{book_,     ladder_,   executor_,  watches_,      comparisons_,
                activity_, draining_, RandomId(), options_.watch},
       ensemble_(context_),
       analytic_(context_),

@@ -17,6 +17,7 @@
 #include "grpcpp/server.h"
 #include "server/api/services.h"
 #include "server/execution/comparison_thread.h"
+#include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
@@ -27,7 +28,7 @@ struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
   int workers = 1;
-  ExperimentFactory factory;  // empty: the core's experiments
+  ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
   Store::Options store;
@@ -67,6 +68,7 @@ class BallpistonServer {
   Activity activity_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
+  ModelLadder ladder_;
   JobBook book_;
   RpcExecutor executor_;
   ComparisonThread comparisons_;

@@ -40,6 +40,9 @@ struct Figure {
     verb.add_option("--delta", flags.delta,
                     "mean-free-time: LIST of penetrations, 0.2,0.1,0.05 if not given; "
                     "speed-accuracy: one, 0.1 if not given");
+    verb.add_option("--relaxation-delta", flags.relaxation_delta,
+                    "speed-accuracy: LIST of at most 8 penetrations at which relaxation times are "
+                    "compared; if not given those of 0.2,0.1,0.05,0.025 that rho permits");
     verb.add_option("--epsilon", flags.epsilon,
                     "speed-accuracy: the piston's energy; 0.125 if not given");
     verb.add_option("--samples", flags.samples,

@@ -115,6 +115,7 @@ absl::StatusOr<MakeFigure> PlanMeanFreeTime(const FigureFlags& flags) {
   if (flags.delta) take(ParseNumberList("--delta", *flags.delta), question.delta);
   if (flags.samples) take(ParseCount("--samples", *flags.samples), question.samples);
   if (flags.seed) take(ParseSeed("--seed", *flags.seed), question.seed);
+  violations.Add(RefuseFlag("--relaxation-delta", flags.relaxation_delta, kMeanFreeTimeFigure));
   violations.Add(RefuseFlag("--epsilon", flags.epsilon, kMeanFreeTimeFigure));
   violations.Add(RefuseFlag("--seconds", flags.seconds, kMeanFreeTimeFigure));
   if (absl::Status bad = violations.Lines(); !bad.ok()) return bad;

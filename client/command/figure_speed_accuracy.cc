@@ -58,6 +58,10 @@ absl::StatusOr<MakeFigure> PlanSpeedAccuracy(const FigureFlags& flags) {
   };
   if (flags.rho) take(ParseNumber("--rho", *flags.rho), question.rho);
   if (flags.delta) take(ParseNumber("--delta", *flags.delta), question.delta);
+  if (flags.relaxation_delta) {
+    take(ParseNumberList("--relaxation-delta", *flags.relaxation_delta),
+         question.relaxation_deltas);
+  }
   if (flags.epsilon) take(ParseNumber("--epsilon", *flags.epsilon), question.epsilon);
   if (flags.seconds) take(ParseNumber("--seconds", *flags.seconds), question.seconds_per_curve);
   if (flags.seed) take(ParseSeed("--seed", *flags.seed), question.seed);

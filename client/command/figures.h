@@ -20,7 +20,7 @@ namespace ballpiston::client {
 
 // As they were written; empty: not given. Not every figure has each of them.
 struct FigureFlags {
-  std::optional<std::string> rho, delta, epsilon, samples, seconds, seed;
+  std::optional<std::string> rho, delta, relaxation_delta, epsilon, samples, seconds, seed;
 };
 
 // What a figure is made with.

@@ -22,16 +22,16 @@ std::string ResolvedText(const MethodMeasurement& measurement) {
 
 std::string Row(const MethodMeasurement& measurement) {
   return absl::StrJoin({Spelling(measurement.method()), ExactText(measurement.time_step()),
-                        Spelling(measurement.quantity()), absl::StrCat(measurement.samples()),
-                        absl::StrCat(measurement.wall_hits()), ExactText(measurement.work()),
-                        ExactText(measurement.value()), ExactText(measurement.statistical_error()),
-                        ResolvedText(measurement)},
+                        Spelling(measurement.quantity()), ExactText(measurement.delta()),
+                        absl::StrCat(measurement.samples()), absl::StrCat(measurement.wall_hits()),
+                        ExactText(measurement.work()), ExactText(measurement.value()),
+                        ExactText(measurement.statistical_error()), ResolvedText(measurement)},
                        ",");
 }
 
 std::string Csv(const std::vector<MethodMeasurement>& measurements) {
   std::string csv =
-      "method,time_step,quantity,samples,wall_hits,work_seconds,value,statistical_error,"
+      "method,time_step,quantity,delta,samples,wall_hits,work_seconds,value,statistical_error,"
       "bias_resolved\n";
   for (const MethodMeasurement& measurement : measurements) {
     absl::StrAppend(&csv, Row(measurement), "\n");
@@ -62,6 +62,8 @@ v1::CompareMethodsRequest ComparisonRequest(const SpeedAccuracyQuestion& questio
   request.set_epsilon(question.epsilon);
   request.set_seconds_per_curve(question.seconds_per_curve);
   request.set_seed(question.seed);
+  request.mutable_relaxation_delta()->Add(question.relaxation_deltas.begin(),
+                                          question.relaxation_deltas.end());
   return request;
 }
 

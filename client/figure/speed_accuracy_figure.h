@@ -3,12 +3,17 @@
 //   a  relative error of the conditional mean free time against work
 //   b  bias of the ingoing law of first hits, as a Kullback-Leibler divergence, against work
 //   c  wall hits until an orbit leaves its twin in high precision, against the time a hit takes
+//   d  relative error of the energy's relaxation time at several delta against work, by the
+//   billiard
+//      and by the limit delta -> 0: where the limit will do (limit_floor.h)
 //
 // In a and b a method's points are its measured errors, and a line is what chance alone explains:
 // one statistical error. Points within kResolved of them are pale: they show no bias. A dashed line
 // is the bias of a method whose longest run resolves one. In b the law's noise floor is subtracted,
 // so chance may make a value negative: its size is drawn. What lies below the panel, 0 or the
-// closed form's rounding errors, is drawn at its lower edge.
+// closed form's rounding errors, is drawn at its lower edge. In d a line is the method's own
+// statistical error, without the truth's; a point is pale by both errors together. Without
+// relaxation times (at a rho that permits none of the server's delta) d is left out.
 //
 // What is here knows the figure: how measurements become a table and a gnuplot script. Who asks the
 // server is command/figure_speed_accuracy.cc.
@@ -38,6 +43,7 @@ struct SpeedAccuracyQuestion {
   double epsilon = 0.125;
   double seconds_per_curve = 1;  // of each method's largest run, about
   uint64_t seed = 0;
+  std::vector<double> relaxation_deltas = {};  // of panel d; none: the server's
 };
 
 v1::CompareMethodsRequest ComparisonRequest(const SpeedAccuracyQuestion& question);

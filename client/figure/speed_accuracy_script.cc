@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -11,6 +10,8 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/string_view.h"
+#include "client/figure/plot_marks.h"
+#include "client/figure/relaxation_panel.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
 
@@ -20,15 +21,10 @@ namespace {
 using v1::MethodMeasurement;
 using Measurements = std::vector<MethodMeasurement>;
 
-// Room around the data, as factors.
-constexpr double kBelow = 0.4;
-constexpr double kAbove = 3;
 constexpr double kHeadroom = 1.15;    // on a linear axis
 constexpr double kRoomForSteps = 60;  // right of the longest run: the time steps stand there
 constexpr double kBiasLineEnd = 1.6;  // right of the longest run
 constexpr double kLabelAt = 1.9;      // likewise
-
-constexpr double kLineOfText = 0.06;  // as a part of an axis
 
 // How a method is drawn. Colours by Okabe and Ito, told apart by all kinds of colour vision; shapes
 // differ too: filled for double, open for single precision.
@@ -71,10 +67,11 @@ struct Curve {
   }
 };
 
-// In the order of their first measurements.
+// Those of panels a to c, in the order of their first measurements.
 std::vector<Curve> CurvesOf(const Measurements& measurements) {
   std::vector<Curve> curves;
   for (const MethodMeasurement& m : measurements) {
+    if (m.quantity() == MethodMeasurement::RELAXATION_TIME) continue;
     const bool known = std::any_of(curves.begin(), curves.end(),
                                    [&m](const Curve& curve) { return curve.Holds(m); });
     if (!known) curves.push_back({m.method(), m.time_step()});
@@ -103,17 +100,6 @@ Measurements Runs(const Measurements& measurements) {
                [](const auto& m) { return m.samples() >= kFewestDrawn; });
   return some;
 }
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = 0;
-
-  void Take(double x) {  // what a logarithmic axis cannot show is passed over
-    if (!(x > 0 && std::isfinite(x))) return;
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
 
 // What chance makes smaller than the smallest statistical error is drawn at the lower edge: a
 // chance zero, or the closed form, is no reason for an axis of ten decades.
@@ -160,28 +146,6 @@ std::string BiasLines(const Measurements& runs, const std::vector<Curve>& curves
   return lines;
 }
 
-struct Label {
-  double x = 0;
-  double y = 0;
-  std::string text;
-};
-
-// From the highest down, each at least `gap` (a factor) below the one before.
-void Spread(std::vector<Label>& labels, double gap) {
-  std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y > b.y; });
-  for (size_t i = 1; i < labels.size(); ++i) {
-    labels[i].y = std::min(labels[i].y, labels[i - 1].y / gap);
-  }
-}
-
-std::string Text(const std::vector<Label>& labels) {
-  std::string text = "x,y,text\n";
-  for (const Label& label : labels) {
-    absl::StrAppend(&text, ExactText(label.x), ",", ExactText(label.y), ",", label.text, "\n");
-  }
-  return text;
-}
-
 // The time steps, written at the ends of their curves.
 std::string StepLabels(const Measurements& runs, const std::vector<Curve>& curves, Range error) {
   std::vector<Label> labels;
@@ -192,7 +156,7 @@ std::string StepLabels(const Measurements& runs, const std::vector<Curve>& curve
     const double y = IsBiasResolved(last) ? last.value() : last.statistical_error();
     labels.push_back({last.work() * kLabelAt, y, "Δt = " + PowerText(curve.time_step)});
   }
-  Spread(labels, std::pow(error.high / error.low, kLineOfText));
+  Spread(labels, error);
   return Text(labels);
 }
 
@@ -211,7 +175,7 @@ constexpr char kHead[] = R"gnuplot(# Run again with: gnuplot speed-accuracy.gnup
 # rho = $RHO, delta = $DELTA, epsilon = $EPSILON, seed = $SEED, $SECONDS s a curve
 data = "speed-accuracy.csv"
 set encoding utf8
-set terminal svg size 960,800 enhanced font "Helvetica,Arial,sans-serif,15" background rgb "white"
+set terminal svg size 960,1080 enhanced font "Helvetica,Arial,sans-serif,15" background rgb "white"
 set output "speed-accuracy.svg"
 set datafile separator comma
 set datafile columnheaders
@@ -260,8 +224,8 @@ set mxtics 10
 set mytics 10
 set lmargin screen $LEFT
 set rmargin screen $RIGHT
-set tmargin screen 0.94
-set bmargin screen 0.585
+set tmargin screen 0.956
+set bmargin screen 0.693
 set title "{/:Bold $NAME}  $TITLE" offset 0,-0.4
 set xlabel "work / s" offset 0,0.4
 set ylabel "$Y" offset 0.5,0
@@ -297,8 +261,8 @@ set ytics autofreq
 set mytics 2
 set lmargin screen 0.085
 set rmargin screen 0.485
-set tmargin screen 0.44
-set bmargin screen 0.085
+set tmargin screen 0.585
+set bmargin screen 0.322
 set title "{/:Bold c}  single orbits" offset 0,-0.4
 set xlabel "time of a hit / ns" offset 0,0.4
 set ylabel "hits until parted from a precise twin" offset 0.5,0
@@ -322,18 +286,17 @@ unset ylabel
 unset title
 set xrange [0:1]
 set yrange [0:1]
-set lmargin screen 0.535
-set rmargin screen 0.985
-set tmargin screen 0.465
-set bmargin screen 0.02
-set key at graph 0.06,0.97 left top Left reverse samplen 2.5 spacing 1.15
-set label 1 "ρ = $RHO, δ = $DELTA, ε = $EPSILON" at graph 0.08,0.285 font ",13"
-set label 2 "Line: statistical error σ." at graph 0.08,0.225 font ",13"
-set label 3 "Point: measured error, pale if below 3σ." at graph 0.08,0.165 font ",13"
-set label 4 "Dashed: bias, if the longest run's error is above 3σ." at graph 0.08,0.105 font ",13"
-set label 5 "At the lower edge: smaller than shown." at graph 0.08,0.045 font ",13"
+set lmargin screen 0.01
+set rmargin screen 0.49
+set tmargin screen 0.262
+set bmargin screen 0.006
+set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 4 font ",13"
+set label "a, b: ρ = $RHO, δ = $DELTA, ε = $EPSILON; c, d: the same ρ." at graph 0.04,0.5 font ",13"
+set label "Line: statistical error σ." at graph 0.04,0.43 font ",13"
+set label "Point: measured error, pale if below 3σ." at graph 0.04,0.36 font ",13"
+set label "Dashed: bias, if the longest run's error is above 3σ." at graph 0.04,0.29 font ",13"
+set label "At the lower edge: smaller than shown." at graph 0.04,0.22 font ",13"
 plot $LEGEND
-unset multiplot
 )gnuplot";
 
 using Substitutions = std::vector<std::pair<absl::string_view, std::string>>;
@@ -460,7 +423,8 @@ std::string SpeedAccuracyScript(const SpeedAccuracyQuestion& question,
     script += ErrorPanelScript(panel, measurements, curves);
   }
   return absl::StrCat(script, TrajectoryPanelScript(measurements, curves),
-                      Legend(question, curves));
+                      RelaxationPanelScript(measurements), Legend(question, curves),
+                      RelaxationLegendScript(measurements), "unset multiplot\n");
 }
 
 }  // namespace ballpiston::client

@@ -88,7 +88,7 @@ std::string Heading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobRespo
   Cells texts = {Spelling(spec.experiment()), TargetText(spec.target()),
                  Points(plan.point_count())};
   if (texts[1].empty()) texts.erase(texts.begin() + 1);
-  return absl::StrJoin(texts, ", ");
+  return absl::StrCat(absl::StrJoin(texts, ", "), "  (work of one core, relative errors)");
 }
 
 // In full as long as that can be read at a glance; 4.1e+08 then.
@@ -169,7 +169,7 @@ void PrintChoices(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
 void PrintTotal(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
   const bool all = plan.points_size() == plan.point_count();
   out << '\n';
-  if (!all) out << "Shown: the first " << plan.points_size() << " of the grid.\n";
+  if (!all) out << "Shown: " << plan.points_size() << " points, evenly spread over the grid.\n";
   out << Points(plan.point_count()) << ": " << DurationText(plan.work()) << " of one core, "
       << DurationText(plan.time()) << " with this server's " << plan.workers()
       << (plan.workers() == 1 ? " worker\n" : " workers\n");

@@ -319,6 +319,7 @@ class LaneOrbits {
         TellExpired(orbit_[lane]);
         return false;
       }
+      sums.expired = sums.time > limit_;
       sums.state = flow.state();
       if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd) return false;
       flow.ExchangeComponents();

@@ -17,7 +17,7 @@ bool RunReferenceOrbit(const PairGeometry& geometry, uint64_t orbit, OrbitSource
   for (uint64_t events = 1;; ++events) {
     const Event event = flow.Step();
     contact.Add(event);
-    contact.expired = event.kind != EventKind::kBallPiston && contact.time > limit;
+    contact.expired = contact.time > limit;
     if (event.kind == EventKind::kBallPiston || contact.escaped || contact.expired) {
       contact.state = flow.state();
       if (source.Meet(orbit, contact) == AfterContact::kEnd) return true;

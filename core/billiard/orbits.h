@@ -33,7 +33,8 @@ struct Contact {
   uint64_t ball_wall_hits = 0;
   uint64_t piston_wall_hits = 0;
   bool escaped = false;  // the orbit left the cell: nothing else here means anything
-  bool expired = false;  // no contact: the orbit's time limit passed first; `state` means nothing
+  bool expired = false;  // not within the orbit's time limit: `state` means nothing, and `time`
+                         // only that it passed
 
   void Add(const Event& event);  // one more on the way
 };
@@ -51,9 +52,9 @@ class OrbitSource {
   // A collision of that orbit. kGoOn: ball and piston exchange components and the orbit goes on;
   // not after an escape, nor when its time limit passed.
   virtual AfterContact Meet(uint64_t orbit, const Contact& contact) = 0;
-  // Time without a collision after which an orbit is of no more use: its source is told some time
-  // after that. What keeps slow pistons, slow balls, and those at rest for ever, from being waited
-  // for.
+  // Time without a collision after which an orbit is of no more use: its source is told, some time
+  // after that or at a later collision, and the orbit ends. What keeps slow pistons, slow balls,
+  // and those at rest for ever, from being waited for.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
 };
 

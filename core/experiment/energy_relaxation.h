@@ -64,8 +64,9 @@ class EnergyRelaxation {
   SpectralValue IntegralOfLimit(double window) const;
 
   std::optional<double> epsilon_;
+  double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
+  double unit_;           // the same as measurements take it, without its last bits
   double mean_free_time_;
-  double unit_;  // |G|/|dG_bp|: the spectrum's unit of time
 };
 
 // Ball-piston collisions in an orbit, in the mean.

@@ -7,14 +7,17 @@
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/markov_property_statistics.h"
+#include "core/experiment/predicted_hits.h"
+#include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
 
-double EventsPerCollision(const PairGeometry& geometry) {
-  const MeanFreeTimes tau = MeanFreeTimesOf(geometry);
-  return 1 + tau.ball_piston / tau.ball_wall + tau.ball_piston / tau.piston_wall;
+double EventsPerCollision(const EnsembleSpec& spec, const PairGeometry& geometry) {
+  // A jump and what is counted of it take as long as some 25 wall hits in lanes.
+  constexpr double kEventsPerJump = 25;
+  return spec.model == Model::kMarkov ? kEventsPerJump : HitsPerCollision(geometry).Events();
 }
 
 // |dG_bp|/|G|. Its last bits depend on the processor's sines, and would show in every sum over
@@ -95,28 +98,76 @@ class ExchangeOrbits : public OrbitSource {
   std::vector<Orbit> orbits_;
 };
 
+// Energies just after a collision, of orbits first, first + length, ...; from a stream of their
+// own, as the walkers use that of the samples.
+std::vector<double> StartsOfWalkers(const PairGeometry& geometry, const RandomStream& random,
+                                    uint64_t first, uint64_t orbits) {
+  constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
+  const RandomStream starts = {random.seed, random.stream ^ kStartsStream};
+  std::vector<double> u(orbits);
+  for (uint64_t i = 0; i < orbits; ++i) {
+    CounterRandom draws = starts.Sample(first + i * kExchangesPerOrbit);
+    u[i] = std::min(std::fabs(DrawFromCollisionMeasure(geometry, draws).piston_velocity), 1.0);
+  }
+  return u;
+}
+
+// By orbit, the walkers' exchanges; the last orbit may have fewer.
+std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
+  std::vector<Exchange> all(walkers.u().size() * kExchangesPerOrbit);
+  for (uint64_t n = 0; n < std::min(exchanges, kExchangesPerOrbit); ++n) {
+    walkers.Jump();
+    for (size_t i = 0; i < walkers.u().size(); ++i) {
+      all[i * kExchangesPerOrbit + n] = {walkers.waiting_times()[i], PistonEnergy(walkers.u()[i])};
+    }
+  }
+  all.resize(exchanges);
+  return all;
+}
+
 }  // namespace
 
 MarkovPropertyExperiment::MarkovPropertyExperiment(const EnsembleSpec& spec,
                                                    const PointParameters& point,
                                                    const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(geometry))),
+    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(spec, geometry))),
       geometry_(geometry) {}
 
 std::optional<BlockResult> MarkovPropertyExperiment::RunBlock(uint64_t block,
                                                               std::stop_token stop) const {
+  if (answer().model == Model::kMarkov) return RunJumpProcess(block);
   ExchangeOrbits orbits(geometry_, random(), plan().FirstSample(block), plan().SamplesIn(block));
   if (!RunOrbits(engine(), geometry_, orbits.count(), orbits, stop)) return std::nullopt;
   return orbits.Result();
 }
 
+BlockResult MarkovPropertyExperiment::RunJumpProcess(uint64_t block) const {
+  const uint64_t first = plan().FirstSample(block), exchanges = plan().SamplesIn(block);
+  const uint64_t orbits = (exchanges + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
+  const std::vector<double> starts = StartsOfWalkers(geometry_, random(), first, orbits);
+  JumpWalkers walkers(random().seed, random().stream, first, starts);
+  const std::vector<Exchange> all = Walk(walkers, exchanges);
+  BlockResult result = EmptyMarkovPropertyCounts();
+  for (uint64_t i = 0; i < orbits; ++i) {
+    const uint64_t begin = i * kExchangesPerOrbit;
+    const uint64_t length = std::min(kExchangesPerOrbit, exchanges - begin);
+    CountOrbit(PistonEnergy(starts[i]), std::span(all).subspan(begin, length), result);
+  }
+  return result;
+}
+
+// The jump process has no memory; the billiard's is what is measured.
+std::optional<double> MarkovPropertyExperiment::ExactCorrelation() const {
+  return answer().model == Model::kMarkov ? std::optional(0.0) : std::nullopt;
+}
+
 Estimate MarkovPropertyExperiment::FirstEstimate(const BlockResult& merged) const {
-  return MarkovPropertyEstimates(merged, std::nullopt).front();
+  return MarkovPropertyEstimates(merged, ExactCorrelation()).front();
 }
 
 PointSummary MarkovPropertyExperiment::Summarize(const BlockResult& merged) const {
   return {.samples = merged.samples,
-          .estimates = MarkovPropertyEstimates(merged, std::nullopt),
+          .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
           .health = merged.health};
 }
 

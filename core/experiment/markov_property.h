@@ -26,6 +26,7 @@ namespace ballpiston {
 // that orbits fill the lanes.
 inline constexpr uint64_t kExchangesPerOrbit = 32;
 
+// By billiard, billiard_reference, or, as its own control, markov.
 class MarkovPropertyExperiment : public PointExperiment {
  public:
   MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point,
@@ -36,6 +37,9 @@ class MarkovPropertyExperiment : public PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
+  BlockResult RunJumpProcess(uint64_t block) const;
+  std::optional<double> ExactCorrelation() const;
+
   PairGeometry geometry_;
 };
 

@@ -75,12 +75,16 @@ Generator::Generator(const Discretisation& discretisation)
   conservation_error_ = (computed * one).norm();
 }
 
+// Both differences are exact, also in the shortest elements at the far end.
+double Generator::Within(size_t e, double theta) const {
+  return 2 * (theta - edges_[e]) / (edges_[e + 1] - edges_[e]) - 1;
+}
+
 void Generator::OrthonormaliseBases() {
   for (size_t e = 0; e + 1 < edges_.size(); ++e) {
     Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(degree_ + 1, degree_ + 1);
     ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
-      const double x = (2 * theta - edges_[e] - edges_[e + 1]) / (edges_[e + 1] - edges_[e]);
-      const Eigen::VectorXd p = Legendre(degree_, x);
+      const Eigen::VectorXd p = Legendre(degree_, Within(e, theta));
       mass += weight * std::cos(theta) * p * p.transpose();
     });
     const Eigen::MatrixXd lower = mass.llt().matrixL();
@@ -90,8 +94,7 @@ void Generator::OrthonormaliseBases() {
 }
 
 Eigen::VectorXd Generator::Basis(size_t e, double theta) const {
-  const double x = (2 * theta - edges_[e] - edges_[e + 1]) / (edges_[e + 1] - edges_[e]);
-  return orthonormal_[e] * Legendre(degree_, x);
+  return orthonormal_[e] * Legendre(degree_, Within(e, theta));
 }
 
 // With u' = s sin(phi), du'/sqrt(s^2 - u'^2) = dphi.

@@ -68,6 +68,8 @@ class Generator {
   Eigen::Index First(size_t element) const {
     return static_cast<Eigen::Index>(element) * (degree_ + 1);
   }
+  // Where theta lies in the element, from -1 to 1.
+  double Within(size_t element, double theta) const;
   // The element's basis at theta.
   Eigen::VectorXd Basis(size_t element, double theta) const;
   void OrthonormaliseBases();

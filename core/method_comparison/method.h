@@ -13,9 +13,11 @@ enum class Method {
   kLanes,
   kLanesSingle,
   kClosedForm,
+  kMarkov,    // the jump process of the limit delta -> 0, sampled
+  kSpectrum,  // the same limit by its generator's eigenvalues, without samples
 };
 
-enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory };
+enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime };
 
 // From here on an orbit and its twin are told apart, in cells.
 inline constexpr double kParted = 1e-3;

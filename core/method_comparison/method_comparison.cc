@@ -1,10 +1,13 @@
 #include "core/method_comparison/method_comparison.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -14,6 +17,7 @@
 #include "core/experiment/long_returns.h"
 #include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/method_comparison/energy_relaxation_runs.h"
 #include "core/method_comparison/ingoing_divergence.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/method_comparison/returns.h"
@@ -33,6 +37,9 @@ constexpr size_t kFewestOrbits = 64;
 // A rung is run if this many times seconds_per_curve is enough for it: then the largest is between
 // a half and twice of seconds_per_curve.
 constexpr double kOverrun = 2;
+
+// The truth about a relaxation time may take some so many times a curve's seconds.
+constexpr double kTruthTimes = 8;
 
 // For sampled methods: what wall hits the twins need for the longest of them, 113 bits.
 constexpr size_t kTwinHits = 110;
@@ -57,9 +64,11 @@ double ErrorOfDivergence(const DivergenceNoise& noise, double excess, uint64_t s
 class Comparison {
  public:
   Comparison(const MethodComparisonSpec& spec, const PairGeometry& geometry,
-             const std::stop_token& stop, const std::function<void(const MethodMeasurement&)>& tell)
+             std::vector<PairGeometry> relaxing, const std::stop_token& stop,
+             const std::function<void(const MethodMeasurement&)>& tell)
       : spec_(spec),
         geometry_(geometry),
+        relaxing_(std::move(relaxing)),
         stop_(stop),
         tell_(tell),
         exact_(ConditionalMeanFreeTime(geometry, spec.epsilon)),
@@ -70,7 +79,7 @@ class Comparison {
     if (!CompareReturns(Quantity::kMeanFreeTime) || !CompareReturns(Quantity::kIngoingLaw)) {
       return false;
     }
-    return CompareTrajectories();
+    return CompareTrajectories() && CompareRelaxationTimes();
   }
 
  private:
@@ -106,6 +115,7 @@ class Comparison {
     MethodMeasurement measurement = {.method = variant.method,
                                      .time_step = variant.time_step,
                                      .quantity = quantity,
+                                     .delta = spec_.delta,
                                      .samples = returns.times.count,
                                      .wall_hits = returns.wall_hits,
                                      .work = returns.seconds};
@@ -154,6 +164,7 @@ class Comparison {
   MethodMeasurement ClosedMeanFreeTime() const {
     return {.method = Method::kClosedForm,
             .quantity = Quantity::kMeanFreeTime,
+            .delta = spec_.delta,
             .work = SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
             .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
   }
@@ -162,6 +173,7 @@ class Comparison {
   MethodMeasurement ClosedIngoingLaw() const {
     return {.method = Method::kClosedForm,
             .quantity = Quantity::kIngoingLaw,
+            .delta = spec_.delta,
             .work = SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
             .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
   }
@@ -190,6 +202,7 @@ class Comparison {
       tell_({.method = variant.method,
              .time_step = variant.time_step,
              .quantity = Quantity::kTrajectory,
+             .delta = spec_.delta,
              .samples = horizon.hits.count,
              .wall_hits = horizon.wall_hits,
              .work = horizon.seconds,
@@ -200,8 +213,60 @@ class Comparison {
     return true;
   }
 
+  bool CompareRelaxationTimes() {
+    for (const PairGeometry& geometry : relaxing_) {
+      if (!CompareRelaxationTimesOf({geometry, spec_.seed})) return false;
+    }
+    return true;
+  }
+
+  bool CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
+    const uint64_t orbits = OrbitsOfTruth(runs);
+    if (orbits < kFewestTruthOrbits) return true;
+    const RelaxationTime limit = runs.BySpectrum();  // first: no run has to make the spectrum
+    const std::optional<RelaxationTime> truth = runs.Run(Method::kLanes, TruthOf(orbits), stop_);
+    if (!truth || !ClimbRelaxationTimes(runs, Method::kLanes, *truth) ||
+        !ClimbRelaxationTimes(runs, Method::kMarkov, *truth)) {
+      return false;
+    }
+    tell_(Compared(runs.delta(), Method::kSpectrum, limit, *truth));
+    return !stop_.stop_requested();
+  }
+
+  // The power of two whose logarithm is nearest. By the prediction, not by what was measured: the
+  // truth follows from the spec.
+  uint64_t OrbitsOfTruth(const EnergyRelaxationRuns& runs) const {
+    const double orbits = kTruthTimes * spec_.seconds_per_curve / runs.PredictedSecondsPerOrbit();
+    return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * orbits));
+  }
+
+  bool ClimbRelaxationTimes(const EnergyRelaxationRuns& runs, Method method,
+                            const RelaxationTime& truth) {
+    double expected = 0;
+    for (uint64_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
+      const std::optional<RelaxationTime> measured = runs.Run(method, RunOf(orbits), stop_);
+      if (!measured) return false;
+      tell_(Compared(runs.delta(), method, *measured, truth));
+      expected = measured->seconds * kRungFactor;
+    }
+    return true;
+  }
+
+  static MethodMeasurement Compared(double delta, Method method, const RelaxationTime& measured,
+                                    const RelaxationTime& truth) {
+    const double ratio = measured.value / truth.value;
+    return {.method = method,
+            .quantity = Quantity::kRelaxationTime,
+            .delta = delta,
+            .samples = measured.samples,
+            .work = measured.seconds,
+            .value = std::fabs(ratio - 1),
+            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value};
+  }
+
   const MethodComparisonSpec spec_;
   const PairGeometry geometry_;
+  const std::vector<PairGeometry> relaxing_;
   const std::stop_token& stop_;
   const std::function<void(const MethodMeasurement&)>& tell_;
   const double exact_;
@@ -209,6 +274,21 @@ class Comparison {
   std::optional<double> variance_of_times_;
   std::map<uint64_t, DivergenceNoise> noise_;  // by samples: the same for all methods
 };
+
+absl::StatusOr<std::vector<PairGeometry>> RelaxingGeometries(const MethodComparisonSpec& spec) {
+  if (spec.relaxation_deltas.size() > kMaxRelaxationDeltas) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("relaxation_deltas has ", spec.relaxation_deltas.size(),
+                     " values; permitted: at most ", kMaxRelaxationDeltas));
+  }
+  std::vector<PairGeometry> geometries;
+  for (const double delta : spec.relaxation_deltas) {
+    const absl::StatusOr<PairGeometry> geometry = PairGeometry::Create(spec.rho, delta);
+    if (!geometry.ok()) return geometry.status();
+    geometries.push_back(*geometry);
+  }
+  return geometries;
+}
 
 absl::Status ValidateEpsilon(double epsilon) {
   if (epsilon > 0 && epsilon < 0.5) return absl::OkStatus();
@@ -231,7 +311,9 @@ absl::Status CompareMethods(const MethodComparisonSpec& spec, const std::stop_to
   if (!geometry.ok()) return geometry.status();
   if (absl::Status status = ValidateEpsilon(spec.epsilon); !status.ok()) return status;
   if (absl::Status status = ValidateSeconds(spec.seconds_per_curve); !status.ok()) return status;
-  if (Comparison(spec, *geometry, stop, tell).Run()) return absl::OkStatus();
+  const absl::StatusOr<std::vector<PairGeometry>> relaxing = RelaxingGeometries(spec);
+  if (!relaxing.ok()) return relaxing.status();
+  if (Comparison(spec, *geometry, *relaxing, stop, tell).Run()) return absl::OkStatus();
   return absl::CancelledError("the comparison of methods was stopped before its end");
 }
 

@@ -113,6 +113,8 @@ bool RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry,
     case Method::kLanesSingle:
       return RunOrbits(Engine::kLanesSingle, geometry, orbits, source, stop);
     case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
       break;
   }
   return true;

@@ -12,8 +12,8 @@
 
 namespace ballpiston {
 
-// Not for kClosedForm, which has no orbits. Starts and collisions pass as doubles; in between all
-// numbers are the method's. False if `stop` came before the end.
+// Not for kClosedForm, kMarkov and kSpectrum, which have no such orbits. Starts and collisions pass
+// as doubles; in between all numbers are the method's. False if `stop` came before the end.
 bool RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry, uint64_t orbits,
                      OrbitSource& source, const std::stop_token& stop);
 

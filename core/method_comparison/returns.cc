@@ -58,6 +58,8 @@ double PredictedSecondsPerEvent(Method method) {
     case Method::kLanesSingle:
       return 4e-9;
     case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
       break;
   }
   return 0;

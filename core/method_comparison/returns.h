@@ -24,7 +24,7 @@ struct ReturnStatistics {
 };
 
 // Samples 0 ... samples - 1 of the stream. Empty if `stop` came before the end. Not for
-// kClosedForm.
+// kClosedForm, kMarkov, kSpectrum.
 std::optional<ReturnStatistics> RunReturns(const MethodVariant& variant,
                                            const PairGeometry& geometry, double epsilon,
                                            const RandomStream& random, uint64_t samples,

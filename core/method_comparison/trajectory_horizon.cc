@@ -119,6 +119,8 @@ Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, cons
     case Method::kLanesSingle:
       return FlyLanes(FlyLaneBallsSingle, geometry, twins, hits);
     case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
       break;
   }
   return {};

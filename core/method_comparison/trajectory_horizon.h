@@ -29,7 +29,8 @@ struct TrajectoryHorizon {
   double seconds = 0;      // of processor time, without the twins'
 };
 
-// Of all orbits of `twins`. Not for kClosedForm. Ends early, and means nothing, if `stop` comes.
+// Of all orbits of `twins`. Not for kClosedForm, kMarkov, kSpectrum. Ends early, and means nothing,
+// if `stop` comes.
 TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& geometry,
                             TwinOrbits& twins, const std::stop_token& stop);
 

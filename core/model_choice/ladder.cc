@@ -194,7 +194,7 @@ std::string CannotAnswer(Model model, Experiment experiment) {
                       " for ", Name(experiment));
 }
 
-void PredictWithoutSamples(const Question& question, const Machine& machine, Rung& rung) {
+void PredictWithoutSamples(const Machine& machine, Rung& rung) {
   const bool closed = rung.model == Model::kClosedForm;
   rung.samples = 0;
   rung.work = closed ? machine.rates.closed_form : machine.rates.spectrum;
@@ -231,13 +231,15 @@ void SetLimitError(const Question& question, const PilotSource& pilots, Rung& ru
 
 Rung RungFor(Model model, const Question& question, const Machine& machine,
              const PilotSource& pilots) {
-  Rung rung = {.model = model, .answers = Answers(model, question.spec().experiment)};
+  Rung rung;
+  rung.model = model;
+  rung.answers = Answers(model, question.spec().experiment);
   if (!rung.answers) {
     rung.reason = CannotAnswer(model, question.spec().experiment);
     return rung;
   }
   if (model == Model::kClosedForm || model == Model::kSpectrum) {
-    PredictWithoutSamples(question, machine, rung);
+    PredictWithoutSamples(machine, rung);
   } else {
     PredictSamples(question, rung);
   }

@@ -35,7 +35,7 @@ double SlowTime(double way, double speed, double mean_free_time) {
 }  // namespace
 
 double ExpectedLimitError(const PointParameters& point) {
-  constexpr double kEquilibrium = 0.4, kPiston = 0.5, kBall = 0.5, kMost = 10;
+  constexpr double kEquilibrium = 0.4, kPiston = 0.5, kBall = 1, kMost = 10;
   const PairGeometry geometry = GeometryOf(point.rho, point.delta);
   const double tau = MeanFreeTimesOf(geometry).ball_piston;
   const double stroke = geometry.lambda() + 2 * geometry.delta();

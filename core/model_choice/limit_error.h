@@ -22,8 +22,8 @@
 
 namespace ballpiston {
 
-// Relative error of the relaxation time, within a factor of three of what it is (where the window
-// of energy_relaxation.h lets it be seen: up to some 10).
+// The order of the relaxation time's relative error: in equilibrium within a factor of two of what
+// was measured, from a given energy within five, where effects of either sign meet.
 double ExpectedLimitError(const PointParameters& point);
 
 // A pilot's place. Several deltas may share one.

@@ -80,6 +80,7 @@ const EngineRate& MachineRates::Of(Engine engine) const {
 }
 
 MachineRates MeasureMachineRates() {
+  RelaxationSpectrum::Get();  // made once
   MachineRates rates;
   rates.closed_form =
       SecondsOfAPoint(SpecOf(Experiment::kEquilibrium, Model::kClosedForm, kLargeDelta, 1));

@@ -1,7 +1,7 @@
 // CompareMethods: what the comparison's thread tells, in the order it is told.
 //
 // One write is outstanding; what is told meanwhile waits in a queue without a bound, because a
-// comparison has some 200 messages of 50 bytes: a reader that stalls costs 10 KB and holds up
+// comparison has some 250 messages of 60 bytes: a reader that stalls costs 15 KB and holds up
 // nobody. If the client leaves or the server stops, the stream ends at once, whatever waits, and
 // the comparison is asked to stop: it does so when it looks.
 #ifndef BALLPISTON_SERVER_API_COMPARE_METHODS_H_

@@ -23,6 +23,9 @@ absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
 absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service,
                                                     const v1::ListResultsRequest& request);
 
+absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
+    ServiceContext& service, const v1::PlanEnsembleJobRequest& request);
+
 absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext& service,
                                                         const v1::EvaluatePairsRequest& request);
 

@@ -9,6 +9,7 @@
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
 #include "server/execution/comparison_thread.h"
+#include "server/execution/model_ladder.h"
 #include "server/jobs/job_book.h"
 #include "server/observability/activity.h"
 
@@ -21,6 +22,7 @@ struct WatchTiming {
 
 struct ServiceContext {
   JobBook& book;
+  ModelLadder& ladder;
   RpcExecutor& executor;
   WatchRegistry& watches;
   ComparisonThread& comparisons;

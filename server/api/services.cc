@@ -44,6 +44,11 @@ grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* EnsembleService::WatchEn
   return WatchReactor::Start(service_, *request);
 }
 
+Unary* EnsembleService::PlanEnsembleJob(Context* context, const v1::PlanEnsembleJobRequest* request,
+                                        v1::PlanEnsembleJobResponse* response) {
+  return RunUnary(service_, context, request, response, &server::PlanEnsembleJob);
+}
+
 Unary* EnsembleService::ListResults(Context* context, const v1::ListResultsRequest* request,
                                     v1::ListResultsResponse* response) {
   return RunUnary(service_, context, request, response, &server::ListResults);

@@ -32,6 +32,9 @@ class EnsembleService : public v1::EnsembleService::CallbackService {
                                               google::protobuf::Empty* response) override;
   grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* WatchEnsembleJob(
       grpc::CallbackServerContext* context, const v1::WatchEnsembleJobRequest* request) override;
+  grpc::ServerUnaryReactor* PlanEnsembleJob(grpc::CallbackServerContext* context,
+                                            const v1::PlanEnsembleJobRequest* request,
+                                            v1::PlanEnsembleJobResponse* response) override;
   grpc::ServerUnaryReactor* ListResults(grpc::CallbackServerContext* context,
                                         const v1::ListResultsRequest* request,
                                         v1::ListResultsResponse* response) override;

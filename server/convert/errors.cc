@@ -1,9 +1,11 @@
 #include "server/convert/errors.h"
 
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "google/rpc/error_details.pb.h"
 
 namespace ballpiston::server {
@@ -131,9 +133,26 @@ absl::Status ShuttingDown() {
                     "SHUTTING_DOWN");
 }
 
+absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {
+  const std::string error =
+      reached.standard_error
+          ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
+          : "no error that could be told";
+  return WithInfo(
+      absl::DeadlineExceededError(absl::StrFormat(
+          "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,
+          *spec.target.tolerance, *spec.target.budget_seconds, error)),
+      "TOLERANCE_NOT_REACHED", "reached", error);
+}
+
 absl::Status WithReason(absl::Status status, const std::string& reason) {
   SetDetail(status, Info(reason));
   return status;
+}
+
+absl::Status WithDefaultReason(absl::Status status, const std::string& reason) {
+  const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
+  return status.GetPayload(type) ? status : WithReason(std::move(status), reason);
 }
 
 google::rpc::Status RpcStatus(const absl::Status& status) {

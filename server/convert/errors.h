@@ -15,6 +15,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "core/experiment/ensemble_spec.h"
+#include "core/experiment/point_summary.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
 
@@ -36,8 +37,13 @@ absl::Status JobStillActive(const std::string& name,
 absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
 
+// DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
+absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
+
 // Any status, with the reason and domain that clients look for.
 absl::Status WithReason(absl::Status status, const std::string& reason);
+// The same, unless it has one.
+absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 
 // What a job that FAILED keeps.
 google::rpc::Status RpcStatus(const absl::Status& status);

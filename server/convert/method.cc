@@ -15,7 +15,7 @@ using Message = v1::MethodMeasurement;
 
 class Violations {
  public:
-  void Add(const char* field, const absl::Status& status) {
+  void Add(const std::string& field, const absl::Status& status) {
     if (!status.ok()) list_.push_back({field, std::string(status.message())});
   }
   void AddOutside(const char* field, double value, const std::string& range) {
@@ -30,12 +30,32 @@ class Violations {
 // False for NaN.
 bool IsWithin(double low, double value, double high) { return value >= low && value <= high; }
 
+// As far as can be told where rho itself is not permitted.
+absl::Status ValidateDelta(double rho, double delta) {
+  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidateSomeDelta(delta);
+}
+
+absl::Status ValidateCountOfDeltas(size_t count) {
+  if (count <= kMaxRelaxationDeltas) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(count, " values; permitted: at most ", kMaxRelaxationDeltas));
+}
+
+void CheckRelaxationDeltas(const MethodComparisonSpec& spec, Violations& violations) {
+  const absl::Status count = ValidateCountOfDeltas(spec.relaxation_deltas.size());
+  violations.Add("relaxation_delta", count);
+  if (!count.ok()) return;  // no word on each of thousands
+  for (size_t i = 0; i < spec.relaxation_deltas.size(); ++i) {
+    violations.Add(absl::StrCat("relaxation_delta[", i, "]"),
+                   ValidateDelta(spec.rho, spec.relaxation_deltas[i]));
+  }
+}
+
 std::vector<FieldViolation> Check(const MethodComparisonSpec& spec) {
   Violations violations;
-  const absl::Status rho = ValidateRho(spec.rho);
-  violations.Add("rho", rho);
-  violations.Add(
-      "delta", rho.ok() ? ValidatePairDelta(spec.rho, spec.delta) : ValidateSomeDelta(spec.delta));
+  violations.Add("rho", ValidateRho(spec.rho));
+  violations.Add("delta", ValidateDelta(spec.rho, spec.delta));
+  CheckRelaxationDeltas(spec, violations);
   if (!(spec.epsilon > 0 && spec.epsilon < 0.5)) {
     violations.AddOutside("epsilon", spec.epsilon, "(0, 1/2)");
   }
@@ -48,6 +68,16 @@ std::vector<FieldViolation> Check(const MethodComparisonSpec& spec) {
   return violations.Taken();
 }
 
+std::vector<double> RelaxationDeltas(const v1::CompareMethodsRequest& request) {
+  const auto& asked = request.relaxation_delta();
+  if (!asked.empty()) return {asked.begin(), asked.end()};
+  std::vector<double> deltas;
+  for (const double delta : kDefaultRelaxationDeltas) {
+    if (ValidateDelta(request.rho(), delta).ok()) deltas.push_back(delta);
+  }
+  return deltas;
+}
+
 }  // namespace
 
 CheckedComparison CheckComparison(const v1::CompareMethodsRequest& request) {
@@ -58,6 +88,7 @@ CheckedComparison CheckComparison(const v1::CompareMethodsRequest& request) {
   checked.spec.seconds_per_curve =
       request.seconds_per_curve() == 0 ? kDefaultSecondsPerCurve : request.seconds_per_curve();
   checked.spec.seed = request.seed();
+  checked.spec.relaxation_deltas = RelaxationDeltas(request);
   checked.violations = Check(checked.spec);
   return checked;
 }
@@ -67,6 +98,7 @@ v1::MethodMeasurement MeasurementMessage(const MethodMeasurement& measurement) {
   message.set_method(MethodMessage(measurement.method));
   message.set_time_step(measurement.time_step);
   message.set_quantity(QuantityMessage(measurement.quantity));
+  message.set_delta(measurement.delta);
   message.set_samples(measurement.samples);
   message.set_wall_hits(measurement.wall_hits);
   message.set_work(measurement.work);
@@ -93,6 +125,10 @@ Message::Method MethodMessage(Method method) {
       return Message::BILLIARD_SINGLE;
     case Method::kClosedForm:
       return Message::CLOSED_FORM;
+    case Method::kMarkov:
+      return Message::MARKOV;
+    case Method::kSpectrum:
+      return Message::SPECTRUM;
   }
   return Message::METHOD_UNSPECIFIED;
 }
@@ -105,6 +141,8 @@ Message::Quantity QuantityMessage(Quantity quantity) {
       return Message::INGOING_LAW;
     case Quantity::kTrajectory:
       return Message::TRAJECTORY;
+    case Quantity::kRelaxationTime:
+      return Message::RELAXATION_TIME;
   }
   return Message::QUANTITY_UNSPECIFIED;
 }

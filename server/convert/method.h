@@ -11,6 +11,8 @@
 namespace ballpiston::server {
 
 inline constexpr double kDefaultSecondsPerCurve = 1;
+// Those of them that are permitted at the request's rho.
+inline constexpr double kDefaultRelaxationDeltas[] = {0.2, 0.1, 0.05, 0.025};
 
 struct CheckedComparison {
   MethodComparisonSpec spec;  // can be run if there are no violations

@@ -12,11 +12,14 @@
 
 namespace ballpiston::server {
 
-enum class Histograms { kLeftOut, kIncluded };
+// Histograms and curves: what is left out of BASIC views.
+enum class Details { kLeftOut, kIncluded };
 
-// Requires at least one merged block.
+// Requires at least one merged block, if the experiment has any.
 v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
-                              const BlockResult& merged, Histograms histograms);
+                              const BlockResult& merged, Details details);
+
+void ClearDetails(v1::PointResult& result);
 
 std::string PointResultBytes(const v1::PointResult& result);
 absl::StatusOr<v1::PointResult> PointResultFromBytes(const std::string& bytes);  // DATA_LOSS

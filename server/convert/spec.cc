@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "core/engine_version.h"
+#include "core/model_choice/ladder.h"
 #include "google/protobuf/message.h"
 #include "google/protobuf/unknown_field_set.h"
 #include "server/convert/deterministic_bytes.h"
@@ -35,6 +36,10 @@ Experiment ExperimentOf(v1::EnsembleSpec::Experiment message, Violations& violat
       return Experiment::kConditionalMeanFreeTime;
     case v1::EnsembleSpec::FIRST_HIT:
       return Experiment::kFirstHit;
+    case v1::EnsembleSpec::ENERGY_RELAXATION:
+      return Experiment::kEnergyRelaxation;
+    case v1::EnsembleSpec::MARKOV_PROPERTY:
+      return Experiment::kMarkovProperty;
     default:
       AddUnknownNumber("spec.experiment", message, violations);
       return Experiment::kUnspecified;
@@ -48,6 +53,8 @@ Model ModelOf(v1::EnsembleSpec::Model message, Violations& violations) {
       return Model::kAuto;
     case v1::EnsembleSpec::CLOSED_FORM:
       return Model::kClosedForm;
+    case v1::EnsembleSpec::SPECTRUM:
+      return Model::kSpectrum;
     case v1::EnsembleSpec::MARKOV:
       return Model::kMarkov;
     case v1::EnsembleSpec::BILLIARD:
@@ -99,12 +106,10 @@ Target TargetOf(const v1::Target& message) {
     case v1::Target::kTolerance:
       target.tolerance = message.tolerance();
       break;
-    case v1::Target::kBudget:
-      target.budget_seconds = Seconds(message.budget());
-      break;
     case v1::Target::KIND_NOT_SET:
       break;
   }
+  if (message.has_budget()) target.budget_seconds = Seconds(message.budget());
   return target;
 }
 
@@ -121,7 +126,9 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
 // The core's own findings, except on fields that did not even get there.
 void AddCoreViolations(const EnsembleSpec& spec, Violations& violations) {
   const size_t known = violations.size();
-  for (FieldViolation& violation : Violations(ballpiston::Violations(spec))) {
+  Violations found = ballpiston::Violations(spec);
+  if (found.empty()) found = ToleranceViolations(spec);
+  for (FieldViolation& violation : found) {
     violation.field = absl::StrCat("spec.", violation.field);
     bool repeated = false;
     for (size_t i = 0; i < known; ++i) repeated |= violations[i].field == violation.field;
@@ -139,6 +146,10 @@ v1::EnsembleSpec::Experiment ExperimentMessage(Experiment experiment) {
       return v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
     case Experiment::kFirstHit:
       return v1::EnsembleSpec::FIRST_HIT;
+    case Experiment::kEnergyRelaxation:
+      return v1::EnsembleSpec::ENERGY_RELAXATION;
+    case Experiment::kMarkovProperty:
+      return v1::EnsembleSpec::MARKOV_PROPERTY;
   }
   return v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
 }
@@ -180,6 +191,7 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   checked.spec.seed = message.seed();
   checked.spec.model = ModelOf(message.model(), checked.violations);
   checked.spec.precision = PrecisionOf(message.precision(), checked.violations);
+  checked.spec.verify = message.verify();
   AddCoreViolations(checked.spec, checked.violations);
   return checked;
 }
@@ -193,6 +205,7 @@ v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec) {
   message.set_model(ModelMessage(spec.model));
   message.set_precision(spec.precision == Precision::kSingle ? v1::EnsembleSpec::SINGLE
                                                              : v1::EnsembleSpec::DOUBLE);
+  message.set_verify(spec.verify);
   return message;
 }
 
@@ -211,6 +224,8 @@ v1::EnsembleSpec::Model ModelMessage(Model model) {
       return v1::EnsembleSpec::AUTO;
     case Model::kClosedForm:
       return v1::EnsembleSpec::CLOSED_FORM;
+    case Model::kSpectrum:
+      return v1::EnsembleSpec::SPECTRUM;
     case Model::kMarkov:
       return v1::EnsembleSpec::MARKOV;
     case Model::kBilliard:

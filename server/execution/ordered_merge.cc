@@ -5,7 +5,7 @@
 namespace ballpiston::server {
 
 OrderedMerge::OrderedMerge(std::shared_ptr<const PointExperiment> experiment)
-    : experiment_(std::move(experiment)) {}
+    : experiment_(std::move(experiment)), finished_(experiment_->plan().Blocks() == 0) {}
 
 bool OrderedMerge::Knows(uint64_t block) const {
   return block < blocks_merged_ || early_.contains(block);
@@ -17,7 +17,12 @@ void OrderedMerge::Add(uint64_t block, BlockResult result, const OnMerged& on_me
   while (!finished_ && !early_.empty() && early_.begin()->first == blocks_merged_) {
     MergeNext(std::move(early_.extract(early_.begin()).mapped()), on_merged);
   }
-  if (finished_) early_.clear();
+  if (finished_) Finish();
+}
+
+void OrderedMerge::Finish() {
+  finished_ = true;
+  early_.clear();
 }
 
 void OrderedMerge::MergeNext(BlockResult result, const OnMerged& on_merged) {

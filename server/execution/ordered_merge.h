@@ -31,6 +31,9 @@ class OrderedMerge {
   // first one wins (they are equal anyway).
   void Add(uint64_t block, BlockResult result, const OnMerged& on_merged);
 
+  // What is merged is enough; blocks that wait are dropped.
+  void Finish();
+
   bool Knows(uint64_t block) const;  // merged or waiting
   bool finished() const { return finished_; }
   uint64_t blocks_merged() const { return blocks_merged_; }
@@ -43,7 +46,7 @@ class OrderedMerge {
   std::shared_ptr<const PointExperiment> experiment_;
   BlockResult merged_;
   uint64_t blocks_merged_ = 0;
-  bool finished_ = false;
+  bool finished_;
   std::map<uint64_t, BlockResult> early_;
 };
 

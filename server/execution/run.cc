@@ -44,7 +44,7 @@ std::optional<RunTask> Run::NextPoint() {
   if (next_point_ == request_.finished.size()) return std::nullopt;
   const size_t point = next_point_++;
   SkipFinishedPoints();
-  return OpenPointTask{point};
+  return OpenPointTask{point, stop_opening_.get_token()};
 }
 
 void Run::TaskDone() { --tasks_out_; }
@@ -64,8 +64,11 @@ void Run::PointClosed(size_t point) { open_.erase(point); }
 void Run::Stop(absl::Status reason) {
   if (std::exchange(stopped_, true)) return;
   outcome_ = std::move(reason);
+  stop_opening_.request_stop();
   for (const auto& [index, point] : open_) point->stop.request_stop();
 }
+
+void Run::NoteShortfall(absl::Status shortfall) { shortfall_.Update(std::move(shortfall)); }
 
 bool Run::over() const {
   if (tasks_out_ > 0) return false;

@@ -25,9 +25,10 @@
 
 namespace ballpiston::server {
 
-// PointExperiment::Create, or what a test puts in its place. May throw.
-using ExperimentFactory =
-    std::function<std::unique_ptr<const PointExperiment>(const EnsembleSpec&, size_t index)>;
+// Makes a point's experiment; may take seconds, where a model has to be chosen by a pilot run. Null
+// only if it was told to stop. May throw.
+using ExperimentFactory = std::function<std::unique_ptr<const PointExperiment>(
+    const EnsembleSpec&, size_t index, const std::stop_token& stop)>;
 
 struct RunRequest {
   int64_t key = 0;  // greater for a newer job
@@ -39,6 +40,7 @@ struct RunRequest {
 
 struct OpenPointTask {
   size_t point = 0;
+  std::stop_token stop;
 };
 
 struct BlockTask {
@@ -61,6 +63,7 @@ struct OpenPoint {
   OrderedMerge merge;
   uint64_t next_block = 0;
   uint64_t version = 0;  // the journal's number of its last change
+  double work = 0;       // seconds of processor time that its blocks took
   std::stop_source stop;
 };
 
@@ -84,10 +87,13 @@ class Run {
   // No more tasks; blocks in flight are asked to stop. The first reason given stays.
   void Stop(absl::Status reason);
 
+  // The run goes on, and ends with this unless it is stopped. The first one stays.
+  void NoteShortfall(absl::Status shortfall);
+
   // No task is out, and none is left.
   bool over() const;
   // Of a run that is over.
-  const absl::Status& outcome() const { return outcome_; }
+  const absl::Status& outcome() const { return stopped_ ? outcome_ : shortfall_; }
 
   bool began() const { return began_; }
   void set_began() { began_ = true; }
@@ -105,6 +111,8 @@ class Run {
   bool began_ = false;
   bool stopped_ = false;
   absl::Status outcome_;
+  absl::Status shortfall_;
+  std::stop_source stop_opening_;
 };
 
 }  // namespace ballpiston::server

@@ -41,6 +41,9 @@ class RunJournal {
   // waiting, no calls into the pool.
   virtual uint64_t BlockMerged(MergedBlock block) = 0;
 
+  // Seconds of processor time that a worker has just spent on the run.
+  virtual void Worked(double seconds) = 0;
+
   // May take its time.
   virtual void PointFinished(size_t point, const PointExperiment& experiment,
                              const BlockResult& merged) = 0;

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "core/model_choice/ladder.h"
+#include "server/convert/errors.h"
 
 namespace ballpiston::server {
 namespace {
@@ -42,7 +44,9 @@ double ShareOfPoint(const PointExperiment& experiment, const BlockResult& result
 }  // namespace
 
 WorkerPool::WorkerPool(int workers, ExperimentFactory factory)
-    : factory_(std::move(factory)), window_(kWindowPerWorker * static_cast<uint64_t>(workers)) {
+    : factory_(std::move(factory)),
+      workers_(workers),
+      window_(kWindowPerWorker * static_cast<uint64_t>(workers)) {
   for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { Work(); });
 }
 
@@ -140,18 +144,23 @@ void WorkerPool::Execute(const Assignment& assignment) {
   const absl::Status status = block != nullptr
                                   ? ComputeBlock(run, *block)
                                   : OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
+  const double seconds = ThreadSeconds() - start;
+  run.journal().Worked(seconds);
   {
     std::lock_guard lock(mutex_);
     if (!status.ok()) run.Stop(status);
     run.TaskDone();
-    fair_share_.BlockEnds(run.request().key, ThreadSeconds() - start);
+    fair_share_.BlockEnds(run.request().key, seconds);
   }
   work_may_exist_.notify_all();
 }
 
 absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
   return Guarded(task.point, [&]() -> absl::Status {
-    auto open = std::make_unique<OpenPoint>(factory_(run.request().spec, task.point));
+    std::shared_ptr<const PointExperiment> made =
+        factory_(run.request().spec, task.point, task.stop);
+    if (made == nullptr) return absl::OkStatus();  // the run was stopped
+    auto open = std::make_unique<OpenPoint>(std::move(made));
     if (run.request().has_stored_blocks) {
       const PointExperiment& experiment = *open->experiment;
       const auto on_merged = [&](uint64_t block, BlockResult& result) {
@@ -176,25 +185,38 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
 
 absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {
   return Guarded(task.point, [&]() -> absl::Status {
+    const double start = ThreadSeconds();
     std::optional<BlockResult> result = task.experiment->RunBlock(task.block, task.stop);
-    if (result) MergeBlock(run, task, *std::move(result));
+    if (result) MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
     return absl::OkStatus();
   });
 }
 
-void WorkerPool::MergeBlock(Run& run, const BlockTask& task, BlockResult result) {
+void WorkerPool::MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds) {
   {
     std::lock_guard lock(mutex_);
     OpenPoint* open = run.FindOpen(task.point);
     if (open == nullptr || open->merge.finished()) return;
+    open->work += seconds;
     open->merge.Add(task.block, std::move(result), [&](uint64_t block, BlockResult& merged) {
       const double share = ShareOfPoint(*task.experiment, merged);
       open->version = run.journal().BlockMerged({task.point, block, share, false, merged});
     });
+    if (!open->merge.finished()) EndIfBudgetIsSpent(run, task.point, *open);
     if (!open->merge.finished()) return;
     open->stop.request_stop();  // blocks beyond the target are in vain
   }
   ClosePoint(run, task.point);
+}
+
+void WorkerPool::EndIfBudgetIsSpent(Run& run, size_t point, OpenPoint& open) {
+  const EnsembleSpec& spec = run.request().spec;
+  if (!spec.target.budget_seconds || open.merge.blocks_merged() == 0) return;
+  if (open.work < BudgetOfAPoint(spec, workers_)) return;
+  open.merge.Finish();
+  if (!spec.target.tolerance) return;
+  run.NoteShortfall(
+      ToleranceNotReached(spec, point, open.experiment->FirstEstimate(open.merge.merged())));
 }
 
 void WorkerPool::ClosePoint(Run& run, size_t point) {

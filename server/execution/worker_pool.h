@@ -62,11 +62,14 @@ class WorkerPool {
   void Execute(const Assignment& assignment);
   absl::Status OpenNewPoint(Run& run, const OpenPointTask& task);
   absl::Status ComputeBlock(Run& run, const BlockTask& task);
-  void MergeBlock(Run& run, const BlockTask& task, BlockResult result);
+  void MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds);
+  // The lock is held; a point with a merged block ends with what it has.
+  void EndIfBudgetIsSpent(Run& run, size_t point, OpenPoint& open);
   void ClosePoint(Run& run, size_t point);
   void Conclude(const std::shared_ptr<Run>& run);
 
   const ExperimentFactory factory_;
+  const int workers_;
   const uint64_t window_;
 
   mutable std::mutex mutex_;

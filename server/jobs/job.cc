@@ -11,7 +11,7 @@ namespace ballpiston::server {
 Job::Job(JobRecord record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
       id_(record.id),
-      has_tolerance_(JobMessage(record).spec().target().has_tolerance()),
+      open_ended_(IsOpenEnded(JobMessage(record).spec().target())),
       on_state_change_(std::move(on_state_change)),
       record_(std::move(record)) {}
 
@@ -45,7 +45,7 @@ v1::JobProgress Job::ProgressLocked() const {
   progress.set_points(static_cast<int32_t>(record_.points));
   progress.set_points_done(static_cast<int32_t>(record_.points_done));
   progress.set_samples(record_.samples);
-  if (has_tolerance_) return progress;
+  if (open_ended_) return progress;
   const double points = static_cast<double>(record_.points);
   const bool done = record_.points_done == record_.points;
   progress.set_fraction(done ? 1.0 : std::min(1.0, work_done_ / points));
@@ -81,6 +81,11 @@ uint64_t Job::AddBlock(double samples, double share_of_point) {
   record_.samples += samples;
   work_done_ += share_of_point;
   return ++last_change_;
+}
+
+void Job::AddWork(double seconds) {
+  std::lock_guard lock(mutex_);
+  record_.work += seconds;
 }
 
 uint64_t Job::AddFinishedPoint(FinishedPoint point) {

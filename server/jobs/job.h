@@ -53,6 +53,7 @@ class Job {
 
   // A block was merged: so many samples, that share of its point.
   uint64_t AddBlock(double samples, double share_of_point);
+  void AddWork(double seconds);
   uint64_t AddFinishedPoint(FinishedPoint point);
   // Points that an earlier process finished; `recent` are some of them.
   uint64_t AddRestoredPoints(int64_t points, double samples, std::vector<FinishedPoint> recent);
@@ -66,7 +67,7 @@ class Job {
 
   const int64_t sequence_;
   const std::string id_;
-  const bool has_tolerance_;
+  const bool open_ended_;  // how much there is to do is not known
   const std::function<void()> on_state_change_;
 
   mutable std::mutex mutex_;

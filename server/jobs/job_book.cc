@@ -39,7 +39,7 @@ absl::Status ReadRecent(Database& database, int64_t sequence, int64_t first,
     absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
-    result->clear_histograms();
+    ClearDetails(*result);
     recent.push_back(std::make_shared<const v1::PointResult>(*std::move(result)));
     return true;
   });
@@ -301,7 +301,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const std::string& id, const Result
     absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
-    if (!query.histograms) result->clear_histograms();
+    if (!query.histograms) ClearDetails(*result);
     bytes += result->ByteSizeLong();
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
     page.more = full || (!page.points.empty() && bytes > query.max_bytes);
@@ -332,7 +332,7 @@ std::vector<v1::PointResult> JobBook::PointsChangedSince(const Job& job, uint64_
   std::vector<std::pair<uint64_t, v1::PointResult>> changed;
   for (const LivePoint& point : pool_.ChangedSince(job.sequence(), number, limit)) {
     changed.emplace_back(point.version, PointResultOf(point.index, *point.experiment, point.merged,
-                                                      Histograms::kLeftOut));
+                                                      Details::kLeftOut));
   }
   for (const Job::Change& change : job.FinishedSince(number, limit)) {
     changed.emplace_back(change.number, *change.point);

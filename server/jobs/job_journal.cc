@@ -21,13 +21,14 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   end.time = absl::Now();
   end.points_done = record.points_done;
   end.samples = record.samples;
+  end.work = record.work;
   if (outcome.ok()) {
     end.state = v1::EnsembleJob::SUCCEEDED;
   } else if (absl::IsCancelled(outcome)) {
     end.state = v1::EnsembleJob::CANCELLED;
   } else {
     end.state = v1::EnsembleJob::FAILED;
-    end.error = RpcStatus(WithReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
+    end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
   }
   return end;
 }
@@ -70,12 +71,15 @@ uint64_t JobJournal::BlockMerged(MergedBlock block) {
   return change;
 }
 
+void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
+
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
-  v1::PointResult result = PointResultOf(point, experiment, merged, Histograms::kIncluded);
+  if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
+  v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
   store_.RecordResult(job_->sequence(),
                       {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
-  result.clear_histograms();
+  ClearDetails(result);
   job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
 }
 

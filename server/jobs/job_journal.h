@@ -24,6 +24,7 @@ class JobJournal : public RunJournal {
   void Began() override;
   absl::Status ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) override;
   uint64_t BlockMerged(MergedBlock block) override;
+  void Worked(double seconds) override;
   void PointFinished(size_t point, const PointExperiment& experiment,
                      const BlockResult& merged) override;
   void Ended(const absl::Status& outcome) override;

@@ -18,12 +18,14 @@ void SetProgress(const JobRecord& record, v1::EnsembleJob& job) {
   progress.set_points(static_cast<int32_t>(record.points));
   progress.set_points_done(static_cast<int32_t>(record.points_done));
   progress.set_samples(record.samples);
-  if (job.spec().target().has_tolerance() || record.points == 0) return;
+  if (IsOpenEnded(job.spec().target()) || record.points == 0) return;
   progress.set_fraction(static_cast<double>(record.points_done) /
                         static_cast<double>(record.points));
 }
 
 }  // namespace
+
+bool IsOpenEnded(const v1::Target& target) { return target.has_tolerance() || target.has_budget(); }
 
 v1::EnsembleJob JobMessage(const JobRecord& record) {
   v1::EnsembleJob job;
@@ -38,6 +40,7 @@ v1::EnsembleJob JobMessage(const JobRecord& record) {
   }
   SetProgress(record, job);
   job.set_engine_version(record.engine_version);
+  job.set_work(record.work);
   return job;
 }
 

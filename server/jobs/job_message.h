@@ -10,6 +10,9 @@ namespace ballpiston::server {
 // Of a row; its progress is what the row says. A specification that cannot be read is left out.
 v1::EnsembleJob JobMessage(const JobRecord& record);
 
+// Whether a tolerance or a budget ends the job's points, not a number of samples.
+bool IsOpenEnded(const v1::Target& target);
+
 }  // namespace ballpiston::server
 
 #endif  // BALLPISTON_SERVER_JOBS_JOB_MESSAGE_H_

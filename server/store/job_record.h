@@ -28,6 +28,7 @@ struct JobRecord {
   int64_t points = 0;
   int64_t points_done = 0;  // these two are up to date in ended jobs only
   double samples = 0;
+  double work = 0;  // seconds of processor time; of this server's life, in an ended job of its last
 };
 
 }  // namespace ballpiston::server

@@ -7,7 +7,7 @@ namespace {
 
 constexpr char kColumns[] =
     "sequence, id, spec, state, create_time, start_time, end_time, error, engine_version,"
-    " request_id, cancel_request_id, points, points_done, samples";
+    " request_id, cancel_request_id, points, points_done, samples, work";
 
 std::optional<absl::Time> OptionalTime(const Query& query, int column) {
   if (query.IsNull(column)) return std::nullopt;
@@ -30,6 +30,7 @@ JobRecord RecordOf(const Query& query) {
   record.points = query.Integer(11);
   record.points_done = query.Integer(12);
   record.samples = query.Real(13);
+  record.work = query.Real(14);
   return record;
 }
 
@@ -129,12 +130,12 @@ absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
 absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end) {
   Query query = database.Prepare(
       "UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?, error = iif(state = ?, x'', ?),"
-      " points_done = ?, samples = ? WHERE sequence = ? RETURNING state");
+      " points_done = ?, samples = ?, work = ? WHERE sequence = ? RETURNING state");
   query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).Bind(int64_t{v1::EnsembleJob::CANCELLED});
   query.Bind(int64_t{end.state}).Bind(absl::ToUnixNanos(end.time));
   query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error);
   const absl::StatusOr<bool> row =
-      query.Bind(end.points_done).Bind(end.samples).Bind(sequence).Step();
+      query.Bind(end.points_done).Bind(end.samples).Bind(end.work).Bind(sequence).Step();
   if (!row.ok()) return row.status();
   if (!*row) return absl::NotFoundError("the job is not in the store");
   const auto state = static_cast<JobState>(query.Integer(0));

@@ -44,6 +44,7 @@ struct JobEnd {
   std::string error;
   int64_t points_done = 0;
   double samples = 0;
+  double work = 0;
 };
 
 // Ends an active job and drops its blocks; one that is CANCELLING becomes CANCELLED whatever was

@@ -46,6 +46,20 @@ CREATE TABLE results (
 ) STRICT;
 )sql";
 
+// By version: what makes a store of the version before into one of this.
+constexpr char kSecondVersion[] = R"sql(
+ALTER TABLE jobs ADD COLUMN work REAL NOT NULL DEFAULT 0;
+CREATE TABLE pilots (
+  engine_version TEXT NOT NULL,
+  rho REAL NOT NULL,
+  delta REAL NOT NULL,
+  epsilon REAL NOT NULL,
+  difference REAL NOT NULL,
+  standard_error REAL NOT NULL,
+  PRIMARY KEY (engine_version, rho, delta, epsilon)
+) STRICT;
+)sql";
+
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
@@ -85,8 +99,8 @@ absl::Status MakeTables(Database& database) {
   const auto version = database.Integer("PRAGMA user_version");
   if (!version.ok()) return version.status();
   if (*version == kSchemaVersion) return absl::OkStatus();
-  return database.Execute(absl::StrCat("BEGIN IMMEDIATE;", kTables,
-                                       "PRAGMA application_id = ", kApplicationId,
+  return database.Execute(absl::StrCat("BEGIN IMMEDIATE;", *version == 0 ? kTables : "",
+                                       kSecondVersion, "PRAGMA application_id = ", kApplicationId,
                                        "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
 }
 

@@ -3,6 +3,7 @@
 //   jobs     one row a job; `sequence` is its age and the key of the other two
 //   blocks   (job, point, block) -> storage BlockRecord, of unfinished points of active jobs
 //   results  (job, point) -> PointResult, of finished points
+//   pilots   what pilot runs found of the limit's error, by place and engine
 //
 // `application_id` tells a store from another program's database, `user_version` is the version of
 // these tables.
@@ -18,7 +19,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 1;
+inline constexpr int64_t kSchemaVersion = 2;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints, to a store that was checked, or made if there was

@@ -38,7 +38,7 @@ TEST(ComparisonProgress, JsonIsAMeasurementALine) {
   EXPECT_EQ(Shown(ProgressStyle::kJson),
             "{\"method\":\"FIXED_STEP\",\"time_step\":0.01,\"quantity\":\"MEAN_FREE_TIME\","
             "\"samples\":\"1024\",\"wall_hits\":\"0\",\"work\":0.1234,\"value\":0,"
-            "\"statistical_error\":0}\n");
+            "\"statistical_error\":0,\"delta\":0}\n");
 }
 
 TEST(ComparisonProgress, NoneIsNothing) { EXPECT_EQ(Shown(ProgressStyle::kNone), ""); }

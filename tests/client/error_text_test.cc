@@ -88,6 +88,14 @@ TEST(ErrorText, OtherExhaustionKeepsItsWords) {
   EXPECT_EQ(status, absl::ResourceExhaustedError("too many watchers"));
 }
 
+TEST(ErrorText, AMethodThatTheServerLacksIsToldInPlainWords) {
+  const absl::Status status = FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, ""));
+  EXPECT_EQ(status, absl::UnimplementedError(
+                        "the server is of an earlier version, which does not offer this"));
+  EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "not by Slurm")).message(),
+            "not by Slurm");
+}
+
 TEST(ErrorText, DetailsThatAreNoStatusDoNotHideTheMessage) {
   const absl::Status status =
       FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff"));

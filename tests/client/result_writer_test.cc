@@ -86,7 +86,7 @@ TEST(ResultTable, HasColumnsForWhatTheLadderTells) {
  rho   delta  model     samples  estimate           value    error  exact  z  model_error  noise_floor  limit
 0.53     0.1  billiard  1000000  relaxation_time    3.211    0.012                      0               3.142
 0.53  0.0125  markov    1000000  relaxation_time    3.142    0.012                 0.0023               3.142
-0.53  0.0125  markov    1000000  kernel_distance  0.00213  0.00043                            0.00198
+0.53  0.0125  markov    1000000  kernel_distance  0.00213  0.00043                             0.00198
 billiard (rho 0.53, delta 0.1): the limit is off by 2.1e-02
 markov (rho 0.53, delta 0.0125): the limit is off by 7.3e-04
 )");

@@ -111,13 +111,13 @@ TEST(Spec, NotANumberAndInfinityAreViolations) {
 
 TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   const EnsembleSpec spec = FakeSpec(1, 1);
-  const auto experiment = FakeExperiments()(spec, 0);
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
   BlockResult merged;
   merged.samples = 1;
   merged.moments.resize(1);
   merged.moments[0].Add(0.25);  // one sample: no standard error, no z-score
   merged.health.max_energy_error = kNan;
-  const v1::PointResult result = PointResultOf(3, *experiment, merged, Histograms::kIncluded);
+  const v1::PointResult result = PointResultOf(3, *experiment, merged, Details::kIncluded);
   ASSERT_EQ(result.estimates_size(), 1);
   EXPECT_EQ(result.index(), 3);
   EXPECT_EQ(result.estimates(0).value(), 0.25);
@@ -127,7 +127,7 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_EQ(result.health().max_energy_error(), 0);
   EXPECT_FALSE(result.parameters().has_epsilon());
   merged.moments[0].mean = kNan;
-  EXPECT_EQ(PointResultOf(3, *experiment, merged, Histograms::kIncluded).estimates_size(), 0);
+  EXPECT_EQ(PointResultOf(3, *experiment, merged, Details::kIncluded).estimates_size(), 0);
 }
 
 google::rpc::Status Details(const grpc::Status& status) {

@@ -199,10 +199,11 @@ TEST_F(EnsembleServiceTest, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
 }
 
 TEST_F(EnsembleServiceTest, AnExceptionFailsTheJobAndTheServerStays) {
-  RunningServer& server = StartWith([](const EnsembleSpec& spec, size_t index) {
+  RunningServer& server = StartWith([](const EnsembleSpec& spec, size_t index,
+                                       const std::stop_token& stop) {
     return FakeExperiments([seed = spec.seed](size_t, uint64_t, std::stop_token) {
       if (seed == 13) throw std::runtime_error("the ball left the cell");
-    })(spec, index);
+    })(spec, index, stop);
   });
   v1::EnsembleSpec bad = Equilibrium(2, 5);
   bad.set_seed(13);

@@ -113,13 +113,15 @@ void Gate::AwaitWaiting(int count) {
 }
 
 ExperimentFactory FakeExperiments(BeforeBlock before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
+  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
+                                                  const std::stop_token&) {
     return std::make_unique<const FakeExperiment>(spec, index, before_block);
   };
 }
 
 ExperimentFactory HeldUpExperiments(BeforeBlock before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
+  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
+                                                  const std::stop_token&) {
     return std::make_unique<const HeldUpExperiment>(spec, index, before_block);
   };
 }
@@ -135,7 +137,7 @@ EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {
 }
 
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks) {
-  const auto experiment = FakeExperiments()(spec, point);
+  const auto experiment = FakeExperiments()(spec, point, std::stop_token());
   BlockResult merged;
   for (uint64_t block = 0; block < blocks; ++block) {
     merged.Merge(*experiment->RunBlock(block, std::stop_token()));

@@ -1,12 +1,27 @@
+#include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/convert/method.h"
 
 namespace ballpiston::server {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using Message = v1::MethodMeasurement;
+
+v1::CompareMethodsRequest SomeRequest() {
+  v1::CompareMethodsRequest request;
+  request.set_rho(0.53);
+  request.set_delta(0.1);
+  request.set_epsilon(0.125);
+  return request;
+}
 
 // The core's values are 0, 1, 2, ... to the last one; the conversion gives UNSPECIFIED for the
 // number after it.
@@ -30,12 +45,12 @@ std::set<int> NumbersOf(const google::protobuf::EnumDescriptor& descriptor) {
 }
 
 TEST(MethodMessage, EachMethodHasItsValueAndEachValueItsMethod) {
-  EXPECT_EQ(MessagesOf(Method::kClosedForm, &MethodMessage),
+  EXPECT_EQ(MessagesOf(Method::kSpectrum, &MethodMessage),
             NumbersOf(*Message::Method_descriptor()));
 }
 
 TEST(MethodMessage, EachQuantityHasItsValueAndEachValueItsQuantity) {
-  EXPECT_EQ(MessagesOf(Quantity::kTrajectory, &QuantityMessage),
+  EXPECT_EQ(MessagesOf(Quantity::kRelaxationTime, &QuantityMessage),
             NumbersOf(*Message::Quantity_descriptor()));
 }
 
@@ -48,15 +63,63 @@ TEST(MethodMessage, AMethodKeepsItsMeaning) {
   EXPECT_EQ(MethodMessage(Method::kLanes), Message::BILLIARD);
   EXPECT_EQ(MethodMessage(Method::kLanesSingle), Message::BILLIARD_SINGLE);
   EXPECT_EQ(MethodMessage(Method::kClosedForm), Message::CLOSED_FORM);
+  EXPECT_EQ(MethodMessage(Method::kMarkov), Message::MARKOV);
+  EXPECT_EQ(MethodMessage(Method::kSpectrum), Message::SPECTRUM);
   EXPECT_EQ(QuantityMessage(Quantity::kMeanFreeTime), Message::MEAN_FREE_TIME);
   EXPECT_EQ(QuantityMessage(Quantity::kIngoingLaw), Message::INGOING_LAW);
   EXPECT_EQ(QuantityMessage(Quantity::kTrajectory), Message::TRAJECTORY);
+  EXPECT_EQ(QuantityMessage(Quantity::kRelaxationTime), Message::RELAXATION_TIME);
+}
+
+TEST(MethodMessage, RelaxationIsMeasuredWhereverItIsAskedFor) {
+  v1::CompareMethodsRequest request = SomeRequest();
+  request.add_relaxation_delta(0.3);
+  request.add_relaxation_delta(0.01);
+  const CheckedComparison checked = CheckComparison(request);
+  EXPECT_THAT(checked.violations, IsEmpty());
+  EXPECT_THAT(checked.spec.relaxation_deltas, ElementsAre(0.3, 0.01));
+}
+
+// The bound on delta, (1 - lambda)/2, is 0.32 at rho = 0.53, 0.039 at 0.68 and 0.010 at 0.7.
+TEST(MethodMessage, WithoutADeltaRelaxationIsMeasuredAtTheUsualOnesThatRhoPermits) {
+  v1::CompareMethodsRequest request = SomeRequest();
+  EXPECT_THAT(CheckComparison(request).spec.relaxation_deltas, ElementsAre(0.2, 0.1, 0.05, 0.025));
+  request.set_delta(0.01);
+  request.set_rho(0.68);
+  EXPECT_THAT(CheckComparison(request).spec.relaxation_deltas, ElementsAre(0.025));
+  request.set_rho(0.7);
+  EXPECT_THAT(CheckComparison(request).spec.relaxation_deltas, IsEmpty());
+  EXPECT_THAT(CheckComparison(request).violations, IsEmpty());
+}
+
+TEST(MethodMessage, EachDeltaOfRelaxationIsCheckedLikeDelta) {
+  v1::CompareMethodsRequest request = SomeRequest();
+  for (const double delta : {0.1, 0.4, 0.0, std::nan("")}) request.add_relaxation_delta(delta);
+  const std::vector<FieldViolation> violations = CheckComparison(request).violations;
+  ASSERT_EQ(violations.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(violations[i].field, "relaxation_delta[" + std::to_string(i + 1) + "]");
+    EXPECT_THAT(violations[i].description, HasSubstr("0 < delta <="));
+  }
+}
+
+TEST(MethodMessage, ThereAreAtMostEightDeltasOfRelaxation) {
+  v1::CompareMethodsRequest request = SomeRequest();
+  for (int i = 0; i < 8; ++i) request.add_relaxation_delta(0.1);
+  EXPECT_THAT(CheckComparison(request).violations, IsEmpty());
+  request.add_relaxation_delta(0.4);
+  const std::vector<FieldViolation> violations = CheckComparison(request).violations;
+  ASSERT_EQ(violations.size(), 1u);
+  EXPECT_EQ(violations[0].field, "relaxation_delta");
+  EXPECT_THAT(violations[0].description, HasSubstr("9 values"));
+  EXPECT_THAT(violations[0].description, HasSubstr("at most 8"));
 }
 
 TEST(MethodMessage, AMeasurementIsToldWhole) {
   const Message message = MeasurementMessage({.method = Method::kFixedStep,
                                               .time_step = 0.25,
                                               .quantity = Quantity::kTrajectory,
+                                              .delta = 0.375,
                                               .samples = 5'000'000'000,
                                               .wall_hits = 6'000'000'000,
                                               .work = 1.5,
@@ -65,6 +128,7 @@ TEST(MethodMessage, AMeasurementIsToldWhole) {
   EXPECT_EQ(message.method(), Message::FIXED_STEP);
   EXPECT_EQ(message.time_step(), 0.25);
   EXPECT_EQ(message.quantity(), Message::TRAJECTORY);
+  EXPECT_EQ(message.delta(), 0.375);
   EXPECT_EQ(message.samples(), 5'000'000'000u);
   EXPECT_EQ(message.wall_hits(), 6'000'000'000u);
   EXPECT_EQ(message.work(), 1.5);

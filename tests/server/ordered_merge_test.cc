@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t kBlocks = 50;
 
 std::shared_ptr<const PointExperiment> Experiment() {
-  return FakeExperiments()(FakeSpec(1, kBlocks), 0);
+  return FakeExperiments()(FakeSpec(1, kBlocks), 0, std::stop_token());
 }
 
 std::vector<uint64_t> Shuffled(unsigned seed) {
@@ -76,7 +76,7 @@ TEST(OrderedMerge, BlocksBeyondTheToleranceAreDropped) {
   EnsembleSpec spec = FakeSpec(1, 0);
   spec.target = {};
   spec.target.tolerance = 0.05;  // reached after some 140 samples, never before kMinBlocks
-  const std::shared_ptr<const PointExperiment> experiment = FakeExperiments()(spec, 0);
+  const std::shared_ptr<const PointExperiment> experiment = FakeExperiments()(spec, 0, std::stop_token());
   OrderedMerge merge(experiment);
   uint64_t told = 0;
   for (uint64_t block = 200; block-- > 0;) {  // backwards: all wait for the first

@@ -28,6 +28,11 @@ class RecordingJournal : public RunJournal {
     return ++changes;
   }
 
+  void Worked(double seconds) override {
+    std::lock_guard lock(mutex);
+    work += seconds;
+  }
+
   void PointFinished(size_t point, const PointExperiment&, const BlockResult& result) override {
     std::lock_guard lock(mutex);
     finished.emplace(point, result);
@@ -53,6 +58,7 @@ class RecordingJournal : public RunJournal {
   std::condition_variable changed;
   std::atomic<int> begun = 0;
   int ends = 0;
+  double work = 0;
   uint64_t changes = 0;
   std::map<size_t, std::vector<uint64_t>> merged;
   std::map<size_t, std::vector<uint64_t>> restored;

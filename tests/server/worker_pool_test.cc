@@ -62,7 +62,7 @@ TEST(WorkerPool, BlocksOfAPointAreMergedInOrderAndOnce) {
 TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
   const EnsembleSpec spec = FakeSpec(2, 30);
   auto journal = std::make_shared<RecordingJournal>();
-  const auto experiment = FakeExperiments()(spec, 1);
+  const auto experiment = FakeExperiments()(spec, 1, std::stop_token());
   for (const uint64_t block : {0, 1, 2, 7, 9}) {  // with gaps: an early block was stored
     journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
   }
@@ -84,7 +84,7 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
 TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   auto journal = std::make_shared<RecordingJournal>();
-  const auto experiment = FakeExperiments()(spec, 0);
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
   for (uint64_t block = 0; block < 3; ++block) {
     journal->stored[0].emplace(block, *experiment->RunBlock(block, {}));
   }

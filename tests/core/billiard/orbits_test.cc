@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "core/statistics/moments.h"
+#include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_contacts.h"
 
 namespace ballpiston {
@@ -99,6 +102,125 @@ TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
   for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
     RestingBall source(geometry);
     EXPECT_FALSE(RunOrbits(engine, geometry, 3, source, stop.get_token()));
+  }
+}
+
+// The same pair for every orbit, of which the ends are told.
+class WithTimeLimit : public OrbitSource {
+ public:
+  WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
+      : state_(state), limit_(limit), ends_(orbits) {}
+  PairState Start(uint64_t) override { return state_; }
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    ends_[orbit].push_back(contact);
+    return AfterContact::kEnd;
+  }
+  double TimeLimit() const override { return limit_; }
+  const std::vector<std::vector<Contact>>& ends() const { return ends_; }
+
+ private:
+  PairState state_;
+  double limit_;
+  std::vector<std::vector<Contact>> ends_;
+};
+
+// Pairs that do not meet, or not in 1e9: the piston rests, or nearly, where the ball does not come;
+// the ball rests, or nearly, where the piston does not.
+std::vector<PairState> PairsApart(const PairGeometry& geometry) {
+  const Eigen::Vector2d slant = {0.6, 0.8};
+  std::vector<PairState> pairs;
+  for (const double slow : {0.0, 1e-12, -1e-300}) {
+    pairs.push_back({.position = {-0.1, 0.02},
+                     .direction = slant,
+                     .piston = geometry.piston_right() - 1e-3,
+                     .piston_velocity = slow});
+  }
+  for (const double slow : {0.0, 1e-12, 1e-300}) {
+    pairs.push_back({.position = {-0.1, 0.02},
+                     .direction = slant,
+                     .ball_speed = slow,
+                     .piston = geometry.piston_right(),
+                     .piston_velocity = -1});
+  }
+  return pairs;
+}
+
+TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  constexpr double kLimit = 1000;
+  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+    for (const PairState& pair : PairsApart(geometry)) {
+      for (const uint64_t orbits : {1, 70}) {
+        WithTimeLimit source(pair, kLimit, orbits);
+        ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source, {}));
+        for (const std::vector<Contact>& ends : source.ends()) {
+          ASSERT_EQ(ends.size(), 1u);
+          EXPECT_TRUE(ends[0].expired);
+          EXPECT_FALSE(ends[0].escaped);
+          EXPECT_GT(ends[0].time, kLimit);
+        }
+      }
+    }
+  }
+}
+
+class ContactsWithin : public RecordedContacts {
+ public:
+  ContactsWithin(double limit, const PairGeometry& geometry, uint64_t orbits, size_t collisions)
+      : RecordedContacts(geometry, orbits, collisions), limit_(limit) {}
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    const AfterContact after = RecordedContacts::Meet(orbit, contact);
+    return contact.expired ? AfterContact::kEnd : after;
+  }
+  double TimeLimit() const override { return limit_; }
+
+ private:
+  double limit_;
+};
+
+void ExpectSameBits(const Contact& first, const Contact& second) {
+  EXPECT_EQ(first.time, second.time);
+  EXPECT_EQ(first.state.position, second.state.position);
+  EXPECT_EQ(first.state.direction, second.state.direction);
+  EXPECT_EQ(first.state.ball_speed, second.state.ball_speed);
+  EXPECT_EQ(first.state.piston_velocity, second.state.piston_velocity);
+  EXPECT_EQ(first.ball_wall_hits, second.ball_wall_hits);
+  EXPECT_EQ(first.piston_wall_hits, second.piston_wall_hits);
+}
+
+// Every orbit is as without a limit up to the first collision that comes too late, and ends there:
+// in all engines and vector widths.
+TEST(Orbits, TimeLimitChangesNothingWithinIt) {
+  constexpr uint64_t kOrbits = 300;
+  constexpr size_t kCollisions = 6;
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+    const RecordedContacts free = Recorded(engine, geometry, kOrbits, kCollisions);
+    // The mean free time is 97 here. At 1e-9 every orbit ends at once.
+    for (const double limit : {1e-9, 20.0, 100.0, 300.0, 1e9}) {
+      ForEachTarget([&](int64_t target) {
+        if (!HasFusedMultiplyAdd(target)) return;
+        ContactsWithin limited(limit, geometry, kOrbits, kCollisions);
+        ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited, {}));
+        uint64_t expired = 0;
+        for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
+          const auto &all = free.by_orbit()[orbit], &some = limited.by_orbit()[orbit];
+          size_t i = 0;
+          for (; i < kCollisions && all[i].time <= limit; ++i) {
+            ASSERT_LT(i, some.size());
+            EXPECT_FALSE(some[i].expired);
+            ExpectSameBits(some[i], all[i]);
+          }
+          ASSERT_EQ(some.size(), std::min(i + 1, kCollisions));
+          if (i == kCollisions) continue;
+          EXPECT_TRUE(some[i].expired);
+          EXPECT_GT(some[i].time, limit);
+          ++expired;
+        }
+        EXPECT_EQ(expired == kOrbits, limit < 1);
+        EXPECT_EQ(expired == 0, limit > 1e6);
+      });
+    }
   }
 }
 

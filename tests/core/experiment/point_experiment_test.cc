@@ -72,7 +72,7 @@ TEST(PointExperiment, ComputesWhatTheTargetAsksFor) {
     EXPECT_EQ(summary.samples, 1000u);
     EXPECT_EQ(summary.health.escapes, 0u);
     EXPECT_LT(summary.health.max_energy_error, 1e-14);
-    EXPECT_EQ(point->model(), spec.model == Model::kAuto ? Model::kBilliard : spec.model);
+    EXPECT_EQ(point->answer().model, spec.model == Model::kAuto ? Model::kBilliard : spec.model);
     for (const Estimate& estimate : summary.estimates) {
       EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
       ASSERT_TRUE(estimate.standard_error) << estimate.name;

@@ -43,6 +43,38 @@ TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
   EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
 }
 
+// At given energies positions are those of mu, directions those of the circle, and the piston comes
+// as often as it goes.
+TEST(FlowMeasure, AtAnEnergyOnlySpeedsAreGiven) {
+  const PairGeometry geometry = Paper();
+  const PairMeasures measures = Measures(geometry);
+  const double left_share =
+      1 - measures.cell_area * (geometry.lambda() + geometry.delta()) / measures.volume;
+  for (const double epsilon : {0.0, 1e-300, 0.01, 0.25, 0.4, 0.5}) {
+    CounterRandom random(15, 0, 0);
+    Moments left, coming, cosine, sine, square;
+    for (int i = 0; i < 50'000; ++i) {
+      const PairState state = DrawFromFlowMeasureAt(geometry, epsilon, random);
+      ASSERT_TRUE(InsideCell(geometry, state.position));
+      ASSERT_LT(state.position.x(), state.piston);
+      ASSERT_EQ(std::fabs(state.piston_velocity), std::sqrt(2 * epsilon));
+      ASSERT_LE(EnergyError(state), 1e-15);
+      ASSERT_NEAR(state.direction.norm(), 1, 1e-15);
+      left.Add(state.piston < geometry.tip() ? 1 : 0);
+      coming.Add(std::signbit(state.piston_velocity) ? 1 : 0);
+      cosine.Add(state.direction.x());
+      sine.Add(state.direction.y());
+      square.Add(state.direction.x() * state.direction.x());
+    }
+    // False alarms 6e-7 each.
+    EXPECT_NEAR(left.mean, left_share, 5 * *left.StandardError()) << epsilon;
+    EXPECT_NEAR(coming.mean, 0.5, 5 * *coming.StandardError()) << epsilon;
+    EXPECT_NEAR(cosine.mean, 0, 5 * *cosine.StandardError()) << epsilon;
+    EXPECT_NEAR(sine.mean, 0, 5 * *sine.StandardError()) << epsilon;
+    EXPECT_NEAR(square.mean, 0.5, 5 * *square.StandardError()) << epsilon;
+  }
+}
+
 // Under nu_bp the normal component w = (v3 - v1)/sqrt(2) has density 2 w: mean 2/3; the tangential
 // ones are symmetric with mean square (1 - <w^2>)/2 = 1/4.
 TEST(CollisionMeasure, VelocityFollowsTheCosineLaw) {

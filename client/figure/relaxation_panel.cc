@@ -1,0 +1,283 @@
+#include "client/figure/relaxation_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
+#include "client/figure/limit_floor.h"
+#include "client/figure/plot_marks.h"
+#include "client/figure/speed_accuracy_figure.h"
+#include "client/output/number_text.h"
+
+namespace ballpiston::client {
+namespace {
+
+using v1::MethodMeasurement;
+using Measurements = std::vector<MethodMeasurement>;
+
+constexpr double kRoomForDeltas = 60;  // right of the longest run: the deltas stand there
+constexpr double kFloorEnd = 2.2;      // right of the longest run
+constexpr double kLabelAt = 3;         // likewise
+
+// From dark to light as delta falls; viridis, whose luminance tells them apart too. Its yellow end
+// is too light for lines on white.
+constexpr const char* kColours[] = {"#440154", "#472d7b", "#3b528b", "#2c728e",
+                                    "#21918c", "#28ae80", "#5ec962"};
+
+std::string ColourOf(size_t index, size_t count) {
+  if (count < 2) return kColours[0];
+  return kColours[index * (std::size(kColours) - 1) / (count - 1)];
+}
+
+Measurements RunsOf(const Measurements& measurements, MethodMeasurement::Method method,
+                    double delta) {
+  Measurements runs;
+  std::copy_if(measurements.begin(), measurements.end(), std::back_inserter(runs),
+               [&](const MethodMeasurement& m) {
+                 return m.quantity() == MethodMeasurement::RELAXATION_TIME &&
+                        m.method() == method && m.delta() == delta && m.samples() >= kFewestDrawn;
+               });
+  return runs;
+}
+
+struct Extent {
+  Range work;
+  Range error;
+};
+
+Extent ExtentOf(const Measurements& measurements, const std::vector<LimitFloor>& floors) {
+  Extent extent;
+  for (const LimitFloor& floor : floors) {
+    extent.work.Take(floor.work);
+    extent.work.Take(floor.crossing_work.value_or(0));
+    extent.error.Take(floor.Height());
+    for (const auto method : {MethodMeasurement::BILLIARD, MethodMeasurement::MARKOV}) {
+      for (const MethodMeasurement& m : RunsOf(measurements, method, floor.delta)) {
+        extent.work.Take(m.work());
+        extent.error.Take(OwnError(m, floor));
+        extent.error.high = std::max(extent.error.high, m.value());
+      }
+    }
+  }
+  return extent;
+}
+
+// ---- data that the script brings along ----
+
+std::string ChanceLine(const Measurements& runs, const LimitFloor& floor) {
+  std::string line;
+  for (const MethodMeasurement& m : runs) {
+    absl::StrAppend(&line, ExactText(floor.delta), ",", ExactText(m.work()), ",",
+                    ExactText(OwnError(m, floor)), "\n");
+  }
+  return line.empty() ? line : line + "\n";
+}
+
+std::string ChanceLines(const Measurements& measurements, const std::vector<LimitFloor>& floors) {
+  std::string lines = "delta,x,y\n";
+  for (const LimitFloor& floor : floors) {
+    lines += ChanceLine(RunsOf(measurements, MethodMeasurement::BILLIARD, floor.delta), floor);
+  }
+  return lines;
+}
+
+// In units of the limit's own time a walk is the same at every delta: one line stands for all.
+std::string ChanceOfWalkers(const Measurements& measurements, const LimitFloor& floor) {
+  return "delta,x,y\n" +
+         ChanceLine(RunsOf(measurements, MethodMeasurement::MARKOV, floor.delta), floor);
+}
+
+std::string FloorLines(const std::vector<LimitFloor>& floors, double end) {
+  std::string lines = "delta,resolved,x,y\n";
+  for (const LimitFloor& floor : floors) {
+    const std::string height = ExactText(floor.Height());
+    for (const double x : {floor.work, end}) {
+      absl::StrAppend(&lines, ExactText(floor.delta), ",", floor.IsResolved() ? 1 : 0, ",",
+                      ExactText(x), ",", height, "\n");
+    }
+    lines += "\n";
+  }
+  return lines;
+}
+
+std::string Crossings(const std::vector<LimitFloor>& floors) {
+  std::string rows = "delta,x,y\n";
+  for (const LimitFloor& floor : floors) {
+    if (!floor.crossing_work) continue;
+    absl::StrAppend(&rows, ExactText(floor.delta), ",", ExactText(*floor.crossing_work), ",",
+                    ExactText(floor.Height()), "\n");
+  }
+  return rows;
+}
+
+std::string DeltaLabels(const std::vector<LimitFloor>& floors, double x, const Range& error) {
+  std::vector<Label> labels;
+  for (const LimitFloor& floor : floors) {
+    labels.push_back({x, floor.Height(), ExactText(floor.delta)});
+  }
+  Spread(labels, error);
+  return Text(labels);
+}
+
+// ---- the script ----
+
+constexpr char kPanel[] = R"gnuplot(
+# ---- d ----
+$$chance << EOD
+$CHANCE_LINESEOD
+$$walkers << EOD
+$WALKERSEOD
+$$floors << EOD
+$FLOOR_LINESEOD
+$$crossings << EOD
+$CROSSINGSEOD
+$$deltas << EOD
+$DELTA_LABELSEOD
+deltas = "$DELTAS"
+shades = "$SHADES"
+d = words(deltas)
+shade(i) = word(shades, i)
+pale_shade(i) = "#70".word(shades, i)[2:]
+at(i, y) = column("delta") == word(deltas, i) + 0.0 ? y : NaN
+by(i, name, y) = strcol("quantity") eq "relaxation-time" && strcol("method") eq name ? at(i, y) : NaN
+edge = $EDGE
+set logscale xy
+set xrange [$FROM:$TO]
+set yrange [edge:$TOP]
+set format "10^{%T}"
+set xtics 10
+set ytics 10
+set mxtics 10
+set mytics 10
+set lmargin screen 0.585
+set rmargin screen 0.985
+set tmargin screen 0.585
+set bmargin screen 0.322
+set title "{/:Bold d}  relaxation time: where the limit δ → 0 will do" offset 0,-0.4
+set xlabel "work / s" offset 0,0.4
+set ylabel "relative error" offset 0.5,0
+plot $$walkers using "x":"y" with lines lw 1.5 lc rgb "#999999", \
+     for [i=1:d] $$chance using (at(i, column("x"))):"y" with lines lw 1.5 lc rgb shade(i), \
+     for [i=1:d] $$floors using (column("resolved") ? at(i, column("x")) : NaN):"y" \
+       with lines lw 1.5 dt (8,5) lc rgb shade(i), \
+     for [i=1:d] $$floors using (column("resolved") ? NaN : at(i, column("x"))):"y" \
+       with lines lw 1.7 dt (2,4) lc rgb shade(i), \
+     for [i=1:d] for [m in "billiard markov"] \
+       data using (by(i, m, shown(column("work_seconds")))): \
+       (not_below(edge, unresolved(column("value")))) \
+       with points pt (m eq "markov" ? 4 : 7) ps 0.5 lw 1 lc rgb pale_shade(i), \
+     for [i=1:d] for [m in "billiard markov"] \
+       data using (by(i, m, shown(column("work_seconds")))): \
+       (not_below(edge, resolved(column("value")))) \
+       with points pt (m eq "markov" ? 4 : 7) ps 0.7 lw 1.5 lc rgb shade(i), \
+     for [i=1:d] data using (by(i, "spectrum", column("work_seconds"))): \
+       (not_below(edge, unresolved(column("value")))) \
+       with points pt 13 ps 0.9 lc rgb pale_shade(i), \
+     for [i=1:d] data using (by(i, "spectrum", column("work_seconds"))): \
+       (not_below(edge, resolved(column("value")))) with points pt 13 ps 0.9 lc rgb shade(i), \
+     for [i=1:d] $$crossings using (at(i, column("x"))):"y" \
+       with points pt 6 ps 1.6 lw 2 lc rgb shade(i), \
+     for [i=1:d] $$deltas using (strcol("text") eq word(deltas, i) ? column("x") : NaN):"y": \
+       ("δ = ".strcol("text")) with labels left font ",12" tc rgb shade(i)
+)gnuplot";
+
+constexpr char kLegend[] = R"gnuplot(
+# ---- the legend of d ----
+unset label
+set lmargin screen 0.51
+set rmargin screen 0.99
+set tmargin screen 0.262
+set bmargin screen 0.006
+set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 3 font ",13"
+$TABLE
+plot NaN with linespoints pt 7 ps 0.8 lw 1.5 lc rgb "#444444" title "billiard, in lanes", \
+     NaN with linespoints pt 4 ps 0.8 lw 1.5 lc rgb "#999999" title "jump process", \
+     NaN with points pt 13 ps 1 lc rgb "#444444" title "spectrum", \
+     NaN with lines lw 1.5 dt (8,5) lc rgb "#444444" title "bias of the limit", \
+     NaN with lines lw 1.7 dt (2,4) lc rgb "#444444" title "upper bound: error + 2σ", \
+     NaN with points pt 6 ps 1.6 lw 2 lc rgb "#444444" title "billiard as exact"
+)gnuplot";
+
+std::string DeltasOf(const std::vector<LimitFloor>& floors) {
+  return absl::StrJoin(floors, " ", [](std::string* out, const LimitFloor& floor) {
+    absl::StrAppend(out, ExactText(floor.delta));
+  });
+}
+
+std::string ShadesOf(const std::vector<LimitFloor>& floors) {
+  std::vector<std::string> shades;
+  for (size_t i = 0; i < floors.size(); ++i) shades.push_back(ColourOf(i, floors.size()));
+  return absl::StrJoin(shades, " ");
+}
+
+// 4.2 ± 0.2 %, or ≤ 1.2 %
+std::string BiasText(const LimitFloor& floor) {
+  if (!floor.IsResolved()) return absl::StrFormat("≤ %.2g %%", 100 * floor.Height());
+  const MeasuredText text = Measured(100 * floor.bias, 100 * floor.error);
+  return absl::StrCat(text.value, " ± ", text.error, " %");
+}
+
+std::string CrossingText(const LimitFloor& floor) {
+  if (!floor.crossing_work) return "–";
+  return absl::StrCat(floor.IsResolved() ? "" : "≥ ", DurationText(*floor.crossing_work));
+}
+
+// A row of gnuplot labels, at columns that leave room for what is longest.
+std::string TableRow(double y, const char* colour, const std::vector<std::string>& cells) {
+  constexpr double kColumns[] = {0.04, 0.2, 0.46};
+  std::string row;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    absl::StrAppendFormat(&row, "set label \"%s\" at graph %.2f,%.3f font \",13\" tc rgb \"%s\"\n",
+                          cells[i], kColumns[i], y, colour);
+  }
+  return row;
+}
+
+std::string Table(const std::vector<LimitFloor>& floors) {
+  constexpr double kTop = 0.64, kLine = 0.07;
+  std::string table = TableRow(
+      kTop, "#000000", {"δ", "bias of the limit", "cheaper than the billiard up to a work of"});
+  for (size_t i = 0; i < floors.size(); ++i) {
+    const double y = kTop - kLine * static_cast<double>(i + 1);
+    table += TableRow(y, ColourOf(i, floors.size()).c_str(),
+                      {ExactText(floors[i].delta), BiasText(floors[i]), CrossingText(floors[i])});
+  }
+  return table;
+}
+
+using Substitutions = std::vector<std::pair<absl::string_view, std::string>>;
+
+}  // namespace
+
+std::string RelaxationPanelScript(const Measurements& measurements) {
+  const std::vector<LimitFloor> floors = FloorsOf(measurements);
+  if (floors.empty()) return "";
+  const auto [work, error] = ExtentOf(measurements, floors);
+  return absl::StrReplaceAll(
+      kPanel, Substitutions{{"$$", "$"},
+                            {"$CHANCE_LINES", ChanceLines(measurements, floors)},
+                            {"$WALKERS", ChanceOfWalkers(measurements, floors.front())},
+                            {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
+                            {"$CROSSINGS", Crossings(floors)},
+                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kLabelAt, error)},
+                            {"$DELTAS", DeltasOf(floors)},
+                            {"$SHADES", ShadesOf(floors)},
+                            {"$EDGE", ExactText(error.low * kBelow)},
+                            {"$TOP", ExactText(error.high * kAbove)},
+                            {"$FROM", ExactText(work.low * kBelow)},
+                            {"$TO", ExactText(work.high * kRoomForDeltas)}});
+}
+
+std::string RelaxationLegendScript(const Measurements& measurements) {
+  const std::vector<LimitFloor> floors = FloorsOf(measurements);
+  if (floors.empty()) return "";
+  return absl::StrReplaceAll(kLegend, Substitutions{{"$TABLE", Table(floors)}});
+}
+
+}  // namespace ballpiston::client

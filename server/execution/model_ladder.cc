@@ -1,0 +1,89 @@
+#include "server/execution/model_ladder.h"
+
+#include <utility>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
+#include "server/convert/spec.h"
+#include "server/observability/log.h"
+#include "server/store/pilot_table.h"
+
+namespace ballpiston::server {
+
+ModelLadder::ModelLadder(Store& store, int workers) : store_(store), workers_(workers) {}
+
+ExperimentFactory ModelLadder::ChosenExperiments() {
+  return [this](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    return Create(spec, index, stop);
+  };
+}
+
+const Machine& ModelLadder::machine() {
+  std::call_once(measured_, [this] { machine_ = {MeasureMachineRates(), workers_}; });
+  return machine_;
+}
+
+std::unique_ptr<const PointExperiment> ModelLadder::Create(const EnsembleSpec& spec, size_t index,
+                                                           const std::stop_token& stop) {
+  const PilotSource pilots = [&](const PilotPlace& place) { return Get(place, stop); };
+  // Only a budget is weighed with the machine's own rates.
+  const Machine unmeasured = {MachineRates(), workers_};
+  const Machine& rates = spec.target.budget_seconds ? machine() : unmeasured;
+  std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);
+  if (!answer) return nullptr;
+  return PointExperiment::Create(spec, index, *std::move(answer));
+}
+
+Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& point) {
+  return LadderFor(spec, point, machine(),
+                   [this](const PilotPlace& place) { return Known(place); });
+}
+
+std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = pilots_.find(place);
+    if (found != pilots_.end()) return found->second;
+  }
+  std::optional<Pilot> stored;
+  const absl::Status read = store_.Read([&](Database& database) {
+    auto found = FindPilot(database, EngineVersion(), place);
+    if (found.ok()) stored = *found;
+    return found.status();
+  });
+  if (!read.ok()) LogError(absl::StrCat("a pilot's result cannot be read: ", read.message()));
+  if (!stored) return std::nullopt;
+  std::lock_guard lock(mutex_);
+  return pilots_.emplace(place, *stored).first->second;
+}
+
+std::optional<Pilot> ModelLadder::Get(const PilotPlace& place, const std::stop_token& stop) {
+  {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait(lock, stop, [&] { return !running_.contains(place); })) return std::nullopt;
+    running_.insert(place);
+  }
+  const absl::Cleanup let_others_in = [&] {
+    std::lock_guard lock(mutex_);
+    running_.erase(place);
+    changed_.notify_all();
+  };
+  const std::optional<Pilot> known = Known(place);
+  return known ? known : Run(place, stop);
+}
+
+std::optional<Pilot> ModelLadder::Run(const PilotPlace& place, const std::stop_token& stop) {
+  const std::optional<Pilot> pilot = RunPilot(place, stop);
+  if (pilot) Keep(place, *pilot);
+  return pilot;
+}
+
+void ModelLadder::Keep(const PilotPlace& place, const Pilot& pilot) {
+  store_.Record([place, pilot](Database& database) {
+    return InsertPilot(database, EngineVersion(), place, pilot);
+  });
+  std::lock_guard lock(mutex_);
+  pilots_.emplace(place, pilot);
+}
+
+}  // namespace ballpiston::server

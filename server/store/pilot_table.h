@@ -1,0 +1,25 @@
+// The SQL about pilot runs: what was found of the limit's error, and where. Each function runs
+// inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+#ifndef BALLPISTON_SERVER_STORE_PILOT_TABLE_H_
+#define BALLPISTON_SERVER_STORE_PILOT_TABLE_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/model_choice/limit_error.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+absl::Status InsertPilot(Database& database, const std::string& engine_version,
+                         const PilotPlace& place, const Pilot& pilot);
+
+absl::StatusOr<std::optional<Pilot>> FindPilot(Database& database,
+                                               const std::string& engine_version,
+                                               const PilotPlace& place);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_PILOT_TABLE_H_

@@ -1,0 +1,184 @@
+#include "core/markov/relaxation_spectrum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/closed_form/kernel_moments.h"
+#include "tests/oracle/energy_cells.h"
+#include "tests/oracle/gauss_legendre.h"
+
+namespace ballpiston {
+namespace {
+
+using oracle::Quad;
+
+constexpr double kForEver = std::numeric_limits<double>::infinity();
+
+const RelaxationSpectrum& Spectrum() { return RelaxationSpectrum::Get(); }
+
+// int_0^end of a smooth function, by pieces of length 2.
+template <typename F>
+double IntegralOver(double end, F f) {
+  Quad sum = 0;
+  for (double t = 0; t < end; t += 2) {
+    sum += oracle::Integrate([&](Quad x) { return f(static_cast<double>(x)); }, t,
+                             std::fmin(t + 2, end));
+  }
+  return static_cast<double>(sum);
+}
+
+TEST(RelaxationSpectrum, GapAgreesBetweenDiscretisations) {
+  const SpectralValue gap = Spectrum().Gap();
+  EXPECT_LE(gap.error, kSpectralGapError);
+  EXPECT_NEAR(gap.value, 0.1520871266135, 5e-14);  // what degree 16 on 8 levels gives, rounded
+  for (const Discretisation& other :
+       {Discretisation{8, 5}, {10, 4}, {12, 5}, {12, 6}, {14, 4}, {16, 6}}) {
+    EXPECT_NEAR(Generator(other).rates()[1], gap.value, kSpectralGapError)
+        << other.degree << " " << other.levels;
+  }
+}
+
+// A coarser discretisation's difference is more than what the finer one is off: by the finest.
+TEST(RelaxationSpectrum, ErrorsAreNotLessThanTheyAre) {
+  constexpr double kRounding = 1e-14;
+  const RelaxationSpectrum coarse({.degree = 6, .levels = 3});
+  const auto expect_covered = [](const SpectralValue& value, const SpectralValue& truth) {
+    EXPECT_LE(std::fabs(value.value - truth.value), value.error + truth.error + kRounding);
+  };
+  expect_covered(coarse.Gap(), Spectrum().Gap());
+  expect_covered(coarse.CorrelationTime(kForEver), Spectrum().CorrelationTime(kForEver));
+  for (const double t : {0.0, 0.5, 2.0, 8.0, 30.0}) {
+    expect_covered(coarse.Autocorrelation(t), Spectrum().Autocorrelation(t));
+    expect_covered(coarse.MeanEnergy(0.05, t), Spectrum().MeanEnergy(0.05, t));
+  }
+}
+
+TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
+  const std::vector<SpectralValue> rates = Spectrum().IsolatedRates();
+  ASSERT_GE(rates.size(), 5u);
+  EXPECT_EQ(rates[0].value, Spectrum().Gap().value);
+  // As computed once at degree 16 on 8 levels.
+  constexpr double kKnown[] = {0.1520871266135, 0.1771867982882, 0.1892311255467, 0.1964460932037,
+                               0.20129342041};
+  for (size_t k = 0; k < rates.size(); ++k) {
+    EXPECT_GT(rates[k].value, k > 0 ? rates[k - 1].value : 0);
+    EXPECT_LT(rates[k].value, kContinuumBottom);
+    EXPECT_LE(rates[k].error, 1e-8);
+    EXPECT_NEAR(rates[k].value, k < std::size(kKnown) ? kKnown[k] : rates[k].value, 1e-8);
+  }
+}
+
+TEST(RelaxationSpectrum, CorrelationTimeIsThatOfEnergyCells) {
+  const double cells = oracle::FromEnergyCells(
+      200, [](const oracle::EnergyCells& of) { return of.CorrelationTime(); });
+  EXPECT_NEAR(Spectrum().CorrelationTime(kForEver).value, cells, 5e-9);
+  EXPECT_NEAR(Spectrum().CorrelationTime(kForEver).value, 2.165550673728, 1e-11);
+}
+
+// <h> over the stationary law, uniform in u; the substitution takes the root at 1/sqrt(2) out.
+double MeanSquaredTransfer() {
+  const auto h = [](Quad u) {
+    return PairSquaredEnergyTransfer(std::pow(static_cast<double>(u), 2) / 2);
+  };
+  const auto slower = [&](Quad t) { return 2 * t * h(Quad{M_SQRT1_2} - t * t); };
+  return static_cast<double>(oracle::Integrate(slower, 0, std::sqrt(M_SQRT1_2)) +
+                             oracle::Integrate(h, Quad{M_SQRT1_2}, 1));
+}
+
+// In equilibrium C(t + s) = <E[ep(t)|u at 0] E[ep(s)|u at 0]> - 1/36: reversibility and the
+// semigroup at once.
+TEST(RelaxationSpectrum, DecaysOverThreeDecadesAsItsOwnGeneratorSays) {
+  for (const double t : {0.0, 1.0, 4.0, 20.0}) {
+    for (const double s : {0.5, 4.0, 15.0}) {
+      const auto product = [&](Quad x) {
+        const double ep = std::pow(static_cast<double>(x), 2) / 2;
+        return (Spectrum().MeanEnergy(ep, t).value - kMeanPistonEnergy) *
+               (Spectrum().MeanEnergy(ep, s).value - kMeanPistonEnergy);
+      };
+      const Quad cuts[] = {0, 0.05, 0.4, 0.65, M_SQRT1_2, 0.76, 0.95, 1};
+      Quad sum = 0;
+      for (size_t i = 0; i + 1 < std::size(cuts); ++i) {
+        sum += oracle::Integrate(product, cuts[i], cuts[i + 1]);
+      }
+      EXPECT_NEAR(static_cast<double>(sum) / kVarianceOfPistonEnergy,
+                  Spectrum().Autocorrelation(t + s).value, 1e-9)
+          << t << " + " << s;
+    }
+  }
+  // C'(0) = <ep L ep> = -<h>/2; the difference quotient's own error is of order t.
+  const double slope = -MeanSquaredTransfer() / 2 / kVarianceOfPistonEnergy;
+  constexpr double kStep = 1e-4;
+  const double quotient = (-3 + 4 * Spectrum().Autocorrelation(kStep).value -
+                           Spectrum().Autocorrelation(2 * kStep).value) /
+                          (2 * kStep);
+  EXPECT_NEAR(quotient, slope, 1e-8);
+  EXPECT_LT(Spectrum().Autocorrelation(35).value, 1e-3);
+}
+
+TEST(RelaxationSpectrum, AutocorrelationIsASumOfDecaysNoSlowerThanTheGap) {
+  EXPECT_NEAR(Spectrum().Autocorrelation(0).value, 1, 1e-14);
+  const double gap = Spectrum().Gap().value;
+  double before = Spectrum().Autocorrelation(0.5).value, before_that = 1;
+  for (double t = 1; t < 200; t += 0.5) {
+    const double now = Spectrum().Autocorrelation(t).value;
+    EXPECT_GT(now, 0);
+    EXPECT_LE(now, before * std::exp(-gap * 0.5));
+    EXPECT_LE(before * before, now * before_that * (1 + 1e-12));  // convex in its logarithm
+    before_that = before, before = now;
+  }
+  // In the end the gap's own.
+  EXPECT_NEAR(std::log(before_that / before) / 0.5, gap, 1e-4);
+}
+
+TEST(RelaxationSpectrum, IntegralsAreThoseOfTheCurves) {
+  for (const double window : {0.3, 4.0, 32.0}) {
+    EXPECT_NEAR(Spectrum().CorrelationTime(window).value,
+                IntegralOver(window, [](double t) { return Spectrum().Autocorrelation(t).value; }),
+                1e-12 * window);
+    for (const double epsilon : {0.0, 0.01, 0.4, 0.5}) {
+      const auto excess = [epsilon](double t) {
+        return Spectrum().MeanEnergy(epsilon, t).value - kMeanPistonEnergy;
+      };
+      EXPECT_NEAR(Spectrum().DecayIntegral(epsilon, window).value, IntegralOver(window, excess),
+                  1e-12 * window);
+    }
+  }
+  EXPECT_EQ(Spectrum().CorrelationTime(0).value, 0);
+  EXPECT_NEAR(Spectrum().CorrelationTime(1000).value, Spectrum().CorrelationTime(kForEver).value,
+              1e-14);
+  EXPECT_NEAR(Spectrum().DecayIntegral(0.05, 1000).value,
+              Spectrum().DecayIntegral(0.05, kForEver).value, 1e-14);
+}
+
+TEST(RelaxationSpectrum, MeanEnergyStartsAtTheInitialEnergyAndForgetsIt) {
+  constexpr double kRounding = 1e-11;  // at epsilon = 1/2; elsewhere 1e-13
+  for (const double epsilon : {0.0, 1e-300, 1e-6, 0.01, 0.1, 0.25, 0.4, 0.4999, 0.5}) {
+    EXPECT_NEAR(Spectrum().MeanEnergy(epsilon, 0).value, epsilon, kRounding) << epsilon;
+    EXPECT_NEAR(Spectrum().MeanEnergy(epsilon, 300).value, kMeanPistonEnergy, kRounding);
+    // Its rate of change is the energy current; the quotient's own error is of order kSoon.
+    constexpr double kSoon = 1e-5;
+    EXPECT_NEAR((Spectrum().MeanEnergy(epsilon, kSoon).value - epsilon) / kSoon,
+                PairEnergyCurrent(epsilon), 3e-6)
+        << epsilon;
+    for (double t = 0; t < 60; t += 0.5) {
+      const double energy = Spectrum().MeanEnergy(epsilon, t).value;
+      EXPECT_GT(energy, -kRounding);
+      EXPECT_LT(energy, 0.5 + kRounding);
+    }
+  }
+}
+
+// From below it rises to 1/6 and from above it falls to it, in the end with the gap.
+TEST(RelaxationSpectrum, MeanEnergyEndsWithTheGap) {
+  for (const double epsilon : {0.01, 0.4}) {
+    const auto off = [&](double t) {
+      return Spectrum().MeanEnergy(epsilon, t).value - kMeanPistonEnergy;
+    };
+    EXPECT_NEAR(std::log(off(100) / off(102)) / 2, Spectrum().Gap().value, 0.002);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,120 @@
+#include "core/statistics/step_function.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace ballpiston {
+namespace {
+
+// Functions whose jumps lie on a grid of this step: what is linear between its points is summed
+// exactly by the trapezoidal rule.
+constexpr double kStep = 1.0 / 16;
+
+struct OnGrid {
+  StepFunction function;
+  std::vector<double> values;  // by cell of the grid
+};
+
+// `pieces` of lengths 0 to 11 steps; then the last value for `rest` steps more.
+OnGrid RandomOnGrid(std::mt19937_64& bits, int pieces, size_t rest) {
+  const auto value = [&bits] { return std::ldexp(static_cast<double>(bits() >> 11), -53); };
+  double now = value();
+  OnGrid made = {StepFunction(now), {}};
+  for (int i = 0; i < pieces; ++i) {
+    const size_t steps = bits() % 12;
+    made.values.insert(made.values.end(), steps, now);
+    now = value();
+    made.function.Add(static_cast<double>(steps) * kStep, now);
+  }
+  made.values.insert(made.values.end(), rest, now);
+  return made;
+}
+
+double IntegralByCells(const OnGrid& of, double mean, size_t from, size_t to) {
+  double sum = 0;
+  for (size_t i = from; i < to; ++i) sum += (of.values[i] - mean) * kStep;
+  return sum;
+}
+
+double CorrelationByCells(const OnGrid& of, double mean, size_t origins, size_t window) {
+  double sum = 0;
+  for (size_t i = 0; i < origins; ++i) {
+    const double at_begin = IntegralByCells(of, mean, i, i + window);
+    const double at_end = IntegralByCells(of, mean, i + 1, i + 1 + window);
+    sum += (of.values[i] - mean) * kStep * (at_begin + at_end) / 2;
+  }
+  return sum / (static_cast<double>(origins) * kStep);
+}
+
+// Windows and origins shorter than a piece, longer than the whole record, and in between. Some
+// 1e4 terms of order 1: rounding stays below 1e-12.
+TEST(StepFunction, IntegralIsExact) {
+  constexpr size_t kRest = 2000;
+  std::mt19937_64 bits(11);
+  for (const int pieces : {0, 1, 2, 5, 40, 200}) {
+    for (const size_t origins : {1, 3, 50, 900}) {
+      for (const size_t window : {0, 1, 2, 30, 1000}) {
+        const OnGrid of = RandomOnGrid(bits, pieces, kRest);
+        const double mean = 0.3, span = static_cast<double>(origins) * kStep,
+                     length = static_cast<double>(window) * kStep;
+        EXPECT_NEAR(of.function.CorrelationIntegral(mean, span, length),
+                    CorrelationByCells(of, mean, origins, window), 1e-12)
+            << pieces << " pieces, " << origins << " origins, window " << window;
+        EXPECT_NEAR(of.function.Integral(mean, length), IntegralByCells(of, mean, 0, window),
+                    1e-12);
+      }
+    }
+  }
+}
+
+// A value of 1 for a time 1, then 0: int_0^1 dt (1 - t) = 1/2 with a window of 1 or more, and
+// int_0^1 min(1/4, 1 - t) dt = 3/16 + 1/32 with one of 1/4.
+TEST(StepFunction, CorrelationOfAPulseIsAsByHand) {
+  StepFunction pulse(1);
+  pulse.Add(1, 0);
+  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 1), 0.5);
+  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 100), 0.5);
+  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 4, 100), 0.125);
+  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 0.25), 7.0 / 32);
+  EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 0.5, 0.25), 0.25);
+  // With 1/2 taken off the two halves of a square wave are alike.
+  EXPECT_DOUBLE_EQ(pulse.Integral(0.5, 2), 0);
+}
+
+TEST(StepFunction, SamplesHoldTheLastValue) {
+  StepFunction function(5);
+  EXPECT_EQ(function.Samples(1, 3), (std::vector<double>{5, 5, 5}));
+  function.Add(1, 6);
+  function.Add(0.5, 7);
+  EXPECT_EQ(function.last_jump(), 1.5);
+  EXPECT_EQ(function.jumps(), 2u);
+  // At a jump the value after it.
+  EXPECT_EQ(function.Samples(0.5, 6), (std::vector<double>{5, 5, 6, 7, 7, 7}));
+  EXPECT_EQ(function.Samples(100, 2), (std::vector<double>{5, 7}));
+  EXPECT_TRUE(function.Samples(1, 0).empty());
+}
+
+TEST(StepFunction, PiecesWithoutDurationAreNotSeen) {
+  StepFunction with(1), without(1);
+  with.Add(0, -1), with.Add(0, 1);
+  for (StepFunction* function : {&with, &without}) function->Add(2, 3);
+  with.Add(0, 100), with.Add(0, 3);
+  EXPECT_EQ(with.Samples(0.5, 9), without.Samples(0.5, 9));
+  EXPECT_EQ(with.Integral(0.1, 7), without.Integral(0.1, 7));
+  EXPECT_DOUBLE_EQ(with.CorrelationIntegral(0.1, 5, 3), without.CorrelationIntegral(0.1, 5, 3));
+}
+
+// What lies beyond origins + window does not count, and neither does where the record ends.
+TEST(StepFunction, OnlyOriginsAndWindowCount) {
+  StepFunction longer(1), shorter(1);
+  for (StepFunction* function : {&longer, &shorter}) function->Add(1, 0.25), function->Add(3, 0.75);
+  longer.Add(10, -50);
+  EXPECT_EQ(longer.CorrelationIntegral(0.5, 8, 6), shorter.CorrelationIntegral(0.5, 8, 6));
+  EXPECT_NE(longer.CorrelationIntegral(0.5, 8, 6.5), shorter.CorrelationIntegral(0.5, 8, 6.5));
+}
+
+}  // namespace
+}  // namespace ballpiston
