@@ -4,7 +4,7 @@ SHELL := /bin/bash
 TEST_JOBS ?= 2
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart bench stability asan tsan format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability asan tsan format check-format tidy setup clean help
 
 build: build-release ## Build everything, optimised, in build/release (the default)
 
@@ -18,6 +18,10 @@ demo: build/release/.configured ## Run the paper's sweep with a real server and 
 chart: build/release/.configured ## Chart speed against accuracy for every method, on this machine (1 minute)
 	@cmake --build build/release --target ballpiston ballpistond
 	@scripts/chart.sh build/release/bin
+
+ladder: build/release/.configured ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
+	@cmake --build build/release --target ballpiston ballpistond
+	@scripts/ladder.sh build/release/bin
 
 bench: build-release ## Build, then run the benchmarks on one core
 	@scripts/bench.sh build/release/bin

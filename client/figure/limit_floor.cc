@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/figure/speed_accuracy_figure.h"
-
 namespace ballpiston::client {
 namespace {
 
@@ -17,7 +15,7 @@ std::optional<double> CrossingWork(const std::vector<MethodMeasurement>& measure
   for (const MethodMeasurement& m : measurements) {
     if (m.quantity() != MethodMeasurement::RELAXATION_TIME ||
         m.method() != MethodMeasurement::BILLIARD || m.delta() != floor.delta ||
-        m.samples() < kFewestDrawn) {
+        m.samples() < kFewestOrbits) {
       continue;
     }
     const double ratio = OwnError(m, floor) / floor.Height();

@@ -13,6 +13,7 @@
 #ifndef BALLPISTON_CLIENT_FIGURE_LIMIT_FLOOR_H_
 #define BALLPISTON_CLIENT_FIGURE_LIMIT_FLOOR_H_
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,10 @@
 namespace ballpiston::client {
 
 inline constexpr double kFloorResolved = 2;
+
+// Slow pistons carry much of the scatter, and few orbits have any: the error of fewer orbits is
+// mostly chance itself.
+inline constexpr uint64_t kFewestOrbits = 256;
 
 struct LimitFloor {
   double delta = 0;

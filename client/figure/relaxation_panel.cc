@@ -12,7 +12,6 @@
 #include "absl/strings/string_view.h"
 #include "client/figure/limit_floor.h"
 #include "client/figure/plot_marks.h"
-#include "client/figure/speed_accuracy_figure.h"
 #include "client/output/number_text.h"
 
 namespace ballpiston::client {
@@ -21,14 +20,15 @@ namespace {
 using v1::MethodMeasurement;
 using Measurements = std::vector<MethodMeasurement>;
 
-constexpr double kRoomForDeltas = 60;  // right of the longest run: the deltas stand there
-constexpr double kFloorEnd = 2.2;      // right of the longest run
-constexpr double kLabelAt = 3;         // likewise
+// Right of what takes the most work, as factors: the deltas stand there.
+constexpr double kFloorEnd = 2.2;
+constexpr double kLabelAt = 3;
+constexpr double kRoomForDeltas = 150;
 
-// From dark to light as delta falls; viridis, whose luminance tells them apart too. Its yellow end
-// is too light for lines on white.
-constexpr const char* kColours[] = {"#440154", "#472d7b", "#3b528b", "#2c728e",
-                                    "#21918c", "#28ae80", "#5ec962"};
+// From dark to light as delta falls; viridis, whose luminance tells them apart too. Its other half
+// is too light for text on white.
+constexpr const char* kColours[] = {"#440154", "#482475", "#414487", "#355f8d",
+                                    "#2a788e", "#21918c", "#22a884", "#3bbb75"};
 
 std::string ColourOf(size_t index, size_t count) {
   if (count < 2) return kColours[0];
@@ -41,7 +41,7 @@ Measurements RunsOf(const Measurements& measurements, MethodMeasurement::Method 
   std::copy_if(measurements.begin(), measurements.end(), std::back_inserter(runs),
                [&](const MethodMeasurement& m) {
                  return m.quantity() == MethodMeasurement::RELAXATION_TIME &&
-                        m.method() == method && m.delta() == delta && m.samples() >= kFewestDrawn;
+                        m.method() == method && m.delta() == delta && m.samples() >= kFewestOrbits;
                });
   return runs;
 }
@@ -146,6 +146,7 @@ shade(i) = word(shades, i)
 pale_shade(i) = "#70".word(shades, i)[2:]
 at(i, y) = column("delta") == word(deltas, i) + 0.0 ? y : NaN
 by(i, name, y) = strcol("quantity") eq "relaxation-time" && strcol("method") eq name ? at(i, y) : NaN
+enough(x) = column("samples") >= $FEWEST ? x : NaN
 edge = $EDGE
 set logscale xy
 set xrange [$FROM:$TO]
@@ -157,23 +158,23 @@ set mxtics 10
 set mytics 10
 set lmargin screen 0.585
 set rmargin screen 0.985
-set tmargin screen 0.585
-set bmargin screen 0.322
+set tmargin screen 0.569
+set bmargin screen 0.296
 set title "{/:Bold d}  relaxation time: where the limit δ → 0 will do" offset 0,-0.4
 set xlabel "work / s" offset 0,0.4
 set ylabel "relative error" offset 0.5,0
 plot $$walkers using "x":"y" with lines lw 1.5 lc rgb "#999999", \
      for [i=1:d] $$chance using (at(i, column("x"))):"y" with lines lw 1.5 lc rgb shade(i), \
-     for [i=1:d] $$floors using (column("resolved") ? at(i, column("x")) : NaN):"y" \
+     for [i=1:d] $$floors using (column("resolved") == 1 ? at(i, column("x")) : NaN):"y" \
        with lines lw 1.5 dt (8,5) lc rgb shade(i), \
-     for [i=1:d] $$floors using (column("resolved") ? NaN : at(i, column("x"))):"y" \
+     for [i=1:d] $$floors using (column("resolved") == 0 ? at(i, column("x")) : NaN):"y" \
        with lines lw 1.7 dt (2,4) lc rgb shade(i), \
      for [i=1:d] for [m in "billiard markov"] \
-       data using (by(i, m, shown(column("work_seconds")))): \
+       data using (by(i, m, enough(column("work_seconds")))): \
        (not_below(edge, unresolved(column("value")))) \
        with points pt (m eq "markov" ? 4 : 7) ps 0.5 lw 1 lc rgb pale_shade(i), \
      for [i=1:d] for [m in "billiard markov"] \
-       data using (by(i, m, shown(column("work_seconds")))): \
+       data using (by(i, m, enough(column("work_seconds")))): \
        (not_below(edge, resolved(column("value")))) \
        with points pt (m eq "markov" ? 4 : 7) ps 0.7 lw 1.5 lc rgb shade(i), \
      for [i=1:d] data using (by(i, "spectrum", column("work_seconds"))): \
@@ -192,15 +193,16 @@ constexpr char kLegend[] = R"gnuplot(
 unset label
 set lmargin screen 0.51
 set rmargin screen 0.99
-set tmargin screen 0.262
-set bmargin screen 0.006
+set tmargin screen 0.236
+set bmargin screen 0.004
 set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 3 font ",13"
-$TABLE
-plot NaN with linespoints pt 7 ps 0.8 lw 1.5 lc rgb "#444444" title "billiard, in lanes", \
+set label "d: δ by colour. Left of ○ the limit (jump process, spectrum)" at screen 0.029,0.0458 font ",13"
+set label "costs less; below its line, the bias, it may not be used." at screen 0.029,0.0281 font ",13"
+$TABLEplot NaN with linespoints pt 7 ps 0.8 lw 1.5 lc rgb "#444444" title "billiard, in lanes", \
      NaN with linespoints pt 4 ps 0.8 lw 1.5 lc rgb "#999999" title "jump process", \
      NaN with points pt 13 ps 1 lc rgb "#444444" title "spectrum", \
      NaN with lines lw 1.5 dt (8,5) lc rgb "#444444" title "bias of the limit", \
-     NaN with lines lw 1.7 dt (2,4) lc rgb "#444444" title "upper bound: error + 2σ", \
+     NaN with lines lw 1.7 dt (2,4) lc rgb "#444444" title "bias ≤ error + 2σ", \
      NaN with points pt 6 ps 1.6 lw 2 lc rgb "#444444" title "billiard as exact"
 )gnuplot";
 
@@ -240,9 +242,9 @@ std::string TableRow(double y, const char* colour, const std::vector<std::string
 }
 
 std::string Table(const std::vector<LimitFloor>& floors) {
-  constexpr double kTop = 0.64, kLine = 0.07;
-  std::string table = TableRow(
-      kTop, "#000000", {"δ", "bias of the limit", "cheaper than the billiard up to a work of"});
+  constexpr double kTop = 0.64, kLine = 0.076;
+  std::string table =
+      TableRow(kTop, "#000000", {"δ", "bias of the limit", "billiard as exact after"});
   for (size_t i = 0; i < floors.size(); ++i) {
     const double y = kTop - kLine * static_cast<double>(i + 1);
     table += TableRow(y, ColourOf(i, floors.size()).c_str(),
@@ -266,6 +268,7 @@ std::string RelaxationPanelScript(const Measurements& measurements) {
                             {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
                             {"$CROSSINGS", Crossings(floors)},
                             {"$DELTA_LABELS", DeltaLabels(floors, work.high * kLabelAt, error)},
+                            {"$FEWEST", absl::StrCat(kFewestOrbits)},
                             {"$DELTAS", DeltasOf(floors)},
                             {"$SHADES", ShadesOf(floors)},
                             {"$EDGE", ExactText(error.low * kBelow)},

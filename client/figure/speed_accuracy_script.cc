@@ -175,7 +175,7 @@ constexpr char kHead[] = R"gnuplot(# Run again with: gnuplot speed-accuracy.gnup
 # rho = $RHO, delta = $DELTA, epsilon = $EPSILON, seed = $SEED, $SECONDS s a curve
 data = "speed-accuracy.csv"
 set encoding utf8
-set terminal svg size 960,1080 enhanced font "Helvetica,Arial,sans-serif,15" background rgb "white"
+set terminal svg size 960,1040 enhanced font "Helvetica,Arial,sans-serif,15" background rgb "white"
 set output "speed-accuracy.svg"
 set datafile separator comma
 set datafile columnheaders
@@ -224,8 +224,8 @@ set mxtics 10
 set mytics 10
 set lmargin screen $LEFT
 set rmargin screen $RIGHT
-set tmargin screen 0.956
-set bmargin screen 0.693
+set tmargin screen 0.954
+set bmargin screen 0.681
 set title "{/:Bold $NAME}  $TITLE" offset 0,-0.4
 set xlabel "work / s" offset 0,0.4
 set ylabel "$Y" offset 0.5,0
@@ -261,8 +261,8 @@ set ytics autofreq
 set mytics 2
 set lmargin screen 0.085
 set rmargin screen 0.485
-set tmargin screen 0.585
-set bmargin screen 0.322
+set tmargin screen 0.569
+set bmargin screen 0.296
 set title "{/:Bold c}  single orbits" offset 0,-0.4
 set xlabel "time of a hit / ns" offset 0,0.4
 set ylabel "hits until parted from a precise twin" offset 0.5,0
@@ -288,14 +288,14 @@ set xrange [0:1]
 set yrange [0:1]
 set lmargin screen 0.01
 set rmargin screen 0.49
-set tmargin screen 0.262
-set bmargin screen 0.006
+set tmargin screen 0.236
+set bmargin screen 0.004
 set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 4 font ",13"
-set label "a, b: ρ = $RHO, δ = $DELTA, ε = $EPSILON; c, d: the same ρ." at graph 0.04,0.5 font ",13"
-set label "Line: statistical error σ." at graph 0.04,0.43 font ",13"
-set label "Point: measured error, pale if below 3σ." at graph 0.04,0.36 font ",13"
-set label "Dashed: bias, if the longest run's error is above 3σ." at graph 0.04,0.29 font ",13"
-set label "At the lower edge: smaller than shown." at graph 0.04,0.22 font ",13"
+set label "a, b: ρ = $RHO, δ = $DELTA, ε = $EPSILON; c, d: the same ρ." at graph 0.04,0.560 font ",13"
+set label "Line: statistical error σ." at graph 0.04,0.484 font ",13"
+set label "Point: measured error, pale if below 3σ." at graph 0.04,0.408 font ",13"
+set label "Dashed: bias, if the longest run's error is above 3σ." at graph 0.04,0.332 font ",13"
+set label "At the lower edge: smaller than shown." at graph 0.04,0.256 font ",13"
 plot $LEGEND
 )gnuplot";
 

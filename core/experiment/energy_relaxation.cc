@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/predicted_hits.h"
 #include "core/markov/jump_process.h"
@@ -314,16 +315,33 @@ PointSummary EnergyRelaxationExperiment::Summarize(const BlockResult& merged) co
   return summary;
 }
 
+namespace {
+
+// The isolated rates after the gap.
+void AddFurtherRates(std::vector<Estimate>& estimates) {
+  const std::vector<SpectralValue> rates = RelaxationSpectrum::Get().IsolatedRates();
+  for (size_t i = 1; i < rates.size(); ++i) {
+    estimates.push_back({.name = absl::StrCat("isolated_rate_", i + 1),
+                         .value = rates[i].value,
+                         .standard_error = rates[i].error});
+  }
+}
+
+}  // namespace
+
 PointSummary EnergyRelaxationBySpectrum(const PairGeometry& geometry,
                                         const PointParameters& point) {
   const EnergyRelaxation relaxation(geometry, point);
   const SpectralValue time = relaxation.LimitOfRelaxationTime();
-  return {.estimates = {{.name = "relaxation_time",
-                         .value = time.value,
-                         .standard_error = time.error,
-                         .limit = time.value},
-                        SpectralGap()},
-          .curves = {relaxation.CurveOfLimit()}};
+  PointSummary summary;
+  summary.estimates = {{.name = "relaxation_time",
+                        .value = time.value,
+                        .standard_error = time.error,
+                        .limit = time.value},
+                       SpectralGap()};
+  AddFurtherRates(summary.estimates);
+  summary.curves = {relaxation.CurveOfLimit()};
+  return summary;
 }
 
 }  // namespace ballpiston

@@ -25,6 +25,9 @@ constexpr double kHopeless = 2;
 
 std::string Rounded(double x) { return absl::StrFormat("%.2g", x); }
 
+// Not below x: two digits are 4.8 % below what they round, at most.
+std::string RoundedUp(double x) { return Rounded(1.05 * x); }
+
 bool IsOfTheLimit(Model model) { return model == Model::kSpectrum || model == Model::kMarkov; }
 
 // One point's question.
@@ -222,7 +225,7 @@ void SetLimitError(const Question& question, const PilotSource& pilots, Rung& ru
   if (!question.relaxes()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   const std::optional<Pilot> pilot = pilots(place);
-  const bool known = pilot && !pilot->predicted;
+  const bool known = pilot.has_value();
   rung.model_error = known ? LimitErrorBound(*pilot, place, question.point())
                            : ExpectedLimitError(question.point());
   rung.reason = known ? absl::StrCat("the limit; at most so far off, ", FoundBy(*pilot, place))
@@ -247,6 +250,16 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
   return rung;
 }
 
+auto IsBy(Model model) {
+  return [model](const Rung& rung) { return rung.model == model; };
+}
+
+void AddPilots(double seconds, Rung& rung) {
+  if (seconds == 0) return;
+  rung.work = rung.work.value_or(0) + seconds;
+  rung.reason = absl::StrCat(rung.reason, "; with the pilot");
+}
+
 }  // namespace
 
 double BudgetOfAPoint(const EnsembleSpec& spec, int workers) {
@@ -260,22 +273,24 @@ std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParamete
 }
 
 const Rung& Ladder::Chosen() const {
-  return *std::find_if(rungs.begin(), rungs.end(),
-                       [this](const Rung& rung) { return rung.model == answer.model; });
+  return *std::find_if(rungs.begin(), rungs.end(), IsBy(answer.model));
 }
 
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots) {
-  const PilotSource known_or_predicted = [&pilots](const PilotPlace& place) {
-    const std::optional<Pilot> known = pilots(place);
-    return known ? known : PredictedPilot(place);
-  };
   const Question question(spec, point, machine);
   Ladder ladder;
   for (const Model model : kLadder) {
-    ladder.rungs.push_back(RungFor(model, question, machine, known_or_predicted));
+    ladder.rungs.push_back(RungFor(model, question, machine, pilots));
   }
-  ladder.answer = *ChooseAnswer(spec, point, machine, known_or_predicted);
+  double seconds_of_pilots = 0;
+  ladder.answer = *ChooseAnswer(spec, point, machine, [&](const PilotPlace& place) {
+    if (const std::optional<Pilot> known = pilots(place)) return known;
+    seconds_of_pilots += SecondsOfPilot(place, machine.rates);
+    return std::optional(PredictedPilot(place));
+  });
+  AddPilots(seconds_of_pilots,
+            *std::find_if(ladder.rungs.begin(), ladder.rungs.end(), IsBy(ladder.answer.model)));
   return ladder;
 }
 
@@ -292,7 +307,7 @@ std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   return {{"target.tolerance",
            absl::StrCat("is ", NumberText(tolerance), ", below what ", Name(spec.model),
                         " is off by itself; permitted with model ", Name(spec.model),
-                        ": tolerance >= ", Rounded(error), "; or model auto or billiard")}};
+                        ": tolerance >= ", RoundedUp(error), "; or model auto or billiard")}};
 }
 
 }  // namespace ballpiston

@@ -67,6 +67,12 @@ std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop) {
                .standard_error = *time.standard_error / std::fabs(*time.limit)};
 }
 
+double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
+  const PointParameters point = {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
+  return static_cast<double>(kPilotOrbits) *
+         SecondsPerSample(SpecOfPilot(place), GeometryOf(place.rho, place.delta), point, rates);
+}
+
 Pilot PredictedPilot(const PilotPlace& place) {
   const PointParameters point = {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
   const double error = RelativeErrorOfOneSample(Experiment::kEnergyRelaxation,

@@ -19,6 +19,7 @@
 #include <stop_token>
 
 #include "core/experiment/ensemble_spec.h"
+#include "core/model_choice/machine_rates.h"
 
 namespace ballpiston {
 
@@ -49,6 +50,9 @@ struct Pilot {
 
 // Some seconds of one core. Empty only if `stop` was requested.
 std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop);
+
+// What that takes, predicted; in processor time.
+double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates);
 
 // What a pilot is expected to say.
 Pilot PredictedPilot(const PilotPlace& place);

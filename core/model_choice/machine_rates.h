@@ -14,6 +14,7 @@ struct EngineRate {
 };
 
 struct MachineRates {
+  double first_point = 0;  // of a job, besides what it takes itself: nothing of it is in a cache
   double closed_form = 0;  // a point
   double spectrum = 0;     // a point
   double jump = 0;         // one of the jump process, with what is measured of it

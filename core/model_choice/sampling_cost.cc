@@ -33,8 +33,10 @@ double SecondsOfACollision(const EnsembleSpec& spec, const PairGeometry& geometr
                            const MachineRates& rates) {
   if (spec.model == Model::kMarkov) return rates.jump;
   const Engine engine = EngineFor(spec);
+  // What is measured of a step of the energy takes most of a jump's time.
+  const double measured = spec.experiment == Experiment::kEnergyRelaxation ? rates.jump : 0;
   return SecondsOfHits(engine, rates.Of(engine), HitsPerCollision(geometry)) +
-         rates.Of(engine).collision;
+         rates.Of(engine).collision + measured;
 }
 
 // Rare long returns carry the mean: their number's scatter is its error.
@@ -76,6 +78,8 @@ double RelativeErrorOfOneSample(Experiment experiment, const PairGeometry& geome
       return ErrorOfReturns(geometry, *point.epsilon);
     case Experiment::kEnergyRelaxation:
       return point.epsilon ? ErrorOfDecay(geometry, point) : 1.25;
+    case Experiment::kMarkovProperty:
+      return std::numeric_limits<double>::infinity();
     default:
       return 1.05;
   }

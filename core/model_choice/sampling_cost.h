@@ -18,7 +18,8 @@ double SecondsPerSample(const EnsembleSpec& spec, const PairGeometry& geometry,
                         const PointParameters& point, const MachineRates& rates);
 
 // Standard error of the experiment's first estimate from one sample, relatively; of n it is
-// 1/sqrt(n) times that. Infinite where no number of samples is enough.
+// 1/sqrt(n) times that. Infinite where no number of samples is enough, as for
+// markov-property, which measures what tends to 0.
 double RelativeErrorOfOneSample(Experiment experiment, const PairGeometry& geometry,
                                 const PointParameters& point);
 

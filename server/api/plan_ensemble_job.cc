@@ -28,7 +28,8 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
   }
   const Machine& machine = service.ladder.machine();
   response.set_point_count(static_cast<int32_t>(points));
-  response.set_work(work * static_cast<double>(points) / static_cast<double>(planned));
+  response.set_work(machine.rates.first_point +
+                    work * static_cast<double>(points) / static_cast<double>(planned));
   response.set_time(response.work() / machine.workers);
   response.set_workers(machine.workers);
   *response.mutable_rates() = RatesMessage(machine.rates);

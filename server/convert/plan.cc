@@ -38,6 +38,7 @@ v1::ComputingRates RatesMessage(const MachineRates& rates) {
   message.set_sample(rates.lanes.sample);
   message.set_wall_hit_single(rates.lanes_single.wall_hit);
   message.set_event_reference(rates.reference.wall_hit);
+  message.set_first_point(rates.first_point);
   return message;
 }
 

@@ -170,10 +170,9 @@ v1::Target TargetMessage(const Target& target) {
   if (target.collisions) message.set_collisions(*target.collisions);
   if (target.tolerance) message.set_tolerance(*target.tolerance);
   if (target.budget_seconds) {
-    const double whole = std::floor(*target.budget_seconds);
-    message.mutable_budget()->set_seconds(static_cast<int64_t>(whole));
-    message.mutable_budget()->set_nanos(
-        static_cast<int32_t>(1e9 * (*target.budget_seconds - whole)));
+    const int64_t nanos = std::llround(1e9 * *target.budget_seconds);  // below 10^6 s: it fits
+    message.mutable_budget()->set_seconds(nanos / 1'000'000'000);
+    message.mutable_budget()->set_nanos(static_cast<int32_t>(nanos % 1'000'000'000));
   }
   return message;
 }

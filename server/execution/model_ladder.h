@@ -9,6 +9,7 @@
 #define BALLPISTON_SERVER_EXECUTION_MODEL_LADDER_H_
 
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -21,10 +22,12 @@
 
 namespace ballpiston::server {
 
+using PilotRunner = std::function<std::optional<Pilot>(const PilotPlace&, std::stop_token)>;
+
 class ModelLadder {
  public:
-  // The store has to outlive this, and this the factory.
-  ModelLadder(Store& store, int workers);
+  // The store has to outlive this, and this the factory. Pilots are run by `run_pilot`.
+  ModelLadder(Store& store, int workers, PilotRunner run_pilot = RunPilot);
 
   // The core's experiments, each by the model that was asked for or chosen.
   ExperimentFactory ChosenExperiments();
@@ -35,6 +38,9 @@ class ModelLadder {
   const Machine& machine();
 
  private:
+  void Measure();
+  // All that a point without samples takes.
+  void Serve(const EnsembleSpec& spec);
   std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index,
                                                 const std::stop_token& stop);
   std::optional<Pilot> Known(const PilotPlace& place);
@@ -45,6 +51,7 @@ class ModelLadder {
 
   Store& store_;
   const int workers_;
+  const PilotRunner run_pilot_;
   std::once_flag measured_;
   Machine machine_;
 

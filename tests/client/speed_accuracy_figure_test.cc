@@ -6,7 +6,9 @@
 namespace ballpiston::client {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using v1::MethodMeasurement;
 
@@ -29,6 +31,12 @@ MethodMeasurement FixedStep(double time_step, MethodMeasurement measurement) {
   return measurement;
 }
 
+MethodMeasurement AtDelta(double delta, MethodMeasurement measurement) {
+  measurement.set_delta(delta);
+  if (measurement.quantity() == MethodMeasurement::RELAXATION_TIME) measurement.set_wall_hits(0);
+  return measurement;
+}
+
 std::vector<MethodMeasurement> Measurements() {
   using M = MethodMeasurement;
   return {
@@ -40,33 +48,50 @@ std::vector<MethodMeasurement> Measurements() {
       Measured(M::CLOSED_FORM, M::INGOING_LAW, 0, 1e-4, 0, 0),
       FixedStep(0.01, Measured(M::FIXED_STEP, M::TRAJECTORY, 64, 0.00064, 2.5, 0.25)),
       Measured(M::BILLIARD, M::TRAJECTORY, 64, 1.6e-5, 31.5, 0.25),
+      // The bias is 1/16 at delta = 0.2, and less than 2^-7 + 2 * 2^-6 = 5/128 at 0.1.
+      AtDelta(0.2, Measured(M::BILLIARD, M::RELAXATION_TIME, 256, 0.25, 0.03125, 0.125)),
+      AtDelta(0.2, Measured(M::MARKOV, M::RELAXATION_TIME, 256, 0.015625, 0.125, 0.0625)),
+      AtDelta(0.2, Measured(M::SPECTRUM, M::RELAXATION_TIME, 0, 1e-6, 0.0625, 0)),
+      AtDelta(0.1, Measured(M::BILLIARD, M::RELAXATION_TIME, 256, 0.5, 0.03125, 0.078125)),
+      AtDelta(0.1, Measured(M::SPECTRUM, M::RELAXATION_TIME, 0, 1e-6, 0.0078125, 0.015625)),
   };
 }
 
 TEST(SpeedAccuracyFigure, AsksForOneComparison) {
-  const v1::CompareMethodsRequest request = ComparisonRequest(
-      {.rho = 0.53, .delta = 0.2, .epsilon = 0.25, .seconds_per_curve = 3, .seed = 7});
+  const v1::CompareMethodsRequest request = ComparisonRequest({.rho = 0.53,
+                                                               .delta = 0.2,
+                                                               .epsilon = 0.25,
+                                                               .seconds_per_curve = 3,
+                                                               .seed = 7,
+                                                               .relaxation_deltas = {0.2, 0.01}});
   EXPECT_EQ(request.rho(), 0.53);
   EXPECT_EQ(request.delta(), 0.2);
   EXPECT_EQ(request.epsilon(), 0.25);
   EXPECT_EQ(request.seconds_per_curve(), 3);
   EXPECT_EQ(request.seed(), 7u);
+  EXPECT_THAT(request.relaxation_delta(), ElementsAre(0.2, 0.01));
+  EXPECT_THAT(ComparisonRequest({}).relaxation_delta(), IsEmpty());  // the server's
 }
 
 TEST(SpeedAccuracyFigure, WritesEveryMeasurementAndTellsBiasFromChance) {
   const auto files = MakeFiles({}, Measurements());
   ASSERT_TRUE(files.ok()) << files.status();
   EXPECT_EQ(files->csv,
-            "method,time_step,quantity,samples,wall_hits,work_seconds,value,statistical_error,"
-            "bias_resolved\n"
-            "fixed-step,0.01,mean-free-time,100,10000,0.001,0.4,0.2,0\n"
-            "fixed-step,0.01,mean-free-time,400,40000,0.004,0.5,0.1,1\n"
-            "billiard,0,mean-free-time,1600,160000,0.002,0.0625,0.03125,0\n"
-            "closed-form,0,mean-free-time,0,0,1e-07,6e-15,0,1\n"
-            "billiard,0,ingoing-law,1600,160000,0.002,-0.001,0.002,0\n"
-            "closed-form,0,ingoing-law,0,0,1e-04,0,0,0\n"
-            "fixed-step,0.01,trajectory,64,6400,0.00064,2.5,0.25,\n"
-            "billiard,0,trajectory,64,6400,1.6e-05,31.5,0.25,\n");
+            "method,time_step,quantity,delta,samples,wall_hits,work_seconds,value,"
+            "statistical_error,bias_resolved\n"
+            "fixed-step,0.01,mean-free-time,0,100,10000,0.001,0.4,0.2,0\n"
+            "fixed-step,0.01,mean-free-time,0,400,40000,0.004,0.5,0.1,1\n"
+            "billiard,0,mean-free-time,0,1600,160000,0.002,0.0625,0.03125,0\n"
+            "closed-form,0,mean-free-time,0,0,0,1e-07,6e-15,0,1\n"
+            "billiard,0,ingoing-law,0,1600,160000,0.002,-0.001,0.002,0\n"
+            "closed-form,0,ingoing-law,0,0,0,1e-04,0,0,0\n"
+            "fixed-step,0.01,trajectory,0,64,6400,0.00064,2.5,0.25,\n"
+            "billiard,0,trajectory,0,64,6400,1.6e-05,31.5,0.25,\n"
+            "billiard,0,relaxation-time,0.2,256,0,0.25,0.03125,0.125,0\n"
+            "markov,0,relaxation-time,0.2,256,0,0.015625,0.125,0.0625,0\n"
+            "spectrum,0,relaxation-time,0.2,0,0,1e-06,0.0625,0,1\n"
+            "billiard,0,relaxation-time,0.1,256,0,0.5,0.03125,0.078125,0\n"
+            "spectrum,0,relaxation-time,0.1,0,0,1e-06,0.0078125,0.015625,0\n");
 }
 
 TEST(SpeedAccuracyFigure, ABiasIsMoreThanThreeStatisticalErrors) {
@@ -128,6 +153,52 @@ TEST_F(SpeedAccuracyScriptTest, DrawsWhatIsTooSmallAtTheEdgeAndSaysHowSmall) {
 // 64 hits a run of 1.6e-5 s at 6400 hits: 2.5 ns.
 TEST_F(SpeedAccuracyScriptTest, AnOrbitsCostIsTheTimeOfAHit) {
   EXPECT_THAT(script_, HasSubstr("2,2.5,31.5,0.25\n"));
+}
+
+TEST_F(SpeedAccuracyScriptTest, RelaxationTimesAreNoCurvesOfTheOtherPanels) {
+  EXPECT_THAT(script_, HasSubstr("methods = \"fixed-step billiard closed-form\""));
+  EXPECT_THAT(script_, HasSubstr("{/:Bold d}  relaxation time"));
+  EXPECT_THAT(script_, HasSubstr("deltas = \"0.2 0.1\"\n"));
+}
+
+// To 2.2 times 1.92 s, where the last ring stands.
+TEST_F(SpeedAccuracyScriptTest, TheBiasOfTheLimitIsALineAndWhereChanceMayExplainItABound) {
+  EXPECT_THAT(script_, HasSubstr("delta,resolved,x,y\n"
+                                 "0.2,1,1e-06,0.0625\n0.2,1,4.224,0.0625\n\n"
+                                 "0.1,0,1e-06,0.0390625\n0.1,0,4.224,0.0390625\n\n"));
+  EXPECT_THAT(script_, HasSubstr("\"6.25 ± 0 %\""));
+  EXPECT_THAT(script_, HasSubstr("\"≤ 3.9 %\""));
+}
+
+// 0.25 s at an error of 1/8, so 1 s at 1/16. At delta = 0.1 the billiard's own error, without the
+// truth's, is 5/64 sqrt(0.96), so 0.5 s times 0.96 (5/64 / (5/128))^2 are enough for the bound.
+TEST_F(SpeedAccuracyScriptTest, RingsStandWhereTheBilliardIsAsExactAsTheLimit) {
+  EXPECT_THAT(script_, HasSubstr("delta,x,y\n0.2,1,0.0625\n0.1,1.92,0.0390625\n"));
+  EXPECT_THAT(script_, HasSubstr("\"1.0 s\""));
+  EXPECT_THAT(script_, HasSubstr("\"≥ 1.9 s\""));
+}
+
+TEST_F(SpeedAccuracyScriptTest, EachOfEightDeltasHasItsColour) {
+  std::vector<MethodMeasurement> measurements = Measurements();
+  for (const double delta : {0.3, 0.25, 0.15, 0.05, 0.02, 0.01}) {
+    measurements.push_back(AtDelta(delta, measurements.back()));
+  }
+  const std::string script = MakeFiles({}, measurements)->script;
+  EXPECT_THAT(script, HasSubstr("deltas = \"0.3 0.25 0.2 0.15 0.1 0.05 0.02 0.01\"\n"));
+  EXPECT_THAT(script, HasSubstr("shades = \"#440154 #482475 #414487 #355f8d #2a788e #21918c "
+                                "#22a884 #3bbb75\"\n"));
+}
+
+TEST_F(SpeedAccuracyScriptTest, WithoutRelaxationTimesTheirPanelIsLeftOut) {
+  std::vector<MethodMeasurement> measurements = Measurements();
+  std::erase_if(measurements, [](const MethodMeasurement& m) {
+    return m.quantity() == MethodMeasurement::RELAXATION_TIME;
+  });
+  const auto files = MakeFiles({}, measurements);
+  ASSERT_TRUE(files.ok()) << files.status();
+  EXPECT_THAT(files->script, Not(HasSubstr("{/:Bold d}")));
+  EXPECT_THAT(files->script, Not(HasSubstr("legend of d")));
+  EXPECT_TRUE(files->script.ends_with("unset multiplot\n"));
 }
 
 // Can be moved and run again: no path but names of files beside it.

@@ -21,8 +21,8 @@ class InterruptTest : public ::testing::Test {
   // A run that takes years; when this returns the job has been accepted and is being watched.
   InterruptTest()
       : run_(server_.StartClient({"run", "equilibrium", "--rho", "0.53", "--delta", "0.05",
-                                  "--collisions", "1000000000000", "--progress", "json", "--format",
-                                  "csv"})) {
+                                  "--collisions", "1000000000000", "--model", "billiard",
+                                  "--progress", "json", "--format", "csv"})) {
     job_ = At(ParseJson(run_->WaitForErrLine([](const std::string&) { return true; })), "job")
                .string_value();
   }

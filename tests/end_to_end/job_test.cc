@@ -20,8 +20,9 @@ const std::vector<std::string> kQuick = {
     "first-hit",  "--rho", "0.53",      "--delta", "0.2,0.1", "--epsilon", "0.1",
     "--exponent", "1",     "--samples", "2000",    "--seed",  "7"};
 // Takes years.
-const std::vector<std::string> kEndless = {"equilibrium", "--rho",        "0.53",         "--delta",
-                                           "0.05",        "--collisions", "1000000000000"};
+const std::vector<std::string> kEndless = {"equilibrium",   "--rho",   "0.53",
+                                           "--delta",       "0.05",    "--collisions",
+                                           "1000000000000", "--model", "billiard"};
 
 std::vector<std::string> With(const char* verb, std::vector<std::string> words,
                               const std::vector<std::string>& more) {
@@ -32,12 +33,13 @@ std::vector<std::string> With(const char* verb, std::vector<std::string> words,
 
 TEST(Run, PrintsATableWithExactValues) {
   const TestServer server;
-  const ProcessResult result = server.Client({"run", "equilibrium", "--rho", "0.529561127988977",
-                                              "--delta", "0.2", "--collisions", "5000"});
+  const ProcessResult result =
+      server.Client({"run", "equilibrium", "--rho", "0.529561127988977", "--delta", "0.2",
+                     "--collisions", "5000", "--verify"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, StartsWith("equilibrium, model billiard, seed 0, "));
   EXPECT_THAT(result.out, HasSubstr("mean_free_time_ball_piston"));
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5);
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 6);
   EXPECT_EQ(result.err, "");  // not a terminal: no progress
 }
 
@@ -71,8 +73,10 @@ TEST(Run, JsonHasTheContractsShape) {
 TEST(Run, CsvAndJsonlHaveTheirLines) {
   const TestServer server;
   const ProcessResult csv = server.Client(With("run", kQuick, {"--format", "csv"}));
-  EXPECT_THAT(csv.out, StartsWith("rho,delta,epsilon,exponent,model,samples,name,value,"
-                                  "standard_error,exact,z_score\n0.53,0.2,0.1,1,"));
+  EXPECT_THAT(
+      csv.out,
+      StartsWith("rho,delta,epsilon,exponent,model,samples,name,value,"
+                 "standard_error,exact,z_score,model_error,noise_floor,limit\n0.53,0.2,0.1,1,"));
   const ProcessResult jsonl = server.Client(With("run", kQuick, {"--format", "jsonl"}));
   EXPECT_EQ(std::count(jsonl.out.begin(), jsonl.out.end(), '\n'), 2);
   ParseJson(jsonl.out.substr(0, jsonl.out.find('\n')));

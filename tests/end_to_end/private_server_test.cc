@@ -102,7 +102,7 @@ TEST_F(PrivateServerTest, AKilledServerIsReplacedAndItsJobsAreThere) {
 // The watch starts the server again; what it had finished counts.
 TEST_F(PrivateServerTest, AKilledServerIsRevivedByTheClientThatWatches) {
   Process run(Client({"run", "equilibrium", "--rho", "0.53", "--delta", "0.2,0.1", "--collisions",
-                      "300000", "--progress", "json", "--format", "json"}));
+                      "300000", "--verify", "--progress", "json", "--format", "json"}));
   const std::string line = run.WaitForErrLine([](const std::string& text) {
     return At(ParseJson(text), "progress", "samples").number_value() > 0;
   });

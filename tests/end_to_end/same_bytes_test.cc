@@ -35,6 +35,25 @@ TEST(SameBytes, WithOneTwoAndEightWorkers) {
   EXPECT_EQ(PointsWithWorkers(8), one);
 }
 
+// The new experiments, each by every model that samples.
+TEST(SameBytes, OfRelaxationAndMarkovPropertyWithOneAndTwoWorkers) {
+  const std::vector<std::vector<std::string>> questions = {
+      {"energy-relaxation", "--samples", "2000", "--delta", "0.2,0.1"},
+      {"energy-relaxation", "--samples", "500", "--delta", "0.2", "--epsilon", "0.05,0.4"},
+      {"energy-relaxation", "--samples", "4000", "--delta", "0.1", "--model", "markov"},
+      {"energy-relaxation", "--tolerance", "0.1", "--delta", "0.1", "--model", "markov"},
+      {"markov-property", "--collisions", "20000", "--delta", "0.2"},
+      {"markov-property", "--collisions", "20000", "--delta", "0.2", "--model", "markov"}};
+  const TestServer one(1), two(2);
+  for (std::vector<std::string> question : questions) {
+    question.insert(question.begin(), "run");
+    question.insert(question.end(), {"--rho", "0.5296", "--seed", "3", "--format", "json"});
+    const ProcessResult by_one = one.Client(question);
+    ASSERT_EQ(by_one.exit_code, 0) << by_one.err;
+    EXPECT_EQ(PointsOf(two.Client(question).out), PointsOf(by_one.out)) << question[1];
+  }
+}
+
 // Killed when a point is finished and others are not, and again when another one is. The client
 // that watches stays, and attaches again by itself.
 TEST(SameBytes, ThroughKillNineAndRestart) {
@@ -61,8 +80,9 @@ TEST(SameBytes, AnotherSeedGivesOtherBytes) {
   const TestServer server;
   std::string points[2];
   for (const int seed : {0, 1}) {
-    const std::string job = server.Submit({"equilibrium", "--rho", "0.53", "--delta", "0.2",
-                                           "--collisions", "1000", "--seed", std::to_string(seed)});
+    const std::string job =
+        server.Submit({"equilibrium", "--rho", "0.53", "--delta", "0.2", "--collisions", "1000",
+                       "--verify", "--seed", std::to_string(seed)});
     EXPECT_EQ(server.Client({"watch", job}).exit_code, 0);
     points[seed] = Points(server, job);
   }

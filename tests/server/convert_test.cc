@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "ballpiston/v1/storage.pb.h"
 #include "gmock/gmock.h"
@@ -15,6 +16,7 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -79,6 +81,78 @@ TEST(Spec, EveryKindOfTargetComesBack) {
   }
 }
 
+// Each experiment with every model that answers it, and no other.
+TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
+  const auto* experiments = v1::EnsembleSpec::Experiment_descriptor();
+  const auto* models = v1::EnsembleSpec::Model_descriptor();
+  std::set<Experiment> seen_experiments;
+  std::set<Model> seen_models;
+  for (int e = 0; e < experiments->value_count(); ++e) {
+    for (int m = 0; m < models->value_count(); ++m) {
+      v1::EnsembleSpec message = FirstHit();
+      message.set_experiment(
+          static_cast<v1::EnsembleSpec::Experiment>(experiments->value(e)->number()));
+      message.set_model(static_cast<v1::EnsembleSpec::Model>(models->value(m)->number()));
+      message.set_precision(v1::EnsembleSpec::SINGLE);
+      const CheckedSpec checked = CheckSpec(message);
+      for (const FieldViolation& violation : checked.violations) {
+        EXPECT_THAT(violation.description, Not(HasSubstr("is not a value this server knows")));
+      }
+      seen_experiments.insert(checked.spec.experiment);
+      seen_models.insert(checked.spec.model);
+      const v1::EnsembleSpec back = SpecMessage(checked.spec);
+      EXPECT_EQ(back.experiment(), message.experiment());
+      EXPECT_EQ(back.precision(), v1::EnsembleSpec::SINGLE);
+      if (message.model() != v1::EnsembleSpec::MODEL_UNSPECIFIED) {
+        EXPECT_EQ(back.model(), message.model());
+      }
+    }
+  }
+  EXPECT_EQ(seen_experiments.size(), static_cast<size_t>(experiments->value_count()));
+  EXPECT_EQ(seen_models.size(), static_cast<size_t>(models->value_count()) - 1);  // AUTO twice
+}
+
+TEST(Spec, VerifyComesBack) {
+  v1::EnsembleSpec message = FirstHit();
+  message.set_verify(true);
+  EXPECT_TRUE(CheckSpec(message).spec.verify);
+  EXPECT_TRUE(SpecMessage(CheckSpec(message).spec).verify());
+  message.clear_verify();
+  EXPECT_FALSE(SpecMessage(CheckSpec(message).spec).verify());
+}
+
+TEST(Spec, ABudgetBesideAToleranceComesBackToTheNanosecond) {
+  v1::EnsembleSpec message = FirstHit();
+  message.mutable_target()->set_tolerance(0.01);
+  for (const int nanos : {1, 7, 100'000'000, 123'456'789, 300'000'000, 999'999'999}) {
+    for (const int seconds : {0, 1, 86'400}) {
+      message.mutable_target()->mutable_budget()->set_seconds(seconds);
+      message.mutable_target()->mutable_budget()->set_nanos(nanos);
+      const CheckedSpec checked = CheckSpec(message);
+      EXPECT_TRUE(checked.violations.empty());
+      EXPECT_EQ(SpecMessage(checked.spec).target().SerializeAsString(),
+                message.target().SerializeAsString())
+          << seconds << " s, " << nanos << " ns";
+    }
+  }
+}
+
+TEST(Spec, AToleranceBelowTheModelsOwnErrorIsAViolation) {
+  v1::EnsembleSpec message = FirstHit();
+  message.set_experiment(v1::EnsembleSpec::ENERGY_RELAXATION);
+  message.mutable_grid()->clear_epsilon();
+  message.mutable_grid()->clear_exponent();
+  message.mutable_target()->set_tolerance(1e-4);
+  for (const auto model : {v1::EnsembleSpec::MARKOV, v1::EnsembleSpec::SPECTRUM}) {
+    message.set_model(model);
+    EXPECT_THAT(Fields(CheckSpec(message)), testing::ElementsAre("spec.target.tolerance"));
+  }
+  for (const auto model : {v1::EnsembleSpec::AUTO, v1::EnsembleSpec::BILLIARD}) {
+    message.set_model(model);
+    EXPECT_TRUE(CheckSpec(message).violations.empty());
+  }
+}
+
 TEST(Spec, UnknownNumbersOfEnumerationsAreViolationsOnce) {
   v1::EnsembleSpec message = FirstHit();
   message.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(77));
@@ -130,6 +204,80 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_EQ(PointResultOf(3, *experiment, merged, Details::kIncluded).estimates_size(), 0);
 }
 
+// An answer with everything that a result can hold.
+class Told : public PointExperiment {
+ public:
+  explicit Told(const EnsembleSpec& spec) : PointExperiment(spec, PointAt(spec, 0), {}) {}
+  std::optional<BlockResult> RunBlock(uint64_t, std::stop_token) const override {
+    return BlockResult();
+  }
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return Summarize(merged).estimates[0];
+  }
+  PointSummary Summarize(const BlockResult&) const override {
+    PointSummary summary;
+    summary.estimates = {{.name = "time", .value = -4, .standard_error = 0.5, .limit = 3},
+                         {.name = "distance", .value = 0.25, .noise_floor = 0.125},
+                         {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
+    summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}}};
+    return summary;
+  }
+};
+
+TEST(PointResult, LimitNoiseFloorAndCurvesAreTold) {
+  const v1::PointResult result =
+      PointResultOf(0, Told(FakeSpec(1, 1)), BlockResult(), Details::kIncluded);
+  ASSERT_EQ(result.estimates_size(), 3);
+  EXPECT_EQ(result.estimates(0).limit(), 3);
+  EXPECT_FALSE(result.estimates(0).has_noise_floor());
+  EXPECT_EQ(result.estimates(1).noise_floor(), 0.125);
+  EXPECT_FALSE(result.estimates(1).has_limit());
+  EXPECT_FALSE(result.estimates(2).has_limit());
+  EXPECT_FALSE(result.estimates(2).has_noise_floor());
+  ASSERT_EQ(result.curves_size(), 1);
+  EXPECT_EQ(result.curves(0).name(), "decay");
+  ASSERT_EQ(result.curves(0).points_size(), 3);
+  EXPECT_EQ(result.curves(0).points(0).standard_error(), 0.25);
+  EXPECT_EQ(result.curves(0).points(0).limit(), 1);
+  EXPECT_EQ(result.curves(0).points(1).time(), 2);
+  EXPECT_EQ(result.curves(0).points(1).value(), 0.5);
+  for (const int i : {1, 2}) {
+    EXPECT_FALSE(result.curves(0).points(i).has_standard_error());
+    EXPECT_FALSE(result.curves(0).points(i).has_limit());
+  }
+}
+
+TEST(PointResult, DetailsCanBeLeftOutOrCleared) {
+  const Told told(FakeSpec(1, 1));
+  const v1::PointResult without = PointResultOf(0, told, BlockResult(), Details::kLeftOut);
+  EXPECT_EQ(without.curves_size(), 0);
+  EXPECT_EQ(without.estimates_size(), 3);
+  v1::PointResult cleared = PointResultOf(0, told, BlockResult(), Details::kIncluded);
+  ClearDetails(cleared);
+  EXPECT_EQ(cleared.SerializeAsString(), without.SerializeAsString());
+}
+
+// Relative in an answer, absolute in a result; of the first estimate alone, unless it is 0.
+TEST(PointResult, TheModelsErrorAndReasonComeFromTheAnswer) {
+  EnsembleSpec spec;
+  spec.experiment = Experiment::kEnergyRelaxation;
+  spec.grid = {.rho = {0.53}, .delta = {0.1}};
+  const auto answered = [&](std::optional<double> error) {
+    const auto experiment = PointExperiment::Create(
+        spec, 0, {.model = Model::kSpectrum, .reason = "because", .model_error = error});
+    return PointResultOf(0, *experiment, BlockResult(), Details::kLeftOut);
+  };
+  const v1::PointResult off = answered(0.25);
+  EXPECT_EQ(off.model(), v1::EnsembleSpec::SPECTRUM);
+  EXPECT_EQ(off.reason(), "because");
+  EXPECT_EQ(off.samples(), 0);
+  EXPECT_EQ(off.estimates(0).model_error(), 0.25 * off.estimates(0).value());
+  EXPECT_FALSE(off.estimates(1).has_model_error());
+  EXPECT_EQ(answered(0.0).estimates(1).model_error(), 0);
+  EXPECT_TRUE(answered(0.0).estimates(1).has_model_error());
+  EXPECT_FALSE(answered(std::nullopt).estimates(0).has_model_error());
+}
+
 google::rpc::Status Details(const grpc::Status& status) {
   google::rpc::Status details;
   EXPECT_TRUE(details.ParseFromString(status.error_details()));
@@ -148,6 +296,26 @@ TEST(Errors, CarryReasonAndDomain) {
   EXPECT_EQ(info.reason(), "JOB_NOT_FOUND");
   EXPECT_EQ(info.domain(), "ballpiston");
   EXPECT_EQ(info.metadata().at("name"), "ensembleJobs/x");
+}
+
+TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {.tolerance = 1e-6, .budget_seconds = 0.25};
+  const absl::Status missed =
+      ToleranceNotReached(spec, 17, {.name = "time", .value = -8, .standard_error = 0.04});
+  EXPECT_TRUE(absl::IsDeadlineExceeded(missed));
+  EXPECT_EQ(std::string(missed.message()),
+            "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: reached 0.005");
+  const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
+  EXPECT_THAT(std::string(without.message()), HasSubstr("reached no error that could be told"));
+  // A job that ends with it keeps its reason; one without gets that of a failed computation.
+  const auto reason = [](const absl::Status& status) {
+    google::rpc::ErrorInfo info;
+    RpcStatus(WithDefaultReason(status, "COMPUTATION_FAILED")).details(0).UnpackTo(&info);
+    return info.reason();
+  };
+  EXPECT_EQ(reason(missed), "TOLERANCE_NOT_REACHED");
+  EXPECT_EQ(reason(absl::InternalError("lost")), "COMPUTATION_FAILED");
 }
 
 TEST(Errors, ViolationsThatDoNotFitAreCounted) {

@@ -120,7 +120,7 @@ TEST_F(EnsembleServiceTest, AnAbsurdGridIsRefused) {
   EXPECT_THAT(DetailsOf(status).fields, IsSupersetOf({"spec.grid"}));
 }
 
-TEST_F(EnsembleServiceTest, ABudgetIsRefusedByThisVersion) {
+TEST_F(EnsembleServiceTest, ABudgetBesideSamplesIsRefused) {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_target()->mutable_budget()->set_seconds(5);
   EnsembleJob job;
@@ -199,12 +199,12 @@ TEST_F(EnsembleServiceTest, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
 }
 
 TEST_F(EnsembleServiceTest, AnExceptionFailsTheJobAndTheServerStays) {
-  RunningServer& server = StartWith([](const EnsembleSpec& spec, size_t index,
-                                       const std::stop_token& stop) {
-    return FakeExperiments([seed = spec.seed](size_t, uint64_t, std::stop_token) {
-      if (seed == 13) throw std::runtime_error("the ball left the cell");
-    })(spec, index, stop);
-  });
+  RunningServer& server =
+      StartWith([](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+        return FakeExperiments([seed = spec.seed](size_t, uint64_t, std::stop_token) {
+          if (seed == 13) throw std::runtime_error("the ball left the cell");
+        })(spec, index, stop);
+      });
   v1::EnsembleSpec bad = Equilibrium(2, 5);
   bad.set_seed(13);
   const EnsembleJob failed = server.AwaitEnd(server.Submit(bad));

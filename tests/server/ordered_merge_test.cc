@@ -72,11 +72,35 @@ TEST(OrderedMerge, ABlockCountsOnce) {
   EXPECT_EQ(merge.merged().samples, kFakeSamplesPerBlock);
 }
 
+TEST(OrderedMerge, FinishedEarlyItKeepsThePrefixAndDropsWhatWaits) {
+  const auto experiment = Experiment();
+  OrderedMerge merge(experiment);
+  for (const uint64_t block : {0, 1, 3, 4}) {
+    merge.Add(block, *experiment->RunBlock(block, {}), nullptr);
+  }
+  merge.Finish();
+  EXPECT_TRUE(merge.finished());
+  EXPECT_EQ(merge.waiting(), 0u);
+  merge.Add(2, *experiment->RunBlock(2, {}), nullptr);  // came too late
+  EXPECT_EQ(merge.blocks_merged(), 2u);
+  EXPECT_TRUE(merge.merged() == FakeMerged(FakeSpec(1, kBlocks), 0, 2));
+}
+
+TEST(OrderedMerge, APlanWithoutBlocksIsFinishedFromTheStart) {
+  const std::shared_ptr<const PointExperiment> computed =
+      FakeExperiments()(FakeSpec(1, 0), 0, std::stop_token());
+  ASSERT_EQ(computed->plan().Blocks(), 0u);
+  OrderedMerge merge(computed);
+  EXPECT_TRUE(merge.finished());
+  EXPECT_TRUE(merge.merged() == BlockResult());
+}
+
 TEST(OrderedMerge, BlocksBeyondTheToleranceAreDropped) {
   EnsembleSpec spec = FakeSpec(1, 0);
   spec.target = {};
   spec.target.tolerance = 0.05;  // reached after some 140 samples, never before kMinBlocks
-  const std::shared_ptr<const PointExperiment> experiment = FakeExperiments()(spec, 0, std::stop_token());
+  const std::shared_ptr<const PointExperiment> experiment =
+      FakeExperiments()(spec, 0, std::stop_token());
   OrderedMerge merge(experiment);
   uint64_t told = 0;
   for (uint64_t block = 200; block-- > 0;) {  // backwards: all wait for the first

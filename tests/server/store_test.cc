@@ -14,6 +14,7 @@
 #include "gtest/gtest.h"
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
+#include "server/store/pilot_table.h"
 #include "server/store/schema.h"
 #include "tests/server/temporary_folder.h"
 
@@ -91,15 +92,37 @@ class StoreTest : public testing::Test {
     return results;
   }
 
-  static JobState End(Store& store, int64_t job, JobState wish) {
-    JobState state{};
+  static void KeepPilot(Store& store, const std::string& engine, const PilotPlace& place,
+                        const Pilot& pilot) {
+    EXPECT_TRUE(
+        store
+            .Commit([&](Database& database) { return InsertPilot(database, engine, place, pilot); })
+            .ok());
+  }
+
+  static std::optional<Pilot> StoredPilot(Store& store, const std::string& engine,
+                                          const PilotPlace& place) {
+    std::optional<Pilot> pilot;
     EXPECT_TRUE(store
-                    .Commit([&](Database& database) {
-                      const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5});
-                      if (now.ok()) state = *now;
-                      return now.status();
+                    .Read([&](Database& database) {
+                      auto found = FindPilot(database, engine, place);
+                      if (found.ok()) pilot = *found;
+                      return found.status();
                     })
                     .ok());
+    return pilot;
+  }
+
+  static JobState End(Store& store, int64_t job, JobState wish) {
+    JobState state{};
+    EXPECT_TRUE(
+        store
+            .Commit([&](Database& database) {
+              const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
+              if (now.ok()) state = *now;
+              return now.status();
+            })
+            .ok());
     return state;
   }
 
@@ -150,6 +173,103 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
   EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
   EXPECT_THAT(std::string(store.status().message()), HasSubstr("version 99"));
   EXPECT_EQ(Contents(File()), before);
+}
+
+// The tables as the first version made them, with a job, a block and a result in them.
+constexpr char kStoreOfVersion1[] = R"sql(
+CREATE TABLE jobs (
+  sequence INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, spec BLOB NOT NULL,
+  state INTEGER NOT NULL, create_time INTEGER NOT NULL, start_time INTEGER, end_time INTEGER,
+  error BLOB NOT NULL, engine_version TEXT NOT NULL, request_id TEXT UNIQUE,
+  cancel_request_id TEXT, points INTEGER NOT NULL, points_done INTEGER NOT NULL,
+  samples REAL NOT NULL) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state);
+CREATE TABLE blocks (job INTEGER NOT NULL, point INTEGER NOT NULL, block INTEGER NOT NULL,
+  record BLOB NOT NULL, PRIMARY KEY (job, point, block)) STRICT;
+CREATE TABLE results (job INTEGER NOT NULL, point INTEGER NOT NULL, samples REAL NOT NULL,
+  result BLOB NOT NULL, PRIMARY KEY (job, point)) STRICT;
+INSERT INTO jobs VALUES (7, 'old', x'73706563', 4, 1700000000123456789, 1700000001000000000,
+  1700000002000000000, x'', '0.2', 'request', NULL, 3, 2, 12.5);
+INSERT INTO blocks VALUES (7, 2, 0, x'72');
+INSERT INTO results VALUES (7, 1, 12.5, x'72');
+PRAGMA user_version = 1;
+)sql";
+
+void MakeStoreOfVersion1(const std::string& path) {
+  auto database = Database::Open(path, Database::Mode::kReadWrite);
+  ASSERT_TRUE(database.ok()) << database.status();
+  ASSERT_TRUE((*database)->Execute(kStoreOfVersion1).ok());
+  ASSERT_TRUE(
+      (*database)->Execute("PRAGMA application_id = " + std::to_string(kApplicationId)).ok());
+}
+
+TEST_F(StoreTest, AStoreOfTheFirstVersionIsTakenOverWithAllThatIsInIt) {
+  MakeStoreOfVersion1(File());
+  for (int opened = 0; opened < 2; ++opened) {  // the second time it is of this version
+    const auto store = Open();
+    ASSERT_TRUE(store);
+    const auto found = Find(*store, "old");
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->sequence, 7);
+    EXPECT_EQ(found->spec, "spec");
+    EXPECT_EQ(found->state, v1::EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(found->create_time, Record("a").create_time);
+    EXPECT_EQ(found->request_id, "request");
+    EXPECT_EQ(found->points_done, 2);
+    EXPECT_EQ(found->samples, 12.5);
+    EXPECT_EQ(found->work, 0);
+    EXPECT_THAT(Blocks(*store, 7, 2), testing::ElementsAre("0r"));
+    EXPECT_THAT(Results(*store, 7), testing::ElementsAre("1r"));
+    int64_t version = 0;
+    ASSERT_TRUE(store
+                    ->Read([&](Database& database) {
+                      version = database.Integer("PRAGMA user_version").value_or(0);
+                      return absl::OkStatus();
+                    })
+                    .ok());
+    EXPECT_EQ(version, kSchemaVersion);
+  }
+  EXPECT_GT(Insert(*Open(), Record("new")), 7);
+}
+
+TEST_F(StoreTest, AStoreTakenOverKeepsPilotsAndWork) {
+  MakeStoreOfVersion1(File());
+  const auto store = Open();
+  const PilotPlace place = {.rho = 0.53, .delta = 0.1};
+  KeepPilot(*store, "2", place, {.difference = 0.01, .standard_error = 0.002});
+  EXPECT_TRUE(StoredPilot(*store, "2", place));
+}
+
+TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
+  const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
+  const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
+  const PilotPlace from_energy = {.rho = 0.53, .delta = 0.1, .epsilon = 0.25};
+  const auto pilot = [](double difference) {
+    return Pilot{.difference = difference, .standard_error = difference / 3};
+  };
+  {
+    const auto store = Open();
+    KeepPilot(*store, "2", in_equilibrium, pilot(0.1));
+    KeepPilot(*store, "2", at_zero, pilot(-0.2));
+    KeepPilot(*store, "2", from_energy, pilot(0.3));
+    KeepPilot(*store, "3", in_equilibrium, pilot(0.4));
+    KeepPilot(*store, "2", in_equilibrium, pilot(0.5));  // the first one stays
+  }
+  const auto store = Open();
+  const auto expect = [&](const std::string& engine, const PilotPlace& place, double difference) {
+    const auto found = StoredPilot(*store, engine, place);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->difference, difference);
+    EXPECT_EQ(found->standard_error, difference / 3);
+    EXPECT_FALSE(found->predicted);
+  };
+  expect("2", in_equilibrium, 0.1);
+  expect("2", at_zero, -0.2);
+  expect("2", from_energy, 0.3);
+  expect("3", in_equilibrium, 0.4);
+  EXPECT_FALSE(StoredPilot(*store, "3", from_energy));
+  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.53, .delta = 0.2}));
+  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.54, .delta = 0.1}));
 }
 
 TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
@@ -348,6 +468,7 @@ TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
   const auto found = Find(*store, "a");
   EXPECT_EQ(found->points_done, 2);
   EXPECT_EQ(found->samples, 7.5);
+  EXPECT_EQ(found->work, 0.25);
   EXPECT_EQ(found->error, "why");
   EXPECT_TRUE(found->end_time);
   EXPECT_TRUE(Blocks(*store, job, 0).empty());

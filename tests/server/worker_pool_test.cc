@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <ctime>
 #include <new>
 #include <set>
 #include <stdexcept>
 #include <string>
 
+#include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
@@ -145,6 +147,150 @@ TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
   EXPECT_TRUE(journal->finished.at(0) == FakeMerged(spec, 0, merged));
 }
 
+// ---- budgets ----
+
+// Spent when the first block is merged, however fast the machine: a block takes some time.
+constexpr double kSpentAtOnce = 1e-12;
+
+EnsembleSpec FakeBudget(int points) {
+  EnsembleSpec spec = FakeSpec(points, 0);
+  spec.target = {.budget_seconds = kSpentAtOnce};
+  return spec;
+}
+
+TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
+  const EnsembleSpec spec = FakeBudget(5);
+  for (const int workers : {1, 4}) {
+    WorkerPool pool(workers, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, spec, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ASSERT_EQ(journal->finished.size(), 5u);
+    for (const auto& [point, merged] : journal->finished) {
+      const uint64_t blocks = journal->merged[point].size();
+      // Blocks that were out of order when the first came are merged with it.
+      EXPECT_GE(blocks, 1u);
+      EXPECT_LT(blocks, 1000u);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
+    }
+  }
+}
+
+TEST(WorkerPool, AnAmpleBudgetEndsNothing) {
+  EnsembleSpec spec = FakeSpec(2, 0);
+  spec.target = {.budget_seconds = 1e6};
+  WorkerPool pool(2, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
+  }
+}
+
+// With one worker one block is merged at a time, so nothing but the first.
+TEST(WorkerPool, AToleranceThatTheBudgetDoesNotReachIsToldAfterAllPointsAreFinished) {
+  EnsembleSpec spec = FakeBudget(5);
+  spec.target.tolerance = 0.001;
+  WorkerPool pool(1, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  const absl::Status outcome = journal->AwaitEnd();
+  EXPECT_TRUE(absl::IsDeadlineExceeded(outcome)) << outcome;
+  EXPECT_EQ(journal->finished.size(), 5u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1)) << "point " << point;
+  }
+  // That of the point that came first.
+  const BlockResult merged = FakeMerged(spec, 0, 1);
+  const double reached = *merged.moments[0].StandardError() / merged.moments[0].mean;
+  EXPECT_EQ(std::string(outcome.message()),
+            absl::StrFormat("point 0: tolerance 0.001 was not reached within the budget of 1e-12 "
+                            "s: reached %.2g",
+                            reached));
+}
+
+TEST(WorkerPool, AToleranceThatIsReachedLeavesTheBudgetAlone) {
+  EnsembleSpec spec = FakeSpec(3, 0);
+  spec.target = {.tolerance = 0.05};
+  EnsembleSpec with_budget = spec;
+  with_budget.target.budget_seconds = 1e6;
+  for (const EnsembleSpec& asked : {spec, with_budget}) {
+    WorkerPool pool(1, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, asked, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ASSERT_EQ(journal->finished.size(), 3u);
+    for (const auto& [point, merged] : journal->finished) {
+      EXPECT_GT(merged.samples, kMinBlocks * kFakeSamplesPerBlock);
+      EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, journal->merged[point].size()));
+    }
+  }
+}
+
+TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
+  EnsembleSpec spec = FakeSpec(4, 5);
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [](const EnsembleSpec& whole, size_t index, const std::stop_token& stop) {
+    EnsembleSpec of_point = whole;
+    if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
+    return FakeExperiments()(of_point, index, stop);
+  });
+  pool.Add(Request(1, spec, journal));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  ASSERT_EQ(journal->finished.size(), 4u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
+  }
+  EXPECT_EQ(journal->merged.size(), 2u);
+}
+
+// As a pilot run that is told to stop does.
+TEST(WorkerPool, AFactoryIsToldToStopAndItsRunEndsAsCancelled) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1,
+                  [&](const EnsembleSpec& spec, size_t index,
+                      const std::stop_token& stop) -> std::unique_ptr<const PointExperiment> {
+                    gate.Pass(stop);
+                    if (stop.stop_requested()) return nullptr;
+                    return FakeExperiments()(spec, index, stop);
+                  });
+  pool.Add(Request(1, FakeSpec(3, 5), journal));
+  gate.AwaitWaiting(1);
+  pool.Cancel(1);
+  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
+  EXPECT_EQ(journal->ends, 1);
+}
+
+TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
+  auto idle = std::make_shared<RecordingJournal>();
+  auto busy = std::make_shared<RecordingJournal>();
+  // Some of the thread's own time, whoever else computes.
+  const auto compute = [] {
+    timespec begin{}, now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    do {
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    } while (now.tv_sec == begin.tv_sec && now.tv_nsec - begin.tv_nsec < 2'000'000);
+  };
+  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    if (spec.seed == 2) compute();
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token) {
+      if (seed == 2) compute();
+    })(spec, index, stop);
+  });
+  pool.Add(Request(1, FakeSpec(1, 4, 1), idle));
+  ASSERT_TRUE(idle->AwaitEnd().ok());
+  pool.Add(Request(2, FakeSpec(1, 4, 2), busy));
+  ASSERT_TRUE(busy->AwaitEnd().ok());
+  EXPECT_GT(idle->work, 0);
+  // At least one of five in each second of the clock: a turn of the second cuts one short.
+  EXPECT_GE(busy->work, 4 * 0.002);
+}
+
 TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
   Gate gate;
   auto journal = std::make_shared<RecordingJournal>();
@@ -165,11 +311,11 @@ TEST(WorkerPool, AnExceptionFailsItsRunAndNoOther) {
   auto good = std::make_shared<RecordingJournal>();
   auto bad = std::make_shared<RecordingJournal>();
   auto hungry = std::make_shared<RecordingJournal>();
-  WorkerPool pool(2, [](const EnsembleSpec& spec, size_t index) {
+  WorkerPool pool(2, [](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
     return FakeExperiments([seed = spec.seed](size_t, uint64_t block, std::stop_token) {
       if (seed == 13 && block == 5) throw std::runtime_error("the ball left the cell");
       if (seed == 14 && block == 5) throw std::bad_alloc();
-    })(spec, index);
+    })(spec, index, stop);
   });
   pool.Add(Request(1, FakeSpec(3, 20, 13), bad));
   pool.Add(Request(2, FakeSpec(3, 20, 14), hungry));
@@ -182,9 +328,11 @@ TEST(WorkerPool, AnExceptionFailsItsRunAndNoOther) {
 
 TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
   auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
-    throw std::runtime_error("no such experiment");
-  });
+  WorkerPool pool(2,
+                  [](const EnsembleSpec&, size_t,
+                     const std::stop_token&) -> std::unique_ptr<const PointExperiment> {
+                    throw std::runtime_error("no such experiment");
+                  });
   pool.Add(Request(1, FakeSpec(3, 20), journal));
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }
@@ -194,10 +342,10 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   auto long_run = std::make_shared<RecordingJournal>();
   auto short_run = std::make_shared<RecordingJournal>();
   Gate gate;
-  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index) {
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
     return FakeExperiments([&, seed = spec.seed](size_t, uint64_t block, std::stop_token stop) {
       if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
-    })(spec, index);
+    })(spec, index, told);
   });
   pool.Add(Request(1, FakeSpec(1, 1'000'000'000, 1), long_run));
   gate.AwaitWaiting(1);

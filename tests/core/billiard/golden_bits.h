@@ -31,6 +31,18 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"lanes single, conditional-mean-free-time", 0x1883ab125a73f60d},
     {"lanes single, first-hit 5", 0xec84b8fda30413a4},
     {"lanes single, first-hit 2.5", 0xbf56119549d237da},
+    {"reference, energy-relaxation", 0xa4487dc2314e05b7},
+    {"reference, energy-relaxation from 0.01", 0x84a27d6005e19fa7},
+    {"reference, markov-property", 0x803951f8e303cda7},
+    {"lanes, energy-relaxation", 0x3dfc65b1e49a6294},
+    {"lanes, energy-relaxation from 0.01", 0x911ffcc583a5e15e},
+    {"lanes, markov-property", 0x66ad6dc0a33f85f4},
+    {"lanes single, energy-relaxation", 0xb18fe541ec36166f},
+    {"lanes single, energy-relaxation from 0.01", 0xf91d2dad9558a40d},
+    {"lanes single, markov-property", 0xeb27f7869f58a360},
+    {"markov, energy-relaxation", 0x397072960d7ce8ad},
+    {"markov, energy-relaxation from 0.01", 0x52563b68a7fd77ac},
+    {"markov, markov-property", 0x90a80d9d694dfc20},
 };
 
 }  // namespace ballpiston

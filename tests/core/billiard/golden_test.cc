@@ -6,7 +6,8 @@
 // into golden_bits.h. A change that nobody meant is a defect.
 //
 // Of a summary, the closed forms beside the estimates and the relative entropy are not looked at:
-// their sines and logarithms are the C library's.
+// their sines and logarithms are the C library's. Nor is that of the experiments that are compared
+// with the limit, whose spectrum adds to the estimates.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -23,6 +24,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/experiment/answering_models.h"
 #include "core/experiment/point_experiment.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/golden_bits.h"
@@ -129,20 +131,33 @@ TEST_P(Golden, Orbits) {
 
 std::vector<EnsembleSpec> SpecsOf(Engine engine) {
   const Grid pair = {.rho = {0.529561127988977}, .delta = {0.2}};
-  Grid energy = pair, whole = pair, fraction = pair;
+  Grid energy = pair, whole = pair, fraction = pair, slow = pair;
   energy.epsilon = whole.epsilon = fraction.epsilon = {0.125};
   whole.exponent = {5}, fraction.exponent = {2.5};
+  slow.epsilon = {0.01};
   std::vector<EnsembleSpec> specs = {
       {.experiment = Experiment::kEquilibrium, .grid = pair, .target = {.collisions = 1000}},
       {.experiment = Experiment::kConditionalMeanFreeTime,
        .grid = energy,
        .target = {.samples = 1000}},
       {.experiment = Experiment::kFirstHit, .grid = whole, .target = {.samples = 1000}},
-      {.experiment = Experiment::kFirstHit, .grid = fraction, .target = {.samples = 1000}}};
+      {.experiment = Experiment::kFirstHit, .grid = fraction, .target = {.samples = 1000}},
+      {.experiment = Experiment::kEnergyRelaxation, .grid = pair, .target = {.samples = 100}},
+      {.experiment = Experiment::kEnergyRelaxation, .grid = slow, .target = {.samples = 200}},
+      {.experiment = Experiment::kMarkovProperty, .grid = pair, .target = {.collisions = 5000}}};
   for (EnsembleSpec& spec : specs) {
     spec.seed = 42;
     spec.model = engine == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;
     if (engine == Engine::kLanesSingle) spec.precision = Precision::kSingle;
+  }
+  return specs;
+}
+
+std::vector<EnsembleSpec> SpecsOfJumpProcess() {
+  std::vector<EnsembleSpec> specs;
+  for (EnsembleSpec spec : SpecsOf(Engine::kLanes)) {
+    spec.model = Model::kMarkov;
+    if (Answers(spec.model, spec.experiment)) specs.push_back(spec);
   }
   return specs;
 }
@@ -167,22 +182,41 @@ BlockResult RunInThreads(const PointExperiment& point, size_t threads) {
   return merged;
 }
 
+bool IsComparedWithTheLimit(Experiment experiment) {
+  return experiment == Experiment::kEnergyRelaxation || experiment == Experiment::kMarkovProperty;
+}
+
+std::string NameOf(absl::string_view made_by, const EnsembleSpec& spec) {
+  std::string name = absl::StrCat(made_by, ", ", Name(spec.experiment));
+  if (!spec.grid.exponent.empty()) absl::StrAppend(&name, " ", spec.grid.exponent[0]);
+  if (spec.experiment == Experiment::kEnergyRelaxation && !spec.grid.epsilon.empty()) {
+    absl::StrAppend(&name, " from ", spec.grid.epsilon[0]);
+  }
+  return name;
+}
+
+void ExpectGoldenInThreads(const EnsembleSpec& spec, absl::string_view made_by) {
+  const auto point = PointExperiment::Create(spec, 0);
+  for (const size_t threads : {1, 2, 8}) {
+    SCOPED_TRACE(absl::StrCat(threads, " threads"));
+    const BlockResult merged = RunInThreads(*point, threads);
+    Fingerprint fingerprint;
+    fingerprint.Add(merged);
+    if (!IsComparedWithTheLimit(spec.experiment)) fingerprint.Add(point->Summarize(merged));
+    ExpectGolden(NameOf(made_by, spec), fingerprint);
+  }
+}
+
 TEST_P(Golden, BlocksAndSummaries) {
   const Engine engine = GetParam();
   ForEachFusedTarget(engine, [engine] {
-    for (const EnsembleSpec& spec : SpecsOf(engine)) {
-      const auto point = PointExperiment::Create(spec, 0);
-      std::string of = absl::StrCat(Name(engine), ", ", Name(spec.experiment));
-      if (const auto exponent = point->parameters().exponent) absl::StrAppend(&of, " ", *exponent);
-      for (const size_t threads : {1, 2, 8}) {
-        SCOPED_TRACE(absl::StrCat(threads, " threads"));
-        const BlockResult merged = RunInThreads(*point, threads);
-        Fingerprint fingerprint;
-        fingerprint.Add(merged);
-        fingerprint.Add(point->Summarize(merged));
-        ExpectGolden(of, fingerprint);
-      }
-    }
+    for (const EnsembleSpec& spec : SpecsOf(engine)) ExpectGoldenInThreads(spec, Name(engine));
+  });
+}
+
+TEST(GoldenJumpProcess, Blocks) {
+  ForEachFusedTarget(Engine::kLanes, [] {
+    for (const EnsembleSpec& spec : SpecsOfJumpProcess()) ExpectGoldenInThreads(spec, "markov");
   });
 }
 

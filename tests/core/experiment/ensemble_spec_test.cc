@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "core/geometry/pair_geometry.h"
 
@@ -101,8 +104,6 @@ TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
   EnsembleSpec spec = FirstHit();
   spec.target = {.collisions = 10};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.collisions", "use target.samples")));
-  spec.target = {.budget_seconds = 10};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "not offered")));
   spec.target = {.samples = kMaxSamples + 1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.samples", "permitted: 1 to")));
   spec.grid.epsilon = {0.5};
@@ -125,8 +126,170 @@ TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
 }
 
+EnsembleSpec Relaxation() {
+  return {.experiment = Experiment::kEnergyRelaxation, .grid = {.rho = {0.55}, .delta = {0.1}}};
+}
+
+TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
+  EnsembleSpec spec = Relaxation();
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  EXPECT_EQ(PointAt(spec, 0), (PointParameters{.rho = 0.55, .delta = 0.1}));
+  spec.grid.epsilon = {0, 0.01, 0.5};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  EXPECT_EQ(PointAt(spec, 2), (PointParameters{.rho = 0.55, .delta = 0.1, .epsilon = 0.5}));
+  for (const Target& target : {Target{.samples = 10}, Target{.collisions = 10},
+                               Target{.tolerance = 0.1}, Target{.budget_seconds = 1}}) {
+    spec.target = target;
+    EXPECT_THAT(Violations(spec), IsEmpty());
+  }
+  spec.grid.epsilon = {-0.1, 0.51, kNaN};
+  EXPECT_THAT(Violations(spec), UnorderedElementsAre(Names("grid.epsilon[0]", "[0, 0.5]"),
+                                                     Names("grid.epsilon[1]", "[0, 0.5]"),
+                                                     Names("grid.epsilon[2]", "[0, 0.5]")));
+  spec.grid = {.rho = {0.55}, .delta = {0.1}, .exponent = {1}};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "takes none")));
+}
+
+TEST(EnsembleSpec, RelaxationFromTheMeanEnergyIsRefused) {
+  EnsembleSpec spec = Relaxation();
+  spec.grid.epsilon = {1.0 / 6, 1.0 / 6 + 1e-7, 1.0 / 6 - 1e-7, 1.0 / 6 + 1e-5, 1.0 / 6 - 1e-5};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon[0]", "no decay"),
+                                            Names("grid.epsilon[1]", "1/6 +- 1e-6"),
+                                            Names("grid.epsilon[2]", "no decay")));
+  // As anything else may.
+  EnsembleSpec first_hit = FirstHit();
+  first_hit.grid.epsilon = {1.0 / 6};
+  EXPECT_THAT(Violations(first_hit), IsEmpty());
+}
+
+TEST(EnsembleSpec, MarkovPropertyCountsCollisionsWithoutATolerance) {
+  EnsembleSpec spec = {.experiment = Experiment::kMarkovProperty,
+                       .grid = {.rho = {0.55}, .delta = {0.1}},
+                       .target = {.collisions = 100}};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.target = {.budget_seconds = 3};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.target = {.samples = 100};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.samples", "use target.collisions")));
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "tends to 0")));
+  spec.target = {};
+  spec.grid.epsilon = {0.1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "takes none")));
+}
+
+TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
+  const EnsembleSpec specs[] = {
+      {.experiment = Experiment::kEquilibrium, .grid = {.rho = {0.55}, .delta = {0.1}}},
+      {.experiment = Experiment::kConditionalMeanFreeTime,
+       .grid = {.rho = {0.55}, .delta = {0.1}, .epsilon = {0.1}}},
+      FirstHit(),
+      Relaxation(),
+      {.experiment = Experiment::kMarkovProperty, .grid = {.rho = {0.55}, .delta = {0.1}}}};
+  // Of closed_form, spectrum, markov.
+  const std::vector<std::vector<bool>> answered = {{true, false, false},
+                                                   {true, false, false},
+                                                   {false, false, false},
+                                                   {false, true, true},
+                                                   {false, false, true}};
+  constexpr Model kReduced[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov};
+  for (size_t i = 0; i < std::size(specs); ++i) {
+    EnsembleSpec spec = specs[i];
+    for (size_t k = 0; k < std::size(kReduced); ++k) {
+      spec.model = kReduced[k];
+      if (answered[i][k]) {
+        EXPECT_THAT(Violations(spec), IsEmpty()) << Name(spec.experiment) << Name(spec.model);
+      } else {
+        EXPECT_THAT(
+            Violations(spec),
+            ElementsAre(Names("model", "cannot answer " + std::string(Name(spec.experiment)))));
+      }
+    }
+    for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
+      spec.model = model;
+      EXPECT_THAT(Violations(spec), IsEmpty());
+    }
+  }
+  EnsembleSpec spec = FirstHit();
+  spec.model = Model::kMarkov;
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Names("model", "permitted: auto, billiard, billiard_reference")));
+}
+
+TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
+  EnsembleSpec spec = Relaxation();
+  spec.precision = Precision::kSingle;
+  for (const Model model : {Model::kAuto, Model::kBilliard}) {
+    spec.model = model;
+    EXPECT_THAT(Violations(spec), IsEmpty());
+  }
+  for (const Model model : {Model::kSpectrum, Model::kMarkov, Model::kBilliardReference}) {
+    spec.model = model;
+    EXPECT_THAT(Violations(spec), ElementsAre(Names("precision", Name(model).data())));
+  }
+}
+
+TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
+  EnsembleSpec spec = Relaxation();
+  for (const double seconds : {1e-3, 1.0, kMaxBudgetSeconds}) {
+    spec.target = {.budget_seconds = seconds};
+    EXPECT_THAT(Violations(spec), IsEmpty());
+    spec.target.tolerance = 0.01;
+    EXPECT_THAT(Violations(spec), IsEmpty());
+  }
+  for (const double seconds : {0.0, -1.0, 1.1 * kMaxBudgetSeconds, kNaN, kInfinity}) {
+    spec.target = {.budget_seconds = seconds};
+    EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "0 < budget <= 1")));
+  }
+  spec.target = {.samples = 10, .budget_seconds = 1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "alone, or with a tolerance")));
+  spec.target = {.collisions = 10, .budget_seconds = 1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "alone, or with a tolerance")));
+  spec.target = {.samples = 10, .tolerance = 0.1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target", "more than one kind")));
+}
+
+TEST(EnsembleSpec, VerifyStandsBesideAutoAlone) {
+  EnsembleSpec spec = {.experiment = Experiment::kEquilibrium,
+                       .grid = {.rho = {0.55}, .delta = {0.1}}};
+  spec.verify = true;
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  for (const Model model : {Model::kClosedForm, Model::kBilliard, Model::kBilliardReference}) {
+    spec.model = model;
+    EXPECT_THAT(Violations(spec), ElementsAre(Names("verify", "permitted with model auto")));
+  }
+}
+
+// The closed form needs no variance.
+TEST(EnsembleSpec, ToleranceAtARestingPistonIsForTheClosedForm) {
+  EnsembleSpec spec = {.experiment = Experiment::kConditionalMeanFreeTime,
+                       .grid = {.rho = {0.55}, .delta = {0.1}, .epsilon = {0, 0.1}},
+                       .target = {.tolerance = 0.1}};
+  for (const Model model : {Model::kAuto, Model::kClosedForm}) {
+    spec.model = model;
+    EXPECT_THAT(Violations(spec), IsEmpty());
+  }
+  spec.model = Model::kBilliard;
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
+  spec.model = Model::kAuto;
+  spec.verify = true;
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
+  // Relaxation from rest ends with the window.
+  EnsembleSpec relaxation = Relaxation();
+  relaxation.grid.epsilon = {0};
+  relaxation.target = {.tolerance = 0.1};
+  EXPECT_THAT(Violations(relaxation), IsEmpty());
+}
+
+TEST(EnsembleSpec, NamesAreAsUsersWriteThem) {
+  EXPECT_EQ(Name(Experiment::kEnergyRelaxation), "energy-relaxation");
+  EXPECT_EQ(Name(Experiment::kMarkovProperty), "markov-property");
+  EXPECT_EQ(Name(Model::kSpectrum), "spectrum");
+  EXPECT_EQ(Name(Model::kMarkov), "markov");
+}
+
 TEST(EnsembleSpec, MissingExperimentIsNamed) {
-  EXPECT_THAT(Violations({}), Contains(Names("experiment", "permitted: equilibrium")));
+  EXPECT_THAT(Violations({}), Contains(Names("experiment", "energy-relaxation, markov-property")));
 }
 
 }  // namespace

@@ -1,0 +1,175 @@
+#include "core/experiment/energy_relaxation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/billiard/reference_flow.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/experiment/point_stream.h"
+#include "core/sampling/invariant_measure.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kPaperRho = 0.529561127988977;
+
+PairGeometry Paper(double delta) { return *PairGeometry::Create(kPaperRho, delta); }
+
+PointParameters At(double delta, std::optional<double> epsilon) {
+  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon};
+}
+
+EnsembleSpec SpecOf(const PointParameters& point, Model model, int64_t samples) {
+  EnsembleSpec spec = {.experiment = Experiment::kEnergyRelaxation,
+                       .grid = {.rho = {point.rho}, .delta = {point.delta}},
+                       .target = {.samples = samples},
+                       .model = model};
+  if (point.epsilon) spec.grid.epsilon = {*point.epsilon};
+  return spec;
+}
+
+TEST(EnergyRelaxation, OrbitsLastAsLongAsWhatIsMeasured) {
+  const double tau = MeanFreeTimesOf(Paper(0.1)).ball_piston;
+  const EnergyRelaxation decay(Paper(0.1), At(0.1, 0.01));
+  const EnergyRelaxation equilibrium(Paper(0.1), At(0.1, {}));
+  EXPECT_NEAR(decay.orbit_time() / tau, kWindowTimes, 1e-8);
+  EXPECT_NEAR(equilibrium.orbit_time() / tau, kOriginTimes + kWindowTimes, 1e-8);
+  EXPECT_EQ(CollisionsPerOrbit(At(0.1, 0.01)), kWindowTimes);
+  EXPECT_EQ(CollisionsPerOrbit(At(0.1, {})), kOriginTimes + kWindowTimes);
+}
+
+// Of an orbit that stays at its energy: the curve is flat, and the integral the window times it.
+TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
+  constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
+  const double tau = MeanFreeTimesOf(Paper(0.1)).ball_piston;
+  const std::vector<double> decay =
+      EnergyRelaxation(Paper(0.1), At(0.1, kEnergy)).Measure(StepFunction(kEnergy));
+  ASSERT_EQ(decay.size(), 1 + kLags);
+  EXPECT_NEAR(decay[0], kOff * kWindowTimes * tau, 1e-8 * tau);
+  for (size_t i = 0; i < kLags; ++i) EXPECT_EQ(decay[1 + i], kEnergy);
+  const std::vector<double> equilibrium =
+      EnergyRelaxation(Paper(0.1), At(0.1, {})).Measure(StepFunction(kEnergy));
+  ASSERT_EQ(equilibrium.size(), 1 + kLags);
+  EXPECT_NEAR(equilibrium[0], 45 * kOff * kOff * kWindowTimes * tau, 1e-7 * tau);
+  for (size_t i = 0; i < kLags; ++i) EXPECT_NEAR(equilibrium[1 + i], 45 * kOff * kOff, 1e-12);
+}
+
+// One jump, from 1/6 + a to 1/6 - a after a time that is a whole number of lags: with origins
+// before it, the product over a lag is a^2 before the jump and -a^2 across it.
+TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
+  constexpr double kOff = 0.1;
+  constexpr size_t kJumpAtLag = 64;  // of the 128 steps of origins
+  const EnergyRelaxation relaxation(Paper(0.1), At(0.1, {}));
+  const double lag = 4 * relaxation.unit() * kWindowTimes / (kLags - 1);
+  StepFunction energy(kMeanPistonEnergy + kOff);
+  // Half a lag more, so that rounding does not decide on which side a sample lies.
+  energy.Add((kJumpAtLag - 0.5) * lag, kMeanPistonEnergy - kOff);
+  const std::vector<double> values = relaxation.Measure(energy);
+  const double origins = kOriginTimes / kWindowTimes * (kLags - 1) / 2;
+  for (size_t i = 0; i < kLags; ++i) {
+    const double across = std::floor(static_cast<double>(i) / 2);  // of the even origins
+    EXPECT_NEAR(values[1 + i], 45 * kOff * kOff * (origins - 2 * across) / origins, 1e-12) << i;
+  }
+  // Continuously: the window straddles the jump for origins within it.
+  const double tau = 4 * relaxation.unit();
+  EXPECT_NEAR(values[0], 45 * kOff * kOff * kWindowTimes * tau * (1 - kWindowTimes / kOriginTimes),
+              1e-9 * tau);
+}
+
+// Followed by hand with the reference flow, at the times of the curve.
+TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
+  for (const double epsilon : {0.01, 0.3, 0.5}) {
+    const PointParameters point = At(0.2, epsilon);
+    const EnsembleSpec spec = SpecOf(point, Model::kBilliardReference, 1);
+    const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
+    CounterRandom random(spec.seed, PointStream(spec.experiment, point), 0);
+    ReferenceFlow flow(Paper(0.2), DrawFromFlowMeasureAt(Paper(0.2), epsilon, random));
+    const double lag = 4 * EnergyRelaxation(Paper(0.2), point).unit() * kWindowTimes / (kLags - 1);
+    double time = 0, integral = 0;
+    double energy = std::pow(flow.state().piston_velocity, 2) / 2;
+    for (size_t i = 0; i < kLags;) {
+      const Event event = flow.Step();
+      ASSERT_NE(event.kind, EventKind::kEscape);
+      const double end = std::fmin(time + event.duration, lag * (kLags - 1));
+      for (; i < kLags && lag * static_cast<double>(i) < time + event.duration; ++i) {
+        EXPECT_NEAR(block.moments[1 + i].mean, energy, 1e-14) << i;
+      }
+      integral += (energy - kMeanPistonEnergy) * (end - time);
+      time += event.duration;
+      if (event.kind != EventKind::kBallPiston) continue;
+      flow.ExchangeComponents();
+      energy = std::pow(flow.state().piston_velocity, 2) / 2;
+    }
+    EXPECT_NEAR(block.moments[0].mean, integral, 1e-12 * time);
+  }
+}
+
+// Walkers too: from the jumps that they make alone.
+TEST(EnergyRelaxation, AWalkOfTheJumpProcessDoesNotDependOnTheBlock) {
+  for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
+    const EnsembleSpec few = SpecOf(At(0.2, epsilon), Model::kMarkov, 1);
+    const EnsembleSpec many = SpecOf(At(0.2, epsilon), Model::kMarkov, 16 * 1024);
+    const auto one = PointExperiment::Create(few, 0), all = PointExperiment::Create(many, 0);
+    const uint64_t size = all->plan().block_size;
+    ASSERT_GT(size, 256u);  // more than walk in step
+    BlockResult sum;
+    for (uint64_t i = 0; i < 3; ++i) {
+      const BlockResult block = *all->RunBlock(i, {});
+      EXPECT_EQ(block.samples, size);
+      sum.Merge(block);
+    }
+    EXPECT_EQ(sum.samples, 3 * size);
+    // The first orbit alone lies within the first block's.
+    const BlockResult first = *one->RunBlock(0, {});
+    EXPECT_EQ(first.samples, 1u);
+    EXPECT_NE(first.moments[0].mean, sum.moments[0].mean);
+  }
+}
+
+TEST(EnergyRelaxation, StopEndsABlock) {
+  std::stop_source stop;
+  stop.request_stop();
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
+    const EnsembleSpec spec = SpecOf(At(0.001, {}), model, 10'000'000);
+    EXPECT_FALSE(PointExperiment::Create(spec, 0)->RunBlock(0, stop.get_token()));
+  }
+}
+
+// What lies beyond the window is the spectrum's to tell, and little.
+TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
+  for (const double delta : {0.2, 0.01}) {
+    for (const std::optional<double> epsilon :
+         {std::optional<double>(), std::optional(0.01), std::optional(0.4)}) {
+      const EnergyRelaxation relaxation(Paper(delta), At(delta, epsilon));
+      BlockResult nothing_but_the_remainder;
+      nothing_but_the_remainder.samples = 2;
+      nothing_but_the_remainder.moments.resize(1 + kLags);
+      const Estimate remainder = relaxation.RelaxationTime(nothing_but_the_remainder);
+      EXPECT_GT(std::fabs(remainder.value), 0);
+      EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
+    }
+  }
+}
+
+TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
+  const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
+  const double unit = MeanFreeTimesOf(Paper(0.1)).ball_piston / 4;
+  const Curve correlation = EnergyRelaxation(Paper(0.1), At(0.1, {})).CurveOfLimit();
+  const Curve decay = EnergyRelaxation(Paper(0.1), At(0.1, 0.4)).CurveOfLimit();
+  EXPECT_EQ(correlation.name, "energy_autocorrelation");
+  EXPECT_EQ(decay.name, "mean_energy");
+  ASSERT_EQ(correlation.points.size(), kLags);
+  ASSERT_EQ(decay.points.size(), kLags);
+  for (size_t i = 0; i < kLags; ++i) {
+    const double time = decay.points[i].time;
+    EXPECT_NEAR(time / unit, 4 * kWindowTimes * static_cast<double>(i) / (kLags - 1), 1e-7);
+    EXPECT_NEAR(correlation.points[i].value, spectrum.Autocorrelation(time / unit).value, 1e-13);
+    EXPECT_NEAR(decay.points[i].value, spectrum.MeanEnergy(0.4, time / unit).value, 1e-13);
+  }
+  EXPECT_NEAR(decay.points[0].value, 0.4, 1e-12);
+}
+
+}  // namespace
+}  // namespace ballpiston

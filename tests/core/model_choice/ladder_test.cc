@@ -1,0 +1,288 @@
+#include "core/model_choice/ladder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/experiment/energy_relaxation.h"
+#include "tests/core/model_choice/questions.h"
+
+namespace ballpiston {
+namespace {
+
+using testing::HasSubstr;
+
+const Target kTargets[] = {{}, {.tolerance = 1e-6}, {.tolerance = 0.1}, {.budget_seconds = 1}};
+
+TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
+  for (const Experiment experiment :
+       {Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime}) {
+    for (const Target& target : kTargets) {
+      const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
+      EXPECT_EQ(answer->model, Model::kClosedForm);
+      EXPECT_EQ(answer->model_error, 0);
+      EXPECT_THAT(answer->reason, HasSubstr("exact"));
+    }
+  }
+}
+
+TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
+  for (const Experiment experiment :
+       {Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime}) {
+    EnsembleSpec spec = Asked(experiment, 0.1);
+    spec.verify = true;
+    const std::optional<Answer> answer = Choice(spec, MayNotBeAsked);
+    EXPECT_EQ(answer->model, Model::kBilliard);
+    EXPECT_THAT(answer->reason, HasSubstr("verify"));
+  }
+}
+
+// Measured laws are the billiard's: neither tolerance nor budget makes another model answer.
+TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
+  for (const Experiment experiment : {Experiment::kFirstHit, Experiment::kMarkovProperty}) {
+    for (const Target& target : kTargets) {
+      if (experiment == Experiment::kMarkovProperty && target.tolerance) continue;
+      const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
+      EXPECT_EQ(answer->model, Model::kBilliard);
+      EXPECT_EQ(answer->model_error, 0);
+    }
+  }
+}
+
+TEST(Ladder, WithoutAToleranceRelaxationIsTheBilliards) {
+  for (const double delta : {0.3, 1e-4}) {
+    for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
+      EXPECT_EQ(Choice(Relaxation(delta, target), MayNotBeAsked)->model, Model::kBilliard);
+    }
+  }
+}
+
+// Over deltas and tolerances of five decades each: a pilot is asked at most once, at the point's
+// place, and then what it says decides.
+TEST(Ladder, APilotIsAskedOnlyWhereItCanDecide) {
+  int asked = 0, told_without = 0;
+  for (double delta = 0.3; delta > 1e-5; delta /= 2) {
+    for (double tolerance = 0.5; tolerance > 1e-6; tolerance /= 2) {
+      const EnsembleSpec spec = Relaxation(delta, {.tolerance = tolerance});
+      const PointParameters point = PointAt(spec, 0);
+      const PilotPlace place = PilotPlaceFor(point);
+      // As small as a pilot's difference can be, and far too large.
+      for (const double difference : {0.0, 1e6}) {
+        const Pilot pilot = {.difference = difference,
+                             .standard_error = PredictedPilot(place).standard_error};
+        MadeUpPilots pilots(pilot);
+        const Answer answer = *Choice(spec, pilots.source());
+        if (pilots.asked().empty()) {
+          EXPECT_EQ(answer.model, Model::kBilliard) << delta << " to " << tolerance;
+          ++told_without;
+          continue;
+        }
+        ++asked;
+        ASSERT_EQ(pilots.asked().size(), 1u);
+        EXPECT_EQ(pilots.asked()[0], place);
+        const double error = LimitErrorBound(pilot, place, point);
+        EXPECT_EQ(answer.model, difference == 0 ? Model::kSpectrum : Model::kBilliard);
+        EXPECT_EQ(answer.model_error, difference == 0 ? error : 0);
+        EXPECT_EQ(error <= tolerance, difference == 0);
+        EXPECT_THAT(answer.reason, HasSubstr("pilot at delta"));
+      }
+    }
+  }
+  EXPECT_GT(asked, 100);
+  EXPECT_GT(told_without, 100);
+}
+
+// The three reasons for which none is asked.
+TEST(Ladder, WhyNoPilotIsAskedIsTold) {
+  // The limit is 5 % off at delta = 0.2.
+  EXPECT_THAT(Choice(Relaxation(0.2, {.tolerance = 0.01}), MayNotBeAsked)->reason,
+              HasSubstr("beyond the tolerance"));
+  // Two errors of a pilot are 1 % at its place, and 1e-3 at a tenth of its delta.
+  EXPECT_THAT(Choice(Relaxation(0.0097, {.tolerance = 0.0007}), MayNotBeAsked)->reason,
+              HasSubstr("could not establish"));
+  EXPECT_THAT(Choice(Relaxation(0.09, {.tolerance = 0.05}), MayNotBeAsked)->reason,
+              HasSubstr("sooner"));
+}
+
+TEST(Ladder, OnePilotServesAllSmallerDeltas) {
+  const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
+  std::optional<PilotPlace> place;
+  for (const double delta : {0.03, 0.01, 0.001}) {
+    MadeUpPilots pilots(pilot);
+    const EnsembleSpec spec = Relaxation(delta, {.tolerance = 0.01});
+    const Answer answer = *Choice(spec, pilots.source());
+    ASSERT_EQ(pilots.asked().size(), 1u) << delta;
+    if (place) {
+      EXPECT_EQ(*place, pilots.asked()[0]);
+    }
+    place = pilots.asked()[0];
+    EXPECT_EQ(answer.model, Model::kSpectrum);
+    EXPECT_NEAR(*answer.model_error, 0.02 * delta / place->delta, 1e-15);
+  }
+}
+
+TEST(Ladder, APilotThatIsStoppedLeavesNoAnswer) {
+  MadeUpPilots stopped(std::nullopt);
+  EXPECT_FALSE(Choice(Relaxation(0.01, {.tolerance = 0.01}), stopped.source()));
+  EXPECT_EQ(stopped.asked().size(), 1u);
+}
+
+TEST(Ladder, WithAToleranceEveryMachineChoosesAlike) {
+  const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
+  for (double delta = 0.3; delta > 1e-4; delta /= 1.7) {
+    for (double tolerance = 0.5; tolerance > 1e-5; tolerance /= 3) {
+      const EnsembleSpec spec = Relaxation(delta, {.tolerance = tolerance});
+      MadeUpPilots here(pilot), there(pilot);
+      const Answer one = *Choice(spec, here.source());
+      const Answer other = *Choice(spec, there.source(), SlowerMachine());
+      EXPECT_EQ(one.model, other.model);
+      EXPECT_EQ(one.reason, other.reason);
+      EXPECT_EQ(one.model_error, other.model_error);
+      EXPECT_EQ(here.asked(), there.asked());
+    }
+  }
+}
+
+// With a budget alone whatever comes nearest in that time.
+TEST(Ladder, BudgetTakesTheBilliardOnceItIsMoreExact) {
+  double turn = 0;
+  for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
+    const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}), MayNotBeAsked);
+    if (turn == 0 && answer.model == Model::kBilliard) turn = seconds;
+    EXPECT_EQ(answer.model, turn == 0 ? Model::kSpectrum : Model::kBilliard) << seconds;
+    EXPECT_EQ(*answer.model_error, turn == 0 ? ExpectedLimitError({kPaperRho, 0.0125, {}, {}}) : 0);
+  }
+  EXPECT_GT(turn, 1);
+  EXPECT_LT(turn, 1e4);
+  EXPECT_EQ(Choice(Relaxation(0.3, {.budget_seconds = 1}), MayNotBeAsked)->model, Model::kBilliard);
+}
+
+TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
+  EnsembleSpec spec = Relaxation(0.1, {.budget_seconds = 6});
+  EXPECT_EQ(BudgetOfAPoint(spec, 4), 24);
+  spec.grid.delta = {0.1, 0.2, 0.3};
+  EXPECT_EQ(BudgetOfAPoint(spec, 4), 8);
+}
+
+TEST(Ladder, ANamedModelAnswersWhateverItsError) {
+  for (const Experiment experiment : kExperiments) {
+    for (const Model model : kLadder) {
+      if (!Answers(model, experiment)) continue;
+      EnsembleSpec spec = Asked(experiment, 0.2);
+      spec.model = model;
+      const Answer answer = *Choice(spec, MayNotBeAsked);
+      EXPECT_EQ(answer.model, model);
+      const bool limit = model == Model::kSpectrum || model == Model::kMarkov;
+      if (!limit) {
+        EXPECT_EQ(answer.model_error, 0);
+      } else if (experiment == Experiment::kEnergyRelaxation) {
+        EXPECT_EQ(answer.model_error, ExpectedLimitError(PointAt(spec, 0)));
+      } else {
+        EXPECT_FALSE(answer.model_error);  // nobody knows
+      }
+    }
+  }
+}
+
+TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
+  for (const Experiment experiment : kExperiments) {
+    MadeUpPilots none(std::nullopt);
+    const EnsembleSpec spec = Asked(experiment, 0.05);
+    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
+    ASSERT_EQ(ladder.rungs.size(), std::size(kLadder));
+    for (size_t i = 0; i < ladder.rungs.size(); ++i) {
+      const Rung& rung = ladder.rungs[i];
+      EXPECT_EQ(rung.model, kLadder[i]);
+      EXPECT_EQ(rung.answers, Answers(rung.model, experiment));
+      EXPECT_FALSE(rung.reason.empty());
+      EXPECT_EQ(rung.work.has_value(), rung.answers);
+      if (rung.answers) {
+        EXPECT_GT(*rung.work, 0);
+      }
+    }
+    EXPECT_TRUE(ladder.Chosen().answers);
+    EXPECT_EQ(ladder.Chosen().model, ladder.answer.model);
+    EXPECT_EQ(ladder.answer.model, Choice(spec, none.source())->model);
+  }
+}
+
+TEST(Ladder, SamplesAreWhatTheTargetTakes) {
+  const auto rung = [](const EnsembleSpec& spec, Model model) {
+    MadeUpPilots none(std::nullopt);
+    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
+    return *std::find_if(ladder.rungs.begin(), ladder.rungs.end(),
+                         [model](const Rung& r) { return r.model == model; });
+  };
+  for (const Model model : {Model::kMarkov, Model::kBilliard, Model::kBilliardReference}) {
+    EXPECT_EQ(rung(Relaxation(0.1, {.samples = 123}), model).samples, 123);
+    EXPECT_EQ(rung(Relaxation(0.1, {.collisions = 4000}), model).samples, 100);  // of 40 each
+    EXPECT_EQ(rung(Relaxation(0.1), model).samples, kDefaultSamples);
+    const Rung to_tolerance = rung(Relaxation(0.1, {.tolerance = 0.002}), model);
+    EXPECT_LE(*to_tolerance.statistical_error, 0.002);
+    EXPECT_GT(*to_tolerance.statistical_error, 0.0015);
+    const Rung in_time = rung(Relaxation(0.1, {.budget_seconds = 3}), model);
+    EXPECT_LE(*in_time.work, 3);
+    EXPECT_GT(*in_time.work, 2.9);
+    // The tolerance first, if the time allows it.
+    const Rung either = rung(Relaxation(0.1, {.tolerance = 0.3, .budget_seconds = 100}), model);
+    EXPECT_LT(*either.work, 100);
+    EXPECT_EQ(*either.samples, *rung(Relaxation(0.1, {.tolerance = 0.3}), model).samples);
+  }
+  for (const Model model : {Model::kSpectrum, Model::kClosedForm}) {
+    const Rung exact = rung(
+        Asked(model == Model::kSpectrum ? Experiment::kEnergyRelaxation : Experiment::kEquilibrium,
+              0.1),
+        model);
+    EXPECT_EQ(exact.samples, 0);
+    EXPECT_EQ(exact.statistical_error, 0);
+  }
+}
+
+TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
+  const EnsembleSpec spec = Relaxation(0.01);
+  const PointParameters point = PointAt(spec, 0);
+  const Pilot pilot = {.difference = 0.02, .standard_error = 0.005};
+  MadeUpPilots none(std::nullopt), known(pilot);
+  const Ladder without = LadderFor(spec, point, SomeMachine(), none.source());
+  const Ladder with = LadderFor(spec, point, SomeMachine(), known.source());
+  for (const size_t i : {1, 2}) {
+    EXPECT_EQ(without.rungs[i].model_error, ExpectedLimitError(point));
+    EXPECT_THAT(without.rungs[i].reason, HasSubstr("expected"));
+    EXPECT_EQ(with.rungs[i].model_error, LimitErrorBound(pilot, PilotPlaceFor(point), point));
+    EXPECT_THAT(with.rungs[i].reason, HasSubstr("by a pilot"));
+  }
+}
+
+TEST(Ladder, ReducedModelsRefuseAToleranceBelowTheirError) {
+  const auto violations = [](Experiment experiment, Model model, double tolerance, double delta) {
+    EnsembleSpec spec = Asked(experiment, delta, {.tolerance = tolerance});
+    spec.model = model;
+    return ToleranceViolations(spec);
+  };
+  for (const Model model : {Model::kSpectrum, Model::kMarkov}) {
+    const double error = ExpectedLimitError({kPaperRho, 0.2, {}, {}});
+    const auto found = violations(Experiment::kEnergyRelaxation, model, 0.99 * error, 0.2);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].field, "target.tolerance");
+    EXPECT_THAT(found[0].description, HasSubstr("model auto or billiard"));
+    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, 1.01 * error, 0.2).empty());
+    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, error / 10, 0.01).empty());
+  }
+  EXPECT_EQ(violations(Experiment::kEquilibrium, Model::kClosedForm, 1e-17, 0.2).size(), 1u);
+  EXPECT_TRUE(violations(Experiment::kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
+  for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
+    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, 1e-9, 0.2).empty());
+  }
+  // The worst point of the grid counts; and without a tolerance nothing.
+  EnsembleSpec spec = Relaxation(0.01, {.tolerance = 0.01});
+  spec.model = Model::kSpectrum;
+  EXPECT_TRUE(ToleranceViolations(spec).empty());
+  spec.grid.delta = {0.01, 0.2};
+  EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
+  spec.target = {};
+  EXPECT_TRUE(ToleranceViolations(spec).empty());
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,86 @@
+// Questions for the ladder, a machine to predict for, and pilots that are made up.
+#ifndef BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_
+#define BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+#include "core/experiment/answering_models.h"
+#include "core/model_choice/ladder.h"
+
+namespace ballpiston {
+
+inline constexpr double kPaperRho = 0.529561127988977;
+
+// Round numbers near those of a processor of the day.
+inline Machine SomeMachine() {
+  Machine machine;
+  machine.rates.closed_form = 1e-6;
+  machine.rates.spectrum = 1e-4;
+  machine.rates.jump = 5e-8;
+  machine.rates.lanes = {.wall_hit = 2e-9, .collision = 2e-7, .sample = 4e-7};
+  machine.rates.lanes_single = {.wall_hit = 1e-9, .collision = 2e-7, .sample = 4e-7};
+  machine.rates.reference = {.wall_hit = 4e-8, .collision = 4e-8, .sample = 2e-7};
+  machine.workers = 1;
+  return machine;
+}
+
+inline Machine SlowerMachine() {
+  Machine machine = SomeMachine();
+  machine.rates.lanes.wall_hit *= 100;
+  machine.rates.jump *= 3;
+  machine.workers = 64;
+  return machine;
+}
+
+inline EnsembleSpec Asked(Experiment experiment, double delta, const Target& target = {}) {
+  EnsembleSpec spec = {
+      .experiment = experiment, .grid = {.rho = {kPaperRho}, .delta = {delta}}, .target = target};
+  if (experiment == Experiment::kConditionalMeanFreeTime || experiment == Experiment::kFirstHit) {
+    spec.grid.epsilon = {0.125};
+  }
+  if (experiment == Experiment::kFirstHit) spec.grid.exponent = {1};
+  return spec;
+}
+
+inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {
+  return Asked(Experiment::kEnergyRelaxation, delta, target);
+}
+
+inline constexpr Experiment kExperiments[] = {
+    Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime, Experiment::kFirstHit,
+    Experiment::kEnergyRelaxation, Experiment::kMarkovProperty};
+
+// Says the same of every place, and remembers the places.
+class MadeUpPilots {
+ public:
+  explicit MadeUpPilots(std::optional<Pilot> pilot) : pilot_(pilot) {}
+  PilotSource source() {
+    return [this](const PilotPlace& place) {
+      asked_.push_back(place);
+      return pilot_;
+    };
+  }
+  const std::vector<PilotPlace>& asked() const { return asked_; }
+
+ private:
+  std::optional<Pilot> pilot_;
+  std::vector<PilotPlace> asked_;
+};
+
+inline std::optional<Pilot> MayNotBeAsked(const PilotPlace&) {
+  ADD_FAILURE() << "a pilot where none can decide";
+  return std::nullopt;
+}
+
+inline std::optional<Answer> Choice(const EnsembleSpec& spec, const PilotSource& pilots,
+                                    const Machine& machine = SomeMachine()) {
+  EXPECT_TRUE(Violations(spec).empty());
+  return ChooseAnswer(spec, PointAt(spec, 0), machine, pilots);
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_CORE_MODEL_CHOICE_QUESTIONS_H_

@@ -1,0 +1,143 @@
+#include "core/model_choice/sampling_cost.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include "core/experiment/energy_relaxation.h"
+#include "core/experiment/point_experiment.h"
+#include "core/experiment/predicted_hits.h"
+#include "tests/core/model_choice/questions.h"
+
+namespace ballpiston {
+namespace {
+
+// ---- errors, which are measured ----
+
+struct Measured {
+  double relative_error;
+  double samples;
+};
+
+Measured ErrorMeasured(const EnsembleSpec& spec) {
+  const auto point = PointExperiment::Create(spec, 0);
+  BlockResult merged;
+  for (uint64_t block = 0; !point->TargetReached(block, merged); ++block) {
+    merged.Merge(*point->RunBlock(block, {}));
+  }
+  const Estimate estimate = point->FirstEstimate(merged);
+  return {*estimate.standard_error / std::fabs(estimate.value),
+          static_cast<double>(merged.samples)};
+}
+
+// Errors of some thousand samples are themselves known to a few percent.
+void ExpectWithinAFactorOfTwo(const EnsembleSpec& spec) {
+  ASSERT_TRUE(Violations(spec).empty());
+  const PointParameters point = PointAt(spec, 0);
+  const PairGeometry geometry = *PairGeometry::Create(point.rho, point.delta);
+  const Measured measured = ErrorMeasured(spec);
+  const double predicted =
+      RelativeErrorOfOneSample(spec.experiment, geometry, point) / std::sqrt(measured.samples);
+  std::cout << Name(spec.experiment) << " by " << Name(spec.model) << ", delta " << point.delta
+            << ", epsilon " << point.epsilon.value_or(-1) << ": predicted " << predicted
+            << ", measured " << measured.relative_error << "\n";
+  EXPECT_LT(measured.relative_error, 2 * predicted);
+  EXPECT_GT(measured.relative_error, predicted / 2);
+}
+
+TEST(SamplingCost, ErrorInEquilibriumIsWithinAFactorOfTwo) {
+  for (const double delta : {0.05, 0.15, 0.32}) {
+    ExpectWithinAFactorOfTwo(Asked(Experiment::kEquilibrium, delta, {.collisions = 10'000}));
+  }
+}
+
+TEST(SamplingCost, ErrorOfReturnsIsWithinAFactorOfTwo) {
+  for (const Experiment experiment :
+       {Experiment::kConditionalMeanFreeTime, Experiment::kFirstHit}) {
+    for (const double delta : {0.05, 0.2}) {
+      for (const double epsilon : {0.125, 0.3, 0.45}) {
+        EnsembleSpec spec = Asked(experiment, delta, {.samples = 10'000});
+        spec.grid.epsilon = {epsilon};
+        ExpectWithinAFactorOfTwo(spec);
+      }
+    }
+  }
+}
+
+TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwo) {
+  for (const Model model : {Model::kBilliard, Model::kMarkov}) {
+    for (const double delta : {0.1, 0.25}) {
+      EnsembleSpec spec = Relaxation(delta, {.samples = 2'000});
+      spec.model = model;
+      ExpectWithinAFactorOfTwo(spec);
+      for (const double epsilon : {0.01, 0.05, 0.4}) {
+        spec.grid.epsilon = {epsilon};
+        ExpectWithinAFactorOfTwo(spec);
+      }
+    }
+  }
+}
+
+TEST(SamplingCost, NoNumberOfSamplesIsEnoughWhereThereIsNoVariance) {
+  EnsembleSpec spec = Asked(Experiment::kConditionalMeanFreeTime, 0.1);
+  spec.grid.epsilon = {0};
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  EXPECT_TRUE(std::isinf(RelativeErrorOfOneSample(spec.experiment, geometry, PointAt(spec, 0))));
+}
+
+// ---- costs, which follow from counts and a machine's rates ----
+
+MachineRates OnlyOf(double EngineRate::*part) {
+  MachineRates rates;
+  rates.lanes.*part = 1;
+  return rates;
+}
+
+double Cost(const EnsembleSpec& spec, const MachineRates& rates) {
+  const PointParameters point = PointAt(spec, 0);
+  return SecondsPerSample(spec, *PairGeometry::Create(point.rho, point.delta), point, rates);
+}
+
+TEST(SamplingCost, IsThatOfTheEventsOfASample) {
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  const double hits = HitsPerCollision(geometry).ball_wall;
+  const EnsembleSpec collision = Asked(Experiment::kEquilibrium, 0.1), orbit = Relaxation(0.1);
+  EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::wall_hit)), hits);
+  EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::collision)), 1);
+  EXPECT_EQ(Cost(collision, OnlyOf(&EngineRate::sample)), 0);
+  const double collisions = CollisionsPerOrbit(PointAt(orbit, 0));
+  EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::wall_hit)), hits * collisions);
+  EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::collision)), collisions);
+  EnsembleSpec returns = Asked(Experiment::kConditionalMeanFreeTime, 0.1);
+  EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::wall_hit)),
+                   HitsPerReturn(geometry, 0.125).ball_wall);
+  EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::sample)), 1);
+}
+
+TEST(SamplingCost, JumpsCostWhateverDelta) {
+  MachineRates rates;
+  rates.jump = 1;
+  for (const double delta : {0.3, 1e-3}) {
+    EnsembleSpec spec = Relaxation(delta);
+    spec.model = Model::kMarkov;
+    EXPECT_EQ(Cost(spec, rates), kOriginTimes + kWindowTimes);
+    spec.grid.epsilon = {0.4};
+    EXPECT_EQ(Cost(spec, rates), kWindowTimes);
+  }
+}
+
+TEST(SamplingCost, IsTheEnginesThatRuns) {
+  EnsembleSpec spec = Asked(Experiment::kEquilibrium, 0.1);
+  const Machine machine = SomeMachine();
+  const double lanes = Cost(spec, machine.rates);
+  spec.precision = Precision::kSingle;
+  EXPECT_LT(Cost(spec, machine.rates), lanes);
+  spec.precision = Precision::kDouble;
+  spec.model = Model::kBilliardReference;
+  EXPECT_GT(Cost(spec, machine.rates), 5 * lanes);
+}
+
+}  // namespace
+}  // namespace ballpiston
