@@ -116,12 +116,12 @@ std::string Crossings(const std::vector<LimitFloor>& floors) {
   return rows;
 }
 
-std::string DeltaLabels(const std::vector<LimitFloor>& floors, double x, const Range& error) {
+std::string DeltaLabels(const std::vector<LimitFloor>& floors, double x, const Range& shown) {
   std::vector<Label> labels;
   for (const LimitFloor& floor : floors) {
     labels.push_back({x, floor.Height(), ExactText(floor.delta)});
   }
-  Spread(labels, error);
+  Spread(labels, shown);
   return Text(labels);
 }
 
@@ -261,18 +261,19 @@ std::string RelaxationPanelScript(const Measurements& measurements) {
   const std::vector<LimitFloor> floors = FloorsOf(measurements);
   if (floors.empty()) return "";
   const auto [work, error] = ExtentOf(measurements, floors);
+  const Range shown = {error.low * kBelow, error.high * kAbove};
   return absl::StrReplaceAll(
       kPanel, Substitutions{{"$$", "$"},
                             {"$CHANCE_LINES", ChanceLines(measurements, floors)},
                             {"$WALKERS", ChanceOfWalkers(measurements, floors.front())},
                             {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
                             {"$CROSSINGS", Crossings(floors)},
-                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kLabelAt, error)},
+                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kLabelAt, shown)},
                             {"$FEWEST", absl::StrCat(kFewestOrbits)},
                             {"$DELTAS", DeltasOf(floors)},
                             {"$SHADES", ShadesOf(floors)},
-                            {"$EDGE", ExactText(error.low * kBelow)},
-                            {"$TOP", ExactText(error.high * kAbove)},
+                            {"$EDGE", ExactText(shown.low)},
+                            {"$TOP", ExactText(shown.high)},
                             {"$FROM", ExactText(work.low * kBelow)},
                             {"$TO", ExactText(work.high * kRoomForDeltas)}});
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -254,10 +255,11 @@ auto IsBy(Model model) {
   return [model](const Rung& rung) { return rung.model == model; };
 }
 
-void AddPilots(double seconds, Rung& rung) {
-  if (seconds == 0) return;
-  rung.work = rung.work.value_or(0) + seconds;
-  rung.reason = absl::StrCat(rung.reason, "; with the pilot");
+void AddPilot(const MachineRates& rates, Ladder& ladder) {
+  ladder.work_of_pilot = SecondsOfPilot(*ladder.pilot, rates);
+  Rung& chosen = ladder.Chosen();
+  chosen.work = chosen.work.value_or(0) + ladder.work_of_pilot;
+  chosen.reason = absl::StrCat(chosen.reason, "; with the pilot");
 }
 
 }  // namespace
@@ -276,6 +278,14 @@ const Rung& Ladder::Chosen() const {
   return *std::find_if(rungs.begin(), rungs.end(), IsBy(answer.model));
 }
 
+Rung& Ladder::Chosen() { return *std::find_if(rungs.begin(), rungs.end(), IsBy(answer.model)); }
+
+void Ladder::DropPilot() {
+  if (!pilot) return;
+  Chosen().work = *Chosen().work - std::exchange(work_of_pilot, 0);
+  pilot.reset();
+}
+
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots) {
   const Question question(spec, point, machine);
@@ -283,14 +293,12 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
   for (const Model model : kLadder) {
     ladder.rungs.push_back(RungFor(model, question, machine, pilots));
   }
-  double seconds_of_pilots = 0;
   ladder.answer = *ChooseAnswer(spec, point, machine, [&](const PilotPlace& place) {
     if (const std::optional<Pilot> known = pilots(place)) return known;
-    seconds_of_pilots += SecondsOfPilot(place, machine.rates);
+    ladder.pilot = place;
     return std::optional(PredictedPilot(place));
   });
-  AddPilots(seconds_of_pilots,
-            *std::find_if(ladder.rungs.begin(), ladder.rungs.end(), IsBy(ladder.answer.model)));
+  if (ladder.pilot) AddPilot(machine.rates, ladder);
   return ladder;
 }
 

@@ -46,8 +46,14 @@ struct Rung {
 struct Ladder {
   std::vector<Rung> rungs;  // cheapest first
   Answer answer;
+  // What is to be run before the choice, by one worker, and its part of the chosen rung's work.
+  std::optional<PilotPlace> pilot;
+  double work_of_pilot = 0;
 
   const Rung& Chosen() const;
+  Rung& Chosen();
+  // Where another point runs it.
+  void DropPilot();
 };
 
 // `pilots` gives what is known of a place; a pilot that was not run yet is predicted.

@@ -1,8 +1,9 @@
 // Which folder of the house may include what: the arrows between the layers, as a table.
 //
-//   core:    geometry <- closed_form, sampling <- billiard <- experiment <- method_comparison;
-//            statistics knows no physics, and the last two alone join it to the rest. Libraries:
-//            Eigen, Highway, Random123, Boost's numbers, Abseil and C++'s own, without threads.
+//   core:    geometry <- closed_form, sampling <- billiard, markov <- experiment <-
+//            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
+//            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
+//            threads.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other.
 //   server/convert alone speaks of the core's physics and of the API's messages in one file.
 //
