@@ -2,7 +2,8 @@
 //
 // The block size follows from the engine, the target and the predicted cost of a sample alone,
 // never from threads or machines: some 2^20 events a block for the reference, 2^25 in lanes, so
-// that a block takes about 0.05 s, and an eighth of that with a tolerance or a budget: a tolerance
+// that a block takes about 0.05 s, and an eighth of that with a tolerance or a budget, of which the
+// point has several blocks (the spec is that of one point): a tolerance
 // is looked at after each block from the 16th on. It is a power of two, so that a rounding
 // difference in the prediction does not change the plan, and small enough that a point has at least
 // kMinBlocks of them to share out.

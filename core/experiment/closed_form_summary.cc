@@ -1,5 +1,7 @@
 #include "core/experiment/closed_form_summary.h"
 
+#include <utility>
+
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 

@@ -154,6 +154,10 @@ std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
 
 }  // namespace
 
+bool HasRelaxationTime(const std::optional<double>& epsilon) {
+  return !epsilon || *epsilon <= kNoDecayFrom || *epsilon >= kNoDecayTo;
+}
+
 double CollisionsPerOrbit(const PointParameters& point) {
   return point.epsilon ? kWindowTimes : kOriginTimes + kWindowTimes;
 }
@@ -197,27 +201,39 @@ std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const 
 
 SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
-  if (!epsilon_) {
-    const SpectralValue time = spectrum.CorrelationTime(window / unit_of_limit_);
-    return {unit_of_limit_ * time.value, unit_of_limit_ * time.error};
-  }
-  const double scale = unit_of_limit_ / (*epsilon_ - kMeanPistonEnergy);
-  const SpectralValue integral = spectrum.DecayIntegral(*epsilon_, window / unit_of_limit_);
-  return {scale * integral.value, std::fabs(scale) * integral.error};
+  const double end = window / unit_of_limit_;
+  const SpectralValue integral =
+      epsilon_ ? spectrum.DecayIntegral(*epsilon_, end) : spectrum.CorrelationTime(end);
+  return {unit_of_limit_ * integral.value, unit_of_limit_ * integral.error};
 }
 
-SpectralValue EnergyRelaxation::LimitOfRelaxationTime() const { return IntegralOfLimit(kForEver); }
+std::vector<Estimate> EnergyRelaxation::Named(const Estimate& integral) const {
+  if (!HasRelaxationTime(epsilon_)) return {integral};
+  Estimate time = integral;
+  time.name = "relaxation_time";
+  if (!epsilon_) return {time};
+  const double scale = 1 / (*epsilon_ - kMeanPistonEnergy);
+  time.value *= scale;
+  if (time.standard_error) *time.standard_error *= std::fabs(scale);
+  *time.limit *= scale;
+  return {time, integral};
+}
 
-Estimate EnergyRelaxation::RelaxationTime(const BlockResult& merged) const {
-  const double scale = epsilon_ ? 1 / (*epsilon_ - kMeanPistonEnergy) : 1;
-  const double limit = LimitOfRelaxationTime().value;
-  const double remainder = limit - IntegralOfLimit(window()).value;
-  Estimate estimate = {.name = "relaxation_time",
-                       .value = scale * merged.moments[0].mean + remainder,
-                       .limit = limit};
-  const std::optional<double> error = merged.moments[0].StandardError();
-  if (error) estimate.standard_error = std::fabs(scale) * *error;
-  return estimate;
+std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged) const {
+  const double limit = IntegralOfLimit(kForEver).value;
+  const double remainder = WithoutLastBits(limit - IntegralOfLimit(window()).value);
+  return Named({.name = "decay_integral",
+                .value = merged.moments[0].mean + remainder,
+                .standard_error = merged.moments[0].StandardError(),
+                .limit = limit});
+}
+
+std::vector<Estimate> EnergyRelaxation::EstimatesOfLimit() const {
+  const SpectralValue integral = IntegralOfLimit(kForEver);
+  return Named({.name = "decay_integral",
+                .value = integral.value,
+                .standard_error = integral.error,
+                .limit = integral.value});
 }
 
 std::string EnergyRelaxation::CurveName() const {
@@ -291,11 +307,16 @@ std::optional<BlockResult> EnergyRelaxationExperiment::RunJumpProcess(
   return measurements.Result();
 }
 
-Estimate EnergyRelaxationExperiment::FirstEstimate(const BlockResult& merged) const {
-  Estimate estimate = relaxation_.RelaxationTime(merged);
+std::vector<Estimate> EnergyRelaxationExperiment::Estimates(const BlockResult& merged) const {
+  std::vector<Estimate> estimates = relaxation_.Estimates(merged);
+  if (answer().model != Model::kMarkov) return estimates;
   // The jump process is the limit.
-  if (answer().model == Model::kMarkov) estimate.exact = estimate.limit;
-  return estimate;
+  for (Estimate& estimate : estimates) estimate.exact = estimate.limit;
+  return estimates;
+}
+
+Estimate EnergyRelaxationExperiment::FirstEstimate(const BlockResult& merged) const {
+  return Estimates(merged).front();
 }
 
 namespace {
@@ -309,7 +330,7 @@ Estimate SpectralGap() {
 
 PointSummary EnergyRelaxationExperiment::Summarize(const BlockResult& merged) const {
   PointSummary summary = {.samples = merged.samples, .health = merged.health};
-  summary.estimates.push_back(FirstEstimate(merged));
+  summary.estimates = Estimates(merged);
   if (answer().model == Model::kMarkov) summary.estimates.push_back(SpectralGap());
   summary.curves.push_back(relaxation_.MeasuredCurve(merged));
   return summary;
@@ -332,13 +353,9 @@ void AddFurtherRates(std::vector<Estimate>& estimates) {
 PointSummary EnergyRelaxationBySpectrum(const PairGeometry& geometry,
                                         const PointParameters& point) {
   const EnergyRelaxation relaxation(geometry, point);
-  const SpectralValue time = relaxation.LimitOfRelaxationTime();
   PointSummary summary;
-  summary.estimates = {{.name = "relaxation_time",
-                        .value = time.value,
-                        .standard_error = time.error,
-                        .limit = time.value},
-                       SpectralGap()};
+  summary.estimates = relaxation.EstimatesOfLimit();
+  summary.estimates.push_back(SpectralGap());
   AddFurtherRates(summary.estimates);
   summary.curves = {relaxation.CurveOfLimit()};
   return summary;

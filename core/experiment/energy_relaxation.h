@@ -6,8 +6,10 @@
 // and what the limit's spectrum adds beyond it (0.03 %). C(0) = 1/45 and the mean 1/6 are exact at
 // every delta, and used.
 //
-// With epsilon: E[ep(t)] from that energy, ball and piston anywhere; relaxation_time is
-// int_0^W (E[ep(t)] - 1/6) dt/(epsilon - 1/6), with the limit's remainder.
+// With epsilon: E[ep(t)] from that energy, ball and piston anywhere; decay_integral is
+// int_0^W (E[ep(t)] - 1/6) dt with the limit's remainder, and relaxation_time that over
+// epsilon - 1/6. The latter is told outside kNoDecayFrom ... kNoDecayTo only: around 1/6 the mean
+// energy first moves away from 1/6, and the ratio has a zero (at 0.141) and a pole.
 //
 // The window matters. A piston of speed u is out of the ball's reach for a time of up to
 // 2 lambda/u, whatever delta: so in the billiard C has a tail of order lambda/t from slow pistons,
@@ -34,6 +36,10 @@ namespace ballpiston {
 inline constexpr double kWindowTimes = 8;
 inline constexpr double kOriginTimes = 32;
 
+// Initial energies from which there is no decay that a time could be told of.
+inline constexpr double kNoDecayFrom = 0.12;
+inline constexpr double kNoDecayTo = 0.2;
+
 inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
 
 // What all ways of computing it share: the scales, and what an orbit and all of them say.
@@ -48,11 +54,12 @@ class EnergyRelaxation {
   // The numbers of one orbit: as many as there are moments.
   std::vector<double> Measure(const StepFunction& energy) const;
 
-  Estimate RelaxationTime(const BlockResult& merged) const;
+  // relaxation_time where there is one; with epsilon decay_integral.
+  std::vector<Estimate> Estimates(const BlockResult& merged) const;
   Curve MeasuredCurve(const BlockResult& merged) const;
 
-  // Of the limit, with the error of its computation.
-  SpectralValue LimitOfRelaxationTime() const;
+  // Of the limit, the errors being those of its computation.
+  std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
 
  private:
@@ -60,14 +67,19 @@ class EnergyRelaxation {
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
   SpectralValue CurveOfLimitAt(double time) const;
-  // int_0^window of the limit's curve, normalised as the relaxation time is.
+  // int_0^window of the limit's curve: autocorrelation, or mean energy less 1/6.
   SpectralValue IntegralOfLimit(double window) const;
+  // The integral as decay_integral, and over epsilon - 1/6.
+  std::vector<Estimate> Named(const Estimate& integral) const;
 
   std::optional<double> epsilon_;
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
   double unit_;           // the same as measurements take it, without its last bits
   double mean_free_time_;
 };
+
+// Whether a relaxation_time is told: in equilibrium, and from energies far enough from 1/6.
+bool HasRelaxationTime(const std::optional<double>& epsilon);
 
 // Ball-piston collisions in an orbit, in the mean.
 double CollisionsPerOrbit(const PointParameters& point);
@@ -83,6 +95,7 @@ class EnergyRelaxationExperiment : public PointExperiment {
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
+  std::vector<Estimate> Estimates(const BlockResult& merged) const;
   std::optional<BlockResult> RunBilliard(uint64_t block, const std::stop_token& stop) const;
   std::optional<BlockResult> RunJumpProcess(uint64_t block, const std::stop_token& stop) const;
 

@@ -70,4 +70,20 @@ PointParameters PointAt(const EnsembleSpec& spec, size_t index) {
   return point;
 }
 
+EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model) {
+  EnsembleSpec one = {.experiment = spec.experiment,
+                      .grid = {.rho = {point.rho}, .delta = {point.delta}},
+                      .target = spec.target,
+                      .seed = spec.seed,
+                      .model = model,
+                      .precision = spec.precision,
+                      .verify = spec.verify};
+  if (point.epsilon) one.grid.epsilon = {*point.epsilon};
+  if (point.exponent) one.grid.exponent = {*point.exponent};
+  if (one.target.budget_seconds) {
+    *one.target.budget_seconds /= static_cast<double>(PointCount(spec));
+  }
+  return one;
+}
+
 }  // namespace ballpiston

@@ -90,6 +90,9 @@ struct PointParameters {
 size_t PointCount(const EnsembleSpec& spec);
 PointParameters PointAt(const EnsembleSpec& spec, size_t index);  // index < PointCount
 
+// The same question about one of its points, by `model`, with that point's share of a budget.
+EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);
+
 }  // namespace ballpiston
 
 #endif  // BALLPISTON_CORE_EXPERIMENT_ENSEMBLE_SPEC_H_

@@ -73,23 +73,28 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
 
 std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
                                                                size_t index) {
-  return ByModel(spec, PointAt(spec, index));
+  const PointParameters point = PointAt(spec, index);
+  return ByModel(OnePointSpec(spec, point, spec.model), point);
 }
 
-std::unique_ptr<const PointExperiment> PointExperiment::Create(EnsembleSpec spec, size_t index,
-                                                               Answer answer) {
-  spec.model = answer.model;
-  std::unique_ptr<PointExperiment> experiment = ByModel(spec, PointAt(spec, index));
+std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
+                                                               size_t index, Answer answer) {
+  const PointParameters point = PointAt(spec, index);
+  std::unique_ptr<PointExperiment> experiment =
+      ByModel(OnePointSpec(spec, point, answer.model), point);
   if (experiment != nullptr) experiment->answer_ = std::move(answer);
   return experiment;
+}
+
+bool MeetsTolerance(const Estimate& estimate, double tolerance) {
+  return estimate.standard_error &&
+         *estimate.standard_error <= tolerance * std::fabs(estimate.value);
 }
 
 bool PointExperiment::TargetReached(uint64_t blocks, const BlockResult& merged) const {
   if (blocks >= plan_.Blocks()) return true;
   if (!plan_.tolerance || blocks < kMinBlocks) return false;
-  const Estimate estimate = FirstEstimate(merged);
-  return estimate.standard_error &&
-         *estimate.standard_error <= *plan_.tolerance * std::fabs(estimate.value);
+  return MeetsTolerance(FirstEstimate(merged), *plan_.tolerance);
 }
 
 }  // namespace ballpiston

@@ -34,6 +34,9 @@ struct Answer {
   std::optional<double> model_error = 0.0;
 };
 
+// Whether its relative standard error, if it has one, is at most that.
+bool MeetsTolerance(const Estimate& estimate, double tolerance);
+
 class PointExperiment {
  public:
   virtual ~PointExperiment() = default;
@@ -42,7 +45,7 @@ class PointExperiment {
   // the billiard, which answers everything.
   static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
   // With the model of `answer`, which has to be one that the experiment can be answered by.
-  static std::unique_ptr<const PointExperiment> Create(EnsembleSpec spec, size_t index,
+  static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index,
                                                        Answer answer);
 
   // A plan without blocks: the answer is there without running one, and `merged` is empty.

@@ -18,7 +18,7 @@ struct Estimate {
   double value = 0;
   std::optional<double> standard_error = {};  // empty with too few samples
   std::optional<double> exact = {};           // the closed form, where there is one
-  std::optional<double> limit = {};           // its value as delta -> 0, where that is known
+  std::optional<double> limit = {};           // what the limit delta -> 0 gives here, if known
   // Of a distance between laws, which is never below 0: its mean if the two were the same.
   std::optional<double> noise_floor = {};
 
@@ -39,7 +39,7 @@ struct CurvePoint {
   double time = 0;
   double value = 0;
   std::optional<double> standard_error = {};
-  std::optional<double> limit = {};  // its value as delta -> 0
+  std::optional<double> limit = {};  // what the limit delta -> 0 gives here
 };
 
 struct Curve {

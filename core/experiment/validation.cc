@@ -8,10 +8,10 @@
 #include "absl/strings/str_join.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/experiment/answering_models.h"
+#include "core/experiment/energy_relaxation.h"
 #include "core/experiment/ensemble_spec.h"
 #include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
-#include "core/markov/relaxation_spectrum.h"
 
 namespace ballpiston {
 namespace {
@@ -196,16 +196,16 @@ void CheckTarget(const EnsembleSpec& spec, Found* found) {
   CheckBudget(target, found);
 }
 
-// The energy it relaxes to has nowhere to relax from.
-void CheckInitialEnergy(const EnsembleSpec& spec, Found* found) {
-  constexpr double kTooNear = 1e-6;
-  if (spec.experiment != Experiment::kEnergyRelaxation) return;
+// A relative error of what passes through 0.
+void CheckToleranceOfDecay(const EnsembleSpec& spec, Found* found) {
+  if (spec.experiment != Experiment::kEnergyRelaxation || !spec.target.tolerance) return;
   for (size_t i = 0; i < spec.grid.epsilon.size(); ++i) {
-    if (!(std::fabs(spec.grid.epsilon[i] - kMeanPistonEnergy) < kTooNear)) continue;
-    found->push_back(
-        {At("epsilon", i), absl::StrCat("is ", NumberText(spec.grid.epsilon[i]),
-                                        ", the mean energy 1/6 itself, so there is no decay; "
-                                        "permitted: [0, 1/2] without 1/6 +- 1e-6")});
+    if (HasRelaxationTime(spec.grid.epsilon[i])) continue;
+    found->push_back({At("epsilon", i),
+                      absl::StrCat("is ", NumberText(spec.grid.epsilon[i]),
+                                   ", from where the mean energy has no relaxation time; permitted "
+                                   "with a tolerance: [0, ",
+                                   kNoDecayFrom, "] or [", kNoDecayTo, ", 0.5]")});
   }
 }
 
@@ -246,7 +246,7 @@ std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
     CheckGrid(spec, &found);
     CheckTarget(spec, &found);
     CheckModel(spec, &found);
-    CheckInitialEnergy(spec, &found);
+    CheckToleranceOfDecay(spec, &found);
   }
   CheckValues(spec.grid, &found);
   return found;

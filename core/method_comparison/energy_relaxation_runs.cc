@@ -68,10 +68,10 @@ std::optional<RelaxationTime> EnergyRelaxationRuns::Run(Method method, const Sam
 
 RelaxationTime EnergyRelaxationRuns::BySpectrum() const {
   RelaxationSpectrum::Get();
-  SpectralValue time = {};
+  Estimate time;
   const double seconds = SecondsOf(
-      [&] { time = EnergyRelaxation(geometry_, PointOf(geometry_)).LimitOfRelaxationTime(); });
-  return {.value = time.value, .error = time.error, .seconds = seconds};
+      [&] { time = EnergyRelaxation(geometry_, PointOf(geometry_)).EstimatesOfLimit().front(); });
+  return {.value = time.value, .error = time.standard_error.value_or(0), .seconds = seconds};
 }
 
 }  // namespace ballpiston

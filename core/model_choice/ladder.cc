@@ -21,8 +21,7 @@ namespace {
 
 constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
-// A pilot is not worth its time if the limit is expected to be so many times beyond the tolerance.
-constexpr double kHopeless = 2;
+constexpr absl::string_view kWithThePilot = "; with the pilot";
 
 std::string Rounded(double x) { return absl::StrFormat("%.2g", x); }
 
@@ -35,20 +34,17 @@ bool IsOfTheLimit(Model model) { return model == Model::kSpectrum || model == Mo
 class Question {
  public:
   Question(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine)
-      : spec_(spec),
+      : spec_(OnePointSpec(spec, point, spec.model)),
         point_(point),
         machine_(machine),
-        budget_(spec.target.budget_seconds ? BudgetOfAPoint(spec, machine.workers) : 0),
-        geometry_(PairGeometry::Create(point.rho, point.delta).value()) {
-    spec_.grid = {.rho = {point.rho}, .delta = {point.delta}};
-    if (point.epsilon) spec_.grid.epsilon = {*point.epsilon};
-    if (point.exponent) spec_.grid.exponent = {*point.exponent};
-  }
+        geometry_(PairGeometry::Create(point.rho, point.delta).value()) {}
 
   const EnsembleSpec& spec() const { return spec_; }
   const PointParameters& point() const { return point_; }
   const Target& target() const { return spec_.target; }
   bool relaxes() const { return spec_.experiment == Experiment::kEnergyRelaxation; }
+  // Whether something is known of how far the limit is off.
+  bool HasLimitError() const { return relaxes() && HasRelaxationTime(point_.epsilon); }
 
   double SecondsBy(Model model) const {
     return SecondsPerSample(By(model), geometry_, point_, machine_.rates);
@@ -64,7 +60,7 @@ class Question {
   }
 
   double SamplesInBudget(Model model) const {
-    return std::max(std::floor(budget_ / SecondsBy(model)), 1.0);
+    return std::max(std::floor(BudgetOfAPoint(spec_, machine_.workers) / SecondsBy(model)), 1.0);
   }
 
   // At least the blocks before the first look.
@@ -85,16 +81,11 @@ class Question {
   }
 
  private:
-  EnsembleSpec By(Model model) const {
-    EnsembleSpec by = spec_;
-    by.model = model;
-    return by;
-  }
+  EnsembleSpec By(Model model) const { return OnePointSpec(spec_, point_, model); }
 
   EnsembleSpec spec_;  // of this point alone
   PointParameters point_;
   Machine machine_;
-  double budget_;
   PairGeometry geometry_;
 };
 
@@ -120,7 +111,7 @@ std::string WithoutAPilot(const Question& question) {
   const double tolerance = *question.target().tolerance;
   const PilotPlace place = PilotPlaceFor(question.point());
   const double expected = ExpectedLimitError(question.point());
-  if (expected > kHopeless * tolerance) {
+  if (expected > tolerance) {
     return absl::StrCat("the limit's error, some ", Rounded(expected), ", is beyond the tolerance");
   }
   const Pilot predicted = PredictedPilot(place);
@@ -137,7 +128,7 @@ std::string WithoutAPilot(const Question& question) {
 
 std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
   return absl::StrCat(
-      pilot.predicted ? "expected of a pilot at delta = " : "by a pilot at delta = ",
+      pilot.predicted ? "expected of a pilot at delta = " : "two sigma of a pilot at delta = ",
       Rounded(place.delta));
 }
 
@@ -150,7 +141,7 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
   if (!pilot) return std::nullopt;
   const double error = LimitErrorBound(*pilot, place, question.point());
   const std::string found =
-      absl::StrCat("the limit's error is at most ", Rounded(error), ", ", FoundBy(*pilot, place));
+      absl::StrCat("the limit's error is within ", Rounded(error), ", ", FoundBy(*pilot, place));
   if (error > *question.target().tolerance) {
     return Billiard(absl::StrCat("exact; ", found, ": beyond the tolerance"));
   }
@@ -164,13 +155,15 @@ Answer ByBudget(const Question& question) {
   const std::string compared =
       absl::StrCat("the billiard's error after this budget is some ", Rounded(billiard),
                    ", the limit's some ", Rounded(limit));
-  if (billiard <= limit) return Billiard(absl::StrCat("exact; ", compared));
+  const double enough = question.target().tolerance.value_or(0);
+  if (billiard <= std::max(limit, enough)) return Billiard(absl::StrCat("exact; ", compared));
   return {Model::kSpectrum, compared, limit};
 }
 
 std::optional<Answer> RelaxationBy(const Question& question, const PilotSource& pilots) {
-  if (question.target().tolerance) return ByTolerance(question, pilots);
+  if (!question.HasLimitError()) return Billiard("exact; the limit's error is not known there");
   if (question.target().budget_seconds) return ByBudget(question);
+  if (question.target().tolerance) return ByTolerance(question, pilots);
   return Billiard("exact; without a tolerance the limit's error cannot be weighed");
 }
 
@@ -187,7 +180,7 @@ std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pi
 Answer ExplicitAnswer(const Question& question) {
   const Model model = question.spec().model;
   if (!IsOfTheLimit(model)) return {model, "", 0.0};
-  if (!question.relaxes()) return {model, "", std::nullopt};
+  if (!question.HasLimitError()) return {model, "", std::nullopt};
   return {model, "", ExpectedLimitError(question.point())};
 }
 
@@ -211,7 +204,8 @@ void PredictWithoutSamples(const Machine& machine, Rung& rung) {
 
 void PredictSamples(const Question& question, Rung& rung) {
   rung.samples = question.SamplesBy(rung.model);
-  rung.work = *rung.samples * question.SecondsBy(rung.model);
+  const double work = *rung.samples * question.SecondsBy(rung.model);
+  if (std::isfinite(work)) rung.work = work;
   const double error = question.ErrorOf(*rung.samples);
   if (std::isfinite(error)) rung.statistical_error = error;
   if (!IsOfTheLimit(rung.model)) {
@@ -223,13 +217,13 @@ void PredictSamples(const Question& question, Rung& rung) {
 // What is known of the limit's error: a pilot, if one was run; else what is expected.
 void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
   rung.reason = "the limit delta -> 0";
-  if (!question.relaxes()) return;
+  if (!question.HasLimitError()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   const std::optional<Pilot> pilot = pilots(place);
   const bool known = pilot.has_value();
   rung.model_error = known ? LimitErrorBound(*pilot, place, question.point())
                            : ExpectedLimitError(question.point());
-  rung.reason = known ? absl::StrCat("the limit; at most so far off, ", FoundBy(*pilot, place))
+  rung.reason = known ? absl::StrCat("the limit; so far off or less, ", FoundBy(*pilot, place))
                       : "the limit; expected to be so far off, by its scaling with delta";
 }
 
@@ -259,7 +253,7 @@ void AddPilot(const MachineRates& rates, Ladder& ladder) {
   ladder.work_of_pilot = SecondsOfPilot(*ladder.pilot, rates);
   Rung& chosen = ladder.Chosen();
   chosen.work = chosen.work.value_or(0) + ladder.work_of_pilot;
-  chosen.reason = absl::StrCat(chosen.reason, "; with the pilot");
+  chosen.reason = absl::StrCat(chosen.reason, kWithThePilot);
 }
 
 }  // namespace
@@ -283,6 +277,7 @@ Rung& Ladder::Chosen() { return *std::find_if(rungs.begin(), rungs.end(), IsBy(a
 void Ladder::DropPilot() {
   if (!pilot) return;
   Chosen().work = *Chosen().work - std::exchange(work_of_pilot, 0);
+  Chosen().reason.resize(Chosen().reason.size() - kWithThePilot.size());
   pilot.reset();
 }
 
@@ -302,20 +297,36 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
   return ladder;
 }
 
+namespace {
+
+// What the answering model is off by itself, at the worst point; or, where it samples, its error
+// after all the samples that there can be.
+double LeastTolerance(const EnsembleSpec& spec) {
+  const bool closed = spec.model == Model::kAuto && HasClosedForm(spec.experiment) && !spec.verify;
+  if (closed || spec.model == Model::kClosedForm) return kClosedFormError;
+  double least = 0;
+  for (size_t i = 0; i < PointCount(spec); ++i) {
+    const PointParameters point = PointAt(spec, i);
+    const bool relaxes = spec.experiment == Experiment::kEnergyRelaxation;
+    if (IsOfTheLimit(spec.model) && relaxes) least = std::max(least, ExpectedLimitError(point));
+    if (spec.model == Model::kSpectrum) continue;
+    const Question question(spec, point, Machine());
+    const double sampled = question.ErrorOf(static_cast<double>(kMaxSamples));
+    if (std::isfinite(sampled)) least = std::max(least, sampled);
+  }
+  return least;
+}
+
+}  // namespace
+
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
-  const double tolerance = *spec.target.tolerance;
-  double error = spec.model == Model::kClosedForm ? kClosedFormError : 0;
-  if (IsOfTheLimit(spec.model) && spec.experiment == Experiment::kEnergyRelaxation) {
-    for (size_t i = 0; i < PointCount(spec); ++i) {
-      error = std::max(error, ExpectedLimitError(PointAt(spec, i)));
-    }
-  }
-  if (!(tolerance < error)) return {};
+  const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
+  if (!(tolerance < least)) return {};
+  const std::string other = IsOfTheLimit(spec.model) ? ", or model auto or billiard" : "";
   return {{"target.tolerance",
-           absl::StrCat("is ", NumberText(tolerance), ", below what ", Name(spec.model),
-                        " is off by itself; permitted with model ", Name(spec.model),
-                        ": tolerance >= ", RoundedUp(error), "; or model auto or billiard")}};
+           absl::StrCat("is ", NumberText(tolerance), ", below what model ", Name(spec.model),
+                        " can reach; permitted: tolerance >= ", RoundedUp(least), other)}};
 }
 
 }  // namespace ballpiston

@@ -27,9 +27,9 @@ struct Machine {
 // Runs or recalls a pilot; nothing: told to stop.
 using PilotSource = std::function<std::optional<Pilot>(const PilotPlace&)>;
 
-// The model that answers at a point; for AUTO the service's choice. With a tolerance a function of
-// the spec alone, whatever the machine. Empty only if a pilot was needed and the source was told to
-// stop. The spec has no violations.
+// The model that answers at a point; for AUTO the service's choice. Without a
+// budget a function of the spec alone, whatever the machine. Empty only if a pilot was needed and
+// the source was told to stop. The spec has no violations.
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots);
 

@@ -13,6 +13,9 @@ namespace {
 
 // Of the bound on delta: there a collision takes some 250 wall hits, and a pilot some 2 s.
 constexpr double kPilotsShareOfTheBound = 0.3;
+// From an energy whose slow partner takes as long as the window, the error does not fall with
+// delta.
+constexpr double kWhereItScales = 0.3;
 
 EnsembleSpec SpecOfPilot(const PilotPlace& place) {
   EnsembleSpec spec = {.experiment = Experiment::kEnergyRelaxation,
@@ -49,8 +52,9 @@ double ExpectedLimitError(const PointParameters& point) {
 
 PilotPlace PilotPlaceFor(const PointParameters& point) {
   PilotPlace place = {point.rho, point.delta, point.epsilon};
-  const double cheap = kPilotsShareOfTheBound * PairDeltaBound(point.rho);
-  if (!place.epsilon) place.delta = std::max(place.delta, cheap);
+  PointParameters cheap = point;
+  cheap.delta = std::max(point.delta, kPilotsShareOfTheBound * PairDeltaBound(point.rho));
+  if (ExpectedLimitError(cheap) < kWhereItScales) place.delta = cheap.delta;
   return place;
 }
 
@@ -84,7 +88,7 @@ Pilot PredictedPilot(const PilotPlace& place) {
 
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point) {
   const double there = std::fabs(pilot.difference) + 2 * pilot.standard_error;
-  return there * point.delta / place.delta;
+  return std::max(there * point.delta / place.delta, ExpectedLimitError(point));
 }
 
 }  // namespace ballpiston

@@ -7,10 +7,11 @@
 // delta)/tau_bp, which falls as delta^2 log(1/delta). From a given energy it is that of the energy
 // itself: u tau_bp against lambda + 2 delta, and the ball's speed likewise.
 //
-// Established by a pilot: a billiard run of fixed size beside the spectrum. In equilibrium the
-// error falls with delta at least in proportion, so a pilot at a delta where collisions are cheap
-// bounds all smaller ones. A pilot is a function of where it is made alone: results that rest on
-// one are the same whoever made it, and when.
+// Established by a pilot: a billiard run of fixed size beside the spectrum. While it is small the
+// error falls with delta at least in proportion (it is of order delta^2 log(1/delta), by its
+// mechanism), so a pilot at a delta where collisions are cheap bounds all smaller ones. A pilot is
+// a function of where it is made alone: results that rest on one are the same whoever made it, and
+// when.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
 
@@ -57,8 +58,8 @@ double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates);
 // What a pilot is expected to say.
 Pilot PredictedPilot(const PilotPlace& place);
 
-// What the limit's relative error at the point is at most, by a pilot at its place: the difference
-// and two of its standard errors, scaled.
+// What the limit's relative error at the point is within, by a pilot at its place: the difference
+// and two of its standard errors, scaled; not less than is expected anyway.
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point);
 
 }  // namespace ballpiston

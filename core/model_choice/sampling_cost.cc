@@ -50,8 +50,7 @@ double ErrorOfReturns(const PairGeometry& geometry, double epsilon) {
 double ErrorOfDecay(const PairGeometry& geometry, const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(geometry, point);
-  const double decay =
-      (*point.epsilon - kMeanPistonEnergy) * relaxation.LimitOfRelaxationTime().value;
+  const double decay = relaxation.EstimatesOfLimit().back().value;
   return std::fabs(kScatter * 4 * relaxation.unit() / decay);
 }
 
@@ -77,6 +76,7 @@ double RelativeErrorOfOneSample(Experiment experiment, const PairGeometry& geome
     case Experiment::kFirstHit:
       return ErrorOfReturns(geometry, *point.epsilon);
     case Experiment::kEnergyRelaxation:
+      if (!HasRelaxationTime(point.epsilon)) return std::numeric_limits<double>::infinity();
       return point.epsilon ? ErrorOfDecay(geometry, point) : 1.25;
     case Experiment::kMarkovProperty:
       return std::numeric_limits<double>::infinity();

@@ -30,6 +30,7 @@ class StepFunction {
   // int_0^end (x(t) - mean) dt.
   double Integral(double mean, double end) const;
 
+  // Of a finite window:
   // 1/origins int_0^origins dt (x(t) - mean) int_t^(t + window) dt' (x(t') - mean).
   double CorrelationIntegral(double mean, double origins, double window) const;
 

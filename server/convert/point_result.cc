@@ -18,7 +18,8 @@ void SetModelError(const Answer& answer, bool first, v1::Estimate& message) {
   message.set_model_error(*answer.model_error * std::fabs(message.value()));
 }
 
-void AddEstimate(const Estimate& estimate, const Answer& answer, v1::PointResult& result) {
+void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
+                 v1::PointResult& result) {
   if (!std::isfinite(estimate.value)) return;
   v1::Estimate* message = result.add_estimates();
   message->set_name(estimate.name);
@@ -28,7 +29,7 @@ void AddEstimate(const Estimate& estimate, const Answer& answer, v1::PointResult
   if (const auto z = estimate.ZScore(); Exists(z)) message->set_z_score(*z);
   if (Exists(estimate.noise_floor)) message->set_noise_floor(*estimate.noise_floor);
   if (Exists(estimate.limit)) message->set_limit(*estimate.limit);
-  SetModelError(answer, result.estimates_size() == 1, *message);
+  SetModelError(answer, first, *message);
 }
 
 void SetDivergence(const KlDivergence& divergence, v1::PointResult& result) {
@@ -83,7 +84,7 @@ v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
   result.set_reason(answer.reason);
   result.set_samples(static_cast<double>(summary.samples));
   for (const Estimate& estimate : summary.estimates) {
-    AddEstimate(estimate, answer, result);
+    AddEstimate(estimate, answer, &estimate == &summary.estimates.front(), result);
   }
   if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
   if (details == Details::kIncluded) {
@@ -92,6 +93,15 @@ v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
   }
   SetHealth(summary.health, result);
   return result;
+}
+
+Estimate FirstEstimateOf(const v1::PointResult& result) {
+  Estimate first;
+  if (result.estimates().empty()) return first;
+  const v1::Estimate& message = result.estimates(0);
+  first.value = message.value();
+  if (message.has_standard_error()) first.standard_error = message.standard_error();
+  return first;
 }
 
 void ClearDetails(v1::PointResult& result) {

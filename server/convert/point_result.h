@@ -21,6 +21,9 @@ v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
 
 void ClearDetails(v1::PointResult& result);
 
+// Value and standard error of the first estimate; of a result without one, 0 and none.
+Estimate FirstEstimateOf(const v1::PointResult& result);
+
 std::string PointResultBytes(const v1::PointResult& result);
 absl::StatusOr<v1::PointResult> PointResultFromBytes(const std::string& bytes);  // DATA_LOSS
 

@@ -15,7 +15,8 @@ std::optional<uint64_t> OpenPoint::NextBlock(uint64_t window) {
   return next_block++;
 }
 
-Run::Run(RunRequest request, uint64_t window) : request_(std::move(request)), window_(window) {
+Run::Run(RunRequest request, uint64_t window)
+    : request_(std::move(request)), window_(window), shortfall_(request_.shortfall) {
   SkipFinishedPoints();
 }
 
@@ -41,13 +42,17 @@ std::optional<RunTask> Run::NextOfOpenPoints() {
 }
 
 std::optional<RunTask> Run::NextPoint() {
-  if (next_point_ == request_.finished.size()) return std::nullopt;
+  if (opening_ || next_point_ == request_.finished.size()) return std::nullopt;
+  opening_ = true;
   const size_t point = next_point_++;
   SkipFinishedPoints();
   return OpenPointTask{point, stop_opening_.get_token()};
 }
 
-void Run::TaskDone() { --tasks_out_; }
+void Run::TaskDone(const RunTask& task) {
+  --tasks_out_;
+  if (std::holds_alternative<OpenPointTask>(task)) opening_ = false;
+}
 
 void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->stop.request_stop();
@@ -68,7 +73,10 @@ void Run::Stop(absl::Status reason) {
   for (const auto& [index, point] : open_) point->stop.request_stop();
 }
 
-void Run::NoteShortfall(absl::Status shortfall) { shortfall_.Update(std::move(shortfall)); }
+void Run::NoteShortfall(Shortfall shortfall) {
+  if (shortfall_ && shortfall_->point < shortfall.point) return;
+  shortfall_ = std::move(shortfall);
+}
 
 bool Run::over() const {
   if (tasks_out_ > 0) return false;

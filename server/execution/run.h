@@ -30,11 +30,18 @@ namespace ballpiston::server {
 using ExperimentFactory = std::function<std::unique_ptr<const PointExperiment>(
     const EnsembleSpec&, size_t index, const std::stop_token& stop)>;
 
+// A point that ended short of its tolerance, and what to say of it.
+struct Shortfall {
+  size_t point = 0;
+  absl::Status status;
+};
+
 struct RunRequest {
   int64_t key = 0;  // greater for a newer job
   EnsembleSpec spec;
-  std::vector<bool> finished;      // by point of the grid: nothing left to compute
-  bool has_stored_blocks = false;  // ask the journal for them
+  std::vector<bool> finished;               // by point of the grid: nothing left to compute
+  bool has_stored_blocks = false;           // ask the journal for them
+  std::optional<Shortfall> shortfall = {};  // of a finished point
   std::shared_ptr<RunJournal> journal;
 };
 
@@ -74,9 +81,10 @@ class Run {
   const RunRequest& request() const { return request_; }
   RunJournal& journal() const { return *request_.journal; }
 
-  // Every task handed out has to be followed by one TaskDone.
+  // Every task handed out has to be followed by one TaskDone. Points are opened one at a time: they
+  // may wait for the same pilot run, which no second worker can help with.
   std::optional<RunTask> NextTask();
-  void TaskDone();
+  void TaskDone(const RunTask& task);
 
   void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
   // Null if the point is not open (any more).
@@ -87,13 +95,13 @@ class Run {
   // No more tasks; blocks in flight are asked to stop. The first reason given stays.
   void Stop(absl::Status reason);
 
-  // The run goes on, and ends with this unless it is stopped. The first one stays.
-  void NoteShortfall(absl::Status shortfall);
+  // The run goes on, and ends with this unless it is stopped. That of the first point stays.
+  void NoteShortfall(Shortfall shortfall);
 
   // No task is out, and none is left.
   bool over() const;
   // Of a run that is over.
-  const absl::Status& outcome() const { return stopped_ ? outcome_ : shortfall_; }
+  absl::Status outcome() const { return stopped_ || !shortfall_ ? outcome_ : shortfall_->status; }
 
   bool began() const { return began_; }
   void set_began() { began_ = true; }
@@ -111,7 +119,8 @@ class Run {
   bool began_ = false;
   bool stopped_ = false;
   absl::Status outcome_;
-  absl::Status shortfall_;
+  std::optional<Shortfall> shortfall_;
+  bool opening_ = false;  // a point
   std::stop_source stop_opening_;
 };
 

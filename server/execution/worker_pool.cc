@@ -1,12 +1,12 @@
 #include "server/execution/worker_pool.h"
 
 #include <algorithm>
-#include <ctime>
 #include <exception>
 #include <new>
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "core/method_comparison/processor_time.h"
 #include "core/model_choice/ladder.h"
 #include "server/convert/errors.h"
 
@@ -16,12 +16,6 @@ namespace {
 // Blocks handed out beyond the merged prefix of a point, for each worker: enough that nobody waits
 // for the slowest block, few enough that little is thrown away when a tolerance is reached.
 constexpr uint64_t kWindowPerWorker = 4;
-
-double ThreadSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // Runs `step`, and turns what it throws into a status.
 template <typename Step>
@@ -149,7 +143,7 @@ void WorkerPool::Execute(const Assignment& assignment) {
   {
     std::lock_guard lock(mutex_);
     if (!status.ok()) run.Stop(status);
-    run.TaskDone();
+    run.TaskDone(assignment.task);
     fair_share_.BlockEnds(run.request().key, seconds);
   }
   work_may_exist_.notify_all();
@@ -215,8 +209,9 @@ void WorkerPool::EndIfBudgetIsSpent(Run& run, size_t point, OpenPoint& open) {
   if (open.work < BudgetOfAPoint(spec, workers_)) return;
   open.merge.Finish();
   if (!spec.target.tolerance) return;
-  run.NoteShortfall(
-      ToleranceNotReached(spec, point, open.experiment->FirstEstimate(open.merge.merged())));
+  const Estimate reached = open.experiment->FirstEstimate(open.merge.merged());
+  if (MeetsTolerance(reached, *spec.target.tolerance)) return;
+  run.NoteShortfall({point, ToleranceNotReached(spec, point, reached)});
 }
 
 void WorkerPool::ClosePoint(Run& run, size_t point) {

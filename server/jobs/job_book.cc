@@ -62,6 +62,24 @@ absl::Status ReadFinishedPoints(Database& database, const JobRecord& record,
   return ReadRecent(database, record.sequence, (*rows)[first].point, points.recent);
 }
 
+// The first finished point that an earlier process had to leave short of the tolerance, if any.
+absl::Status ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
+                           std::optional<Shortfall>& shortfall) {
+  if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
+  absl::Status parsed;
+  const absl::Status read = ReadResults(database, record.sequence, 0, [&](PointRow row) {
+    const absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    parsed = result.status();
+    if (!parsed.ok()) return false;
+    const Estimate reached = FirstEstimateOf(*result);
+    if (MeetsTolerance(reached, *spec.target.tolerance)) return true;
+    const auto point = static_cast<size_t>(row.point);
+    shortfall = {point, ToleranceNotReached(spec, point, reached)};
+    return false;
+  });
+  return read.ok() ? parsed : read;
+}
+
 }  // namespace
 
 JobBook::JobBook(Store& store, int workers, ExperimentFactory factory,
@@ -127,12 +145,20 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
 
 absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
   FinishedPoints points;
-  const absl::Status read =
-      store_.Read([&](Database& database) { return ReadFinishedPoints(database, record, points); });
+  std::optional<Shortfall> shortfall;
+  const absl::Status read = store_.Read([&](Database& database) {
+    const absl::Status finished = ReadFinishedPoints(database, record, points);
+    return finished.ok() ? ReadShortfall(database, record, spec, shortfall) : finished;
+  });
   if (!read.ok()) return read;
   std::shared_ptr<Job> job = Register(std::move(record));
   job->AddRestoredPoints(points.count, points.samples, std::move(points.recent));
-  StartRun(std::move(job), std::move(spec), std::move(points.finished), true);
+  RunRequest request;
+  request.spec = std::move(spec);
+  request.finished = std::move(points.finished);
+  request.has_stored_blocks = true;
+  request.shortfall = std::move(shortfall);
+  StartRun(std::move(job), std::move(request));
   return absl::OkStatus();
 }
 
@@ -143,13 +169,8 @@ std::shared_ptr<Job> JobBook::Register(JobRecord record) {
   return job;
 }
 
-void JobBook::StartRun(std::shared_ptr<Job> job, EnsembleSpec spec, std::vector<bool> finished,
-                       bool has_stored_blocks) {
-  RunRequest request;
+void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
-  request.spec = std::move(spec);
-  request.finished = std::move(finished);
-  request.has_stored_blocks = has_stored_blocks;
   request.journal = std::make_shared<JobJournal>(std::move(job), store_, [this](const Job& ended) {
     std::lock_guard lock(mutex_);
     active_.erase(ended.id());
@@ -194,8 +215,10 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const v1::EnsembleSpec& message,
   const absl::Status committed = store_.Commit(insert, [&](const absl::Status& done) {
     if (!done.ok() || earlier) return;
     job = Register(record);
-    StartRun(job, checked.spec, std::vector<bool>(static_cast<size_t>(record.points), false),
-             false);
+    RunRequest request;
+    request.spec = checked.spec;
+    request.finished.assign(static_cast<size_t>(record.points), false);
+    StartRun(job, std::move(request));
   });
   if (!committed.ok()) return StoreFailed(committed);
   if (!earlier) return job->Message();

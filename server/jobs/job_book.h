@@ -84,8 +84,8 @@ class JobBook {
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   std::shared_ptr<Job> Register(JobRecord record);
-  void StartRun(std::shared_ptr<Job> job, EnsembleSpec spec, std::vector<bool> finished,
-                bool has_stored_blocks);
+  // Key and journal of the request are set here.
+  void StartRun(std::shared_ptr<Job> job, RunRequest request);
   std::shared_ptr<Job> ActiveOrNull(const std::string& id) const;
   absl::StatusOr<JobRecord> ReadRecord(const std::string& id);
 

@@ -136,9 +136,8 @@ TEST_F(CommandLineTest, AFigureRefusesTheFlagsOfAnother) {
   EXPECT_THAT(chart.err, HasSubstr("not valid, 3 violations"));
   EXPECT_THAT(chart.err, HasSubstr("--samples: '9', but the figure speed-accuracy has no such"));
   EXPECT_THAT(chart.err, HasSubstr("--delta: '0.1,0.2'"));
-  const Outcome times =
-      Ballpiston({"figure", "mean-free-time", "--out", "x", "--seconds", "9", "--epsilon", "0.1",
-                  "--relaxation-delta", "0.2"});
+  const Outcome times = Ballpiston({"figure", "mean-free-time", "--out", "x", "--seconds", "9",
+                                    "--epsilon", "0.1", "--relaxation-delta", "0.2"});
   EXPECT_THAT(times.err, HasSubstr("--seconds: '9', but the figure mean-free-time has no such"));
   EXPECT_THAT(times.err, HasSubstr("--epsilon: '0.1', but"));
   EXPECT_THAT(times.err, HasSubstr("--relaxation-delta: '0.2', but"));

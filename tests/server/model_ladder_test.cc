@@ -82,7 +82,7 @@ TEST_F(ModelLadderTest, APilotIsRunOnceAndStored) {
     EXPECT_EQ(experiment->answer().model, Model::kSpectrum);
     EXPECT_EQ(experiment->answer().model_error,
               LimitErrorBound(found_, PlaceOf(spec), PointAt(spec, 0)));
-    EXPECT_THAT(experiment->answer().reason, HasSubstr(", by a pilot at delta = "));
+    EXPECT_THAT(experiment->answer().reason, HasSubstr("two sigma of a pilot at delta = "));
   }
   EXPECT_EQ(runs_, 1);
   const auto stored = Stored(PlaceOf(spec));
@@ -196,7 +196,7 @@ TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherItKnowsOne) {
   EXPECT_FALSE(Stored(PlaceOf(spec)));
   Create(ladder, spec);
   const Ladder after = ladder.LadderOf(spec, PointAt(spec, 0));
-  EXPECT_THAT(after.answer.reason, HasSubstr(", by a pilot at delta = "));
+  EXPECT_THAT(after.answer.reason, HasSubstr("two sigma of a pilot at delta = "));
   EXPECT_EQ(runs_, 1);
   // What a pilot has established, it need not cost again.
   EXPECT_LT(*after.Chosen().work, *before.Chosen().work);

@@ -102,6 +102,30 @@ TEST(Restart, TheSameBytesWithATolerance) {
   EXPECT_EQ(BytesAt(8, spec, FakeExperiments()), one);
 }
 
+// What the first process found out of point 0 decides how the second ends the job.
+TEST(Restart, AToleranceMissedBeforeTheStopStaysMissed) {
+  v1::EnsembleSpec spec = Equilibrium(2, 0);
+  spec.mutable_target()->set_tolerance(1e-4);
+  spec.mutable_target()->mutable_budget()->set_nanos(1);  // spent after a block
+  TemporaryFolder folder;
+  std::string name;
+  {
+    Gate gate;
+    RunningServer server(Options(
+        folder.path(), 1, FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
+          if (point == 1) gate.Pass(stop);
+        })));
+    name = server.Submit(spec);
+    gate.AwaitWaiting(1);
+  }
+  RunningServer server(Options(folder.path(), 1, FakeExperiments()));
+  const EnsembleJob job = server.AwaitEnd(name);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(),
+              testing::HasSubstr("point 0: tolerance 0.0001 was not reached"));
+  EXPECT_EQ(job.progress().points_done(), 2);
+}
+
 // The core's experiments, held up in the middle: point 1 has 20 blocks, later ones none.
 ExperimentFactory StuckInTheMiddle(Gate& gate) {
   return HeldUpExperiments([&gate](size_t point, uint64_t block, std::stop_token stop) {

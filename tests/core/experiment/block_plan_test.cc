@@ -47,5 +47,38 @@ TEST(BlockPlan, ToleranceMayGoOnToTheLargestCount) {
   EXPECT_EQ(plan.tolerance, 0.01);
 }
 
+TEST(BlockPlan, OpenEndsHaveSmallerBlocks) {
+  const uint64_t counted = PlanBlocks(With({.samples = kMaxSamples}), 0x1p15).block_size;
+  for (const Target& target : {Target{.tolerance = 0.01}, Target{.budget_seconds = 100}}) {
+    const BlockPlan plan = PlanBlocks(With(target), 0x1p15);
+    EXPECT_EQ(plan.block_size, counted / 8);
+    EXPECT_EQ(plan.samples, static_cast<uint64_t>(kMaxSamples));
+  }
+}
+
+// At some 3e8 events a second in lanes, and a fifteenth of that by the reference.
+TEST(BlockPlan, ABudgetHasSeveralBlocks) {
+  for (const Model model : {Model::kBilliard, Model::kBilliardReference}) {
+    EnsembleSpec spec = With({.budget_seconds = 1e-3});
+    spec.model = model;
+    const double events = static_cast<double>(PlanBlocks(spec, 10).block_size) * 10;
+    const double speed = model == Model::kBilliard ? 3e8 : 2e7;
+    EXPECT_LE(events, speed * 1e-3 / 8);
+    EXPECT_GT(events, speed * 1e-3 / 8 / 2);
+  }
+}
+
+TEST(BlockPlan, CollisionsAreSharedByTheOrbitsThatTakeThem) {
+  EXPECT_EQ(SamplesAskedFor({.collisions = 1000}, 40), 25u);
+  EXPECT_EQ(SamplesAskedFor({.collisions = 1001}, 40), 26u);
+  EXPECT_EQ(SamplesAskedFor({.collisions = 1}, 40), 1u);
+  EXPECT_EQ(SamplesAskedFor({.samples = 1000}, 40), 1000u);
+  EXPECT_EQ(SamplesAskedFor({}, 40), static_cast<uint64_t>(kDefaultSamples));
+}
+
+TEST(BlockPlan, AnAnswerWithoutSamplesHasNoBlocks) {
+  EXPECT_EQ(BlockPlan{.samples = 0}.Blocks(), 0u);
+}
+
 }  // namespace
 }  // namespace ballpiston

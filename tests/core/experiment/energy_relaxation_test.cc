@@ -137,6 +137,30 @@ TEST(EnergyRelaxation, StopEndsABlock) {
   }
 }
 
+// Around 1/6 a ratio to epsilon - 1/6 says nothing, the integral does.
+TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
+  for (const std::optional<double> epsilon :
+       {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
+    const EnergyRelaxation relaxation(Paper(0.1), At(0.1, epsilon));
+    EXPECT_TRUE(HasRelaxationTime(epsilon));
+    const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
+    EXPECT_EQ(limit[0].name, "relaxation_time");
+    EXPECT_GT(limit[0].value, 0);
+    ASSERT_EQ(limit.size(), epsilon ? 2u : 1u);
+    if (!epsilon) continue;
+    EXPECT_EQ(limit[1].name, "decay_integral");
+    EXPECT_NEAR(limit[1].value, limit[0].value * (*epsilon - kMeanPistonEnergy), 1e-9);
+  }
+  for (const double epsilon : {0.121, 1.0 / 6, 0.199}) {
+    const EnergyRelaxation relaxation(Paper(0.1), At(0.1, epsilon));
+    EXPECT_FALSE(HasRelaxationTime(epsilon));
+    const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
+    ASSERT_EQ(limit.size(), 1u);
+    EXPECT_EQ(limit[0].name, "decay_integral");
+    EXPECT_TRUE(std::isfinite(limit[0].value));
+  }
+}
+
 // What lies beyond the window is the spectrum's to tell, and little.
 TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
   for (const double delta : {0.2, 0.01}) {
@@ -146,8 +170,8 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
       BlockResult nothing_but_the_remainder;
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
-      const Estimate remainder = relaxation.RelaxationTime(nothing_but_the_remainder);
-      EXPECT_GT(std::fabs(remainder.value), 0);
+      const Estimate remainder = relaxation.Estimates(nothing_but_the_remainder).front();
+      EXPECT_NE(remainder.value, 0);
       EXPECT_LT(std::fabs(remainder.value / *remainder.limit), 0.01);
     }
   }

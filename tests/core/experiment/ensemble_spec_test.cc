@@ -54,6 +54,25 @@ TEST(EnsembleSpec, GridIsTheProductWithRhoOutermost) {
             (PointParameters{.rho = 0.6, .delta = 0.1, .epsilon = 0.5, .exponent = 5}));
 }
 
+TEST(EnsembleSpec, OnePointOfItHasItsShareOfABudget) {
+  EnsembleSpec spec = FirstHit();
+  spec.target = {.budget_seconds = 6};
+  spec.seed = 5;
+  spec.precision = Precision::kSingle;
+  const PointParameters point = PointAt(spec, 4);
+  const EnsembleSpec one = OnePointSpec(spec, point, Model::kBilliard);
+  EXPECT_EQ(PointCount(one), 1u);
+  EXPECT_EQ(PointAt(one, 0), point);
+  EXPECT_EQ(one.target.budget_seconds, 0.5);  // of 12
+  EXPECT_EQ(one.experiment, spec.experiment);
+  EXPECT_EQ(one.seed, 5u);
+  EXPECT_EQ(one.model, Model::kBilliard);
+  EXPECT_EQ(one.precision, Precision::kSingle);
+  EXPECT_THAT(Violations(one), IsEmpty());
+  spec.target = {.samples = 6};
+  EXPECT_EQ(OnePointSpec(spec, point, Model::kBilliard).target.samples, 6);
+}
+
 TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
   EnsembleSpec spec = FirstHit();
   spec.grid.rho = {0.6, 0.5, kNaN};
@@ -150,12 +169,16 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "takes none")));
 }
 
-TEST(EnsembleSpec, RelaxationFromTheMeanEnergyIsRefused) {
+// Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
+TEST(EnsembleSpec, ToleranceOfARelaxationTimeThatIsNotToldIsRefused) {
   EnsembleSpec spec = Relaxation();
-  spec.grid.epsilon = {1.0 / 6, 1.0 / 6 + 1e-7, 1.0 / 6 - 1e-7, 1.0 / 6 + 1e-5, 1.0 / 6 - 1e-5};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon[0]", "no decay"),
-                                            Names("grid.epsilon[1]", "1/6 +- 1e-6"),
-                                            Names("grid.epsilon[2]", "no decay")));
+  spec.grid.epsilon = {0.12, 0.121, 1.0 / 6, 0.199, 0.2};
+  spec.target = {.samples = 100};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon[1]", "[0, 0.12] or [0.2, 0.5]"),
+                                            Names("grid.epsilon[2]", "no relaxation time"),
+                                            Names("grid.epsilon[3]", "0.199")));
   // As anything else may.
   EnsembleSpec first_hit = FirstHit();
   first_hit.grid.epsilon = {1.0 / 6};

@@ -51,8 +51,16 @@ TEST(LimitError, PilotsAreMadeWhereCollisionsAreCheap) {
   EXPECT_EQ(PilotPlaceFor(At(1e-3)), PilotPlaceFor(At(1e-6)));
   EXPECT_EQ(PilotPlaceFor(At(0.3)).delta, 0.3);
   EXPECT_EQ(PilotPlaceFor(At(0.3)).epsilon, std::nullopt);
-  // From a given energy the error need not fall in proportion: at the point itself.
-  EXPECT_EQ(PilotPlaceFor(At(1e-3, 0.1)), (PilotPlace{kPaperRho, 1e-3, 0.1}));
+}
+
+// From the energy of a slow partner the limit need not be near at the pilot's delta, nor the error
+// fall in proportion from there: then the pilot is made at the point itself.
+TEST(LimitError, PilotsFromAnEnergyAreMadeWhereTheErrorIsSmall) {
+  EXPECT_EQ(PilotPlaceFor(At(1e-3, 0.1)).delta, PilotPlaceFor(At(1e-3)).delta);
+  EXPECT_EQ(PilotPlaceFor(At(1e-3, 0.1)).epsilon, 0.1);
+  for (const double epsilon : {0.0, 1e-6, 0.4999999, 0.5}) {
+    EXPECT_EQ(PilotPlaceFor(At(1e-3, epsilon)), (PilotPlace{kPaperRho, 1e-3, epsilon}));
+  }
 }
 
 TEST(LimitError, BoundIsTheDifferenceAndTwoErrorsScaledWithDelta) {
@@ -60,6 +68,9 @@ TEST(LimitError, BoundIsTheDifferenceAndTwoErrorsScaledWithDelta) {
   const PilotPlace place = {.rho = kPaperRho, .delta = 0.1};
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, At(0.1)), 0.04);
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, At(0.001)), 0.0004);
+  // Never less than is expected: a pilot that found nothing has not shown that there is nothing.
+  const Pilot lucky = {.difference = 0, .standard_error = 1e-9};
+  EXPECT_EQ(LimitErrorBound(lucky, place, At(0.05)), ExpectedLimitError(At(0.05)));
 }
 
 // What is expected to be found, scaled from the pilot's place, covers what is expected at smaller
