@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/predicted_hits.h"
+#include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 
@@ -21,23 +22,6 @@ constexpr size_t kLagsBetweenOrigins = 2;
 
 // A walker that is slower than the others keeps all of a group walking.
 constexpr uint64_t kWalkersInStep = 256;
-
-// A time's last bits depend on the processor's sines, and would show in every sum over time.
-// Rounded to 30 bits they do not, unless one geometry in a million hits the edge; no measurement
-// could tell.
-double WithoutLastBits(double time) {
-  int exponent;
-  const double mantissa = std::frexp(time, &exponent);
-  return std::ldexp(std::round(mantissa * 0x1p30), exponent - 30);
-}
-
-double EventsPerOrbit(const EnsembleSpec& spec, const PairGeometry& geometry,
-                      const PointParameters& point) {
-  // A jump and what is measured of it take as long as some 25 wall hits in lanes.
-  constexpr double kEventsPerJump = 25;
-  return CollisionsPerOrbit(point) *
-         (spec.model == Model::kMarkov ? kEventsPerJump : HitsPerCollision(geometry).Events());
-}
 
 // Measurements of a block's orbits, by orbit.
 class OrbitMeasurements {
@@ -277,7 +261,8 @@ EnergyRelaxationExperiment::EnergyRelaxationExperiment(const EnsembleSpec& spec,
                                                        const PairGeometry& geometry)
     : PointExperiment(
           spec, point,
-          PlanBlocks(spec, EventsPerOrbit(spec, geometry, point), CollisionsPerOrbit(point))),
+          PlanBlocks(spec, CollisionsPerOrbit(point) * EventsPerCollision(spec.model, geometry),
+                     CollisionsPerOrbit(point))),
       geometry_(geometry),
       relaxation_(geometry, point) {}
 

@@ -8,25 +8,16 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/markov_property_statistics.h"
 #include "core/experiment/predicted_hits.h"
+#include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
 
-double EventsPerCollision(const EnsembleSpec& spec, const PairGeometry& geometry) {
-  // A jump and what is counted of it take as long as some 25 wall hits in lanes.
-  constexpr double kEventsPerJump = 25;
-  return spec.model == Model::kMarkov ? kEventsPerJump : HitsPerCollision(geometry).Events();
-}
-
-// |dG_bp|/|G|. Its last bits depend on the processor's sines, and would show in every sum over
-// waiting times. Rounded to 2^-30 they do not, unless one geometry in a million hits the edge; the
-// largest count that could tell is 1e18 samples.
+// |dG_bp|/|G|.
 double RateUnit(const PairGeometry& geometry) {
-  int exponent;
-  const double mantissa = std::frexp(4 / MeanFreeTimesOf(geometry).ball_piston, &exponent);
-  return std::ldexp(std::round(mantissa * 0x1p30), exponent - 30);
+  return WithoutLastBits(4 / MeanFreeTimesOf(geometry).ball_piston);
 }
 
 // Rounding may leave more than the pair has.
@@ -130,7 +121,7 @@ std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
 MarkovPropertyExperiment::MarkovPropertyExperiment(const EnsembleSpec& spec,
                                                    const PointParameters& point,
                                                    const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(spec, geometry))),
+    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(spec.model, geometry))),
       geometry_(geometry) {}
 
 std::optional<BlockResult> MarkovPropertyExperiment::RunBlock(uint64_t block,

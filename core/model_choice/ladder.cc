@@ -100,10 +100,6 @@ double HitsOf(const PointParameters& point, double orbits) {
          (HitsPerCollision(geometry).ball_wall + kHitsThatACollisionCosts);
 }
 
-PointParameters PointOf(const PilotPlace& place) {
-  return {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
-}
-
 Answer Billiard(std::string reason) { return {Model::kBilliard, std::move(reason), 0.0}; }
 
 // Why the pilot need not even be asked for; empty if it has to be.

@@ -60,7 +60,8 @@ struct Ladder {
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 
-// What the reduced models named in the spec cannot reach: a tolerance below their own error.
+// A tolerance that the answering model cannot reach: below its own error, or the error of all the
+// samples that there can be.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
 
 // Processor time that each point of the grid has of a budget.

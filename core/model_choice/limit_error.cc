@@ -50,6 +50,10 @@ double ExpectedLimitError(const PointParameters& point) {
   return std::min(in_equilibrium + kPiston * piston + kBall * ball, kMost);
 }
 
+PointParameters PointOf(const PilotPlace& place) {
+  return {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
+}
+
 PilotPlace PilotPlaceFor(const PointParameters& point) {
   PilotPlace place = {point.rho, point.delta, point.epsilon};
   PointParameters cheap = point;
@@ -72,13 +76,13 @@ std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop) {
 }
 
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
-  const PointParameters point = {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
+  const PointParameters point = PointOf(place);
   return static_cast<double>(kPilotOrbits) *
          SecondsPerSample(SpecOfPilot(place), GeometryOf(place.rho, place.delta), point, rates);
 }
 
 Pilot PredictedPilot(const PilotPlace& place) {
-  const PointParameters point = {.rho = place.rho, .delta = place.delta, .epsilon = place.epsilon};
+  const PointParameters point = PointOf(place);
   const double error = RelativeErrorOfOneSample(Experiment::kEnergyRelaxation,
                                                 GeometryOf(place.rho, place.delta), point);
   return {.difference = ExpectedLimitError(point),

@@ -37,6 +37,8 @@ struct PilotPlace {
   friend auto operator<=>(const PilotPlace&, const PilotPlace&) = default;
 };
 
+PointParameters PointOf(const PilotPlace& place);
+
 inline constexpr int64_t kPilotOrbits = 65536;
 
 // Where the error at that point is looked at; its delta is the point's or larger.

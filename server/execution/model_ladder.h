@@ -1,7 +1,8 @@
 // The ladder of models on this server: which model answers a point, with the server's own rates and
 // the pilots that it has run.
 //
-// Rates are measured when they are first needed (some 0.3 s), and kept for the server's life.
+// Rates are measured when they are first needed (some 0.3 s), and kept for the server's life; those
+// of points without samples with all that it takes to serve them.
 // Pilots are kept in the store: one is run once for each place, by the worker that first needs it;
 // others that need the same wait for it. A pilot that cannot be stored or read is none the worse
 // for its own question. Thread-safe.

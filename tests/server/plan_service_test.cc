@@ -1,4 +1,3 @@
-#include <chrono>
 #include <map>
 #include <set>
 #include <vector>
@@ -156,9 +155,7 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
   spec.mutable_target()->set_tolerance(0.01);
   spec.mutable_grid()->clear_delta();
   for (int i = 0; i < 100'000; ++i) spec.mutable_grid()->add_delta(0.001 + 1e-6 * i);
-  const auto begin = std::chrono::steady_clock::now();
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(plan.point_count(), 100'000);
   ASSERT_EQ(plan.points_size(), 1000);
   for (int i = 0; i < 1000; ++i) {
@@ -171,7 +168,6 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
     }
   }
   EXPECT_NEAR((plan.work() - plan.rates().first_point()) / (100 * work), 1, 1e-9);
-  EXPECT_LT(elapsed.count(), 10);  // a hundred times what it takes
 }
 
 TEST_F(PlanServiceTest, APlanMakesNoJob) {
