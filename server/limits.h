@@ -1,0 +1,22 @@
+// How much of the server one request, one principal and all of them together may take. Each is a
+// flag of its name; 0 means no limit.
+#ifndef BALLPISTON_SERVER_LIMITS_H_
+#define BALLPISTON_SERVER_LIMITS_H_
+
+#include <cstdint>
+
+namespace ballpiston::server {
+
+struct Limits {
+  int64_t max_active_jobs = 10'000;  // neither succeeded nor failed nor cancelled
+  int64_t max_active_jobs_per_principal = 1'000;
+  int64_t max_points_per_job = 100'000;
+  double max_samples_per_job = 1e15;  // samples or collisions, over all points
+  int64_t max_streams = 4'096;        // watches and comparisons
+  int64_t max_streams_per_principal = 2'048;
+  int64_t max_message_bytes = int64_t{4} << 20;  // of a request
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_LIMITS_H_

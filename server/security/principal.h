@@ -1,0 +1,25 @@
+// Who calls, and what that permits. Pure functions.
+#ifndef BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
+#define BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
+
+#include <string>
+
+namespace ballpiston::server {
+
+// Each may do what those before it may: look at what is one's own; make and end jobs; the same with
+// everybody's.
+enum class Role { kRead, kSubmit, kAdmin };
+
+struct Principal {
+  std::string name;
+  Role role = Role::kRead;
+
+  bool MaySee(const std::string& owner) const { return role == Role::kAdmin || name == owner; }
+};
+
+// Whoever comes over a Unix socket, or to a server without credentials.
+inline Principal LocalPrincipal() { return {"local", Role::kAdmin}; }
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
