@@ -43,7 +43,8 @@ const std::vector<Rule>& Rules() {
       {"core/method_comparison/", {"core/", "Eigen/", "absl/", "hwy/"}, false},
       {"core/engine_version.h", {}, false},
       {"server/",
-       {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h"},
+       {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h",
+        "prometheus/"},
        true},
       {"client/",
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
@@ -59,7 +60,7 @@ const std::vector<Rule>& Rules() {
        true},
       {"tests/",
        {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "google/", "absl/", "grpc/",
-        "grpcpp/", "sqlite3.h", "Eigen/", "gtest/", "gmock/", "benchmark/"},
+        "grpcpp/", "sqlite3.h", "prometheus/", "Eigen/", "gtest/", "gmock/", "benchmark/"},
        true},
   };
   return *rules;
