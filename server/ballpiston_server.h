@@ -19,6 +19,9 @@
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
+#include "server/observability/call_observer.h"
+#include "server/observability/health.h"
+#include "server/observability/metrics_endpoint.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
 
@@ -32,6 +35,7 @@ struct ServerOptions {
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
   Limits limits;
+  std::string metrics_listen;  // HOST:PORT on the loopback; empty: no metrics
   Store::Options store;
 };
 
@@ -47,6 +51,9 @@ class BallpistonServer {
   // The port that was chosen, if any was free to be.
   std::string address() const { return address_.Text(); }
 
+  // Of the metrics; empty if there are none.
+  std::string metrics_address() const { return metrics_ ? metrics_->address() : ""; }
+
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
 
@@ -60,6 +67,8 @@ class BallpistonServer {
                    std::unique_ptr<Store> store);
 
   absl::Status Listen();
+  absl::Status StartMetrics();
+  void StartHealth();
 
   const ServerOptions options_;
   DataDirectory directory_;  // first: its lock guards all that follows
@@ -67,6 +76,7 @@ class BallpistonServer {
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
+  CallObserver calls_;
   Authenticator authenticator_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
@@ -78,7 +88,10 @@ class BallpistonServer {
   EnsembleService ensemble_;
   AnalyticService analytic_;
   MethodService method_;
+  ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
+  std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
+  std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };
 
 }  // namespace ballpiston::server

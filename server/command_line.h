@@ -7,11 +7,13 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
 
 struct CommandLine {
   ServerOptions server;
+  LogOptions log;
   std::optional<std::chrono::milliseconds> idle_exit;
   std::chrono::milliseconds drain{0};
 };
