@@ -21,19 +21,22 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const std::stri
   return Connection{.address = address, .channel = *channel, .local = {}, .flag = flag};
 }
 
-absl::StatusOr<Connection> ConnectPrivately() {
+// How to come to a private server.
+using PrivateWay = absl::StatusOr<std::shared_ptr<grpc::Channel>> (*)(const LocalServer&);
+
+absl::StatusOr<Connection> ConnectPrivately(PrivateWay connect) {
   absl::StatusOr<LocalServer> local = FindLocalServer();
   if (!local.ok()) return local.status();
-  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = ConnectToLocalServer(*local);
+  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = connect(*local);
   if (!channel.ok()) return channel.status();
   return Connection{.address = local->Address(), .channel = *channel, .local = *local, .flag = ""};
 }
 
-absl::StatusOr<Connection> Connect(const ServerFlag& flag) {
+absl::StatusOr<Connection> Connect(const ServerFlag& flag, PrivateWay connect) {
   if (!flag.address.empty()) return ConnectTo(flag.address, " --server " + flag.address);
   const char* variable = std::getenv("BALLPISTON_SERVER");
   if (variable != nullptr && variable[0] != '\0') return ConnectTo(variable, "");
-  return ConnectPrivately();
+  return ConnectPrivately(connect);
 }
 
 // An error without a reason did not come from the server but from the way to it.
@@ -42,6 +45,15 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
   if (!lost || !ErrorReason(status).empty()) return status;
   return absl::Status(status.code(), absl::StrCat("no answer from the server at ",
                                                   connection.address, ": ", status.message()));
+}
+
+using Verb = std::function<absl::StatusOr<ExitCode>(const Connection&)>;
+
+absl::StatusOr<ExitCode> Run(const absl::StatusOr<Connection>& connection, const Verb& verb) {
+  if (!connection.ok()) return connection.status();
+  absl::StatusOr<ExitCode> result = verb(*connection);
+  if (!result.ok()) return NameServer(result.status(), *connection);
+  return result;
 }
 
 }  // namespace
@@ -67,14 +79,12 @@ absl::Status Connection::Revive() const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ExitCode> WithServer(
-    const ServerFlag& flag,
-    const std::function<absl::StatusOr<ExitCode>(const Connection&)>& verb) {
-  absl::StatusOr<Connection> connection = Connect(flag);
-  if (!connection.ok()) return connection.status();
-  absl::StatusOr<ExitCode> result = verb(*connection);
-  if (!result.ok()) return NameServer(result.status(), *connection);
-  return result;
+absl::StatusOr<ExitCode> WithServer(const ServerFlag& flag, const Verb& verb) {
+  return Run(Connect(flag, &ConnectToLocalServer), verb);
+}
+
+absl::StatusOr<ExitCode> WithRunningServer(const ServerFlag& flag, const Verb& verb) {
+  return Run(Connect(flag, &ConnectIfRunning), verb);
 }
 
 }  // namespace ballpiston::client
