@@ -130,5 +130,18 @@ TEST_F(PrivateServerTest, ALongHomeIsNoObstacle) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
+TEST_F(PrivateServerTest, StatusLooksAtTheServerThatRunsAndStartsNone) {
+  const ProcessResult none = RunProgram(Client({"status"}));
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, HasSubstr("no private server is running"));
+  EXPECT_TRUE(Servers().empty());
+  EXPECT_FALSE(fs::exists(State("server.log")));
+
+  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+  const ProcessResult one = RunProgram(Client({"status", "--format", "json"}));
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(At(ParseJson(one.out), "stored_jobs").number_value(), 1);
+}
+
 }  // namespace
 }  // namespace ballpiston
