@@ -13,6 +13,7 @@
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -106,6 +107,7 @@ absl::Status JobBook::Resume() {
   if (!read.ok()) return read;
   for (JobRecord& record : *unfinished) {
     const absl::Status resumed = ResumeJob(std::move(record));
+    Failpoint("resume.job");
     if (!resumed.ok()) return resumed;
   }
   return absl::OkStatus();
@@ -213,6 +215,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const v1::EnsembleSpec& message,
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(insert, [&](const absl::Status& done) {
+    Failpoint("create.committed");
     if (!done.ok() || earlier) return;
     job = Register(record);
     RunRequest request;
@@ -221,6 +224,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const v1::EnsembleSpec& message,
     StartRun(job, std::move(request));
   });
   if (!committed.ok()) return StoreFailed(committed);
+  Failpoint("create.before_answer");
   if (!earlier) return job->Message();
   if (earlier->spec != record.spec) return RequestIdReused(request_id);
   return Get(earlier->id);
@@ -284,6 +288,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const std::string& id,
     if (!record) return absl::OkStatus();
     const auto changed = BeginCancellation(database, record->sequence, request_id);
     begun = changed.ok() && *changed;
+    Failpoint("cancel.in_transaction");
     return changed.status();
   };
   const absl::Status committed = store_.Commit(begin, [&](const absl::Status& done) {
@@ -292,6 +297,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const std::string& id,
   });
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
+  Failpoint("cancel.committed");
   if (begun) pool_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(id);
@@ -305,8 +311,11 @@ absl::Status JobBook::Delete(const std::string& id) {
     if (!found.ok()) return found.status();
     record = *std::move(found);
     if (!record || !HasEnded(record->state)) return absl::OkStatus();
-    return DeleteJob(database, record->sequence);
+    const absl::Status deleted = DeleteJob(database, record->sequence);
+    Failpoint("delete.in_transaction");
+    return deleted;
   });
+  Failpoint("delete.committed");
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();
