@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <set>
 #include <string>
 #include <thread>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr size_t kAtOnce = 64;
 constexpr size_t kConnections = 8;
+constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 using Clients = std::vector<client::EnsembleClient>;
 
@@ -36,6 +38,7 @@ std::string Insist(const client::EnsembleClient& client, const v1::EnsembleSpec&
     const auto job = client.Create(spec, request_id);
     if (job.ok()) return job->name();
     if (!absl::IsUnavailable(job.status())) return job.status().ToString();
+    std::this_thread::sleep_for(kPauseBeforeRepeating);
   }
 }
 

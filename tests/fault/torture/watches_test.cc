@@ -24,6 +24,7 @@ namespace {
 constexpr int kChains = 24;
 constexpr int kClientWatches = 4;
 constexpr int kMostMessages = 4;
+constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 // The job that is watched now; a new one when it has ended.
 class WatchedJob {
@@ -45,6 +46,7 @@ class WatchedJob {
       const auto job = client_.Create(spec);
       if (job.ok()) name_ = job->name();
       if (job.ok() || !absl::IsUnavailable(job.status())) return;
+      std::this_thread::sleep_for(kPauseBeforeRepeating);
     }
   }
 
@@ -64,7 +66,7 @@ class Watches : public testing::Test {
       WatchChain chain(watched_->Now(), life_, findings_);
       while (!chain.ended()) {
         const int messages = std::uniform_int_distribution<int>(1, kMostMessages)(random);
-        if (!chain.Attach(*stub, messages)) std::this_thread::yield();
+        if (!chain.Attach(*stub, messages)) std::this_thread::sleep_for(kPauseBeforeRepeating);
       }
       chain.CheckFinishedPoints(*stub);
       watched_->Next(chain.job());
