@@ -1,8 +1,8 @@
 // Many Creates at once with one request id, kills, and Creates again: one job.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
+#include <latch>
 #include <set>
 #include <string>
 #include <thread>
@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 using Clients = std::vector<client::EnsembleClient>;
 
-Clients ConnectedTo(const ServerProcess& server) {
+Clients ConnectedTo(ServerProcess& server) {
   Clients clients;
   for (size_t i = 0; i < kConnections; ++i) clients.emplace_back(server.Connect());
   return clients;
@@ -46,12 +46,11 @@ std::string Insist(const client::EnsembleClient& client, const v1::EnsembleSpec&
 std::set<std::string> NamesOfOneRequest(const Clients& clients, const v1::EnsembleSpec& spec,
                                         const std::string& request_id, ServerProcess* to_kill) {
   std::vector<std::string> names(kAtOnce);
-  std::atomic<size_t> waiting = kAtOnce;
+  std::latch together(kAtOnce);
   std::vector<std::thread> threads;
   for (size_t i = 0; i < kAtOnce; ++i) {
     threads.emplace_back([&, i] {
-      --waiting;
-      while (waiting > 0) std::this_thread::yield();
+      together.arrive_and_wait();
       names[i] = Insist(clients[i % kConnections], spec, request_id);
     });
   }

@@ -23,7 +23,7 @@ namespace ballpiston::torture {
 namespace {
 
 constexpr int kVisitors = 6;
-constexpr std::chrono::milliseconds kLongestLife(500);
+constexpr std::chrono::milliseconds kLongestLife(600);
 // After it a failpoint that nobody came by is given up, and the server killed all the same.
 constexpr std::chrono::milliseconds kWaitForFirstVisit(10'000), kWaitForFailpoint(1500);
 constexpr int kKilled = 128 + SIGKILL;
@@ -39,9 +39,10 @@ class Killer {
  public:
   Killer(ServerProcess& server, Findings& findings) : server_(server), findings_(findings) {}
 
-  // Starts the server and lets it die before it was told to stop.
+  // One life in four is counted from the process's start, before the server is ready.
   void KillAtRandom() {
     server_.Spawn();
+    if (Pick(0, 3) != 0) server_.AwaitReady();
     const std::chrono::milliseconds life(Pick(0, static_cast<int>(kLongestLife.count())));
     const auto early = server_.AwaitEnd(life);
     if (early) return findings_.Wrong(absl::StrCat("ended by itself: ", server_.log()));
@@ -58,6 +59,7 @@ class Killer {
       std::this_thread::sleep_for(std::chrono::milliseconds(Pick(0, 300)));
       server_.Signal(SIGTERM);
     }
+    if (!stopping) server_.AwaitReady();
     const auto end =
         server_.AwaitEnd(first_visit || stopping ? kWaitForFirstVisit : kWaitForFailpoint);
     if (!end) server_.KillHard();
@@ -93,7 +95,7 @@ void KillManyTimes(int kills, ServerProcess& server, Findings& findings) {
   }
 }
 
-std::set<std::string> NamesOn(const ServerProcess& server) {
+std::set<std::string> NamesOn(ServerProcess& server) {
   const auto jobs = client::EnsembleClient(server.Connect()).List();
   EXPECT_TRUE(jobs.ok()) << jobs.status();
   std::set<std::string> names;

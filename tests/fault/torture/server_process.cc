@@ -89,7 +89,17 @@ bool ServerProcess::AwaitReady() {
   while (!HasListened()) {
     if (AwaitEnd(std::chrono::milliseconds(kLookMilliseconds))) return false;
   }
+  HurryConnections();
   return true;
+}
+
+// gRPC would go on waiting after its last attempt that failed.
+void ServerProcess::HurryConnections() {
+  const std::lock_guard lock(mutex_);
+  for (const std::weak_ptr<grpc::Channel>& channel : channels_) {
+    const auto living = channel.lock();
+    if (living) grpc::experimental::ChannelResetConnectionBackoff(living.get());
+  }
 }
 
 void ServerProcess::Start() {
@@ -100,20 +110,23 @@ void ServerProcess::Start() {
 void ServerProcess::Signal(int signal) const { kill(pid_, signal); }
 
 std::optional<int> ServerProcess::AwaitEnd(std::chrono::milliseconds limit) {
+  if (pid_file_ < 0) return exit_code_;
   pollfd ended{pid_file_, POLLIN, 0};
   if (poll(&ended, 1, static_cast<int>(limit.count())) == 0) return std::nullopt;
   return AwaitEnd();
 }
 
 int ServerProcess::AwaitEnd() {
+  if (pid_file_ < 0) return exit_code_;
   int status = 0;
   waitpid(pid_, &status, 0);
   close(std::exchange(pid_file_, -1));
-  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  return exit_code_;
 }
 
 void ServerProcess::KillHard() {
-  Signal(SIGKILL);
+  if (pid_file_ >= 0) Signal(SIGKILL);
   AwaitEnd();
 }
 
@@ -142,12 +155,15 @@ double ServerProcess::ProcessorSeconds() const {
   return 1e-9 * nanoseconds;
 }
 
-std::shared_ptr<grpc::Channel> ServerProcess::Connect(grpc::ChannelArguments arguments) const {
+std::shared_ptr<grpc::Channel> ServerProcess::Connect(grpc::ChannelArguments arguments) {
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 200);
-  return grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments);
+  auto channel =
+      grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments);
+  const std::lock_guard lock(mutex_);
+  channels_.push_back(channel);
+  return channel;
 }
 
 }  // namespace ballpiston::torture

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ class ServerProcess {
   void Signal(int signal) const;
   // Its exit code, 128 + signal if one killed it; empty if it still runs after `limit`.
   std::optional<int> AwaitEnd(std::chrono::milliseconds limit);
-  int AwaitEnd();
+  int AwaitEnd();  // again and again the same, until the next Spawn
   void KillHard();
 
   std::string address() const;
@@ -44,17 +45,22 @@ class ServerProcess {
   double ResidentMiB() const;
   double ProcessorSeconds() const;  // of its living threads
 
-  // With a connection of its own, even beside others to the same server.
-  std::shared_ptr<grpc::Channel> Connect(grpc::ChannelArguments arguments = {}) const;
+  // With a connection of its own, even beside others to the same server, and made anew as soon as
+  // the server is ready again.
+  std::shared_ptr<grpc::Channel> Connect(grpc::ChannelArguments arguments = {});
 
  private:
   bool HasListened() const;
+  void HurryConnections();
 
   const ServerSetUp set_up_;
   std::string folder_;
   pid_t pid_ = 0;
   int pid_file_ = -1;     // of pidfd_open; -1: not running
+  int exit_code_ = -1;    // of the last one that ended
   size_t log_start_ = 0;  // of this process in the log
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<grpc::Channel>> channels_;
 };
 
 }  // namespace ballpiston::torture

@@ -21,17 +21,16 @@ constexpr double kMostLoss = 0.01;
 // Many points, so that what the readers do not read is much: 160 KB of specification, and every
 // finished point.
 constexpr int kPoints = 20'000;
-constexpr int kFinishedBefore = 200;
 
 class StalledReaders : public testing::Test {
  protected:
   StalledReaders() : server_({.workers = 2}) {
     server_.Start();
     client_.emplace(server_.Connect());
-    const auto job = client_->Create(ManyPoints(kPoints, 100'000));
+    const auto job = client_->Create(ManyPoints(kPoints, 20'000));
     if (!job.ok()) throw std::runtime_error(job.status().ToString());
     name_ = job->name();
-    while (client_->Get(name_)->progress().points_done() < kFinishedBefore) {
+    while (client_->Get(name_)->progress().points_done() < Size(20, 200)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
   }

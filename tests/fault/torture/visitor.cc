@@ -23,8 +23,10 @@ constexpr size_t kMostKept = 40;
 constexpr std::chrono::seconds kPatience(20);  // of one call; beyond it, it is repeated
 constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
+// A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
 bool WasNotAnswered(const absl::Status& status) {
-  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
+  const bool dropped = absl::IsCancelled(status) && client::ErrorReason(status).empty();
+  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) || dropped;
 }
 
 template <typename Request, typename Response>
@@ -34,6 +36,7 @@ absl::StatusOr<Response> Ask(Stub& stub,
                              const Request& request) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kPatience);
+  context.set_wait_for_ready(true);
   Response response;
   const absl::Status status = client::FromGrpc((stub.*method)(&context, request, &response));
   if (!status.ok()) return status;
@@ -62,6 +65,7 @@ auto Visitor::UntilAnswered(Call call, bool& repeated) {
     auto result = call();
     if (!WasNotAnswered(StatusOf(result))) return result;
     findings_.Count("calls without an answer, repeated");
+    if (absl::IsCancelled(StatusOf(result))) findings_.Count("of which CANCELLED by gRPC");
     repeated = true;
     std::this_thread::sleep_for(kPauseBeforeRepeating);
   }

@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 // The job that is watched now; a new one when it has ended.
 class WatchedJob {
  public:
-  explicit WatchedJob(const ServerProcess& server) : client_(server.Connect()) { Next(""); }
+  explicit WatchedJob(ServerProcess& server) : client_(server.Connect()) { Next(""); }
 
   std::string Now() {
     const std::lock_guard lock(mutex_);
