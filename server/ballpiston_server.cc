@@ -12,6 +12,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -124,6 +125,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
+  Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
