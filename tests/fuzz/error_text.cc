@@ -19,7 +19,6 @@ void Check(const std::string& bytes) {
   const auto code = static_cast<grpc::StatusCode>(1 + bytes.size() % kCodes);
   google::rpc::Status details;
   if (details.ParseFromString(bytes)) RequireRead(code, details.message(), bytes);
-  RequireRead(code, bytes, bytes);
   RequireRead(code, bytes, "");
   RequireRead(grpc::StatusCode::RESOURCE_EXHAUSTED, bytes, "");
 }

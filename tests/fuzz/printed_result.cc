@@ -17,15 +17,21 @@ std::string Printed(const v1::ListResultsResponse& page, client::Format format) 
   return out.str();
 }
 
+void RequirePrinted(const v1::ListResultsResponse& page, client::Format format) {
+  const std::string printed = Printed(page, format);
+  const bool may_be_empty = format == client::Format::kJsonl && page.points().empty();
+  Require(may_be_empty || printed.ends_with("\n"), "what is printed ends with its line");
+}
+
 void Check(const std::string& bytes) {
   v1::ListResultsResponse page;
   if (!page.ParseFromString(bytes)) return;
-  for (const client::Format format : {client::Format::kTable, client::Format::kJson,
-                                      client::Format::kJsonl, client::Format::kCsv}) {
-    const std::string printed = Printed(page, format);
-    const bool may_be_empty = format == client::Format::kJsonl && page.points().empty();
-    Require(may_be_empty || printed.ends_with("\n"), "what is printed ends with its line");
-  }
+  RequirePrinted(page, client::Format::kTable);
+  RequirePrinted(page, client::Format::kCsv);
+  // Slow, and nearly all of it the library's.
+  constexpr size_t kOneIn = 16;
+  if (bytes.size() % kOneIn == 0) RequirePrinted(page, client::Format::kJson);
+  if (bytes.size() % kOneIn == 1) RequirePrinted(page, client::Format::kJsonl);
 }
 
 const Registration registration({.name = "printed_result",

@@ -23,6 +23,7 @@ void CheckListening(const std::string& text) {
 }
 
 void Check(const std::string& text) {
+  if (text.find('\0') != std::string::npos) return;  // no argument of a program holds it
   const absl::StatusOr<std::string> target = client::GrpcTarget(text);
   if (target.ok()) {
     Require(absl::StartsWith(*target, "unix:") || absl::StartsWith(*target, "dns:///"),
