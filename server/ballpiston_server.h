@@ -31,6 +31,7 @@ struct ServerOptions {
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
+  Limits limits;
   Store::Options store;
 };
 
@@ -66,6 +67,7 @@ class BallpistonServer {
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
+  Authenticator authenticator_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_;
