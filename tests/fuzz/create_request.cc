@@ -2,6 +2,7 @@
 #include "absl/strings/ascii.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"
+#include "server/jobs/question.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -21,7 +22,10 @@ void Check(const std::string& bytes) {
   v1::CreateEnsembleJobRequest request;
   if (!request.ParseFromString(bytes)) return;
   CheckRequestId(request.request_id());
-  RequireJudged(request.spec());
+  if (!RequireJudged(request.spec())) return;
+  Require(!server::PayloadOf(request).empty(), "a request has a hash");
+  Require(server::QuestionOf(request.spec(), "1").empty() == request.spec().target().has_budget(),
+          "a question has a hash, unless it depends on the machine");
 }
 
 const Registration registration({.name = "create_request",
