@@ -37,6 +37,11 @@ absl::Status JobStillActive(const std::string& name,
 absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
 
+// UNAUTHENTICATED. None says which credentials were shown.
+absl::Status CredentialsMissing();
+absl::Status CredentialsInvalid();
+absl::Status CredentialsExpired();
+
 // DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
