@@ -38,6 +38,7 @@ struct ServerOptions {
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
+  Limits limits;
   Store::Options store;
 };
 

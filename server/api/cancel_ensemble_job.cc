@@ -3,13 +3,13 @@
 
 namespace ballpiston::server {
 
-absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service,
+absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service, const Call& call,
                                                   const v1::CancelEnsembleJobRequest& request) {
   RequestCheck check;
   const std::string id = check.JobId("name", request.name());
   const std::string request_id = check.RequestId(request.request_id());
   if (!check.ok()) return check.status();
-  return service.book.Cancel(id, request_id);
+  return service.book.Cancel(call.caller, id, request_id);
 }
 
 }  // namespace ballpiston::server

@@ -19,17 +19,18 @@ absl::Status EndOf(const absl::Status& status, bool draining) {
 }  // namespace
 
 CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
+                                                    const absl::StatusOr<Call>& call,
                                                     const v1::CompareMethodsRequest& request) {
   std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service));
   reactor->self_ = reactor;
   service.watches.Add(reactor.get());
-  const absl::Status refused = reactor->Begin(request);
+  const absl::Status refused = call.ok() ? reactor->Begin(request) : call.status();
   if (!refused.ok()) reactor->End(refused);
   return reactor.get();
 }
 
 CompareMethodsReactor::CompareMethodsReactor(ServiceContext& service)
-    : service_(service), call_(service.activity.Begin()) {}
+    : service_(service), active_(service.activity.Begin()) {}
 
 absl::Status CompareMethodsReactor::Begin(const v1::CompareMethodsRequest& request) {
   const CheckedComparison checked = CheckComparison(request);

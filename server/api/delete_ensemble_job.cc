@@ -4,11 +4,11 @@
 namespace ballpiston::server {
 
 absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
-    ServiceContext& service, const v1::DeleteEnsembleJobRequest& request) {
+    ServiceContext& service, const Call& call, const v1::DeleteEnsembleJobRequest& request) {
   RequestCheck check;
   const std::string id = check.JobId("name", request.name());
   if (!check.ok()) return check.status();
-  const absl::Status deleted = service.book.Delete(id);
+  const absl::Status deleted = service.book.Delete(call.caller, id);
   if (!deleted.ok()) return deleted;
   return google::protobuf::Empty();
 }

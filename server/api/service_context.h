@@ -11,7 +11,9 @@
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/jobs/job_book.h"
+#include "server/limits.h"
 #include "server/observability/activity.h"
+#include "server/security/authenticator.h"
 
 namespace ballpiston::server {
 
@@ -21,6 +23,8 @@ struct WatchTiming {
 };
 
 struct ServiceContext {
+  const Authenticator& authenticator;
+  const Limits& limits;
   JobBook& book;
   ModelLadder& ladder;
   RpcExecutor& executor;

@@ -18,19 +18,21 @@ constexpr size_t kMaxSnapshotPoints = 100;
 
 }  // namespace
 
-WatchReactor* WatchReactor::Start(ServiceContext& service,
+WatchReactor* WatchReactor::Start(ServiceContext& service, absl::StatusOr<Call> call,
                                   const v1::WatchEnsembleJobRequest& request) {
-  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, request));
+  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, std::move(call), request));
   reactor->self_ = reactor;
   service.watches.Add(reactor.get());
   reactor->Schedule();
   return reactor.get();
 }
 
-WatchReactor::WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request)
+WatchReactor::WatchReactor(ServiceContext& service, absl::StatusOr<Call> call,
+                           const v1::WatchEnsembleJobRequest& request)
     : service_(service),
       request_(request),
-      call_(service.activity.Begin()),
+      call_(std::move(call)),
+      active_(service.activity.Begin()),
       next_heartbeat_(Clock::now() + service.timing.heartbeat) {}
 
 // ---- reactions: on gRPC's threads ----
@@ -106,6 +108,7 @@ void WatchReactor::TellWhatIsNew() {
     cut = cut_;
   }
   if (cut) return End(absl::CancelledError("the client is gone"));
+  if (!call_.ok()) return End(call_.status());
   if (service_.draining) return End(ShuttingDown());
   if (id_.empty()) {
     const absl::Status found = FindJob();
@@ -119,10 +122,10 @@ absl::Status WatchReactor::FindJob() {
   RequestCheck check;
   const std::string id = check.JobId("name", request_.name());
   if (!check.ok()) return check.status();
-  absl::StatusOr<std::shared_ptr<Job>> job = service_.book.FindActive(id);
+  absl::StatusOr<std::shared_ptr<Job>> job = service_.book.FindActive(call_->caller, id);
   if (!job.ok()) return job.status();
   if (*job == nullptr) {
-    absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(id);
+    absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(call_->caller, id);
     if (!ended.ok()) return ended.status();
     *message_.mutable_job() = *std::move(ended);
   }

@@ -18,6 +18,7 @@
 #include "absl/status/status.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "grpcpp/support/server_callback.h"
+#include "server/api/call.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {
@@ -26,8 +27,9 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
                      public Watch,
                      public std::enable_shared_from_this<WatchReactor> {
  public:
-  // Owns itself until gRPC is done with it.
-  static WatchReactor* Start(ServiceContext& service, const v1::WatchEnsembleJobRequest& request);
+  // Owns itself until gRPC is done with it. A call that was not admitted ends at once.
+  static WatchReactor* Start(ServiceContext& service, absl::StatusOr<Call> call,
+                             const v1::WatchEnsembleJobRequest& request);
 
   void Look(std::chrono::steady_clock::time_point now) override;
 
@@ -38,7 +40,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
  private:
   using Clock = std::chrono::steady_clock;
 
-  WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request);
+  WatchReactor(ServiceContext& service, absl::StatusOr<Call> call,
+               const v1::WatchEnsembleJobRequest& request);
 
   // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
   // writes and the end come from it.
@@ -59,7 +62,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   ServiceContext& service_;
   const v1::WatchEnsembleJobRequest request_;
-  const std::shared_ptr<void> call_;  // for Activity
+  const absl::StatusOr<Call> call_;
+  const std::shared_ptr<void> active_;  // for Activity
   std::shared_ptr<WatchReactor> self_;
 
   // Of Advance.

@@ -100,7 +100,7 @@ absl::Status InvalidField(std::string field, std::string description) {
 
 absl::Status RequestIdReused(const std::string& request_id) {
   return WithInfo(absl::InvalidArgumentError(absl::StrCat(
-                      "request_id ", request_id, " was used before, with another specification")),
+                      "request_id ", request_id, " was used before, with another request")),
                   "REQUEST_ID_REUSED", "request_id", request_id);
 }
 
@@ -148,6 +148,24 @@ absl::Status CredentialsInvalid() {
 absl::Status CredentialsExpired() {
   return WithReason(absl::UnauthenticatedError("these credentials have expired; ask for new ones"),
                     "CREDENTIALS_EXPIRED");
+}
+
+absl::Status LimitExceeded(const std::string& reason, const std::string& what,
+                           const std::string& flag, double limit) {
+  absl::Status status = absl::ResourceExhaustedError(
+      absl::StrFormat("%s; this server permits %.15g (--%s)", what, limit, flag));
+  google::rpc::ErrorInfo info = Info(reason);
+  (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
+  (*info.mutable_metadata())["flag"] = flag;
+  SetDetail(status, info);
+  return status;
+}
+
+absl::Status RoleTooLow(const Principal& caller, Role least) {
+  return WithInfo(
+      absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                               ", this call needs the role ", RoleName(least))),
+      "ROLE_TOO_LOW", "role", RoleName(least));
 }
 
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {

@@ -18,6 +18,7 @@
 #include "core/experiment/point_summary.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
+#include "server/security/principal.h"
 
 namespace ballpiston::server {
 
@@ -41,6 +42,13 @@ absl::Status ShuttingDown();                           // UNAVAILABLE
 absl::Status CredentialsMissing();
 absl::Status CredentialsInvalid();
 absl::Status CredentialsExpired();
+
+// RESOURCE_EXHAUSTED: `what` is what there is too much of, `flag` that of the server which permits
+// no more than `limit`.
+absl::Status LimitExceeded(const std::string& reason, const std::string& what,
+                           const std::string& flag, double limit);
+
+absl::Status RoleTooLow(const Principal& caller, Role least);  // PERMISSION_DENIED
 
 // DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);

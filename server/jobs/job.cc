@@ -11,6 +11,7 @@ namespace ballpiston::server {
 Job::Job(JobRecord record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
       id_(record.id),
+      principal_(record.principal),
       open_ended_(IsOpenEnded(JobMessage(record).spec().target())),
       on_state_change_(std::move(on_state_change)),
       record_(std::move(record)) {}

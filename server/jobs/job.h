@@ -37,6 +37,7 @@ class Job {
 
   int64_t sequence() const { return sequence_; }
   const std::string& id() const { return id_; }
+  const std::string& principal() const { return principal_; }
 
   JobState state() const;
   v1::EnsembleJob Message() const;
@@ -67,6 +68,7 @@ class Job {
 
   const int64_t sequence_;
   const std::string id_;
+  const std::string principal_;
   const bool open_ended_;  // how much there is to do is not known
   const std::function<void()> on_state_change_;
 

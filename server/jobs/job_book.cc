@@ -9,10 +9,12 @@
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
+#include "server/jobs/acceptance.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_message.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
+#include "server/jobs/question.h"
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -23,6 +25,14 @@ namespace {
 // What the disk refused to take.
 absl::Status StoreFailed(const absl::Status& status) {
   return status.ok() ? status : WithReason(status, "STORE_FAILED");
+}
+
+// The job, if the caller may see it.
+absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
+                                                   const std::string& id) {
+  auto found = FindJob(database, id);
+  if (found.ok() && *found && !caller.MaySee((*found)->principal)) return std::nullopt;
+  return found;
 }
 
 struct FinishedPoints {
@@ -82,9 +92,10 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
 
 }  // namespace
 
-JobBook::JobBook(Store& store, int workers, ExperimentFactory factory,
+JobBook::JobBook(Store& store, const Limits& limits, int workers, ExperimentFactory factory,
                  std::function<void()> on_state_change)
     : store_(store),
+      limits_(limits),
       on_state_change_(std::move(on_state_change)),
       pool_(workers, std::move(factory)) {}
 
@@ -121,8 +132,9 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   if (!checked.violations.empty()) return EndUnresumable(record, InvalidSpec(checked.violations));
   if (record.engine_version != EngineVersion()) {
     record.engine_version = EngineVersion();
+    record.question = QuestionOf(*message, record.engine_version);
     const absl::Status restarted = store_.Commit([&](Database& database) {
-      return RestartJob(database, record.sequence, record.engine_version);
+      return RestartJob(database, record.sequence, record.engine_version, record.question);
     });
     if (!restarted.ok()) return restarted;
     LogInfo(
@@ -171,6 +183,8 @@ std::shared_ptr<Job> JobBook::Register(JobRecord record) {
 
 void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
+  request.principal = job->principal();
+  request.priority = job->Record().priority;
   request.journal = std::make_shared<JobJournal>(std::move(job), store_, [this](const Job& ended) {
     std::lock_guard lock(mutex_);
     active_.erase(ended.id());
@@ -180,59 +194,66 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
 
 // ---- the methods ----
 
-JobRecord JobBook::NewRecord(const v1::EnsembleSpec& message, const CheckedSpec& checked) const {
+JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
+                             const CheckedSpec& checked) const {
   JobRecord record;
-  record.spec = SpecBytes(message);
-  record.create_time = absl::Now();
+  record.principal = caller.name;
+  record.priority = request.priority();
+  record.spec = SpecBytes(request.spec());
   record.engine_version = EngineVersion();
+  record.question = QuestionOf(request.spec(), record.engine_version);
+  record.create_time = absl::Now();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   return record;
 }
 
-v1::EnsembleJob JobBook::Preview(const v1::EnsembleSpec& message,
-                                 const CheckedSpec& checked) const {
-  return JobMessage(NewRecord(message, checked));
+absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
+                                                 const v1::CreateEnsembleJobRequest& request,
+                                                 const CheckedSpec& checked) const {
+  const absl::Status fits = CheckSize(checked.spec, limits_);
+  if (!fits.ok()) return fits;
+  return JobMessage(NewRecord(caller, request, checked));
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Create(const v1::EnsembleSpec& message,
-                                                const CheckedSpec& checked,
-                                                const std::string& request_id) {
-  JobRecord record = NewRecord(message, checked);
-  record.id = RandomId();
-  record.request_id = request_id;
-  std::optional<JobRecord> earlier;
-  const auto insert = [&](Database& database) -> absl::Status {
-    earlier.reset();
-    if (!request_id.empty()) {
-      auto found = FindJobByRequest(database, request_id);
-      if (!found.ok()) return found.status();
-      earlier = *std::move(found);
-    }
-    return earlier ? absl::OkStatus() : InsertJob(database, record);
-  };
+absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
+                                                const v1::CreateEnsembleJobRequest& request,
+                                                const CheckedSpec& checked) {
+  const absl::Status fits = CheckSize(checked.spec, limits_);
+  if (!fits.ok()) return fits;
+  Acceptance acceptance;
+  acceptance.record = NewRecord(caller, request, checked);
+  acceptance.record.id = RandomId();
+  acceptance.request.principal = caller.name;
+  acceptance.request.request_id = request.request_id();
+  acceptance.request.payload = PayloadOf(request);
+  acceptance.fresh = request.fresh();
+  const auto accept = [&](Database& database) { return Accept(database, limits_, acceptance); };
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
-  const absl::Status committed = store_.Commit(insert, [&](const absl::Status& done) {
-    if (!done.ok() || earlier) return;
-    job = Register(record);
-    RunRequest request;
-    request.spec = checked.spec;
-    request.finished.assign(static_cast<size_t>(record.points), false);
-    StartRun(job, std::move(request));
+  const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
+    if (!done.ok() || acceptance.earlier || !acceptance.refused.ok()) return;
+    job = Register(acceptance.record);
+    RunRequest run;
+    run.spec = checked.spec;
+    run.finished.assign(static_cast<size_t>(acceptance.record.points), false);
+    StartRun(job, std::move(run));
   });
   if (!committed.ok()) return StoreFailed(committed);
-  if (!earlier) return job->Message();
-  if (earlier->spec != record.spec) return RequestIdReused(request_id);
-  return Get(earlier->id);
+  if (!acceptance.refused.ok()) return acceptance.refused;
+  if (!acceptance.earlier) return job->Message();
+  absl::StatusOr<v1::EnsembleJob> earlier = Get(caller, acceptance.earlier->id);
+  if (earlier.ok()) earlier->set_answered_from_store(acceptance.answered_from_store);
+  return earlier;
 }
 
-std::shared_ptr<Job> JobBook::ActiveOrNull(const std::string& id) const {
+std::shared_ptr<Job> JobBook::ActiveOrNull(const Principal& caller, const std::string& id) const {
   std::lock_guard lock(mutex_);
   const auto found = active_.find(id);
-  return found == active_.end() ? nullptr : found->second;
+  const bool seen = found != active_.end() && caller.MaySee(found->second->principal());
+  return seen ? found->second : nullptr;
 }
 
-absl::StatusOr<JobRecord> JobBook::ReadRecord(const std::string& id) {
+absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std::string& id) {
   std::optional<JobRecord> record;
   const absl::Status read = store_.Read([&](Database& database) {
     auto found = FindJob(database, id);
@@ -240,27 +261,30 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const std::string& id) {
     return found.status();
   });
   if (!read.ok()) return StoreFailed(read);
-  if (!record) return JobNotFound(JobName(id));
+  if (!record || !caller.MaySee(record->principal)) return JobNotFound(JobName(id));
   return *std::move(record);
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Get(const std::string& id) {
+absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
   // In this order: a job leaves the book only when its end is in the store.
-  if (const std::shared_ptr<Job> job = ActiveOrNull(id)) return job->Message();
-  const absl::StatusOr<JobRecord> record = ReadRecord(id);
+  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return job->Message();
+  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   return JobMessage(*record);
 }
 
-absl::StatusOr<std::vector<ListedJob>> JobBook::List(int64_t before, int limit) {
+absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, int64_t before,
+                                                     int limit) {
   std::map<std::string, std::shared_ptr<Job>> active;
   {
     std::lock_guard lock(mutex_);
     active = active_;
   }
+  const bool everybodys = caller.role == Role::kAdmin;
   absl::StatusOr<std::vector<JobRecord>> records;
   const absl::Status read = store_.Read([&](Database& database) {
-    records = ListJobs(database, before, limit);
+    records =
+        ListJobs(database, everybodys ? std::nullopt : std::optional(caller.name), before, limit);
     return records.status();
   });
   if (!read.ok()) return StoreFailed(read);
@@ -273,12 +297,13 @@ absl::StatusOr<std::vector<ListedJob>> JobBook::List(int64_t before, int limit) 
   return listed;
 }
 
-absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const std::string& id,
+absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const std::string& id,
                                                 const std::string& request_id) {
   std::optional<JobRecord> record;
   bool begun = false;
   const auto begin = [&](Database& database) -> absl::Status {
-    auto found = FindJob(database, id);
+    begun = false;
+    auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
     if (!record) return absl::OkStatus();
@@ -287,21 +312,21 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const std::string& id,
     return changed.status();
   };
   const absl::Status committed = store_.Commit(begin, [&](const absl::Status& done) {
-    const std::shared_ptr<Job> job = ActiveOrNull(id);
+    const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
     if (done.ok() && begun && job) job->Enter(v1::EnsembleJob::CANCELLING, absl::Now());
   });
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
   if (begun) pool_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
-  if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(id);
+  if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
   return JobAlreadyEnded(JobName(id), StateName(record->state));
 }
 
-absl::Status JobBook::Delete(const std::string& id) {
+absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   std::optional<JobRecord> record;
   const absl::Status committed = store_.Commit([&](Database& database) -> absl::Status {
-    auto found = FindJob(database, id);
+    auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
     if (!record || !HasEnded(record->state)) return absl::OkStatus();
@@ -310,12 +335,13 @@ absl::Status JobBook::Delete(const std::string& id) {
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();
-  const std::shared_ptr<Job> job = ActiveOrNull(id);
+  const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
   return JobStillActive(JobName(id), StateName(job ? job->state() : record->state));
 }
 
-absl::StatusOr<ResultsPage> JobBook::Results(const std::string& id, const ResultsQuery& query) {
-  const absl::StatusOr<JobRecord> record = ReadRecord(id);
+absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std::string& id,
+                                             const ResultsQuery& query) {
+  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   ResultsPage page;
   size_t bytes = 0;
@@ -339,15 +365,16 @@ absl::StatusOr<ResultsPage> JobBook::Results(const std::string& id, const Result
   return page;
 }
 
-absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const std::string& id) {
-  if (std::shared_ptr<Job> job = ActiveOrNull(id)) return job;
-  const absl::StatusOr<JobRecord> record = ReadRecord(id);
+absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller,
+                                                         const std::string& id) {
+  if (std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return job;
+  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   if (HasEnded(record->state)) return nullptr;
   // Committed a moment ago: it is in the book when the store has gone on to the next commit.
   const absl::Status settled = store_.Flush();
   if (!settled.ok()) return StoreFailed(settled);
-  return ActiveOrNull(id);
+  return ActiveOrNull(caller, id);
 }
 
 std::vector<v1::PointResult> JobBook::PointsChangedSince(const Job& job, uint64_t number,

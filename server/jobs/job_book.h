@@ -22,6 +22,8 @@
 #include "server/convert/spec.h"
 #include "server/execution/worker_pool.h"
 #include "server/jobs/job.h"
+#include "server/limits.h"
+#include "server/security/principal.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
@@ -46,7 +48,7 @@ struct ResultsPage {
 class JobBook {
  public:
   // The store has to outlive this. `on_state_change` is called after each change of state.
-  JobBook(Store& store, int workers, ExperimentFactory factory,
+  JobBook(Store& store, const Limits& limits, int workers, ExperimentFactory factory,
           std::function<void()> on_state_change);
   ~JobBook();  // shuts down
 
@@ -57,20 +59,28 @@ class JobBook {
   void Shutdown();
 
   // The job as Create would make it.
-  v1::EnsembleJob Preview(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+  absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
+                                          const v1::CreateEnsembleJobRequest& request,
+                                          const CheckedSpec& checked) const;
 
-  // `checked` is that of the message, without violations.
-  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& message,
-                                         const CheckedSpec& checked, const std::string& request_id);
-  absl::StatusOr<v1::EnsembleJob> Get(const std::string& id);
+  // `checked` is the specification of the request, without violations; the request's id is in lower
+  // case. Answered with an earlier job if this is a replay, or the same question as before.
+  absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
+                                         const v1::CreateEnsembleJobRequest& request,
+                                         const CheckedSpec& checked);
+
+  // To all of the following a job that the caller may not see does not exist.
+  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id);
   // Newest first, those older than `before`.
-  absl::StatusOr<std::vector<ListedJob>> List(int64_t before, int limit);
-  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& id, const std::string& request_id);
-  absl::Status Delete(const std::string& id);
-  absl::StatusOr<ResultsPage> Results(const std::string& id, const ResultsQuery& query);
+  absl::StatusOr<std::vector<ListedJob>> List(const Principal& caller, int64_t before, int limit);
+  absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
+                                         const std::string& request_id);
+  absl::Status Delete(const Principal& caller, const std::string& id);
+  absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
+                                      const ResultsQuery& query);
 
-  // For a watch: the active job; null if it has ended. NOT_FOUND if it does not exist.
-  absl::StatusOr<std::shared_ptr<Job>> FindActive(const std::string& id);
+  // For a watch: the active job; null if it has ended.
+  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
 
   // The job's points that changed after change `number`, newest first, without histograms.
   std::vector<v1::PointResult> PointsChangedSince(const Job& job, uint64_t number,
@@ -79,17 +89,20 @@ class JobBook {
   size_t active_jobs() const;
 
  private:
-  JobRecord NewRecord(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+  JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
+                      const CheckedSpec& checked) const;
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   std::shared_ptr<Job> Register(JobRecord record);
   // Key and journal of the request are set here.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
-  std::shared_ptr<Job> ActiveOrNull(const std::string& id) const;
-  absl::StatusOr<JobRecord> ReadRecord(const std::string& id);
+  // Also null if the caller may not see it.
+  std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
+  absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
 
   Store& store_;
+  const Limits limits_;
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id

@@ -15,8 +15,7 @@ namespace {
 constexpr size_t kLongestName = 64;
 constexpr size_t kLongestCommonName = 256;
 constexpr absl::string_view kHashPrefix = "sha256:";
-constexpr std::pair<absl::string_view, Role> kRoles[] = {
-    {"read", Role::kRead}, {"submit", Role::kSubmit}, {"admin", Role::kAdmin}};
+constexpr Role kRoles[] = {Role::kRead, Role::kSubmit, Role::kAdmin};
 
 absl::Status Wrong(absl::string_view field, absl::string_view permitted) {
   return absl::InvalidArgumentError(absl::StrCat(field, "; permitted: ", permitted));
@@ -129,17 +128,10 @@ absl::Status CheckPrincipalName(absl::string_view name) {
 }
 
 absl::StatusOr<Role> ParseRole(absl::string_view text) {
-  for (const auto& [name, role] : kRoles) {
-    if (text == name) return role;
+  for (const Role role : kRoles) {
+    if (text == RoleName(role)) return role;
   }
   return Wrong("the role is unknown", "read, submit, admin");
-}
-
-std::string RoleName(Role role) {
-  for (const auto& [name, named] : kRoles) {
-    if (role == named) return std::string(name);
-  }
-  return "";
 }
 
 }  // namespace ballpiston::server

@@ -43,7 +43,6 @@ std::string FormatAccessEntry(const AccessEntry& entry);
 // INVALID_ARGUMENT tells what is permitted.
 absl::Status CheckPrincipalName(absl::string_view name);
 absl::StatusOr<Role> ParseRole(absl::string_view text);
-std::string RoleName(Role role);
 
 }  // namespace ballpiston::server
 

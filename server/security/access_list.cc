@@ -62,7 +62,7 @@ absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Tim
   const TokenHash hash = HashOf(token);
   const Holder* found = nullptr;
   for (const auto& [known, holder] : tokens_) {  // all of them: no early end to be timed
-    if (SameHash(known, hash)) found = &holder;
+    if (known == hash) found = &holder;
   }
   if (found == nullptr) return CredentialsInvalid();
   return Unexpired(*found, now);

@@ -1,7 +1,6 @@
 #include "server/security/token_hash.h"
 
 #include <openssl/crypto.h>
-#include <openssl/sha.h>
 
 #include <algorithm>
 
@@ -10,30 +9,20 @@
 
 namespace ballpiston::server {
 
-static_assert(std::tuple_size_v<TokenHash> == SHA256_DIGEST_LENGTH);
-
-TokenHash HashOf(absl::string_view token) {
-  TokenHash hash;
-  SHA256(reinterpret_cast<const uint8_t*>(token.data()), token.size(), hash.data());
-  return hash;
+bool operator==(const TokenHash& a, const TokenHash& b) {
+  return a.bytes.size() == b.bytes.size() &&
+         CRYPTO_memcmp(a.bytes.data(), b.bytes.data(), a.bytes.size()) == 0;
 }
 
-bool SameHash(const TokenHash& a, const TokenHash& b) {
-  return CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
-}
+TokenHash HashOf(absl::string_view token) { return {Sha256(token)}; }
 
 std::optional<TokenHash> ParseTokenHash(absl::string_view hex) {
-  TokenHash hash;
-  if (hex.size() != 2 * hash.size() ||
-      !std::all_of(hex.begin(), hex.end(), [](unsigned char c) { return absl::ascii_isxdigit(c); }))
-    return std::nullopt;
-  const std::string bytes = absl::HexStringToBytes(hex);
-  std::copy(bytes.begin(), bytes.end(), hash.begin());
-  return hash;
+  const bool digits =
+      std::all_of(hex.begin(), hex.end(), [](unsigned char c) { return absl::ascii_isxdigit(c); });
+  if (hex.size() != 2 * kSha256Bytes || !digits) return std::nullopt;
+  return TokenHash{absl::HexStringToBytes(hex)};
 }
 
-std::string HexOf(const TokenHash& hash) {
-  return absl::BytesToHexString({reinterpret_cast<const char*>(hash.data()), hash.size()});
-}
+std::string HexOf(const TokenHash& hash) { return absl::BytesToHexString(hash.bytes); }
 
 }  // namespace ballpiston::server

@@ -4,21 +4,22 @@
 #ifndef BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
 #define BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "absl/strings/string_view.h"
+#include "server/security/sha256.h"
 
 namespace ballpiston::server {
 
-using TokenHash = std::array<uint8_t, 32>;
+struct TokenHash {
+  std::string bytes;  // kSha256Bytes of them
+
+  // In a time that does not depend on where they differ.
+  friend bool operator==(const TokenHash& a, const TokenHash& b);
+};
 
 TokenHash HashOf(absl::string_view token);
-
-// In a time that does not depend on where they differ.
-bool SameHash(const TokenHash& a, const TokenHash& b);
 
 // 64 hexadecimal digits of either case; empty if it is anything else.
 std::optional<TokenHash> ParseTokenHash(absl::string_view hex);

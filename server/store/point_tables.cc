@@ -33,7 +33,10 @@ absl::Status ReadBlocks(
 absl::Status InsertResult(Database& database, int64_t job, const PointRow& row) {
   const absl::Status inserted =
       database
-          .Prepare("INSERT OR IGNORE INTO results (job, point, samples, result) VALUES (?,?,?,?)")
+          .Prepare(
+              "INSERT OR IGNORE INTO results (job, point, samples, result, finish) VALUES"
+              " (?1, ?2, ?3, ?4, (SELECT coalesce(max(finish), 0) + 1 FROM results WHERE job = "
+              "?1))")
           .Bind(job)
           .Bind(row.point)
           .Bind(row.samples)

@@ -44,8 +44,8 @@ TEST(TokenHash, IsTheStandardsSha256) {
   EXPECT_EQ(HexOf(HashOf("abc")),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(*ParseTokenHash(HexOf(HashOf("abc"))), HashOf("abc"));
-  EXPECT_TRUE(SameHash(HashOf("abc"), HashOf("abc")));
-  EXPECT_FALSE(SameHash(HashOf("abc"), HashOf("abd")));
+  EXPECT_TRUE(HashOf("abc") == HashOf("abc"));
+  EXPECT_FALSE(HashOf("abc") == HashOf("abd"));
 }
 
 TEST(AccessList, ATokenIsItsPrincipals) {
