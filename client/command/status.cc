@@ -41,9 +41,7 @@ void AddStatus(CLI::App& app, Action& action) {
   CLI::App* verb =
       app.add_subcommand("status", "show what the server is doing and what it permits");
   const auto status = std::make_shared<Status>();
-  verb->add_option("--server", status->server.address,
-                   "host:port or unix:PATH; else BALLPISTON_SERVER; else the private server, if it "
-                   "is running");
+  status->server.AddTo(*verb);
   verb->add_option("--format", status->format, "table | json; table if not given");
   verb->callback([&action, status] { action = [status](Terminal& t) { return status->Act(t); }; });
 }
