@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/model_choice/ladder.h"
+#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
@@ -157,16 +158,8 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
     if (made == nullptr) return absl::OkStatus();  // the run was stopped
     auto open = std::make_unique<OpenPoint>(std::move(made));
     if (run.request().has_stored_blocks) {
-      const PointExperiment& experiment = *open->experiment;
-      const auto on_merged = [&](uint64_t block, BlockResult& result) {
-        const double share = ShareOfPoint(experiment, result);
-        open->version = run.journal().BlockMerged({task.point, block, share, true, result});
-      };
-      const absl::Status read =
-          run.journal().ReadStoredBlocks(task.point, [&](uint64_t block, BlockResult result) {
-            open->merge.Add(block, std::move(result), on_merged);
-          });
-      if (!read.ok()) return read;
+      const absl::Status restored = RestoreBlocks(run, task.point, *open);
+      if (!restored.ok()) return restored;
     }
     const bool finished = open->merge.finished();
     {
@@ -176,6 +169,22 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
     if (finished) ClosePoint(run, task.point);
     return absl::OkStatus();
   });
+}
+
+absl::Status WorkerPool::RestoreBlocks(Run& run, size_t point, OpenPoint& open) {
+  const auto on_merged = [&](uint64_t block, BlockResult& result) {
+    const double share = ShareOfPoint(*open.experiment, result);
+    open.version = run.journal().BlockMerged({point, block, share, true, result});
+  };
+  absl::Status checked;
+  const absl::Status read =
+      run.journal().ReadStoredBlocks(point, [&](uint64_t block, BlockResult result) {
+        // Those beyond the target may be of another model, which a budget chose on a slower day.
+        if (!checked.ok() || open.merge.finished()) return;
+        checked = CheckBlock(*open.experiment, block, result);
+        if (checked.ok()) open.merge.Add(block, std::move(result), on_merged);
+      });
+  return read.ok() ? checked : read;
 }
 
 absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {

@@ -61,6 +61,8 @@ class WorkerPool {
 
   void Execute(const Assignment& assignment);
   absl::Status OpenNewPoint(Run& run, const OpenPointTask& task);
+  // Merges what an earlier process computed of the point.
+  absl::Status RestoreBlocks(Run& run, size_t point, OpenPoint& open);
   absl::Status ComputeBlock(Run& run, const BlockTask& task);
   void MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds);
   // The lock is held; a point with a merged block ends with what it has.

@@ -42,6 +42,7 @@ const std::vector<Rule>& Rules() {
       {"core/model_choice/", {"core/", "Eigen/", "absl/"}, false},
       {"core/method_comparison/", {"core/", "Eigen/", "absl/", "hwy/"}, false},
       {"core/engine_version.h", {}, false},
+      {"server/security/", {"server/", "absl/", "grpc/", "grpcpp/", "openssl/"}, true},
       {"server/",
        {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h"},
        true},
@@ -59,7 +60,7 @@ const std::vector<Rule>& Rules() {
        true},
       {"tests/",
        {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "google/", "absl/", "grpc/",
-        "grpcpp/", "sqlite3.h", "Eigen/", "gtest/", "gmock/", "benchmark/"},
+        "grpcpp/", "sqlite3.h", "openssl/", "Eigen/", "gtest/", "gmock/", "benchmark/"},
        true},
   };
   return *rules;
