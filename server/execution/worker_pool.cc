@@ -53,7 +53,7 @@ void WorkerPool::Add(RunRequest request) {
   {
     std::lock_guard lock(mutex_);
     runs_.emplace(key, run);
-    fair_share_.Add(key);
+    fair_share_.Add(key, run->request().principal, run->request().priority);
   }
   work_may_exist_.notify_all();
   Conclude(run);  // it may have nothing left to compute
@@ -120,16 +120,17 @@ std::optional<WorkerPool::Assignment> WorkerPool::AwaitAssignment() {
 }
 
 std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
-  for (const auto& [charge, key] : fair_share_.order()) {
-    const std::shared_ptr<Run>& run = runs_.at(key);
-    if (auto task = run->NextTask()) {
-      Assignment assignment{run, *std::move(task), !run->began()};
-      run->set_began();
-      fair_share_.BlockBegins(key);  // changes the order: `charge` and `key` end here
-      return assignment;
-    }
-  }
-  return std::nullopt;
+  std::optional<RunTask> task;
+  const auto key = fair_share_.First([&](int64_t run) {
+    task = runs_.at(run)->NextTask();
+    return task.has_value();
+  });
+  if (!key) return std::nullopt;
+  fair_share_.BlockBegins(*key);
+  const std::shared_ptr<Run>& run = runs_.at(*key);
+  Assignment assignment{run, *std::move(task), !run->began()};
+  run->set_began();
+  return assignment;
 }
 
 void WorkerPool::Execute(const Assignment& assignment) {
