@@ -19,7 +19,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = record.points_done;
+  end.points_done = job.points_computed();
   end.samples = record.samples;
   end.work = record.work;
   if (outcome.ok()) {
@@ -41,9 +41,11 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
-  if (!job_->Enter(v1::EnsembleJob::RUNNING, now)) return;
-  store_.Record([sequence = job_->sequence(), now](Database& database) {
+  const auto begin = [sequence = job_->sequence(), now](Database& database) {
     return BeginJob(database, sequence, now);
+  };
+  store_.Record(begin, [job = job_, now](const absl::Status& done) {
+    if (done.ok()) job->Enter(v1::EnsembleJob::RUNNING, now);
   });
 }
 
@@ -77,10 +79,13 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
-  store_.RecordResult(job_->sequence(),
-                      {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
+  PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);
-  job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
+  job_->AddComputedPoint();
+  const auto told = std::make_shared<const v1::PointResult>(std::move(result));
+  store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
+    job->AddFinishedPoint({number, told});
+  });
 }
 
 void JobJournal::Ended(const absl::Status& outcome) {
