@@ -1,8 +1,5 @@
 #include "server/ballpiston_server.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <system_error>
 #include <utility>
@@ -12,6 +9,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -33,6 +31,11 @@ void AllowPings(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
+absl::Status CannotListen(const ListenAddress& address, const std::string& why) {
+  return absl::FailedPreconditionError(absl::StrCat(
+      "--listen=", address.Text(), ": cannot listen there (", why, "); choose another address"));
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
@@ -43,12 +46,15 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
   }
   const absl::StatusOr<ListenAddress> address = ParseListenAddress(options.listen);
   if (!address.ok()) return address.status();
+  auto security = ServerSecurity::Create(options.security, *address);
+  if (!security.ok()) return security.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
       Store::Open(directory->FilePath("store.sqlite3"), options.store);
   if (!store.ok()) return store.status();
   try {
-    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
-        Completed(std::move(options)), *std::move(directory), *address, *std::move(store)));
+    std::unique_ptr<BallpistonServer> server(
+        new BallpistonServer(Completed(std::move(options)), *std::move(directory), *address,
+                             *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
@@ -60,10 +66,12 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
 }
 
 BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
-                                   ListenAddress address, std::unique_ptr<Store> store)
+                                   ListenAddress address, std::unique_ptr<ServerSecurity> security,
+                                   std::unique_ptr<Store> store)
     : options_(std::move(options)),
       directory_(std::move(directory)),
       address_(std::move(address)),
+      security_(std::move(security)),
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
       ladder_(*store_, options_.workers),
@@ -72,8 +80,17 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
             [this] { watches_.LookNow(); }),
       executor_(kRpcThreads),
       comparisons_(options_.compare),
-      context_{authenticator_, options_.limits, book_,     ladder_,    executor_,     watches_,
-               comparisons_,   activity_,       draining_, RandomId(), options_.watch},
+      context_{security_->authenticator(),
+               options_.limits,
+               book_,
+               ladder_,
+               executor_,
+               watches_,
+               comparisons_,
+               activity_,
+               draining_,
+               RandomId(),
+               options_.watch},
       ensemble_(context_),
       analytic_(context_),
       method_(context_) {}
@@ -83,30 +100,43 @@ BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); 
 absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  if (!address_.socket_path.empty()) {
-    const absl::Status cleared = ClearSocketPath(address_);
-    if (!cleared.ok()) return cleared;
-  }
   grpc::ServerBuilder builder;
-  int port = 0;
-  // gRPC would let two servers share a port, in silence.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   AllowPings(builder);
-  builder.AddListeningPort(address_.Text(), grpc::InsecureServerCredentials(), &port);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&method_);
+  return address_.socket_path.empty() ? ListenAtPort(builder) : ListenAtSocket(builder);
+}
+
+absl::Status BallpistonServer::ListenAtPort(grpc::ServerBuilder& builder) {
+  // gRPC would let two servers share a port, in silence.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  int port = 0;
+  builder.AddListeningPort(address_.Text(), security_->Credentials(), &port);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("--listen=", address_.Text(), ": cannot listen there (",
-                     WhyNotListening(address_), "); choose another address"));
-  }
-  if (address_.socket_path.empty()) {
-    address_.port = port;
-  } else {
-    chmod(address_.socket_path.c_str(), 0600);
-  }
+  if (grpc_ == nullptr) return CannotListen(address_, WhyNotListening(address_));
+  address_.port = port;
+  return absl::OkStatus();
+}
+
+// gRPC's own listener would not say who connects.
+absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
+  const absl::Status cleared = ClearSocketPath(address_);
+  if (!cleared.ok()) return cleared;
+  auto socket = SocketListener::Listen(address_, options_.socket_users);
+  if (!socket.ok()) return socket.status();
+  std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
+      builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+          security_->Credentials());
+  grpc_ = builder.BuildAndStart();
+  if (grpc_ == nullptr) return CannotListen(address_, "gRPC does not start");
+  socket_ = *std::move(socket);
+  socket_->Start([connections](int descriptor) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = descriptor;
+    connections->HandleNewConnection(&connection);
+  });
   return absl::OkStatus();
 }
 
@@ -124,7 +154,9 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
+  Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
+  if (socket_ != nullptr) socket_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
   watches_.Stop();

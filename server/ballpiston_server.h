@@ -10,15 +10,20 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
+#include "grpcpp/server_builder.h"
 #include "server/api/services.h"
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
+#include "server/security/peer_user.h"
+#include "server/security/server_security.h"
+#include "server/security/socket_listener.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
 
@@ -27,6 +32,8 @@ namespace ballpiston::server {
 struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
+  SecurityOptions security;
+  std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
   int workers = 1;
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
@@ -47,6 +54,12 @@ class BallpistonServer {
   // The port that was chosen, if any was free to be.
   std::string address() const { return address_.Text(); }
 
+  const ServerSecurity& security() const { return *security_; }
+
+  // Reads the access file and the certificates again; calls and connections go on. Of what is wrong
+  // the old stays, and is named in the error. One thread at a time.
+  absl::Status Reload() { return security_->Reload(); }
+
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
 
@@ -57,17 +70,19 @@ class BallpistonServer {
 
  private:
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
-                   std::unique_ptr<Store> store);
+                   std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
 
   absl::Status Listen();
+  absl::Status ListenAtSocket(grpc::ServerBuilder& builder);
+  absl::Status ListenAtPort(grpc::ServerBuilder& builder);
 
   const ServerOptions options_;
   DataDirectory directory_;  // first: its lock guards all that follows
   ListenAddress address_;
+  std::unique_ptr<ServerSecurity> security_;
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
-  Authenticator authenticator_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_;
@@ -79,6 +94,7 @@ class BallpistonServer {
   AnalyticService analytic_;
   MethodService method_;
   std::unique_ptr<grpc::Server> grpc_;
+  std::unique_ptr<SocketListener> socket_;  // none: gRPC listens itself, at a port
 };
 
 }  // namespace ballpiston::server

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
+#include "server/security/new_token.h"
 
 namespace ballpiston::server {
 
@@ -14,6 +15,7 @@ struct CommandLine {
   ServerOptions server;
   std::optional<std::chrono::milliseconds> idle_exit;
   std::chrono::milliseconds drain{0};
+  std::optional<TokenRequest> new_token;  // instead of a server
 };
 
 // Ends the program on --help, --version, and (with exit code 2) on flags that do not exist.

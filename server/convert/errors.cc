@@ -133,6 +133,23 @@ absl::Status ShuttingDown() {
                     "SHUTTING_DOWN");
 }
 
+absl::Status CredentialsMissing() {
+  return WithReason(
+      absl::UnauthenticatedError("this server wants credentials, and none were shown: "
+                                 "send authorization: Bearer TOKEN"),
+      "CREDENTIALS_MISSING");
+}
+
+absl::Status CredentialsInvalid() {
+  return WithReason(absl::UnauthenticatedError("this server does not know these credentials"),
+                    "CREDENTIALS_INVALID");
+}
+
+absl::Status CredentialsExpired() {
+  return WithReason(absl::UnauthenticatedError("these credentials have expired; ask for new ones"),
+                    "CREDENTIALS_EXPIRED");
+}
+
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
   absl::Status status = absl::ResourceExhaustedError(

@@ -38,6 +38,11 @@ absl::Status JobStillActive(const std::string& name,
 absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
 
+// UNAUTHENTICATED. None says which credentials were shown.
+absl::Status CredentialsMissing();
+absl::Status CredentialsInvalid();
+absl::Status CredentialsExpired();
+
 // RESOURCE_EXHAUSTED: `what` is what there is too much of, `flag` that of the server which permits
 // no more than `limit`.
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,

@@ -127,9 +127,8 @@ class Chain {
     }
   }
   void TakeState(const EnsembleJob& job) {
-    EXPECT_TRUE(job.state() == state_ || state_ == EnsembleJob::STATE_UNSPECIFIED ||
-                MayFollow(state_, job.state()))
-        << StateName(state_) << " -> " << StateName(job.state());
+    // In the order of their numbers; one that was overtaken is left out.
+    EXPECT_GE(job.state(), state_) << StateName(state_) << " -> " << StateName(job.state());
     state_ = job.state();
     terminal_messages_ += HasEnded(state_);
     TakeProgress(job.progress());
@@ -137,7 +136,8 @@ class Chain {
   void TakeProgress(const v1::JobProgress& progress) {
     EXPECT_GE(progress.points_done(), progress_.points_done());
     EXPECT_GE(progress.samples(), progress_.samples());
-    EXPECT_GE(progress.fraction(), progress_.fraction());
+    // The store does not know what was begun of points that a cancelled job leaves unfinished.
+    if (!HasEnded(state_)) EXPECT_GE(progress.fraction(), progress_.fraction());
     progress_ = progress;
   }
 
