@@ -9,6 +9,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -153,6 +154,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
+  Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
   if (socket_ != nullptr) socket_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/model_choice/ladder.h"
+#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
@@ -52,7 +53,7 @@ void WorkerPool::Add(RunRequest request) {
   {
     std::lock_guard lock(mutex_);
     runs_.emplace(key, run);
-    fair_share_.Add(key);
+    fair_share_.Add(key, run->request().principal, run->request().priority);
   }
   work_may_exist_.notify_all();
   Conclude(run);  // it may have nothing left to compute
@@ -119,16 +120,17 @@ std::optional<WorkerPool::Assignment> WorkerPool::AwaitAssignment() {
 }
 
 std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
-  for (const auto& [charge, key] : fair_share_.order()) {
-    const std::shared_ptr<Run>& run = runs_.at(key);
-    if (auto task = run->NextTask()) {
-      Assignment assignment{run, *std::move(task), !run->began()};
-      run->set_began();
-      fair_share_.BlockBegins(key);  // changes the order: `charge` and `key` end here
-      return assignment;
-    }
-  }
-  return std::nullopt;
+  std::optional<RunTask> task;
+  const auto key = fair_share_.First([&](int64_t run) {
+    task = runs_.at(run)->NextTask();
+    return task.has_value();
+  });
+  if (!key) return std::nullopt;
+  fair_share_.BlockBegins(*key);
+  const std::shared_ptr<Run>& run = runs_.at(*key);
+  Assignment assignment{run, *std::move(task), !run->began()};
+  run->set_began();
+  return assignment;
 }
 
 void WorkerPool::Execute(const Assignment& assignment) {
@@ -156,16 +158,8 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
     if (made == nullptr) return absl::OkStatus();  // the run was stopped
     auto open = std::make_unique<OpenPoint>(std::move(made));
     if (run.request().has_stored_blocks) {
-      const PointExperiment& experiment = *open->experiment;
-      const auto on_merged = [&](uint64_t block, BlockResult& result) {
-        const double share = ShareOfPoint(experiment, result);
-        open->version = run.journal().BlockMerged({task.point, block, share, true, result});
-      };
-      const absl::Status read =
-          run.journal().ReadStoredBlocks(task.point, [&](uint64_t block, BlockResult result) {
-            open->merge.Add(block, std::move(result), on_merged);
-          });
-      if (!read.ok()) return read;
+      const absl::Status restored = RestoreBlocks(run, task.point, *open);
+      if (!restored.ok()) return restored;
     }
     const bool finished = open->merge.finished();
     {
@@ -175,6 +169,22 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
     if (finished) ClosePoint(run, task.point);
     return absl::OkStatus();
   });
+}
+
+absl::Status WorkerPool::RestoreBlocks(Run& run, size_t point, OpenPoint& open) {
+  const auto on_merged = [&](uint64_t block, BlockResult& result) {
+    const double share = ShareOfPoint(*open.experiment, result);
+    open.version = run.journal().BlockMerged({point, block, share, true, result});
+  };
+  absl::Status checked;
+  const absl::Status read =
+      run.journal().ReadStoredBlocks(point, [&](uint64_t block, BlockResult result) {
+        // Those beyond the target may be of another model, which a budget chose on a slower day.
+        if (!checked.ok() || open.merge.finished()) return;
+        checked = CheckBlock(*open.experiment, block, result);
+        if (checked.ok()) open.merge.Add(block, std::move(result), on_merged);
+      });
+  return read.ok() ? checked : read;
 }
 
 absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {

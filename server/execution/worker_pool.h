@@ -1,9 +1,9 @@
 // The threads that compute: they take blocks from all active runs, fairly, and merge them in order.
 //
-// A worker asks the run with the least compute time used for a block (see fair_share.h), computes
-// it without any lock, and merges it under the pool's lock. Whatever a block throws ends its run
-// with a failure and nothing else. The numbers do not depend on how many workers there are.
-// Thread-safe.
+// A worker asks the run whose turn it is for a block (see fair_share.h), or, if that has none to
+// hand out just now, the next; computes it without any lock, and merges it under the pool's lock.
+// Whatever a block throws ends its run with a failure and nothing else. The numbers do not depend
+// on how many workers there are, nor on whose turn it was when. Thread-safe.
 #ifndef BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 #define BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 
@@ -61,6 +61,8 @@ class WorkerPool {
 
   void Execute(const Assignment& assignment);
   absl::Status OpenNewPoint(Run& run, const OpenPointTask& task);
+  // Merges what an earlier process computed of the point.
+  absl::Status RestoreBlocks(Run& run, size_t point, OpenPoint& open);
   absl::Status ComputeBlock(Run& run, const BlockTask& task);
   void MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds);
   // The lock is held; a point with a merged block ends with what it has.

@@ -15,6 +15,7 @@
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
 #include "server/jobs/question.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -117,6 +118,7 @@ absl::Status JobBook::Resume() {
   if (!read.ok()) return read;
   for (JobRecord& record : *unfinished) {
     const absl::Status resumed = ResumeJob(std::move(record));
+    Failpoint("resume.job");
     if (!resumed.ok()) return resumed;
   }
   return absl::OkStatus();
@@ -231,6 +233,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
+    Failpoint("create.committed");
     if (!done.ok() || acceptance.earlier || !acceptance.refused.ok()) return;
     job = Register(acceptance.record);
     RunRequest run;
@@ -239,6 +242,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
     StartRun(job, std::move(run));
   });
   if (!committed.ok()) return StoreFailed(committed);
+  Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
   if (!acceptance.earlier) return job->Message();
   absl::StatusOr<v1::EnsembleJob> earlier = Get(caller, acceptance.earlier->id);
@@ -309,6 +313,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     if (!record) return absl::OkStatus();
     const auto changed = BeginCancellation(database, record->sequence, request_id);
     begun = changed.ok() && *changed;
+    Failpoint("cancel.in_transaction");
     return changed.status();
   };
   const absl::Status committed = store_.Commit(begin, [&](const absl::Status& done) {
@@ -317,6 +322,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   });
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
+  Failpoint("cancel.committed");
   if (begun) pool_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
@@ -330,8 +336,11 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
     if (!found.ok()) return found.status();
     record = *std::move(found);
     if (!record || !HasEnded(record->state)) return absl::OkStatus();
-    return DeleteJob(database, record->sequence);
+    const absl::Status deleted = DeleteJob(database, record->sequence);
+    Failpoint("delete.in_transaction");
+    return deleted;
   });
+  Failpoint("delete.committed");
   if (!committed.ok()) return StoreFailed(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();

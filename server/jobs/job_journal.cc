@@ -9,6 +9,7 @@
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/job_table.h"
 
@@ -62,6 +63,7 @@ absl::Status JobJournal::ReadStoredBlocks(size_t point, const OnStoredBlock& on_
 uint64_t JobJournal::BlockMerged(MergedBlock block) {
   const uint64_t change =
       job_->AddBlock(static_cast<double>(block.result.samples), block.share_of_point);
+  Failpoint(block.restored ? "resume.block" : "block.merged");
   if (block.restored) return change;
   // Shared, because the store's closures are copyable; made into bytes only if it is written.
   auto result = std::make_shared<const BlockResult>(std::move(block.result));
@@ -77,8 +79,10 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
+  Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(),
                       {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
+  Failpoint("point.recorded");
   ClearDetails(result);
   job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
 }
@@ -88,6 +92,7 @@ void JobJournal::Ended(const absl::Status& outcome) {
   if (end.state == v1::EnsembleJob::FAILED) {
     LogError(absl::StrCat(JobName(job_->id()), " failed: ", outcome.message()));
   }
+  Failpoint("job.before_end");
   auto state = std::make_shared<JobState>();
   const auto change = [sequence = job_->sequence(), end, state](Database& database) {
     const absl::StatusOr<JobState> now = EndJob(database, sequence, end);
@@ -96,9 +101,11 @@ void JobJournal::Ended(const absl::Status& outcome) {
   };
   store_.RecordSoon(change, [job = job_, end, state, ended = on_ended_](const absl::Status& done) {
     if (!done.ok()) return;
+    Failpoint("job.ended");
     job->Enter(*state, end.time, *state == end.state ? end.error : "");
     if (ended) ended(*job);
   });
+  Failpoint("job.end_recorded");
 }
 
 void JobJournal::AwaitRoom() { store_.AwaitRoom(); }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/schema.h"
 
@@ -69,6 +70,7 @@ void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
   write.job = job;
   write.point = point;
   write.change = [=, serialize = std::move(serialize)](Database& database) {
+    Failpoint("block.before_insert");
     return InsertBlock(database, job, point, block, serialize());
   };
   Post(std::move(write));
@@ -136,6 +138,7 @@ void Store::Close() {
     std::lock_guard lock(reader_mutex_);
     reader_.reset();
   }
+  Failpoint("stop.before_checkpoint");
   writer_.reset();  // last: the last connection to close checkpoints
 }
 
@@ -204,7 +207,9 @@ absl::Status Store::CommitBatch(std::deque<Write>& batch) {
     status = write.change(*writer_);
     blocks += write.point >= 0 && !write.is_result ? 1 : 0;
   }
+  Failpoint("store.before_commit");
   if (status.ok()) status = writer_->Execute("COMMIT");
+  Failpoint("store.after_commit");
   if (!status.ok()) {
     writer_->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
     return status;

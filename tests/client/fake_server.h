@@ -32,7 +32,9 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
   int unavailable_creates = 0;  // so many attempts fail first
-  int page_size = 2;            // whatever was asked for
+  grpc::Status create_end;
+  bool answers_from_store = false;  // says Create of what it answers
+  int page_size = 2;                // whatever was asked for
 
   // What was asked so far.
   struct Requests {
@@ -117,6 +119,9 @@ class FakeServer {
 
 // INVALID_ARGUMENT with the details a server attaches: one violation.
 grpc::Status InvalidSpec(const std::string& field, const std::string& description);
+
+// RESOURCE_EXHAUSTED with the details a server attaches.
+grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
 
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);

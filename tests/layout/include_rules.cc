@@ -53,7 +53,7 @@ const std::vector<Rule>& Rules() {
        {"core/", "tests/core/", "tests/oracle/", "Eigen/", "absl/", "hwy/", "gtest/", "gmock/"},
        true},
       {"tests/oracle/", {"core/", "tests/oracle/", "Eigen/", "absl/", "hwy/"}, true},
-      {"tests/benchmark/", {"core/", "hwy/", "benchmark/"}, true},
+      {"tests/benchmark/", {"core/", "server/execution/", "hwy/", "benchmark/"}, true},
       {"tests/client/",
        {"client/", "tests/client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/",
         "CLI/", "gtest/", "gmock/"},

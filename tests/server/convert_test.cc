@@ -211,6 +211,7 @@ class Told : public PointExperiment {
   std::optional<BlockResult> RunBlock(uint64_t, std::stop_token) const override {
     return BlockResult();
   }
+  BlockResult EmptyResult() const override { return BlockResult(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return Summarize(merged).estimates[0];
   }

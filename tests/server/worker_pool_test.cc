@@ -355,6 +355,102 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   EXPECT_EQ(long_run->ends, 0);
 }
 
+// Whose blocks were begun, by the seed of their specification, in that order.
+class Begun {
+ public:
+  void Add(uint64_t seed) {
+    std::lock_guard lock(mutex_);
+    seeds_.push_back(seed);
+  }
+  std::vector<uint64_t> seeds() const {
+    std::lock_guard lock(mutex_);
+    return seeds_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<uint64_t> seeds_;
+};
+
+RunRequest RequestOf(const char* principal, int32_t priority, int64_t key, const EnsembleSpec& spec,
+                     std::shared_ptr<RecordingJournal> journal) {
+  RunRequest request = Request(key, spec, std::move(journal));
+  request.principal = principal;
+  request.priority = priority;
+  return request;
+}
+
+// Added while the only worker is held up by a first run, so that all of them are there when it goes
+// on.
+TEST(WorkerPool, AHigherPriorityIsServedFirst) {
+  Gate gate;
+  Begun begun;
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token stop) {
+      begun.Add(seed);
+      if (seed == 1) gate.Pass(stop);
+    })(spec, index, told);
+  });
+  std::vector<std::shared_ptr<RecordingJournal>> journals;
+  const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
+    journals.push_back(std::make_shared<RecordingJournal>());
+    pool.Add(RequestOf("a", priority, key, FakeSpec(2, blocks, seed), journals.back()));
+  };
+  add(1, 0, 1, 1);
+  gate.AwaitWaiting(1);
+  add(2, -7, 2, 10);
+  add(3, 0, 3, 10);
+  add(4, 7, 4, 10);
+  gate.Open();
+  for (const auto& journal : journals) EXPECT_TRUE(journal->AwaitEnd().ok());
+  // The first run's second point comes when its priority's turn has come.
+  std::vector<uint64_t> others = begun.seeds();
+  std::erase(others, 1u);
+  std::vector<uint64_t> expected;
+  for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
+  EXPECT_EQ(others, expected);
+}
+
+// The first has a point that takes long to be opened; nothing but that keeps it from working.
+TEST(WorkerPool, ARunWithNothingToHandOutLetsTheNextGoOn) {
+  Gate gate;
+  auto first = std::make_shared<RecordingJournal>();
+  auto next = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    if (spec.seed == 1) gate.Pass(stop);
+    return FakeExperiments()(spec, index, stop);
+  });
+  pool.Add(RequestOf("a", 100, 1, FakeSpec(1, 5, 1), first));
+  gate.AwaitWaiting(1);
+  pool.Add(RequestOf("a", -100, 2, FakeSpec(3, 50, 2), next));
+  EXPECT_TRUE(next->AwaitEnd().ok());
+  EXPECT_EQ(first->ends, 0);
+  gate.Open();
+  EXPECT_TRUE(first->AwaitEnd().ok());
+}
+
+TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
+  struct Owner {
+    const char* principal;
+    int32_t priority;
+  };
+  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
+                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
+                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
+    WorkerPool pool(3, FakeExperiments());
+    std::vector<std::shared_ptr<RecordingJournal>> journals;
+    for (size_t i = 0; i < owners.size(); ++i) {
+      journals.push_back(std::make_shared<RecordingJournal>());
+      pool.Add(RequestOf(owners[i].principal, owners[i].priority, static_cast<int64_t>(i) + 1,
+                         FakeSpec(5, 40, i), journals.back()));
+    }
+    for (size_t i = 0; i < owners.size(); ++i) {
+      EXPECT_TRUE(journals[i]->AwaitEnd().ok());
+      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
+    }
+  }
+}
+
 TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
   Gate gate;
   auto journal = std::make_shared<RecordingJournal>();
