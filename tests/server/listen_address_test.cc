@@ -55,7 +55,9 @@ TEST(ListenAddress, NonsenseIsRefusedWithTheFlagAndTheValue) {
                            "a b:1",
                            "a/b:1",
                            "host.:1",
-                           "[::1]%lo:1"}) {
+                           "[::1]%lo:1",
+                           "[::1%]:1",
+                           "[::1%a/b]:1"}) {
     const auto address = ParseListenAddress(text);
     EXPECT_TRUE(absl::IsInvalidArgument(address.status())) << text;
     EXPECT_THAT(std::string(address.status().message()),
