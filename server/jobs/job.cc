@@ -3,10 +3,41 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "google/rpc/status.pb.h"
 #include "server/jobs/job_message.h"
+#include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
+namespace {
+
+void LogEnd(const JobRecord& job, const std::string& state) {
+  // One without a beginning was over before it began.
+  const absl::Time begin = job.start_time.value_or(job.create_time);
+  google::rpc::Status error;
+  error.ParseFromString(job.error);
+  Log(job.error.empty() ? Severity::kInfo : Severity::kWarning, absl::StrCat("job ", state),
+      {{"job", JobName(job.id)},
+       {"principal", job.principal},
+       {"state", state},
+       {"points", static_cast<double>(job.points_done)},
+       {"samples", job.samples},
+       {"processor_seconds", job.work},
+       {"seconds", absl::ToDoubleSeconds(job.end_time.value_or(begin) - begin)},
+       {"error", error.message()}});
+}
+
+void LogState(const JobRecord& job) {
+  const std::string state = absl::AsciiStrToLower(StateName(job.state));
+  if (HasEnded(job.state)) return LogEnd(job, state);
+  Log(Severity::kInfo, absl::StrCat("job ", state),
+      {{"job", JobName(job.id)}, {"principal", job.principal}, {"state", state}});
+}
+
+}  // namespace
 
 Job::Job(JobRecord record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
@@ -61,6 +92,7 @@ int64_t Job::points_computed() const {
 }
 
 bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
+  JobRecord record;
   {
     std::lock_guard lock(mutex_);
     if (!MayFollow(record_.state, state)) return false;
@@ -70,7 +102,9 @@ bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
     if (HasEnded(state)) record_.end_time = now;
     last_state_change_ = last_change_ + 1;
     ++last_change_;
+    record = record_;
   }
+  LogState(record);
   if (on_state_change_) on_state_change_();
   return true;
 }

@@ -176,11 +176,18 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
   request.principal = job->principal();
   request.priority = job->Record().priority;
-  request.journal = std::make_shared<JobJournal>(std::move(job), store_, [this](const Job& ended) {
-    std::lock_guard lock(mutex_);
-    active_.erase(ended.id());
-  });
+  request.journal = std::make_shared<JobJournal>(std::move(job), store_,
+                                                 [this](const Job& ended) { Forget(ended); });
   pool_.Add(std::move(request));
+}
+
+void JobBook::Forget(const Job& ended) {
+  const JobState state = ended.state();
+  ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
+     : state == v1::EnsembleJob::FAILED  ? failed_
+                                         : cancelled_);
+  std::lock_guard lock(mutex_);
+  active_.erase(ended.id());
 }
 
 // ---- the methods ----
@@ -437,6 +444,29 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
 size_t JobBook::active_jobs() const {
   std::lock_guard lock(mutex_);
   return active_.size();
+}
+
+std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
+  std::vector<std::shared_ptr<Job>> active;
+  {
+    std::lock_guard lock(mutex_);
+    active.reserve(active_.size());
+    for (const auto& [id, job] : active_) active.push_back(job);
+  }
+  std::map<std::string, ActiveJobs> by_principal;
+  for (const std::shared_ptr<Job>& job : active) {
+    const JobState state = job->state();
+    if (HasEnded(state)) continue;  // it is leaving just now
+    ActiveJobs& jobs = by_principal[job->principal()];
+    ++(state == v1::EnsembleJob::QUEUED    ? jobs.queued
+       : state == v1::EnsembleJob::RUNNING ? jobs.running
+                                           : jobs.cancelling);
+  }
+  return by_principal;
+}
+
+EndedJobs JobBook::ended_jobs() const {
+  return {.succeeded = succeeded_, .failed = failed_, .cancelled = cancelled_};
 }
 
 }  // namespace ballpiston::server

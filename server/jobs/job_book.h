@@ -7,6 +7,7 @@
 #ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -55,6 +56,20 @@ struct ResultsPage {
   bool more = false;
 };
 
+// Active jobs, by state.
+struct ActiveJobs {
+  int64_t queued = 0;
+  int64_t running = 0;
+  int64_t cancelling = 0;
+};
+
+// Jobs that ended in this book's life, by state.
+struct EndedJobs {
+  uint64_t succeeded = 0;
+  uint64_t failed = 0;
+  uint64_t cancelled = 0;
+};
+
 class JobBook {
  public:
   // The store has to outlive this. `on_state_change` is called after each change of state.
@@ -101,6 +116,9 @@ class JobBook {
                                                            int64_t after, size_t limit);
 
   size_t active_jobs() const;
+  std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
+  EndedJobs ended_jobs() const;
+  PoolCounts pool_counts() const { return pool_.Counts(); }
 
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
@@ -111,6 +129,7 @@ class JobBook {
   std::shared_ptr<Job> Register(JobRecord record);
   // Key and journal of the request are set here.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
+  void Forget(const Job& ended);
   // Also null if the caller may not see it.
   std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
   // The active job; null if it has ended.
@@ -122,6 +141,9 @@ class JobBook {
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
+  std::atomic<uint64_t> succeeded_ = 0;
+  std::atomic<uint64_t> failed_ = 0;
+  std::atomic<uint64_t> cancelled_ = 0;
   WorkerPool pool_;                                     // last: its threads use what is above
 };
 

@@ -3,14 +3,11 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
-#include "server/observability/log.h"
 #include "server/store/job_table.h"
 
 namespace ballpiston::server {
@@ -94,9 +91,6 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
 
 void JobJournal::Ended(const absl::Status& outcome) {
   const JobEnd end = EndOf(*job_, outcome);
-  if (end.state == v1::EnsembleJob::FAILED) {
-    LogError(absl::StrCat(JobName(job_->id()), " failed: ", outcome.message()));
-  }
   Failpoint("job.before_end");
   auto state = std::make_shared<JobState>();
   const auto change = [sequence = job_->sequence(), end, state](Database& database) {

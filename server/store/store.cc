@@ -158,6 +158,16 @@ int64_t Store::blocks_written() const {
   return blocks_written_;
 }
 
+int64_t Store::pending_writes() const {
+  std::lock_guard lock(mutex_);
+  return static_cast<int64_t>(pending_.size() + in_batch_);
+}
+
+bool Store::failing() const {
+  std::lock_guard lock(mutex_);
+  return failing_;
+}
+
 void Store::WriteUntilClosed() {
   while (true) {
     std::deque<Write> batch = AwaitBatch();

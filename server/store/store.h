@@ -81,6 +81,9 @@ class Store {
 
   int64_t commits() const;  // so far; for tests and metrics
   int64_t blocks_written() const;
+  int64_t pending_writes() const;  // now
+  // The disk failed when something was last written, and has not worked since.
+  bool failing() const;
 
  private:
   using Clock = std::chrono::steady_clock;
