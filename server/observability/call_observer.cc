@@ -1,5 +1,6 @@
 #include "server/observability/call_observer.h"
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -97,7 +98,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   void StatusOf(InterceptorBatchMethods& batch) {
-    if (std::exchange(ended_, true)) return;
+    if (ended_.exchange(true)) return;
     const grpc::Status status = batch.GetSendStatus();
     const auto code = static_cast<absl::StatusCode>(status.error_code());
     const double seconds = Seconds();
@@ -120,7 +121,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   const std::string path_;
   MethodCounts& counts_;
   const Clock::time_point begin_;
-  bool ended_ = false;
+  std::atomic<bool> ended_ = false;
 };
 
 class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
