@@ -33,9 +33,9 @@ stability: build/release/.configured ## Show where methods fail and which do; wr
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 	@ctest --preset asan -j$(TEST_JOBS)
 
-# gRPC is not instrumented: what it does on its own is not judged.
+# gRPC is not instrumented: what it does on its own is not judged (tests/sanitizer).
 tsan: build-tsan ## Run the fast tests under the thread sanitizer
-	@TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS" ctest --preset tsan -j$(TEST_JOBS)
+	@ctest --preset tsan -j$(TEST_JOBS)
 
 fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS a target
 	@scripts/setup.sh clang libclang-rt-14-dev

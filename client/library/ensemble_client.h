@@ -33,7 +33,7 @@ struct CreateOptions {
   // A UUID (request_id.h), for a caller that may ask again: asked twice with one id, the server
   // answers with the job made first. Empty: one of its own for each call of Create; the channel's
   // retries carry it, so that a job is not made twice either way.
-  std::string request_id;
+  std::string request_id = {};
   bool fresh = false;    // computes, even if the server has the answer in its store
   int32_t priority = 0;  // among one's own jobs the higher goes first; -100 to 100
 };

@@ -90,7 +90,8 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   if (run == runs_.end()) return changed;
   std::vector<std::pair<uint64_t, size_t>> newest;
   for (const auto& [index, point] : run->second->open_points()) {
-    if (point->version > version) newest.emplace_back(point->version, index);
+    const bool finished = point->merge.finished();  // about to be told as such
+    if (point->version > version && !finished) newest.emplace_back(point->version, index);
   }
   std::sort(newest.rbegin(), newest.rend());
   if (newest.size() > limit) newest.resize(limit);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -23,6 +22,9 @@
 namespace ballpiston::server {
 namespace {
 
+// So much of finished points is read at once, and a last point more.
+constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
+
 // What the disk refused to take.
 absl::Status StoreFailed(const absl::Status& status) {
   return status.ok() ? status : WithReason(status, "STORE_FAILED");
@@ -36,31 +38,20 @@ absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Pri
   return found;
 }
 
-struct FinishedPoints {
-  std::vector<bool> finished;
+// What an earlier process finished of a job.
+struct StoredPoints {
+  std::vector<bool> finished;  // by point of the grid
   int64_t count = 0;
+  int64_t last = 0;  // the number of the last of them
   double samples = 0;
-  std::vector<Job::FinishedPoint> recent;
 };
 
-absl::Status ReadRecent(Database& database, int64_t sequence, int64_t first,
-                        std::vector<Job::FinishedPoint>& recent) {
-  absl::Status parsed;
-  const absl::Status read = ReadResults(database, sequence, first, [&](PointRow row) {
-    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
-    parsed = result.status();
-    if (!parsed.ok()) return false;
-    ClearDetails(*result);
-    recent.push_back(std::make_shared<const v1::PointResult>(*std::move(result)));
-    return true;
-  });
-  return read.ok() ? parsed : read;
-}
-
-absl::Status ReadFinishedPoints(Database& database, const JobRecord& record,
-                                FinishedPoints& points) {
+absl::Status ReadStoredPoints(Database& database, const JobRecord& record, StoredPoints& points) {
+  const auto last = LastResultNumber(database, record.sequence);
+  if (!last.ok()) return last.status();
   const auto rows = ListFinishedPoints(database, record.sequence);
   if (!rows.ok()) return rows.status();
+  points.last = *last;
   points.finished.assign(static_cast<size_t>(record.points), false);
   for (const PointRow& row : *rows) {
     if (row.point < 0 || row.point >= record.points) continue;
@@ -68,9 +59,7 @@ absl::Status ReadFinishedPoints(Database& database, const JobRecord& record,
     points.samples += row.samples;
     ++points.count;
   }
-  if (rows->empty()) return absl::OkStatus();
-  const size_t first = rows->size() - std::min(rows->size(), kRecentPoints);
-  return ReadRecent(database, record.sequence, (*rows)[first].point, points.recent);
+  return absl::OkStatus();
 }
 
 // The first finished point that an earlier process had to leave short of the tolerance, if any.
@@ -147,26 +136,26 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
 
 // It ends as a run that had nothing more to do would.
 absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status& why) {
-  FinishedPoints points;
+  StoredPoints points;
   const absl::Status read =
-      store_.Read([&](Database& database) { return ReadFinishedPoints(database, record, points); });
+      store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
-  job->AddRestoredPoints(points.count, points.samples, {});
+  job->AddRestoredPoints(points.count, points.samples, points.last);
   JobJournal(job, store_, nullptr).Ended(why);
   return store_.Flush();
 }
 
 absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
-  FinishedPoints points;
+  StoredPoints points;
   std::optional<Shortfall> shortfall;
   const absl::Status read = store_.Read([&](Database& database) {
-    const absl::Status finished = ReadFinishedPoints(database, record, points);
+    const absl::Status finished = ReadStoredPoints(database, record, points);
     return finished.ok() ? ReadShortfall(database, record, spec, shortfall) : finished;
   });
   if (!read.ok()) return read;
   std::shared_ptr<Job> job = Register(std::move(record));
-  job->AddRestoredPoints(points.count, points.samples, std::move(points.recent));
+  job->AddRestoredPoints(points.count, points.samples, points.last);
   RunRequest request;
   request.spec = std::move(spec);
   request.finished = std::move(points.finished);
@@ -393,24 +382,62 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller
   return ActiveOrNull(caller, id);
 }
 
-std::vector<v1::PointResult> JobBook::PointsChangedSince(const Job& job, uint64_t number,
-                                                         size_t limit) const {
-  std::vector<std::pair<uint64_t, v1::PointResult>> changed;
-  for (const LivePoint& point : pool_.ChangedSince(job.sequence(), number, limit)) {
-    changed.emplace_back(point.version, PointResultOf(point.index, *point.experiment, point.merged,
-                                                      Details::kLeftOut));
+absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const std::string& id) {
+  absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
+  if (!active.ok()) return active.status();
+  if (const std::shared_ptr<Job>& job = *active) {
+    return WatchedJob{job, job->sequence(), job->engine_version(), job->last_finished(), {}};
   }
-  for (const Job::Change& change : job.FinishedSince(number, limit)) {
-    changed.emplace_back(change.number, *change.point);
+  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+  if (!record.ok()) return record.status();
+  absl::StatusOr<int64_t> last;
+  const absl::Status read = store_.Read([&](Database& database) {
+    last = LastResultNumber(database, record->sequence);
+    return last.status();
+  });
+  if (!read.ok()) return StoreFailed(read);
+  return WatchedJob{nullptr, record->sequence, record->engine_version, *last,
+                    JobMessage(*record).progress()};
+}
+
+std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                                     size_t limit) const {
+  return job.snapshot().Get(job.last_change(), max_age, [&] {
+    JobSnapshot snapshot;
+    snapshot.change = job.last_change();  // before the points: they may be newer
+    snapshot.finished = job.last_finished();
+    for (const LivePoint& point : pool_.ChangedSince(job.sequence(), 0, limit)) {
+      snapshot.points.push_back({point.version, PointResultOf(point.index, *point.experiment,
+                                                              point.merged, Details::kLeftOut)});
+    }
+    return snapshot;
+  });
+}
+
+absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,
+                                                                  const Job* active, int64_t after,
+                                                                  size_t limit) {
+  if (active != nullptr) {
+    if (auto recent = active->FinishedAfter(after, limit)) return *std::move(recent);
   }
-  const auto newer = [](const auto& a, const auto& b) { return a.first > b.first; };
-  std::stable_sort(changed.begin(), changed.end(), newer);
-  std::vector<v1::PointResult> points;
-  std::set<int32_t> told;  // a point that is finished just now may be there twice
-  for (auto& [change, point] : changed) {
-    if (points.size() == limit) break;
-    if (told.insert(point.index()).second) points.push_back(std::move(point));
-  }
+  std::vector<FinishedPoint> points;
+  size_t bytes = 0;
+  absl::Status parsed;
+  const auto take = [&](int64_t number, const PointRow& row) {
+    // One that the job does not know of yet would make a token that it does not know either.
+    if (active != nullptr && number > active->last_finished()) return false;
+    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    parsed = result.status();
+    if (!parsed.ok()) return false;
+    ClearDetails(*result);
+    bytes += result->ByteSizeLong();
+    points.push_back({number, std::make_shared<const v1::PointResult>(*std::move(result))});
+    return points.size() < limit && bytes < kMaxBytesOfPoints;
+  };
+  const absl::Status read = store_.Read(
+      [&](Database& database) { return ReadResultsStoredAfter(database, sequence, after, take); });
+  if (!read.ok()) return StoreFailed(read);
+  if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return points;
 }
 

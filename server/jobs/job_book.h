@@ -8,6 +8,7 @@
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,6 +33,15 @@ namespace ballpiston::server {
 struct ListedJob {
   int64_t sequence = 0;
   v1::EnsembleJob job;
+};
+
+// What a watch needs of a job.
+struct WatchedJob {
+  std::shared_ptr<Job> active;  // null if it has ended
+  int64_t sequence = 0;
+  std::string engine_version;
+  int64_t last_finished = 0;  // the number of its last finished point
+  v1::JobProgress progress;
 };
 
 struct ResultsQuery {
@@ -94,12 +104,16 @@ class JobBook {
   absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
                                       const ResultsQuery& query);
 
-  // For a watch: the active job; null if it has ended.
-  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
+  absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
-  // The job's points that changed after change `number`, newest first, without histograms.
-  std::vector<v1::PointResult> PointsChangedSince(const Job& job, uint64_t number,
-                                                  size_t limit) const;
+  // The job's unfinished points, the newest `limit`, as they are or were at most `max_age` ago.
+  std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                              size_t limit) const;
+
+  // The finished points after number `after` of an active or (`active` null) ended job, in order,
+  // at most `limit`; fewer if they are large. None: there is no more. May read the store.
+  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
+                                                           int64_t after, size_t limit);
 
   size_t active_jobs() const;
   std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
@@ -118,6 +132,8 @@ class JobBook {
   void Forget(const Job& ended);
   // Also null if the caller may not see it.
   std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
+  // The active job; null if it has ended.
+  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
 
   Store& store_;

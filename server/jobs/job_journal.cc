@@ -17,7 +17,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = record.points_done;
+  end.points_done = job.points_computed();
   end.samples = record.samples;
   end.work = record.work;
   if (outcome.ok()) {
@@ -39,9 +39,11 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
-  if (!job_->Enter(v1::EnsembleJob::RUNNING, now)) return;
-  store_.Record([sequence = job_->sequence(), now](Database& database) {
+  const auto begin = [sequence = job_->sequence(), now](Database& database) {
     return BeginJob(database, sequence, now);
+  };
+  store_.Record(begin, [job = job_, now](const absl::Status& done) {
+    if (done.ok()) job->Enter(v1::EnsembleJob::RUNNING, now);
   });
 }
 
@@ -76,12 +78,15 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
-  Failpoint("point.before_record");
-  store_.RecordResult(job_->sequence(),
-                      {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
-  Failpoint("point.recorded");
+  PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);
-  job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
+  job_->AddComputedPoint();
+  const auto told = std::make_shared<const v1::PointResult>(std::move(result));
+  Failpoint("point.before_record");
+  store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
+    job->AddFinishedPoint({number, told});
+  });
+  Failpoint("point.recorded");
 }
 
 void JobJournal::Ended(const absl::Status& outcome) {

@@ -76,13 +76,19 @@ void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
   Post(std::move(write));
 }
 
-void Store::RecordResult(int64_t job, PointRow row) {
+void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
+  const auto number = std::make_shared<int64_t>(0);
   Write write;
   write.job = job;
   write.point = row.point;
   write.is_result = true;
-  write.change = [job, row = std::move(row)](Database& database) {
-    return InsertResult(database, job, row);
+  write.change = [job, row = std::move(row), number](Database& database) {
+    const absl::StatusOr<int64_t> inserted = InsertResult(database, job, row);
+    *number = inserted.value_or(0);
+    return inserted.status();
+  };
+  write.done = [number, stored = std::move(stored)](const absl::Status& status) {
+    if (status.ok() && stored && *number > 0) stored(*number);
   };
   Post(std::move(write));
 }

@@ -78,8 +78,10 @@ TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {
 }
 
 TEST_F(PrivateServerTest, ManyClientsAtOnceEndUpOnOneServer) {
+  std::vector<std::string> words = kRun;
+  words.push_back("--fresh");  // each wants an answer of its own
   std::vector<std::unique_ptr<Process>> clients;
-  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(Client(kRun)));
+  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(Client(words)));
   for (const auto& client : clients) {
     const ProcessResult result = client->Wait();
     EXPECT_EQ(result.exit_code, 0) << result.err;

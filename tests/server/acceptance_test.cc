@@ -255,7 +255,9 @@ TEST_F(AcceptanceTest, AnotherEnginesAnswerIsNotGiven) {
     const auto insert = [&](Database& database) {
       const absl::Status inserted = InsertJob(database, record);
       if (!inserted.ok()) return inserted;
-      return EndJob(database, record.sequence, {.time = absl::Now()}).status();
+      JobEnd end;
+      end.time = absl::Now();
+      return EndJob(database, record.sequence, end).status();
     };
     ASSERT_TRUE(store_->Commit(insert).ok());
   };

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <ctime>
 #include <new>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -98,6 +99,21 @@ TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   ASSERT_TRUE(journal->AwaitEnd().ok());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed, 0);
+}
+
+TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  journal->stored[0].emplace(0, *experiment->RunBlock(0, {}));
+  journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
+  journal->stored[0].at(1).moments.resize(1000);
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  EXPECT_TRUE(absl::IsDataLoss(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
 }
 
 TEST(WorkerPool, FinishedPointsAreLeftAlone) {
@@ -353,6 +369,41 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   gate.Open();
   EXPECT_TRUE(short_run->AwaitEnd().ok());
   EXPECT_EQ(long_run->ends, 0);
+}
+
+// What a worker does with a task. Block 5 of each point was stored before.
+void Do(const RunTask& task, const EnsembleSpec& spec, Run& run) {
+  if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
+    auto open = std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {}));
+    open->merge.Add(5, *open->experiment->RunBlock(5, {}), nullptr);
+    run.PointOpened(opening->point, std::move(open));
+  } else {
+    const auto& block = std::get<BlockTask>(task);
+    OpenPoint* open = run.FindOpen(block.point);
+    open->merge.Add(block.block, *block.experiment->RunBlock(block.block, {}), nullptr);
+    if (open->merge.finished()) run.PointClosed(block.point);
+  }
+  run.TaskDone(task);
+}
+
+// So that of 10,000 runs no more are asked in vain than there are workers.
+TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
+  const EnsembleSpec spec = FakeSpec(4, 10);
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::minstd_rand random(seed);
+    Run run(Request(1, spec, nullptr), 3);
+    std::vector<RunTask> out;
+    while (!run.over()) {
+      std::optional<RunTask> task = run.NextTask();
+      if (task) out.push_back(*std::move(task));
+      ASSERT_FALSE(out.empty());
+      if (task && random() % 2 == 0) continue;
+      std::swap(out[random() % out.size()], out.back());
+      Do(out.back(), spec, run);
+      out.pop_back();
+    }
+    EXPECT_TRUE(out.empty());
+  }
 }
 
 // Whose blocks were begun, by the seed of their specification, in that order.

@@ -35,7 +35,7 @@ Clients ConnectedTo(ServerProcess& server) {
 std::string Insist(const client::EnsembleClient& client, const v1::EnsembleSpec& spec,
                    const std::string& request_id) {
   while (true) {
-    const auto job = client.Create(spec, request_id);
+    const auto job = client.Create(spec, {.request_id = request_id});
     if (job.ok()) return job->name();
     if (!absl::IsUnavailable(job.status())) return job.status().ToString();
     std::this_thread::sleep_for(kPauseBeforeRepeating);
@@ -85,7 +85,7 @@ class BatchOfCreates : public testing::Test {
     EXPECT_EQ(Insist(client, spec, id), name);
     v1::EnsembleSpec other = spec;
     other.set_seed(spec.seed() + 1);
-    const auto refused = client.Create(other, id);
+    const auto refused = client.Create(other, {.request_id = id});
     EXPECT_TRUE(absl::IsInvalidArgument(refused.status())) << refused.status();
     EXPECT_EQ(client::ErrorReason(refused.status()), "REQUEST_ID_REUSED");
     const auto jobs = client.List();
