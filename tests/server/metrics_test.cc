@@ -59,9 +59,9 @@ class MetricsTest : public testing::Test {
   std::string Address() { return server_->server().metrics_address(); }
   std::string Page() { return HttpGet(Address(), "/metrics"); }
   std::map<std::string, double> Metrics() { return Samples(Page()); }
-  // A job is told to have ended just before it is counted.
+  // A job or a stream is told to have ended just before it is counted.
   void Await(const std::string& metric, double value) {
-    while (Metrics().at(metric) < value) std::this_thread::yield();
+    while (Metrics().at(metric) != value) std::this_thread::yield();
   }
 
   TemporaryFolder folder_;
@@ -110,7 +110,7 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   const auto watch = server.ensemble().WatchEnsembleJob(&context, request);
   v1::WatchEnsembleJobResponse message;
   ASSERT_TRUE(watch->Read(&message));
-  auto metrics = Metrics();
+  const auto metrics = Metrics();
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_queue_length"), 1);
@@ -120,9 +120,8 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   while (watch->Read(&message)) {
   }
   server.AwaitEnd(second);
-  metrics = Metrics();
-  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 0);
-  EXPECT_EQ(metrics.at("ballpiston_streams"), 0);
+  Await("ballpiston_streams", 0);
+  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
 }
 
 TEST_F(MetricsTest, RefusalsAreCountedByReason) {
