@@ -4,6 +4,7 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -58,6 +59,10 @@ class MetricsTest : public testing::Test {
   std::string Address() { return server_->server().metrics_address(); }
   std::string Page() { return HttpGet(Address(), "/metrics"); }
   std::map<std::string, double> Metrics() { return Samples(Page()); }
+  // A job or a stream is told to have ended just before it is counted.
+  void Await(const std::string& metric, double value) {
+    while (Metrics().at(metric) != value) std::this_thread::yield();
+  }
 
   TemporaryFolder folder_;
   Gate gate_;
@@ -77,6 +82,7 @@ TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
 TEST_F(MetricsTest, CountersMoveWithCallsJobsAndBlocks) {
   RunningServer& server = Start();
   for (int i = 0; i < 3; ++i) server.AwaitEnd(server.Submit(Equilibrium(2, 50)));
+  Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
   const auto metrics = Metrics();
   EXPECT_EQ(metrics.at(kCreated), 3);
   EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
@@ -104,7 +110,7 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   const auto watch = server.ensemble().WatchEnsembleJob(&context, request);
   v1::WatchEnsembleJobResponse message;
   ASSERT_TRUE(watch->Read(&message));
-  auto metrics = Metrics();
+  const auto metrics = Metrics();
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_queue_length"), 1);
@@ -114,9 +120,8 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   while (watch->Read(&message)) {
   }
   server.AwaitEnd(second);
-  metrics = Metrics();
-  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 0);
-  EXPECT_EQ(metrics.at("ballpiston_streams"), 0);
+  Await("ballpiston_streams", 0);
+  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
 }
 
 TEST_F(MetricsTest, RefusalsAreCountedByReason) {
