@@ -20,11 +20,6 @@
 namespace ballpiston::server {
 namespace {
 
-// What the disk refused to take.
-absl::Status StoreFailed(const absl::Status& status) {
-  return status.ok() ? status : WithReason(status, "STORE_FAILED");
-}
-
 struct FinishedPoints {
   std::vector<bool> finished;
   int64_t count = 0;
@@ -220,7 +215,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const v1::EnsembleSpec& message,
     request.finished.assign(static_cast<size_t>(record.points), false);
     StartRun(job, std::move(request));
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!earlier) return job->Message();
   if (earlier->spec != record.spec) return RequestIdReused(request_id);
   return Get(earlier->id);
@@ -239,7 +234,7 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const std::string& id) {
     if (found.ok()) record = *std::move(found);
     return found.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!record) return JobNotFound(JobName(id));
   return *std::move(record);
 }
@@ -263,7 +258,7 @@ absl::StatusOr<std::vector<ListedJob>> JobBook::List(int64_t before, int limit) 
     records = ListJobs(database, before, limit);
     return records.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   std::vector<ListedJob> listed;
   for (const JobRecord& record : *records) {
     const auto job = active.find(record.id);
@@ -290,7 +285,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const std::string& id,
     const std::shared_ptr<Job> job = ActiveOrNull(id);
     if (done.ok() && begun && job) job->Enter(v1::EnsembleJob::CANCELLING, absl::Now());
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   if (begun) pool_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
@@ -307,7 +302,7 @@ absl::Status JobBook::Delete(const std::string& id) {
     if (!record || !HasEnded(record->state)) return absl::OkStatus();
     return DeleteJob(database, record->sequence);
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();
   const std::shared_ptr<Job> job = ActiveOrNull(id);
@@ -334,7 +329,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const std::string& id, const Result
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadResults(database, record->sequence, query.first_point, take);
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return page;
 }
@@ -346,7 +341,7 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const std::string& id) 
   if (HasEnded(record->state)) return nullptr;
   // Committed a moment ago: it is in the book when the store has gone on to the next commit.
   const absl::Status settled = store_.Flush();
-  if (!settled.ok()) return StoreFailed(settled);
+  if (!settled.ok()) return StoreFailure(settled);
   return ActiveOrNull(id);
 }
 
