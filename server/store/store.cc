@@ -14,6 +14,9 @@
 namespace ballpiston::server {
 namespace {
 
+// Of records, on a full disk. More than one: what does not fit leaves some room for requests.
+constexpr size_t kSmallestGroup = 32;
+
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
 
 std::string Text(const absl::Status& status) {
@@ -111,8 +114,8 @@ void Store::Post(Write write) {
   {
     std::lock_guard lock(mutex_);
     if (!closing_) {
-      if (failing_ && write.lasting) write.urgent = false;
       urgent_ += write.urgent ? 1 : 0;
+      requests_ += write.lasting ? 0 : 1;
       ordered_ += write.ordered ? 1 : 0;
       bytes_ += write.bytes;
       pending_.push_back(std::move(write));
@@ -197,9 +200,9 @@ void Store::WriteUntilClosed() {
 }
 
 bool Store::BatchIsDue(Clock::time_point now) const {
-  if (closing_ || urgent_ > 0) return true;
+  if (closing_ || requests_ > 0) return true;
   if (failing_) return !stop_waiting_ && retry_time_ <= now;
-  return !pending_.empty() && pending_.front().due <= now;
+  return urgent_ > 0 || (!pending_.empty() && pending_.front().due <= now);
 }
 
 // None only when the store is closed and nothing is left to write.
@@ -223,7 +226,8 @@ Store::Batch Store::TakePending(bool retry) {
   Batch batch;
   batch.whole = !failing_ || retry || ordered_ > 0;
   batch.writes = batch.whole ? std::exchange(pending_, {}) : TakeRequests();
-  urgent_ = 0;
+  urgent_ -= batch.whole ? urgent_ : requests_;
+  requests_ = 0;
   ordered_ = 0;
   in_batch_ = batch.writes.size();
   return batch;
@@ -261,8 +265,8 @@ absl::Status Store::CommitBatch(Writes& batch) {
       first = last;
     } else if (absl::IsResourceExhausted(status)) {
       WriteLogBack();
-      if (group == 1) break;
-      group = (group + 1) / 2;
+      if (group <= kSmallestGroup) break;
+      group = std::max(kSmallestGroup, group / 2);
     }
   } while (first < batch.size() && (status.ok() || absl::IsResourceExhausted(status)));
   if (absl::IsResourceExhausted(status)) return CommitRequestsAlone(batch, first, status);
@@ -287,7 +291,9 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
     if (status.ok()) break;
     writer_->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
     if (!culprit || IsOfTheDisk(status)) return status;
-    batch[*culprit].outcome = status;
+    Write& refused = batch[*culprit];
+    refused.outcome = status;
+    if (refused.lasting) LogError(absl::StrCat("a record is not kept: ", Text(status)));
   }
   std::lock_guard lock(mutex_);
   ++commits_;
@@ -329,44 +335,40 @@ void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").
 // ---- what became of them ----
 
 void Store::Settle(Batch batch, const absl::Status& status) {
+  if (batch.whole) NoteHealth(status);  // before anybody hears of it
   Writes again;
+  Writes settled;
   size_t freed = 0;
   for (Write& write : batch.writes) {
     const bool waits = !write.outcome && write.lasting && !write.superseded;
-    if (waits) {
-      again.push_back(std::move(write));
-      continue;
-    }
-    freed += write.bytes;
-    const absl::Status outcome = write.outcome.value_or(status);
-    if (!outcome.ok() && write.lasting && write.outcome) {
-      LogError(absl::StrCat("a record is not kept: ", Text(outcome)));
-    }
-    if (write.done) write.done(outcome);
+    if (!waits) freed += write.bytes;
+    (waits ? again : settled).push_back(std::move(write));
   }
-  {
-    std::lock_guard lock(mutex_);
-    bytes_ -= freed;
+  Requeue(std::move(again), freed);
+  for (const Write& write : settled) {
+    if (write.done) write.done(write.outcome.value_or(status));
   }
-  Requeue(std::move(again), batch.whole, status);
 }
 
-void Store::Requeue(Writes again, bool whole, const absl::Status& status) {
+void Store::Requeue(Writes again, size_t freed) {
   std::lock_guard lock(mutex_);
   in_batch_ = 0;
-  if (whole) NoteHealth(status);
-  if (!closing_ && !stop_waiting_) {
-    for (Write& write : again) write.urgent = false;  // the wait before the next attempt decides
+  bytes_ -= freed;
+  const bool dropped = closing_ || stop_waiting_;
+  for (const Write& write : again) {
+    if (dropped) bytes_ -= write.bytes;
+    if (!dropped && write.urgent) ++urgent_;
+  }
+  if (!dropped) {
     pending_.insert(pending_.begin(), std::make_move_iterator(again.begin()),
                     std::make_move_iterator(again.end()));
-  } else {
-    for (const Write& write : again) bytes_ -= write.bytes;
   }
   written_.notify_all();
 }
 
-// The lock is held. Told once, and again only if it fails in another way.
+// Told once, and again only if it fails in another way.
 void Store::NoteHealth(const absl::Status& status) {
+  std::lock_guard lock(mutex_);
   if (!status.ok()) {
     ++failures_;
     retry_time_ = Clock::now() + options_.retry;

@@ -19,7 +19,8 @@
 //     comes from AwaitRoom's bounds is all the memory that they take.
 //   - Of a full disk: the log is written back, so that its place on the disk can be used again;
 //     records are written in ever smaller groups; requests, which may free room, are tried alone,
-//     before records that were posted earlier.
+//     before records that were posted earlier. They succeed as long as the log has room for them,
+//     which it has not when the file, too, has no room to take back what is in the log.
 // A write that cannot succeed whatever the disk does (a broken constraint, too big) is refused
 // alone, and the others of its group are written.
 #ifndef BALLPISTON_SERVER_STORE_STORE_H_
@@ -150,7 +151,7 @@ class Store {
   void WriteLogBack();
 
   void Settle(Batch batch, const absl::Status& status);
-  void Requeue(Writes batch, bool whole, const absl::Status& status);
+  void Requeue(Writes again, size_t freed);
   void NoteHealth(const absl::Status& status);
 
   const Options options_;
@@ -164,9 +165,10 @@ class Store {
   std::condition_variable written_;
   Writes pending_;
   size_t in_batch_ = 0;
-  size_t bytes_ = 0;    // of pending_ and of the batch
-  size_t urgent_ = 0;   // among pending_
-  size_t ordered_ = 0;  // among pending_
+  size_t bytes_ = 0;     // of pending_ and of the batch
+  size_t urgent_ = 0;    // among pending_; requests are
+  size_t requests_ = 0;  // among pending_
+  size_t ordered_ = 0;   // among pending_
   bool failing_ = false;
   std::string failure_;  // the last one that was told
   Clock::time_point retry_time_;

@@ -54,6 +54,11 @@ void Turnstile::AdmitAll() {
   changed_.notify_all();
 }
 
+void Turnstile::AdmitNoMore() {
+  std::lock_guard lock(mutex_);
+  all_ = false;
+}
+
 void Turnstile::AwaitWaiting() {
   std::unique_lock lock(mutex_);
   AwaitWaiting(lock);

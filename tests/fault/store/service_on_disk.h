@@ -30,6 +30,7 @@ class Turnstile {
   // So many more blocks may pass; returns when they have, and the next one waits.
   void Admit(int blocks);
   void AdmitAll();
+  void AdmitNoMore();
   // Returns when a block waits.
   void AwaitWaiting();
 
