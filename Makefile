@@ -4,7 +4,7 @@ SHELL := /bin/bash
 TEST_JOBS ?= 2
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart ladder bench stability asan tsan format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability asan tsan fuzz format check-format tidy setup clean help
 
 build: build-release ## Build everything, optimised, in build/release (the default)
 
@@ -33,9 +33,14 @@ stability: build/release/.configured ## Show where methods fail and which do; wr
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 	@ctest --preset asan -j$(TEST_JOBS)
 
-# gRPC is not instrumented: what it does on its own is not judged.
+# gRPC is not instrumented: what it does on its own is not judged (tests/sanitizer).
 tsan: build-tsan ## Run the fast tests under the thread sanitizer
-	@TSAN_OPTIONS="ignore_noninstrumented_modules=1 $$TSAN_OPTIONS" ctest --preset tsan -j$(TEST_JOBS)
+	@ctest --preset tsan -j$(TEST_JOBS)
+
+fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS a target
+	@scripts/setup.sh clang libclang-rt-14-dev
+	@$(MAKE) build-fuzz
+	@scripts/fuzz.sh build/fuzz/bin
 
 format: ## Format all C++ and proto files
 	@scripts/format.sh
@@ -57,10 +62,10 @@ setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
 
 # `make build-PRESET` builds a preset of CMakePresets.json.
-PRESETS := release asan tsan
+PRESETS := release asan tsan fuzz
 .PHONY: $(PRESETS:%=build-%)
 $(PRESETS:%=build-%): build-%: build/%/.configured
-	@cmake --build build/$*
+	@cmake --build --preset $*
 
 $(PRESETS:%=build/%/.configured): build/%/.configured: CMakePresets.json | setup
 	@mkdir -p build/$*

@@ -51,7 +51,7 @@ ask() {
   local question=$1 plan job work error
   shift
   plan=$(planned "$@" --rho "$RHO" | tr '\n' ' ')
-  job=$("$programs/ballpiston" submit "$@" --rho "$RHO")
+  job=$("$programs/ballpiston" submit "$@" --rho "$RHO" --fresh)
   "$programs/ballpiston" watch "$job" --progress none
   error=$("$programs/ballpiston" result "$job" --format csv | measured_error)
   work=$("$programs/ballpiston" result "$job" --format json | number work | sed -n 1p)

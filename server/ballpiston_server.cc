@@ -1,17 +1,19 @@
 #include "server/ballpiston_server.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
+#include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/failpoint.h"
+#include "server/observability/metrics.h"
 
 namespace ballpiston::server {
 namespace {
@@ -21,6 +23,16 @@ constexpr int kRpcThreads = 8;
 // How often watches are looked at; their snapshots are further apart.
 constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
+constexpr char kStoreFile[] = "store.sqlite3";
+// How long health may go on to say that a store takes jobs when it does not.
+constexpr std::chrono::milliseconds kHealthInterval(500);
+
+Health::Services ServicesOfHealth() {
+  const std::string ensemble = v1::EnsembleService::service_full_name();
+  return {.all = {ensemble, v1::AnalyticService::service_full_name(),
+                  v1::MethodService::service_full_name(), v1::ServerService::service_full_name()},
+          .with_store = {ensemble}};
+}
 
 ServerOptions Completed(ServerOptions options) {
   if (!options.compare) options.compare = CoreComparer();
@@ -33,6 +45,11 @@ void AllowPings(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
+absl::Status CannotListen(const ListenAddress& address, const std::string& why) {
+  return absl::FailedPreconditionError(absl::StrCat(
+      "--listen=", address.Text(), ": cannot listen there (", why, "); choose another address"));
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
@@ -43,13 +60,17 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
   }
   const absl::StatusOr<ListenAddress> address = ParseListenAddress(options.listen);
   if (!address.ok()) return address.status();
+  auto security = ServerSecurity::Create(options.security, *address);
+  if (!security.ok()) return security.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
-      Store::Open(directory->FilePath("store.sqlite3"), options.store);
+      Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
-    std::unique_ptr<BallpistonServer> server(new BallpistonServer(
-        Completed(std::move(options)), *std::move(directory), *address, *std::move(store)));
+    std::unique_ptr<BallpistonServer> server(
+        new BallpistonServer(Completed(std::move(options)), *std::move(directory), *address,
+                             *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
+    if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
     return server;
@@ -60,54 +81,110 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
 }
 
 BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory directory,
-                                   ListenAddress address, std::unique_ptr<Store> store)
+                                   ListenAddress address, std::unique_ptr<ServerSecurity> security,
+                                   std::unique_ptr<Store> store)
     : options_(std::move(options)),
       directory_(std::move(directory)),
       address_(std::move(address)),
+      security_(std::move(security)),
       watches_(std::min(kLongestLook, options_.watch.snapshot)),
       store_(std::move(store)),
       ladder_(*store_, options_.workers),
-      book_(*store_, options_.workers,
+      book_(*store_, options_.limits, options_.workers,
             options_.factory ? options_.factory : ladder_.ChosenExperiments(),
             [this] { watches_.LookNow(); }),
       executor_(kRpcThreads),
       comparisons_(options_.compare),
-      context_{book_,     ladder_,   executor_,  watches_,      comparisons_,
-               activity_, draining_, RandomId(), options_.watch},
+      context_{security_->authenticator(),
+               options_.limits,
+               book_,
+               ladder_,
+               executor_,
+               watches_,
+               comparisons_,
+               activity_,
+               draining_,
+               RandomId(),
+               options_.watch,
+               *store_,
+               calls_,
+               absl::Now(),
+               directory_.FilePath(kStoreFile)},
       ensemble_(context_),
       analytic_(context_),
-      method_(context_) {}
+      method_(context_),
+      server_(context_) {}
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 
 absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  if (!address_.socket_path.empty()) {
-    const absl::Status cleared = ClearSocketPath(address_);
-    if (!cleared.ok()) return cleared;
-  }
   grpc::ServerBuilder builder;
-  int port = 0;
-  // gRPC would let two servers share a port, in silence.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   AllowPings(builder);
-  builder.AddListeningPort(address_.Text(), grpc::InsecureServerCredentials(), &port);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&method_);
+  builder.RegisterService(&server_);
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
+  interceptors.push_back(calls_.InterceptorFactory());
+  builder.experimental().SetInterceptorCreators(std::move(interceptors));
+  const absl::Status listening =
+      address_.socket_path.empty() ? ListenAtPort(builder) : ListenAtSocket(builder);
+  if (listening.ok()) StartHealth();
+  return listening;
+}
+
+absl::Status BallpistonServer::ListenAtPort(grpc::ServerBuilder& builder) {
+  // gRPC would let two servers share a port, in silence.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  int port = 0;
+  builder.AddListeningPort(address_.Text(), security_->Credentials(), &port);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("--listen=", address_.Text(), ": cannot listen there (",
-                     WhyNotListening(address_), "); choose another address"));
-  }
-  if (address_.socket_path.empty()) {
-    address_.port = port;
-  } else {
-    chmod(address_.socket_path.c_str(), 0600);
-  }
+  if (grpc_ == nullptr) return CannotListen(address_, WhyNotListening(address_));
+  address_.port = port;
   return absl::OkStatus();
+}
+
+// gRPC's own listener would not say who connects.
+absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
+  const absl::Status cleared = ClearSocketPath(address_);
+  if (!cleared.ok()) return cleared;
+  auto socket = SocketListener::Listen(address_, options_.socket_users);
+  if (!socket.ok()) return socket.status();
+  std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
+      builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+          security_->Credentials());
+  grpc_ = builder.BuildAndStart();
+  if (grpc_ == nullptr) return CannotListen(address_, "gRPC does not start");
+  socket_ = *std::move(socket);
+  socket_->Start([connections](int descriptor) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = descriptor;
+    connections->HandleNewConnection(&connection);
+  });
+  return absl::OkStatus();
+}
+
+void BallpistonServer::StartHealth() {
+  health_ = std::make_unique<Health>(
+      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing(); },
+      kHealthInterval);
+}
+
+absl::Status BallpistonServer::StartMetrics() {
+  if (options_.metrics_listen.empty()) return absl::OkStatus();
+  for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
+  auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
+    std::vector<prometheus::MetricFamily> metrics = CallMetrics(calls_.statistics().Read());
+    for (auto& family : ServerMetrics(TakeSnapshot(context_))) {
+      metrics.push_back(std::move(family));
+    }
+    return metrics;
+  });
+  if (endpoint.ok()) metrics_ = *std::move(endpoint);
+  return endpoint.status();
 }
 
 std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
@@ -120,14 +197,17 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
   draining_ = true;
-  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
+  if (health_ != nullptr) health_->Drain();
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
+  Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
+  if (socket_ != nullptr) socket_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
   watches_.Stop();
+  if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
   comparisons_.Stop();  // last: nothing waits for how soon it looks
 }

@@ -10,15 +10,23 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server.h"
+#include "grpcpp/server_builder.h"
 #include "server/api/services.h"
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
+#include "server/observability/call_observer.h"
+#include "server/observability/health.h"
+#include "server/observability/metrics_endpoint.h"
+#include "server/security/peer_user.h"
+#include "server/security/server_security.h"
+#include "server/security/socket_listener.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
 
@@ -27,10 +35,14 @@ namespace ballpiston::server {
 struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
+  SecurityOptions security;
+  std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
   int workers = 1;
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
+  Limits limits;
+  std::string metrics_listen;  // HOST:PORT on the loopback; empty: no metrics
   Store::Options store;
 };
 
@@ -46,6 +58,14 @@ class BallpistonServer {
   // The port that was chosen, if any was free to be.
   std::string address() const { return address_.Text(); }
 
+  const ServerSecurity& security() const { return *security_; }
+
+  // Reads the access file and the certificates again; calls and connections go on. Of what is wrong
+  // the old stays, and is named in the error. One thread at a time.
+  absl::Status Reload() { return security_->Reload(); }
+  // Of the metrics; empty if there are none.
+  std::string metrics_address() const { return metrics_ ? metrics_->address() : ""; }
+
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
 
@@ -56,16 +76,22 @@ class BallpistonServer {
 
  private:
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
-                   std::unique_ptr<Store> store);
+                   std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
 
   absl::Status Listen();
+  absl::Status ListenAtSocket(grpc::ServerBuilder& builder);
+  absl::Status ListenAtPort(grpc::ServerBuilder& builder);
+  absl::Status StartMetrics();
+  void StartHealth();
 
   const ServerOptions options_;
   DataDirectory directory_;  // first: its lock guards all that follows
   ListenAddress address_;
+  std::unique_ptr<ServerSecurity> security_;
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
+  CallObserver calls_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_;
@@ -76,7 +102,11 @@ class BallpistonServer {
   EnsembleService ensemble_;
   AnalyticService analytic_;
   MethodService method_;
+  ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
+  std::unique_ptr<SocketListener> socket_;    // none: gRPC listens itself, at a port
+  std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
+  std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };
 
 }  // namespace ballpiston::server

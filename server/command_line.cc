@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/flags/flag.h"
@@ -28,9 +30,11 @@ int DefaultWorkers() {
 
 }  // namespace
 
-ABSL_FLAG(std::string, listen, "",
-          "where to listen: unix:PATH, or HOST:PORT with a loopback host (127.0.0.0/8, [::1], "
-          "localhost; port 0 takes any); empty: the Unix socket `server.socket` in --data_dir");
+ABSL_FLAG(
+    std::string, listen, "",
+    "where to listen: unix:PATH, or HOST:PORT (port 0 takes any); a host that is not loopback "
+    "(127.0.0.0/8, [::1], localhost) needs --tls_certificate, --tls_key and --access_file; "
+    "empty: the Unix socket `server.socket` in --data_dir");
 ABSL_FLAG(std::string, data_dir, ballpiston::server::DataDirectory::Default(),
           "folder that keeps jobs and results, made if it does not exist; one server at a time");
 ABSL_FLAG(int32_t, workers, DefaultWorkers(), "threads that compute, 1 to 1024");
@@ -38,8 +42,29 @@ ABSL_FLAG(double, idle_exit_seconds, 0,
           "end when no job is active and no call was in progress for so long; 0: never");
 ABSL_FLAG(double, drain_seconds, 10,
           "after SIGTERM or SIGINT: time for calls in progress to end, 0 to 3600");
+ABSL_FLAG(std::string, access_file, "",
+          "who may come in; a line each: token sha256:HEX PRINCIPAL ROLE [EXPIRES], or certificate "
+          "COMMON_NAME PRINCIPAL ROLE [EXPIRES]; a ROLE is read, submit or admin; needs TLS; read "
+          "again on SIGHUP");
+ABSL_FLAG(std::string, new_token, "",
+          "PRINCIPAL:ROLE[:DAYS]: make a token, append it, hashed, to --access_file, print it and "
+          "end");
+ABSL_FLAG(std::string, tls_certificate, "",
+          "PEM file of the server's certificate, then those between it and its authority; read "
+          "again on SIGHUP, as the next two");
+ABSL_FLAG(std::string, tls_key, "", "PEM file of the certificate's key, closed to others");
+ABSL_FLAG(
+    std::string, tls_client_ca, "",
+    "PEM file of the authorities that sign clients' certificates; when given, a client without "
+    "one is not let in");
 ABSL_FLAG(double, watch_heartbeat_seconds, 10,
           "a watch of a job says that it lives after so long without news, 0.01 to 3600");
+ABSL_FLAG(
+    std::string, metrics_listen, "",
+    "where Prometheus collects, at /metrics: HOST:PORT with a loopback host (port 0 takes any, "
+    "and the log says which); empty: nowhere");
+ABSL_FLAG(std::string, log_format, "text", "of standard error: text, or json (an object a line)");
+ABSL_FLAG(std::string, log_level, "info", "the least severe lines written: info, warning, error");
 
 namespace ballpiston::server {
 namespace {
@@ -62,6 +87,9 @@ void Configure() {
   absl::SetProgramUsageMessage(
       "The server of ballpiston: computes ensembles of rarely interacting billiards.\n"
       "  ballpistond --listen=unix:PATH | --listen=127.0.0.1:PORT [--data_dir=DIR] [--workers=N]\n"
+      "  ballpistond --listen=0.0.0.0:PORT --tls_certificate=FILE --tls_key=FILE "
+      "--access_file=FILE\n"
+      "  ballpistond --access_file=FILE --new_token=PRINCIPAL:ROLE[:DAYS]\n"
       "Exit codes: 0 stopped, 2 a wrong flag, or address or data folder in use, 6 data folder not "
       "writable.");
   absl::FlagsUsageConfig config;
@@ -101,6 +129,46 @@ absl::StatusOr<std::chrono::milliseconds> Seconds(const char* flag, double value
   return OutOfRange(flag, absl::StrCat(value), absl::StrCat(lower, " to ", upper));
 }
 
+// The value that the flag's text names.
+template <typename Value>
+absl::StatusOr<Value> Named(const char* flag, const std::string& text,
+                            std::initializer_list<std::pair<const char*, Value>> values) {
+  std::string permitted;
+  for (const auto& [name, value] : values) {
+    if (text == name) return value;
+    absl::StrAppend(&permitted, permitted.empty() ? "" : ", ", name);
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--", flag, "=", text, " is not known; permitted: ", permitted));
+}
+
+absl::StatusOr<LogOptions> ParseLogOptions() {
+  const auto format = Named<LogFormat>("log_format", absl::GetFlag(FLAGS_log_format),
+                                       {{"text", LogFormat::kText}, {"json", LogFormat::kJson}});
+  const auto least = Named<Severity>(
+      "log_level", absl::GetFlag(FLAGS_log_level),
+      {{"info", Severity::kInfo}, {"warning", Severity::kWarning}, {"error", Severity::kError}});
+  if (!format.ok()) return format.status();
+  if (!least.ok()) return least.status();
+  return LogOptions{.format = *format, .least = *least};
+}
+
+SecurityOptions SecurityFlags() {
+  return {.access_file = absl::GetFlag(FLAGS_access_file),
+          .tls_certificate = absl::GetFlag(FLAGS_tls_certificate),
+          .tls_key = absl::GetFlag(FLAGS_tls_key),
+          .tls_client_ca = absl::GetFlag(FLAGS_tls_client_ca)};
+}
+
+absl::StatusOr<std::optional<TokenRequest>> NewTokenFlag() {
+  const std::string text = absl::GetFlag(FLAGS_new_token);
+  if (text.empty()) return std::nullopt;
+  if (absl::GetFlag(FLAGS_access_file).empty()) {
+    return absl::InvalidArgumentError("--new_token: --access_file is missing, where it is kept");
+  }
+  return ParseTokenRequest(text);
+}
+
 }  // namespace
 
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
@@ -115,10 +183,18 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
       Seconds("idle_exit_seconds", absl::GetFlag(FLAGS_idle_exit_seconds), 0, kMaxSeconds);
   const auto heartbeat =
       Seconds("watch_heartbeat_seconds", absl::GetFlag(FLAGS_watch_heartbeat_seconds), 0.01, 3600);
-  for (const absl::Status& status : {drain.status(), idle.status(), heartbeat.status()}) {
+  const auto log = ParseLogOptions();
+  for (const absl::Status& status :
+       {drain.status(), idle.status(), heartbeat.status(), log.status()}) {
     if (!status.ok()) return status;
   }
+  const auto new_token = NewTokenFlag();
+  if (!new_token.ok()) return new_token.status();
   CommandLine line;
+  line.new_token = *new_token;
+  line.server.security = SecurityFlags();
+  line.log = *log;
+  line.server.metrics_listen = absl::GetFlag(FLAGS_metrics_listen);
   line.server.data_dir = absl::GetFlag(FLAGS_data_dir);
   line.server.listen = absl::GetFlag(FLAGS_listen);
   line.server.workers = absl::GetFlag(FLAGS_workers);

@@ -1,5 +1,5 @@
-// Where a server listens: a Unix socket, or a loopback address. This version has no TLS, so an
-// address that other machines can reach is refused.
+// Where a server listens: a Unix socket, or HOST:PORT. What an address needs in the way of
+// credentials is told by security/server_security.h.
 #ifndef BALLPISTON_SERVER_LISTEN_ADDRESS_H_
 #define BALLPISTON_SERVER_LISTEN_ADDRESS_H_
 
@@ -17,10 +17,16 @@ struct ListenAddress {
 
   // As gRPC and clients write it.
   std::string Text() const;
+
+  // Whether only this machine reaches it: 127.0.0.0/8, ::1, or the name localhost. Other names are
+  // taken for addresses that others reach, whatever they stand for today.
+  bool IsLoopback() const;
 };
 
-// unix:PATH, HOST:PORT, [::1]:PORT; a HOST in 127.0.0.0/8, ::1 or localhost. INVALID_ARGUMENT
-// names the flag --listen, the value, and what is permitted.
+// unix:PATH, or HOST:PORT; a HOST is an IPv4 address, an IPv6 address in brackets (with a zone
+// where it is of a link, [fe80::1%eth0]), or a name. 0.0.0.0 and [::] both mean every address of
+// this machine, of either kind. INVALID_ARGUMENT names the flag --listen, the value, and what is
+// permitted.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
 // Takes away a socket file that no server listens on any more. FAILED_PRECONDITION if a server

@@ -12,9 +12,11 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line.h"
 #include "server/observability/log.h"
+#include "server/security/new_token.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -32,13 +34,23 @@ sigset_t BlockSignals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   sigprocmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
   return signals;
 }
 
+void Reload(BallpistonServer& server) {
+  const absl::Status status = server.Reload();
+  if (status.ok()) return LogInfo(absl::StrCat("read again: ", server.security().Description()));
+  LogError(absl::StrCat("not read again, the old stays: ", status.message()));
+}
+
 void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer& server) {
-  while (sigtimedwait(&signals, nullptr, &kLookInterval) < 0) {
+  while (true) {
+    const int signal = sigtimedwait(&signals, nullptr, &kLookInterval);
+    if (signal == SIGHUP) Reload(server);
+    if (signal == SIGTERM || signal == SIGINT) break;
     if (line.idle_exit && server.IdleFor() >= *line.idle_exit) {
       return LogInfo("nobody uses this server: stopping");
     }
@@ -69,15 +81,30 @@ int Fail(const absl::Status& status) {
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
 
+// The token alone on standard output, and nowhere else.
+int PrintNewToken(const CommandLine& line) {
+  const auto token =
+      IssueToken({"access_file", line.server.security.access_file}, *line.new_token, absl::Now());
+  if (!token.ok()) return Fail(token.status());
+  std::printf("%s\n", token->c_str());
+  return std::fflush(stdout) == 0 ? 0 : kExitUsage;
+}
+
 int Main(int argc, char** argv) {
   umask(0077);                              // store and socket are their owner's
   setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
+  if (line->new_token) return PrintNewToken(*line);
+  SetLogOptions(line->log);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);
   if (!server.ok()) return Fail(server.status());
-  std::fprintf(stderr, "ballpistond %s listening on %s\n", kVersion, (*server)->address().c_str());
+  LogInfo((*server)->security().Description());
+  if (!(*server)->metrics_address().empty()) {
+    LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
+  }
+  LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);
   // Not by way of the destructors: after large answers gRPC may wait 10 s for a poller of its own.

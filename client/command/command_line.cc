@@ -15,7 +15,8 @@ namespace {
 
 constexpr char kDescription[] = "Rarely interacting billiards, simulated by a service.";
 constexpr char kFooter[] =
-    "Exit codes: 0 done, 2 usage or invalid argument, 3 server unreachable, 4 job failed or "
+    "Exit codes: 0 done, 2 usage or invalid argument, 3 server unreachable or busy, 4 job failed "
+    "or "
     "cancelled,\n5 not found, 6 not permitted, 130 interrupted.";
 
 void AddVerbs(CLI::App& app, Action& action) {
@@ -28,6 +29,7 @@ void AddVerbs(CLI::App& app, Action& action) {
   AddList(app, action);
   AddCancel(app, action);
   AddDelete(app, action);
+  AddStatus(app, action);
   AddFigure(app, action);
 }
 

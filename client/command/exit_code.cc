@@ -1,6 +1,20 @@
 #include "client/command/exit_code.h"
 
+#include <string>
+
+#include "client/library/error_text.h"
+
 namespace ballpiston::client {
+namespace {
+
+// gRPC's own limits, as on a message's size, come without a reason.
+ExitCode OfLimit(const std::string& reason) {
+  if (reason.empty()) return ExitCode::kFailed;
+  const bool of_one_job = reason == "TOO_MANY_POINTS" || reason == "TOO_MANY_SAMPLES";
+  return of_one_job ? ExitCode::kUsage : ExitCode::kUnreachable;
+}
+
+}  // namespace
 
 ExitCode ExitCodeOf(const absl::Status& status) {
   switch (status.code()) {
@@ -13,6 +27,8 @@ ExitCode ExitCodeOf(const absl::Status& status) {
     case absl::StatusCode::kUnavailable:
     case absl::StatusCode::kDeadlineExceeded:
       return ExitCode::kUnreachable;
+    case absl::StatusCode::kResourceExhausted:
+      return OfLimit(ErrorReason(status));
     case absl::StatusCode::kNotFound:
       return ExitCode::kNotFound;
     case absl::StatusCode::kPermissionDenied:

@@ -28,10 +28,11 @@ void NoteUnfinished(const v1::EnsembleJob& job, std::ostream& err) {
 }  // namespace
 
 absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
-                                     Format format, Terminal& terminal) {
+                                     Format format, Terminal& terminal, bool answered_from_store) {
   const EnsembleClient client(connection.channel);
-  const absl::StatusOr<v1::EnsembleJob> job = connection.Ask([&] { return client.Get(name); });
+  absl::StatusOr<v1::EnsembleJob> job = connection.Ask([&] { return client.Get(name); });
   if (!job.ok()) return job.status();
+  job->set_answered_from_store(answered_from_store);
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
   writer->Begin(*job);
   const absl::Status status =

@@ -16,32 +16,37 @@ namespace {
 
 struct Run {
   SpecFlags spec;
+  JobFlags job;
   ServerFlag server;
   FormatFlag format;
   ProgressFlag progress;
 
   absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
     const absl::StatusOr<v1::EnsembleSpec> wanted = SpecOf(spec);
+    const absl::StatusOr<CreateOptions> options = OptionsOf(job);
     const absl::StatusOr<Format> shape = ParseFormat(format.text);
     const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
-    const Violations violations({wanted.status(), shape.status(), style.status(), server.Check()});
+    const Violations violations(
+        {wanted.status(), options.status(), shape.status(), style.status(), server.Check()});
     if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     Interrupts interrupts;  // before gRPC starts threads
-    return WithServer(server, [&](const Connection& connection) {
-      return RunOn(connection, *wanted, *shape, *style, interrupts, terminal);
+    return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
+      const auto made = CreateJob(connection, *wanted, *options);
+      if (!made.ok()) return made.status();
+      if (made->answered_from_store() && progress.text != "none") {
+        NewProgressReporter(*style, terminal.err)->Note(FromStoreText(*made));
+      }
+      return Finish(connection, *made, *shape, *style, interrupts, terminal);
     });
   }
 
-  static absl::StatusOr<ExitCode> RunOn(const Connection& connection,
-                                        const v1::EnsembleSpec& wanted, Format shape,
-                                        ProgressStyle style, Interrupts& interrupts,
-                                        Terminal& terminal) {
-    const absl::StatusOr<v1::EnsembleJob> job = CreateJob(connection, wanted);
-    if (!job.ok()) return job.status();
-    const auto end = FollowJob(connection, job->name(), style, interrupts, terminal.err);
+  static absl::StatusOr<ExitCode> Finish(const Connection& connection, const v1::EnsembleJob& made,
+                                         Format shape, ProgressStyle style, Interrupts& interrupts,
+                                         Terminal& terminal) {
+    const auto end = FollowJob(connection, made.name(), style, interrupts, terminal.err);
     if (!end.ok()) return end.status();
     if (!end->has_value()) return ExitCode::kInterrupted;
-    return PrintResult(connection, job->name(), shape, terminal);
+    return PrintResult(connection, made.name(), shape, terminal, made.answered_from_store());
   }
 };
 
@@ -51,6 +56,7 @@ void AddRun(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("run", "submit a job, watch it, print its result");
   const auto run = std::make_shared<Run>();
   run->spec.AddTo(*verb);
+  run->job.AddTo(*verb);
   run->server.AddTo(*verb);
   run->format.AddTo(*verb);
   run->progress.AddTo(*verb);

@@ -43,10 +43,14 @@ grpc::ChannelArguments Arguments() {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address) {
-  absl::StatusOr<std::string> target = GrpcTarget(address);
+absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address,
+                                                           const ChannelSecurity& security) {
+  const absl::StatusOr<std::string> target = GrpcTarget(address);
   if (!target.ok()) return target.status();
-  return grpc::CreateCustomChannel(*target, grpc::InsecureChannelCredentials(), Arguments());
+  if (absl::Status fits = CheckSecurity(security, address); !fits.ok()) return fits;
+  const auto credentials = CredentialsOf(security);
+  if (!credentials.ok()) return credentials.status();
+  return grpc::CreateCustomChannel(*target, *credentials, Arguments());
 }
 
 }  // namespace ballpiston::client

@@ -12,11 +12,14 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "client/library/channel_security.h"
 
 namespace ballpiston::client {
 
-// Does not connect yet. INVALID_ARGUMENT for what is not an address (server_address.h).
-absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address);
+// Does not connect yet. INVALID_ARGUMENT for what is not an address (server_address.h), and errors
+// as CheckSecurity's and CredentialsOf's (channel_security.h).
+absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address,
+                                                           const ChannelSecurity& security = {});
 
 }  // namespace ballpiston::client
 

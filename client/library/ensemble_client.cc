@@ -18,15 +18,13 @@ EnsembleClient::EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& ch
                                absl::Duration timeout)
     : stub_(v1::EnsembleService::NewStub(channel)), timeout_(timeout) {}
 
-absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec) const {
-  return Create(spec, NewRequestId());
-}
-
 absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec,
-                                                       const std::string& request_id) const {
+                                                       const CreateOptions& options) const {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = spec;
-  request.set_request_id(request_id);
+  request.set_request_id(options.request_id.empty() ? NewRequestId() : options.request_id);
+  request.set_fresh(options.fresh);
+  request.set_priority(options.priority);
   return CallUnary(*stub_, &Stub::CreateEnsembleJob, request, timeout_);
 }
 

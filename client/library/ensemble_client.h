@@ -13,6 +13,7 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -27,18 +28,26 @@
 
 namespace ballpiston::client {
 
+// How a job is asked for, besides its specification.
+struct CreateOptions {
+  // A UUID (request_id.h), for a caller that may ask again: asked twice with one id, the server
+  // answers with the job made first. Empty: one of its own for each call of Create; the channel's
+  // retries carry it, so that a job is not made twice either way.
+  std::string request_id = {};
+  bool fresh = false;    // computes, even if the server has the answer in its store
+  int32_t priority = 0;  // among one's own jobs the higher goes first; -100 to 100
+};
+
 class EnsembleClient {
  public:
   // `timeout` bounds each single call, not a watch.
   explicit EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& channel,
                           absl::Duration timeout = absl::Seconds(60));
 
-  // With an id of its own for each call of this function: sent again by the channel's retries, a
-  // job that was already accepted is answered, not made twice.
-  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec) const;
-  // With the caller's id (request_id.h), for a caller that may ask again.
+  // The job, or one that answered the same question before: then answered_from_store is set, here
+  // and nowhere else.
   absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
-                                         const std::string& request_id) const;
+                                         const CreateOptions& options = {}) const;
 
   // What each model would cost and how well it would answer. Runs nothing.
   absl::StatusOr<v1::PlanEnsembleJobResponse> Plan(const v1::EnsembleSpec& spec) const;

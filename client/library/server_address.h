@@ -3,7 +3,7 @@
 //   host:port    TCP; an IPv6 host in brackets, [::1]:50051
 //   unix:PATH    a Unix domain socket
 //
-// Connections are not encrypted: reach a server on another machine through a tunnel (ssh -L).
+// What a connection to host:port is protected by is told by channel_security.h.
 #ifndef BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
 #define BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
 

@@ -1,9 +1,11 @@
 #include "client/output/job_list.h"
 
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "absl/time/time.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
@@ -30,22 +32,51 @@ std::vector<std::string> Cells(const v1::EnsembleJob& job) {
           TimeText(job.has_end_time(), job.end_time())};
 }
 
+// Whether the jobs differ in whose they are, or in their priority.
+struct Differences {
+  bool principals = false;
+  bool priorities = false;
+};
+
+Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs) {
+  Differences differ;
+  for (const v1::EnsembleJob& job : jobs) {
+    differ.principals |= job.principal() != jobs.front().principal();
+    differ.priorities |= job.priority() != 0;
+  }
+  return differ;
+}
+
+// A principal's name may hold any character.
+std::string Quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
+}
+
 void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
-  out << "name,experiment,state,points_done,points,samples,create_time,end_time\n";
-  for (const v1::EnsembleJob& job : jobs) out << absl::StrJoin(Cells(job), ",") << '\n';
+  out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
+         "priority\n";
+  for (const v1::EnsembleJob& job : jobs) {
+    out << absl::StrJoin(Cells(job), ",") << ',' << Quoted(job.principal()) << ',' << job.priority()
+        << '\n';
+  }
 }
 
 void PrintTable(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   constexpr auto kLeft = TextTable::Column::kLeft;
-  TextTable table({{"name", kLeft},
-                   {"experiment", kLeft},
-                   {"state", kLeft},
-                   {"done"},
-                   {"points"},
-                   {"samples"},
-                   {"created", kLeft},
-                   {"ended", kLeft}});
-  for (const v1::EnsembleJob& job : jobs) table.AddRow(Cells(job));
+  const Differences differ = DifferencesOf(jobs);
+  std::vector<TextTable::Column> columns = {
+      {"name", kLeft}, {"experiment", kLeft}, {"state", kLeft},   {"done"},
+      {"points"},      {"samples"},           {"created", kLeft}, {"ended", kLeft}};
+  if (differ.principals) columns.push_back({"principal", kLeft});
+  if (differ.priorities) columns.push_back({"priority"});
+  TextTable table(std::move(columns));
+  for (const v1::EnsembleJob& job : jobs) {
+    std::vector<std::string> cells = Cells(job);
+    if (differ.principals) cells.push_back(job.principal());
+    if (differ.priorities) cells.push_back(absl::StrCat(job.priority()));
+    table.AddRow(std::move(cells));
+  }
   table.Print(out);
 }
 

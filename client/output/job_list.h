@@ -1,4 +1,6 @@
-// Prints jobs: a table, {"jobs": [...]}, one job a line, or CSV.
+// Prints jobs: a table, {"jobs": [...]}, one job a line, or CSV. The table has a column for whose a
+// job is if there is more than one principal, and one for priorities if there is any but 0; CSV has
+// them always.
 #ifndef BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 #define BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 

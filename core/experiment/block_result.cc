@@ -15,6 +15,10 @@ void MergeEach(const std::vector<Accumulator>& from, std::vector<Accumulator>* i
   for (size_t i = 0; i < from.size(); ++i) (*into)[i].Merge(from[i]);
 }
 
+bool HaveSameBins(const Histogram& a, const Histogram& b) {
+  return a.lower == b.lower && a.upper == b.upper && a.counts.size() == b.counts.size();
+}
+
 }  // namespace
 
 void Health::Merge(const Health& other) {
@@ -28,6 +32,12 @@ void BlockResult::Merge(const BlockResult& other) {
   MergeEach(other.batch_means, &batch_means);
   MergeEach(other.histograms, &histograms);
   health.Merge(other.health);
+}
+
+bool BlockResult::HasShapeOf(const BlockResult& other) const {
+  return moments.size() == other.moments.size() && batch_means.size() == other.batch_means.size() &&
+         std::equal(histograms.begin(), histograms.end(), other.histograms.begin(),
+                    other.histograms.end(), HaveSameBins);
 }
 
 }  // namespace ballpiston

@@ -4,6 +4,7 @@
 // of a point in the order of their indices gives the same bits whoever computed them. Properties,
 // each with a test of its name:
 //   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
+//   3. EveryBlockHasTheShapeOfTheEmptyOne.
 #ifndef BALLPISTON_CORE_EXPERIMENT_BLOCK_RESULT_H_
 #define BALLPISTON_CORE_EXPERIMENT_BLOCK_RESULT_H_
 
@@ -33,6 +34,8 @@ struct BlockResult {
 
   // Requires the same experiment and point on both sides, or one side default-constructed.
   void Merge(const BlockResult& other);
+  // Whether Merge can take it: as many accumulators of each kind, histograms of the same bins.
+  bool HasShapeOf(const BlockResult& other) const;
   friend bool operator==(const BlockResult&, const BlockResult&) = default;
 };
 

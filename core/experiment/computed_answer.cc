@@ -12,6 +12,8 @@ std::optional<BlockResult> ComputedAnswer::RunBlock(uint64_t, std::stop_token) c
   return BlockResult();
 }
 
+BlockResult ComputedAnswer::EmptyResult() const { return BlockResult(); }
+
 Estimate ComputedAnswer::FirstEstimate(const BlockResult&) const {
   return summary_.estimates.front();
 }

@@ -12,6 +12,7 @@ class ComputedAnswer : public PointExperiment {
   ComputedAnswer(const EnsembleSpec& spec, const PointParameters& point, PointSummary summary);
 
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  BlockResult EmptyResult() const override;
   Estimate FirstEstimate(const BlockResult& merged) const override;
   PointSummary Summarize(const BlockResult& merged) const override;
 

@@ -23,13 +23,18 @@ std::optional<BlockResult> ConditionalMeanFreeTimeExperiment::RunBlock(uint64_t 
   ReturnOrbits orbits(geometry_, {*parameters().epsilon, kInvariantExponent}, random(),
                       plan().FirstSample(block), plan().SamplesIn(block));
   if (!RunOrbits(engine(), geometry_, plan().SamplesIn(block), orbits, stop)) return std::nullopt;
-  BlockResult result;
-  result.moments.resize(1);
+  BlockResult result = EmptyResult();
   for (const Return& sample : orbits.returns()) {
     if (!Healthy(sample, result.health)) continue;
     ++result.samples;
     result.moments[0].Add(sample.time);
   }
+  return result;
+}
+
+BlockResult ConditionalMeanFreeTimeExperiment::EmptyResult() const {
+  BlockResult result;
+  result.moments.resize(1);
   return result;
 }
 

@@ -23,6 +23,13 @@ constexpr size_t kLagsBetweenOrigins = 2;
 // A walker that is slower than the others keeps all of a group walking.
 constexpr uint64_t kWalkersInStep = 256;
 
+// The integral, then the curve.
+BlockResult NoOrbits() {
+  BlockResult result;
+  result.moments.resize(1 + kLags);
+  return result;
+}
+
 // Measurements of a block's orbits, by orbit.
 class OrbitMeasurements {
  public:
@@ -35,8 +42,7 @@ class OrbitMeasurements {
 
   // Those that were set.
   BlockResult Result() const {
-    BlockResult result;
-    result.moments.resize(1 + kLags);
+    BlockResult result = NoOrbits();
     for (const std::vector<double>& values : values_) {
       if (values.empty()) continue;
       ++result.samples;
@@ -291,6 +297,8 @@ std::optional<BlockResult> EnergyRelaxationExperiment::RunJumpProcess(
   }
   return measurements.Result();
 }
+
+BlockResult EnergyRelaxationExperiment::EmptyResult() const { return NoOrbits(); }
 
 std::vector<Estimate> EnergyRelaxationExperiment::Estimates(const BlockResult& merged) const {
   std::vector<Estimate> estimates = relaxation_.Estimates(merged);

@@ -21,6 +21,13 @@ Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size
           .exact = exact};
 }
 
+// Ball-piston, ball-wall, piston-wall: an orbit each.
+BlockResult EmptyCounts() {
+  BlockResult counts;
+  counts.batch_means.resize(3);
+  return counts;
+}
+
 // `collisions` of them over orbits that start at numbers first, first + length, ...
 class EquilibriumOrbits : public OrbitSource {
  public:
@@ -57,8 +64,7 @@ class EquilibriumOrbits : public OrbitSource {
   }
 
   BlockResult Result() const {
-    BlockResult result;
-    result.batch_means.resize(3);
+    BlockResult result = EmptyCounts();
     for (const Orbit& orbit : orbits_) {
       result.samples += orbit.collisions;
       result.batch_means[0].Add(orbit.time, static_cast<double>(orbit.collisions));
@@ -99,6 +105,8 @@ std::optional<BlockResult> EquilibriumExperiment::RunBlock(uint64_t block,
   if (!RunOrbits(engine(), geometry_, orbits.count(), orbits, stop)) return std::nullopt;
   return orbits.Result();
 }
+
+BlockResult EquilibriumExperiment::EmptyResult() const { return EmptyCounts(); }
 
 Estimate EquilibriumExperiment::FirstEstimate(const BlockResult& merged) const {
   return MeanFreeTime("ball_piston", merged, 0, MeanFreeTimesOf(geometry_).ball_piston);

@@ -26,6 +26,7 @@ class EquilibriumExperiment : public PointExperiment {
                         const PairGeometry& geometry);
 
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  BlockResult EmptyResult() const override;
   Estimate FirstEstimate(const BlockResult& merged) const override;
   PointSummary Summarize(const BlockResult& merged) const override;
 

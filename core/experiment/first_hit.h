@@ -21,11 +21,11 @@ class FirstHitExperiment : public PointExperiment {
                      const PairGeometry& geometry);
 
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
+  BlockResult EmptyResult() const override;
   Estimate FirstEstimate(const BlockResult& merged) const override;
   PointSummary Summarize(const BlockResult& merged) const override;
 
  private:
-  BlockResult EmptyResult() const;
   std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const;
 
   PairGeometry geometry_;

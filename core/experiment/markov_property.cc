@@ -147,6 +147,8 @@ BlockResult MarkovPropertyExperiment::RunJumpProcess(uint64_t block) const {
   return result;
 }
 
+BlockResult MarkovPropertyExperiment::EmptyResult() const { return EmptyMarkovPropertyCounts(); }
+
 // The jump process has no memory; the billiard's is what is measured.
 std::optional<double> MarkovPropertyExperiment::ExactCorrelation() const {
   return answer().model == Model::kMarkov ? std::optional(0.0) : std::nullopt;

@@ -56,6 +56,9 @@ class PointExperiment {
   // Empty only if `stop` was requested. A block takes some 0.05 s (one sample at least).
   virtual std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const = 0;
 
+  // No block yet: with the accumulators that every block has, and that merging relies on.
+  virtual BlockResult EmptyResult() const = 0;
+
   // What a tolerance refers to. Requires at least one merged block, if there are any,
   // as Summarize does.
   virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;

@@ -199,6 +199,7 @@ void CheckTarget(const EnsembleSpec& spec, Found* found) {
 // A relative error of what passes through 0.
 void CheckToleranceOfDecay(const EnsembleSpec& spec, Found* found) {
   if (spec.experiment != Experiment::kEnergyRelaxation || !spec.target.tolerance) return;
+  if (PointsAskedFor(spec.grid) > static_cast<double>(kMaxPoints)) return;  // said already
   for (size_t i = 0; i < spec.grid.epsilon.size(); ++i) {
     if (HasRelaxationTime(spec.grid.epsilon[i])) continue;
     found->push_back({At("epsilon", i),

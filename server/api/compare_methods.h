@@ -17,6 +17,7 @@
 #include "absl/status/status.h"
 #include "ballpiston/v1/method.pb.h"
 #include "grpcpp/support/server_callback.h"
+#include "server/api/call.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {
@@ -25,8 +26,8 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
                               public Watch,
                               public std::enable_shared_from_this<CompareMethodsReactor> {
  public:
-  // Owns itself until gRPC is done with it.
-  static CompareMethodsReactor* Start(ServiceContext& service,
+  // Owns itself until gRPC is done with it. A call that was not admitted ends at once.
+  static CompareMethodsReactor* Start(ServiceContext& service, const absl::StatusOr<Call>& call,
                                       const v1::CompareMethodsRequest& request);
 
   void Look(std::chrono::steady_clock::time_point now) override;  // whether the server stops
@@ -45,7 +46,7 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
   void Advance();                        // writes or finishes, if it is time to
 
   ServiceContext& service_;
-  const std::shared_ptr<void> call_;  // for Activity
+  const std::shared_ptr<void> active_;  // for Activity
   std::stop_source stop_;
   std::shared_ptr<CompareMethodsReactor> self_;
   v1::MethodMeasurement message_;  // being written

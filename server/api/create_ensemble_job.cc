@@ -1,9 +1,13 @@
+#include "absl/strings/str_cat.h"
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
 #include "server/convert/spec.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
+
+constexpr int kHighestPriority = 100;
 
 absl::Status Check(const CheckedSpec& spec, const RequestCheck& check) {
   if (spec.violations.empty()) return check.status();
@@ -12,18 +16,34 @@ absl::Status Check(const CheckedSpec& spec, const RequestCheck& check) {
   return InvalidSpec(all);
 }
 
+void LogAcceptance(const Call& call, const v1::EnsembleJob& job) {
+  Log(Severity::kInfo, job.answered_from_store() ? "question answered by a job" : "job accepted",
+      {{"method", call.method},
+       {"job", job.name()},
+       {"principal", call.caller.name},
+       {"request_id", call.request_id},
+       {"points", static_cast<double>(job.progress().points())}});
+}
+
 }  // namespace
 
-absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service,
+absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const Call& call,
                                                   const v1::CreateEnsembleJobRequest& request) {
   if (service.draining) return ShuttingDown();
   RequestCheck check;
-  const std::string request_id = check.RequestId(request.request_id());
+  v1::CreateEnsembleJobRequest accepted = request;
+  accepted.set_request_id(check.RequestId(request.request_id()));
+  if (request.priority() < -kHighestPriority || request.priority() > kHighestPriority) {
+    check.Add("priority", absl::StrCat("is ", request.priority(), "; permitted: -",
+                                       kHighestPriority, " to ", kHighestPriority));
+  }
   const CheckedSpec spec = CheckSpec(request.spec());
   const absl::Status checked = Check(spec, check);
   if (!checked.ok()) return checked;
-  if (request.validate_only()) return service.book.Preview(request.spec(), spec);
-  return service.book.Create(request.spec(), spec, request_id);
+  if (request.validate_only()) return service.book.Preview(call.caller, accepted, spec);
+  absl::StatusOr<v1::EnsembleJob> job = service.book.Create(call.caller, accepted, spec);
+  if (job.ok()) LogAcceptance(call, *job);
+  return job;
 }
 
 }  // namespace ballpiston::server

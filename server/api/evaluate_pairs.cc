@@ -3,7 +3,7 @@
 
 namespace ballpiston::server {
 
-absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext&,
+absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext&, const Call&,
                                                         const v1::EvaluatePairsRequest& request) {
   return EvaluatePairs(request);
 }

@@ -12,14 +12,14 @@ constexpr char kList[] = "jobs";
 }  // namespace
 
 absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
-    ServiceContext& service, const v1::ListEnsembleJobsRequest& request) {
+    ServiceContext& service, const Call& call, const v1::ListEnsembleJobsRequest& request) {
   RequestCheck check;
   const int size = check.PageSize(request.page_size());
   const int64_t before =
       check.PageStart(request.page_token(), kList, std::numeric_limits<int64_t>::max());
   if (!check.ok()) return check.status();
   // One more than fits: whether there is another page.
-  absl::StatusOr<std::vector<ListedJob>> jobs = service.book.List(before, size + 1);
+  absl::StatusOr<std::vector<ListedJob>> jobs = service.book.List(call.caller, before, size + 1);
   if (!jobs.ok()) return jobs.status();
   v1::ListEnsembleJobsResponse response;
   size_t bytes = 0;

@@ -4,7 +4,7 @@
 
 namespace ballpiston::server {
 
-absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service,
+absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, const Call& call,
                                                     const v1::ListResultsRequest& request) {
   RequestCheck check;
   const std::string id = check.JobId("parent", request.parent());
@@ -18,7 +18,7 @@ absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service,
     check.Add("view", absl::StrCat(int{request.view()}, " is not a view this server knows"));
   }
   if (!check.ok()) return check.status();
-  absl::StatusOr<ResultsPage> page = service.book.Results(id, query);
+  absl::StatusOr<ResultsPage> page = service.book.Results(call.caller, id, query);
   if (!page.ok()) return page.status();
   v1::ListResultsResponse response;
   for (v1::PointResult& point : page->points) *response.add_points() = std::move(point);

@@ -20,7 +20,7 @@ struct PlannedWork {
 }  // namespace
 
 absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
-    ServiceContext& service, const v1::PlanEnsembleJobRequest& request) {
+    ServiceContext& service, const Call&, const v1::PlanEnsembleJobRequest& request) {
   const CheckedSpec checked = CheckSpec(request.spec());
   if (!checked.violations.empty()) return InvalidSpec(checked.violations);
   const size_t points = PointCount(checked.spec), planned = std::min(points, kMostPoints);

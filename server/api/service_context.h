@@ -6,12 +6,17 @@
 #include <chrono>
 #include <string>
 
+#include "absl/time/time.h"
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/jobs/job_book.h"
+#include "server/limits.h"
 #include "server/observability/activity.h"
+#include "server/observability/call_observer.h"
+#include "server/security/authenticator.h"
+#include "server/store/store.h"
 
 namespace ballpiston::server {
 
@@ -21,6 +26,8 @@ struct WatchTiming {
 };
 
 struct ServiceContext {
+  const Authenticator& authenticator;
+  const Limits& limits;
   JobBook& book;
   ModelLadder& ladder;
   RpcExecutor& executor;
@@ -30,6 +37,10 @@ struct ServiceContext {
   const std::atomic<bool>& draining;
   std::string instance;  // of this server's life: numbers of changes mean nothing beyond it
   WatchTiming timing;
+  Store& store;
+  CallObserver& calls;
+  absl::Time start_time;
+  std::string store_path;
 };
 
 }  // namespace ballpiston::server

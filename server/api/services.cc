@@ -13,56 +13,72 @@ using Unary = grpc::ServerUnaryReactor;
 Unary* EnsembleService::CreateEnsembleJob(Context* context,
                                           const v1::CreateEnsembleJobRequest* request,
                                           v1::EnsembleJob* response) {
-  return RunUnary(service_, context, request, response, &server::CreateEnsembleJob);
+  return RunUnary(service_, context, {"CreateEnsembleJob", Role::kSubmit}, request, response,
+                  &server::CreateEnsembleJob);
 }
 
 Unary* EnsembleService::GetEnsembleJob(Context* context, const v1::GetEnsembleJobRequest* request,
                                        v1::EnsembleJob* response) {
-  return RunUnary(service_, context, request, response, &server::GetEnsembleJob);
+  return RunUnary(service_, context, {"GetEnsembleJob", Role::kRead}, request, response,
+                  &server::GetEnsembleJob);
 }
 
 Unary* EnsembleService::ListEnsembleJobs(Context* context,
                                          const v1::ListEnsembleJobsRequest* request,
                                          v1::ListEnsembleJobsResponse* response) {
-  return RunUnary(service_, context, request, response, &server::ListEnsembleJobs);
+  return RunUnary(service_, context, {"ListEnsembleJobs", Role::kRead}, request, response,
+                  &server::ListEnsembleJobs);
 }
 
 Unary* EnsembleService::CancelEnsembleJob(Context* context,
                                           const v1::CancelEnsembleJobRequest* request,
                                           v1::EnsembleJob* response) {
-  return RunUnary(service_, context, request, response, &server::CancelEnsembleJob);
+  return RunUnary(service_, context, {"CancelEnsembleJob", Role::kSubmit}, request, response,
+                  &server::CancelEnsembleJob);
 }
 
 Unary* EnsembleService::DeleteEnsembleJob(Context* context,
                                           const v1::DeleteEnsembleJobRequest* request,
                                           google::protobuf::Empty* response) {
-  return RunUnary(service_, context, request, response, &server::DeleteEnsembleJob);
+  return RunUnary(service_, context, {"DeleteEnsembleJob", Role::kSubmit}, request, response,
+                  &server::DeleteEnsembleJob);
 }
 
 grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* EnsembleService::WatchEnsembleJob(
-    Context*, const v1::WatchEnsembleJobRequest* request) {
-  return WatchReactor::Start(service_, *request);
+    Context* context, const v1::WatchEnsembleJobRequest* request) {
+  return WatchReactor::Start(
+      service_, AdmitCall(service_, *context, {"WatchEnsembleJob", Role::kRead}), *request);
 }
 
 Unary* EnsembleService::PlanEnsembleJob(Context* context, const v1::PlanEnsembleJobRequest* request,
                                         v1::PlanEnsembleJobResponse* response) {
-  return RunUnary(service_, context, request, response, &server::PlanEnsembleJob);
+  return RunUnary(service_, context, {"PlanEnsembleJob", Role::kRead}, request, response,
+                  &server::PlanEnsembleJob);
 }
 
 Unary* EnsembleService::ListResults(Context* context, const v1::ListResultsRequest* request,
                                     v1::ListResultsResponse* response) {
-  return RunUnary(service_, context, request, response, &server::ListResults);
+  return RunUnary(service_, context, {"ListResults", Role::kRead}, request, response,
+                  &server::ListResults);
 }
 
 Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsRequest* request,
                                       v1::EvaluatePairsResponse* response) {
   return RunUnary<v1::EvaluatePairsRequest, v1::EvaluatePairsResponse>(
-      service_, context, request, response, &server::EvaluatePairs);
+      service_, context, {"EvaluatePairs", Role::kRead}, request, response, &server::EvaluatePairs);
 }
 
 grpc::ServerWriteReactor<v1::MethodMeasurement>* MethodService::CompareMethods(
-    Context*, const v1::CompareMethodsRequest* request) {
-  return CompareMethodsReactor::Start(service_, *request);
+    Context* context, const v1::CompareMethodsRequest* request) {
+  // It keeps a core busy, as a job does.
+  return CompareMethodsReactor::Start(
+      service_, AdmitCall(service_, *context, {"CompareMethods", Role::kSubmit}), *request);
+}
+
+Unary* ServerService::GetServerStatus(Context* context, const v1::GetServerStatusRequest* request,
+                                      v1::ServerStatus* response) {
+  return RunUnary(service_, context, {"GetServerStatus", Role::kRead}, request, response,
+                  &server::GetServerStatus);
 }
 
 }  // namespace ballpiston::server

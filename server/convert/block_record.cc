@@ -71,4 +71,14 @@ absl::StatusOr<BlockResult> BlockResultFromBytes(const std::string& bytes) {
   return result;
 }
 
+absl::Status CheckBlock(const PointExperiment& experiment, uint64_t block,
+                        const BlockResult& result) {
+  const BlockPlan& plan = experiment.plan();
+  if (block >= plan.Blocks()) return absl::DataLossError("a stored block lies beyond the last");
+  const bool possible = result.samples <= plan.SamplesIn(block) &&
+                        result.health.max_energy_error >= 0;  // not NaN either
+  if (possible && result.HasShapeOf(experiment.EmptyResult())) return absl::OkStatus();
+  return absl::DataLossError("a stored block is not one of its experiment");
+}
+
 }  // namespace ballpiston::server

@@ -100,7 +100,7 @@ absl::Status InvalidField(std::string field, std::string description) {
 
 absl::Status RequestIdReused(const std::string& request_id) {
   return WithInfo(absl::InvalidArgumentError(absl::StrCat(
-                      "request_id ", request_id, " was used before, with another specification")),
+                      "request_id ", request_id, " was used before, with another request")),
                   "REQUEST_ID_REUSED", "request_id", request_id);
 }
 
@@ -131,6 +131,41 @@ absl::Status ComparisonRunning() {
 absl::Status ShuttingDown() {
   return WithReason(absl::UnavailableError("the server is shutting down; try again later"),
                     "SHUTTING_DOWN");
+}
+
+absl::Status CredentialsMissing() {
+  return WithReason(
+      absl::UnauthenticatedError("this server wants credentials, and none were shown: "
+                                 "send authorization: Bearer TOKEN"),
+      "CREDENTIALS_MISSING");
+}
+
+absl::Status CredentialsInvalid() {
+  return WithReason(absl::UnauthenticatedError("this server does not know these credentials"),
+                    "CREDENTIALS_INVALID");
+}
+
+absl::Status CredentialsExpired() {
+  return WithReason(absl::UnauthenticatedError("these credentials have expired; ask for new ones"),
+                    "CREDENTIALS_EXPIRED");
+}
+
+absl::Status LimitExceeded(const std::string& reason, const std::string& what,
+                           const std::string& flag, double limit) {
+  absl::Status status = absl::ResourceExhaustedError(
+      absl::StrFormat("%s; this server permits %.15g (--%s)", what, limit, flag));
+  google::rpc::ErrorInfo info = Info(reason);
+  (*info.mutable_metadata())["limit"] = absl::StrFormat("%.15g", limit);
+  (*info.mutable_metadata())["flag"] = flag;
+  SetDetail(status, info);
+  return status;
+}
+
+absl::Status RoleTooLow(const Principal& caller, Role least) {
+  return WithInfo(
+      absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                               ", this call needs the role ", RoleName(least))),
+      "ROLE_TOO_LOW", "role", RoleName(least));
 }
 
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {

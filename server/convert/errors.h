@@ -18,6 +18,7 @@
 #include "core/experiment/point_summary.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
+#include "server/security/principal.h"
 
 namespace ballpiston::server {
 
@@ -36,6 +37,18 @@ absl::Status JobStillActive(const std::string& name,
                             absl::string_view state);  // FAILED_PRECONDITION
 absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
+
+// UNAUTHENTICATED. None says which credentials were shown.
+absl::Status CredentialsMissing();
+absl::Status CredentialsInvalid();
+absl::Status CredentialsExpired();
+
+// RESOURCE_EXHAUSTED: `what` is what there is too much of, `flag` that of the server which permits
+// no more than `limit`.
+absl::Status LimitExceeded(const std::string& reason, const std::string& what,
+                           const std::string& flag, double limit);
+
+absl::Status RoleTooLow(const Principal& caller, Role least);  // PERMISSION_DENIED
 
 // DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);

@@ -1,5 +1,6 @@
 #include "server/convert/spec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -17,6 +18,9 @@ namespace ballpiston::server {
 namespace {
 
 using Violations = std::vector<FieldViolation>;
+
+// A message of a few bytes each may hold millions of them; so many that are told say it all.
+constexpr int kMaxUnknownFields = 100;
 
 // A number of an enumeration that has no name here.
 void AddUnknownNumber(const char* field, int number, Violations& violations) {
@@ -116,7 +120,7 @@ Target TargetOf(const v1::Target& message) {
 void AddUnknownFields(const char* path, const google::protobuf::Message& message,
                       Violations& violations) {
   const auto& unknown = message.GetReflection()->GetUnknownFields(message);
-  for (int i = 0; i < unknown.field_count(); ++i) {
+  for (int i = 0; i < std::min(unknown.field_count(), kMaxUnknownFields); ++i) {
     violations.push_back({path, absl::StrCat("field number ", unknown.field(i).number(),
                                              " is not one this server knows; is it older than "
                                              "its client?")});

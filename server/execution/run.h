@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -37,7 +38,9 @@ struct Shortfall {
 };
 
 struct RunRequest {
-  int64_t key = 0;  // greater for a newer job
+  int64_t key = 0;        // greater for a newer job
+  std::string principal;  // whose it is, for a fair share
+  int32_t priority = 0;   // among the principal's; higher first
   EnsembleSpec spec;
   std::vector<bool> finished;               // by point of the grid: nothing left to compute
   bool has_stored_blocks = false;           // ask the journal for them

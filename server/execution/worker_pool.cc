@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/model_choice/ladder.h"
+#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
@@ -52,7 +53,7 @@ void WorkerPool::Add(RunRequest request) {
   {
     std::lock_guard lock(mutex_);
     runs_.emplace(key, run);
-    fair_share_.Add(key);
+    fair_share_.Add(key, run->request().principal, run->request().priority);
   }
   work_may_exist_.notify_all();
   Conclude(run);  // it may have nothing left to compute
@@ -89,7 +90,8 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   if (run == runs_.end()) return changed;
   std::vector<std::pair<uint64_t, size_t>> newest;
   for (const auto& [index, point] : run->second->open_points()) {
-    if (point->version > version) newest.emplace_back(point->version, index);
+    const bool finished = point->merge.finished();  // about to be told as such
+    if (point->version > version && !finished) newest.emplace_back(point->version, index);
   }
   std::sort(newest.rbegin(), newest.rend());
   if (newest.size() > limit) newest.resize(limit);
@@ -100,10 +102,20 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   return changed;
 }
 
+PoolCounts WorkerPool::Counts() const {
+  return {.workers = workers_,
+          .busy = busy_.load(std::memory_order_relaxed),
+          .blocks = static_cast<double>(blocks_.load(std::memory_order_relaxed)),
+          .samples = samples_.load(std::memory_order_relaxed),
+          .processor_seconds = processor_seconds_.load(std::memory_order_relaxed)};
+}
+
 void WorkerPool::Work() {
   while (const auto assignment = AwaitAssignment()) {
     if (assignment->begins_run) assignment->run->journal().Began();
+    busy_.fetch_add(1, std::memory_order_relaxed);
     Execute(*assignment);
+    busy_.fetch_sub(1, std::memory_order_relaxed);
     Conclude(assignment->run);
     assignment->run->journal().AwaitRoom();
   }
@@ -119,16 +131,17 @@ std::optional<WorkerPool::Assignment> WorkerPool::AwaitAssignment() {
 }
 
 std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
-  for (const auto& [charge, key] : fair_share_.order()) {
-    const std::shared_ptr<Run>& run = runs_.at(key);
-    if (auto task = run->NextTask()) {
-      Assignment assignment{run, *std::move(task), !run->began()};
-      run->set_began();
-      fair_share_.BlockBegins(key);  // changes the order: `charge` and `key` end here
-      return assignment;
-    }
-  }
-  return std::nullopt;
+  std::optional<RunTask> task;
+  const auto key = fair_share_.First([&](int64_t run) {
+    task = runs_.at(run)->NextTask();
+    return task.has_value();
+  });
+  if (!key) return std::nullopt;
+  fair_share_.BlockBegins(*key);
+  const std::shared_ptr<Run>& run = runs_.at(*key);
+  Assignment assignment{run, *std::move(task), !run->began()};
+  run->set_began();
+  return assignment;
 }
 
 void WorkerPool::Execute(const Assignment& assignment) {
@@ -140,6 +153,7 @@ void WorkerPool::Execute(const Assignment& assignment) {
                                   : OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
   const double seconds = ThreadSeconds() - start;
   run.journal().Worked(seconds);
+  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
   {
     std::lock_guard lock(mutex_);
     if (!status.ok()) run.Stop(status);
@@ -156,16 +170,8 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
     if (made == nullptr) return absl::OkStatus();  // the run was stopped
     auto open = std::make_unique<OpenPoint>(std::move(made));
     if (run.request().has_stored_blocks) {
-      const PointExperiment& experiment = *open->experiment;
-      const auto on_merged = [&](uint64_t block, BlockResult& result) {
-        const double share = ShareOfPoint(experiment, result);
-        open->version = run.journal().BlockMerged({task.point, block, share, true, result});
-      };
-      const absl::Status read =
-          run.journal().ReadStoredBlocks(task.point, [&](uint64_t block, BlockResult result) {
-            open->merge.Add(block, std::move(result), on_merged);
-          });
-      if (!read.ok()) return read;
+      const absl::Status restored = RestoreBlocks(run, task.point, *open);
+      if (!restored.ok()) return restored;
     }
     const bool finished = open->merge.finished();
     {
@@ -177,11 +183,30 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
   });
 }
 
+absl::Status WorkerPool::RestoreBlocks(Run& run, size_t point, OpenPoint& open) {
+  const auto on_merged = [&](uint64_t block, BlockResult& result) {
+    const double share = ShareOfPoint(*open.experiment, result);
+    open.version = run.journal().BlockMerged({point, block, share, true, result});
+  };
+  absl::Status checked;
+  const absl::Status read =
+      run.journal().ReadStoredBlocks(point, [&](uint64_t block, BlockResult result) {
+        // Those beyond the target may be of another model, which a budget chose on a slower day.
+        if (!checked.ok() || open.merge.finished()) return;
+        checked = CheckBlock(*open.experiment, block, result);
+        if (checked.ok()) open.merge.Add(block, std::move(result), on_merged);
+      });
+  return read.ok() ? checked : read;
+}
+
 absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {
   return Guarded(task.point, [&]() -> absl::Status {
     const double start = ThreadSeconds();
     std::optional<BlockResult> result = task.experiment->RunBlock(task.block, task.stop);
-    if (result) MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
+    if (!result) return absl::OkStatus();
+    blocks_.fetch_add(1, std::memory_order_relaxed);
+    samples_.fetch_add(static_cast<double>(result->samples), std::memory_order_relaxed);
+    MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
     return absl::OkStatus();
   });
 }

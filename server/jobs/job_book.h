@@ -7,6 +7,8 @@
 #ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,6 +24,8 @@
 #include "server/convert/spec.h"
 #include "server/execution/worker_pool.h"
 #include "server/jobs/job.h"
+#include "server/limits.h"
+#include "server/security/principal.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
@@ -29,6 +33,15 @@ namespace ballpiston::server {
 struct ListedJob {
   int64_t sequence = 0;
   v1::EnsembleJob job;
+};
+
+// What a watch needs of a job.
+struct WatchedJob {
+  std::shared_ptr<Job> active;  // null if it has ended
+  int64_t sequence = 0;
+  std::string engine_version;
+  int64_t last_finished = 0;  // the number of its last finished point
+  v1::JobProgress progress;
 };
 
 struct ResultsQuery {
@@ -43,10 +56,24 @@ struct ResultsPage {
   bool more = false;
 };
 
+// Active jobs, by state.
+struct ActiveJobs {
+  int64_t queued = 0;
+  int64_t running = 0;
+  int64_t cancelling = 0;
+};
+
+// Jobs that ended in this book's life, by state.
+struct EndedJobs {
+  uint64_t succeeded = 0;
+  uint64_t failed = 0;
+  uint64_t cancelled = 0;
+};
+
 class JobBook {
  public:
   // The store has to outlive this. `on_state_change` is called after each change of state.
-  JobBook(Store& store, int workers, ExperimentFactory factory,
+  JobBook(Store& store, const Limits& limits, int workers, ExperimentFactory factory,
           std::function<void()> on_state_change);
   ~JobBook();  // shuts down
 
@@ -57,43 +84,68 @@ class JobBook {
   void Shutdown();
 
   // The job as Create would make it.
-  v1::EnsembleJob Preview(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+  absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
+                                          const v1::CreateEnsembleJobRequest& request,
+                                          const CheckedSpec& checked) const;
 
-  // `checked` is that of the message, without violations.
-  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& message,
-                                         const CheckedSpec& checked, const std::string& request_id);
-  absl::StatusOr<v1::EnsembleJob> Get(const std::string& id);
+  // `checked` is the specification of the request, without violations; the request's id is in lower
+  // case. Answered with an earlier job if this is a replay, or the same question as before.
+  absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
+                                         const v1::CreateEnsembleJobRequest& request,
+                                         const CheckedSpec& checked);
+
+  // To all of the following a job that the caller may not see does not exist.
+  absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id);
   // Newest first, those older than `before`.
-  absl::StatusOr<std::vector<ListedJob>> List(int64_t before, int limit);
-  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& id, const std::string& request_id);
-  absl::Status Delete(const std::string& id);
-  absl::StatusOr<ResultsPage> Results(const std::string& id, const ResultsQuery& query);
+  absl::StatusOr<std::vector<ListedJob>> List(const Principal& caller, int64_t before, int limit);
+  absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
+                                         const std::string& request_id);
+  absl::Status Delete(const Principal& caller, const std::string& id);
+  absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
+                                      const ResultsQuery& query);
 
-  // For a watch: the active job; null if it has ended. NOT_FOUND if it does not exist.
-  absl::StatusOr<std::shared_ptr<Job>> FindActive(const std::string& id);
+  absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
-  // The job's points that changed after change `number`, newest first, without histograms.
-  std::vector<v1::PointResult> PointsChangedSince(const Job& job, uint64_t number,
-                                                  size_t limit) const;
+  // The job's unfinished points, the newest `limit`, as they are or were at most `max_age` ago.
+  std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                              size_t limit) const;
+
+  // The finished points after number `after` of an active or (`active` null) ended job, in order,
+  // at most `limit`; fewer if they are large. None: there is no more. May read the store.
+  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
+                                                           int64_t after, size_t limit);
 
   size_t active_jobs() const;
+  std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
+  EndedJobs ended_jobs() const;
+  PoolCounts pool_counts() const { return pool_.Counts(); }
 
  private:
-  JobRecord NewRecord(const v1::EnsembleSpec& message, const CheckedSpec& checked) const;
+  JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
+                      const CheckedSpec& checked) const;
+  absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   std::shared_ptr<Job> Register(JobRecord record);
   // Key and journal of the request are set here.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
-  std::shared_ptr<Job> ActiveOrNull(const std::string& id) const;
-  absl::StatusOr<JobRecord> ReadRecord(const std::string& id);
+  void Forget(const Job& ended);
+  // Also null if the caller may not see it.
+  std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
+  // The active job; null if it has ended.
+  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
+  absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
 
   Store& store_;
+  const Limits limits_;
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
-  WorkerPool pool_;                                     // last: its threads use what is above
+  std::atomic<uint64_t> succeeded_ = 0;
+  std::atomic<uint64_t> failed_ = 0;
+  std::atomic<uint64_t> cancelled_ = 0;
+  WorkerPool pool_;  // last: its threads use what is above
 };
 
 }  // namespace ballpiston::server

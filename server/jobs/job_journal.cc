@@ -3,13 +3,11 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/jobs/job_name.h"
-#include "server/observability/log.h"
+#include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
 
 namespace ballpiston::server {
@@ -28,7 +26,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = record.points_done;
+  end.points_done = job.points_computed();
   end.samples = record.samples;
   end.work = record.work;
   if (outcome.ok()) {
@@ -50,9 +48,11 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
-  if (!job_->Enter(v1::EnsembleJob::RUNNING, now)) return;
-  store_.Record([sequence = job_->sequence(), now](Database& database) {
+  const auto begin = [sequence = job_->sequence(), now](Database& database) {
     return BeginJob(database, sequence, now);
+  };
+  store_.Record(begin, [job = job_, now](const absl::Status& done) {
+    if (done.ok()) job->Enter(v1::EnsembleJob::RUNNING, now);
   });
 }
 
@@ -71,6 +71,7 @@ absl::Status JobJournal::ReadStoredBlocks(size_t point, const OnStoredBlock& on_
 uint64_t JobJournal::BlockMerged(MergedBlock block) {
   const uint64_t change =
       job_->AddBlock(static_cast<double>(block.result.samples), block.share_of_point);
+  Failpoint(block.restored ? "resume.block" : "block.merged");
   if (block.restored) return change;
   // Shared, because the store's closures are copyable; made into bytes only if it is written.
   auto result = std::make_shared<const BlockResult>(std::move(block.result));
@@ -87,17 +88,20 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
-  store_.RecordResult(job_->sequence(),
-                      {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
+  PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);
-  job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
+  job_->AddComputedPoint();
+  const auto told = std::make_shared<const v1::PointResult>(std::move(result));
+  Failpoint("point.before_record");
+  store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
+    job->AddFinishedPoint({number, told});
+  });
+  Failpoint("point.recorded");
 }
 
 void JobJournal::Ended(const absl::Status& outcome) {
   const JobEnd end = EndOf(*job_, outcome);
-  if (end.state == v1::EnsembleJob::FAILED) {
-    LogError(absl::StrCat(JobName(job_->id()), " failed: ", outcome.message()));
-  }
+  Failpoint("job.before_end");
   auto state = std::make_shared<JobState>();
   const auto change = [sequence = job_->sequence(), end, state](Database& database) {
     const absl::StatusOr<JobState> now = EndJob(database, sequence, end);
@@ -106,9 +110,11 @@ void JobJournal::Ended(const absl::Status& outcome) {
   };
   store_.RecordSoon(change, [job = job_, end, state, ended = on_ended_](const absl::Status& done) {
     if (!done.ok()) return;
+    Failpoint("job.ended");
     job->Enter(*state, end.time, *state == end.state ? end.error : "");
     if (ended) ended(*job);
   });
+  Failpoint("job.end_recorded");
 }
 
 void JobJournal::AwaitRoom() { store_.AwaitRoom(); }

@@ -41,6 +41,8 @@ v1::EnsembleJob JobMessage(const JobRecord& record) {
   SetProgress(record, job);
   job.set_engine_version(record.engine_version);
   job.set_work(record.work);
+  job.set_principal(record.principal);
+  job.set_priority(record.priority);
   return job;
 }
 

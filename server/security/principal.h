@@ -17,6 +17,11 @@ struct Principal {
   bool MaySee(const std::string& owner) const { return role == Role::kAdmin || name == owner; }
 };
 
+// read, submit or admin.
+inline const char* RoleName(Role role) {
+  return role == Role::kRead ? "read" : role == Role::kSubmit ? "submit" : "admin";
+}
+
 // Whoever comes over a Unix socket, or to a server without credentials.
 inline Principal LocalPrincipal() { return {"local", Role::kAdmin}; }
 

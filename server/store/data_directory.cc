@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/observability/log.h"
 #include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
@@ -41,6 +43,25 @@ absl::Status MakeDirectories(const std::string& path) {
   return NotWritable(path, errno);
 }
 
+// Jobs, results and the socket are nobody else's.
+absl::Status CloseToOthers(const std::string& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
+  constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
+  if ((found.st_mode & kForOthers) == 0) return absl::OkStatus();
+  const bool is_ours = found.st_uid == geteuid() && (found.st_mode & S_ISVTX) == 0;
+  if (!is_ours) {
+    return absl::PermissionDeniedError(absl::StrFormat(
+        "data folder %s is open to others (mode %04o, user %d) and not this server's own to close; "
+        "choose another one with --data_dir",
+        path, found.st_mode & 07777, found.st_uid));
+  }
+  if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
+  LogInfo(absl::StrFormat("data folder %s was open to others (mode %04o): it is 0700 now", path,
+                          found.st_mode & 07777));
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 std::string DataDirectory::Default() {
@@ -55,6 +76,8 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   const absl::Status made = MakeDirectories(path);
   if (!made.ok()) return made;
   if (access(path.c_str(), W_OK | X_OK) != 0) return NotWritable(path, errno);
+  const absl::Status closed = CloseToOthers(path);
+  if (!closed.ok()) return closed;
   const std::string lock_path = path + "/lock";
   const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock < 0) return NotWritable(path, errno);

@@ -16,14 +16,16 @@ using JobState = v1::EnsembleJob::State;
 struct JobRecord {
   int64_t sequence = 0;  // given by the store; greater for a newer job, never given twice
   std::string id;
-  std::string spec;  // serialized v1::EnsembleSpec
+  std::string principal;  // whose it is
+  int32_t priority = 0;   // among the principal's; higher first
+  std::string spec;       // serialized v1::EnsembleSpec
+  std::string question;   // equal for equal answers (question.h); empty: never the same
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
   std::optional<absl::Time> end_time;
   std::string error;  // serialized google.rpc.Status, empty unless FAILED
   std::string engine_version;
-  std::string request_id;         // of the Create, or empty
   std::string cancel_request_id;  // of the Cancel, or empty
   int64_t points = 0;
   int64_t points_done = 0;  // these two are up to date in ended jobs only

@@ -6,8 +6,13 @@ namespace ballpiston::server {
 namespace {
 
 constexpr char kColumns[] =
-    "sequence, id, spec, state, create_time, start_time, end_time, error, engine_version,"
-    " request_id, cancel_request_id, points, points_done, samples, work";
+    "sequence, id, principal, priority, spec, question, state, create_time, start_time, end_time,"
+    " error, engine_version, cancel_request_id, points, points_done, samples, work";
+
+// QUEUED, RUNNING, CANCELLING.
+constexpr char kActiveStates[] = "1, 2, 3";
+static_assert(v1::EnsembleJob::QUEUED == 1 && v1::EnsembleJob::RUNNING == 2 &&
+              v1::EnsembleJob::CANCELLING == 3);
 
 std::optional<absl::Time> OptionalTime(const Query& query, int column) {
   if (query.IsNull(column)) return std::nullopt;
@@ -18,19 +23,21 @@ JobRecord RecordOf(const Query& query) {
   JobRecord record;
   record.sequence = query.Integer(0);
   record.id = query.Bytes(1);
-  record.spec = query.Bytes(2);
-  record.state = static_cast<JobState>(query.Integer(3));
-  record.create_time = absl::FromUnixNanos(query.Integer(4));
-  record.start_time = OptionalTime(query, 5);
-  record.end_time = OptionalTime(query, 6);
-  record.error = query.Bytes(7);
-  record.engine_version = query.Bytes(8);
-  record.request_id = query.Bytes(9);
-  record.cancel_request_id = query.Bytes(10);
-  record.points = query.Integer(11);
-  record.points_done = query.Integer(12);
-  record.samples = query.Real(13);
-  record.work = query.Real(14);
+  record.principal = query.Bytes(2);
+  record.priority = static_cast<int32_t>(query.Integer(3));
+  record.spec = query.Bytes(4);
+  record.question = query.Bytes(5);
+  record.state = static_cast<JobState>(query.Integer(6));
+  record.create_time = absl::FromUnixNanos(query.Integer(7));
+  record.start_time = OptionalTime(query, 8);
+  record.end_time = OptionalTime(query, 9);
+  record.error = query.Bytes(10);
+  record.engine_version = query.Bytes(11);
+  record.cancel_request_id = query.Bytes(12);
+  record.points = query.Integer(13);
+  record.points_done = query.Integer(14);
+  record.samples = query.Real(15);
+  record.work = query.Real(16);
   return record;
 }
 
@@ -42,11 +49,13 @@ void BindTextOrNull(Query& query, const std::string& text) {
   }
 }
 
-absl::StatusOr<std::optional<JobRecord>> FindBy(Database& database, const char* column,
-                                                const std::string& value) {
-  Query query =
-      database.Prepare(absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE ", column, " = ?"));
-  const absl::StatusOr<bool> row = query.BindText(value).Step();
+// The first row, if any, of what the caller's condition leaves.
+std::string SelectWhere(const char* condition) {
+  return absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE ", condition);
+}
+
+absl::StatusOr<std::optional<JobRecord>> FirstRow(Query& query) {
+  const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   if (!*row) return std::nullopt;
   return RecordOf(query);
@@ -70,37 +79,69 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
 
 absl::Status InsertJob(Database& database, JobRecord& record) {
   Query query = database.Prepare(
-      "INSERT INTO jobs (id, spec, state, create_time, error, engine_version, request_id, points,"
-      " points_done, samples) VALUES (?, ?, ?, ?, x'', ?, ?, ?, 0, 0)");
-  query.BindText(record.id).BindBlob(record.spec).Bind(int64_t{record.state});
+      "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
+      " engine_version, points, points_done, samples, work)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, ?, 0, 0, 0)");
+  query.BindText(record.id).BindText(record.principal).Bind(int64_t{record.priority});
+  query.BindBlob(record.spec).BindBlob(record.question).Bind(int64_t{record.state});
   query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);
-  BindTextOrNull(query, record.request_id);
   const absl::Status status = query.Bind(record.points).Run();
   record.sequence = database.LastInsertedRow();
   return status;
 }
 
 absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id) {
-  return FindBy(database, "id", id);
+  Query query = database.Prepare(SelectWhere("id = ?"));
+  query.BindText(id);
+  return FirstRow(query);
 }
 
-absl::StatusOr<std::optional<JobRecord>> FindJobByRequest(Database& database,
-                                                          const std::string& request_id) {
-  return FindBy(database, "request_id", request_id);
+absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence) {
+  Query query = database.Prepare(SelectWhere("sequence = ?"));
+  query.Bind(sequence);
+  return FirstRow(query);
 }
 
-absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database, int64_t before, int limit) {
-  Query query = database.Prepare(absl::StrCat(
-      "SELECT ", kColumns, " FROM jobs WHERE sequence < ? ORDER BY sequence DESC LIMIT ?"));
+absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
+                                                    const std::string& principal,
+                                                    const std::string& question) {
+  if (question.empty()) return std::nullopt;
+  Query query =
+      database.Prepare(SelectWhere("principal = ? AND question = ? AND question <> x'' AND state = "
+                                   "? ORDER BY sequence LIMIT 1"));
+  query.BindText(principal).BindBlob(question).Bind(int64_t{v1::EnsembleJob::SUCCEEDED});
+  return FirstRow(query);
+}
+
+absl::StatusOr<int64_t> CountActiveJobs(Database& database,
+                                        const std::optional<std::string>& principal) {
+  Query query =
+      database.Prepare(absl::StrCat("SELECT count(*) FROM jobs WHERE state IN (", kActiveStates,
+                                    ")", principal ? " AND principal = ?" : ""));
+  if (principal) query.BindText(*principal);
+  const absl::StatusOr<bool> row = query.Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
+}
+
+absl::StatusOr<int64_t> CountJobs(Database& database) {
+  return database.Integer("SELECT count(*) FROM jobs");
+}
+
+absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
+                                                const std::optional<std::string>& principal,
+                                                int64_t before, int limit) {
+  Query query = database.Prepare(
+      SelectWhere(principal ? "principal = ? AND sequence < ? ORDER BY sequence DESC LIMIT ?"
+                            : "sequence < ? ORDER BY sequence DESC LIMIT ?"));
+  if (principal) query.BindText(*principal);
   query.Bind(before).Bind(int64_t{limit});
   return AllRows(query);
 }
 
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database) {
   Query query = database.Prepare(
-      absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE state IN (", int{v1::EnsembleJob::QUEUED},
-                   ", ", int{v1::EnsembleJob::RUNNING}, ", ", int{v1::EnsembleJob::CANCELLING},
-                   ") ORDER BY sequence"));
+      absl::StrCat(SelectWhere("state IN ("), kActiveStates, ") ORDER BY sequence"));
   return AllRows(query);
 }
 
@@ -146,21 +187,24 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
   return state;
 }
 
-absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version) {
+absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
+                        const std::string& question) {
   for (const char* sql :
        {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }
-  return database.Prepare("UPDATE jobs SET engine_version = ? WHERE sequence = ?")
+  return database.Prepare("UPDATE jobs SET engine_version = ?, question = ? WHERE sequence = ?")
       .BindText(engine_version)
+      .BindBlob(question)
       .Bind(sequence)
       .Run();
 }
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
-  for (const char* sql : {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?",
-                          "DELETE FROM jobs WHERE sequence = ?"}) {
+  for (const char* sql :
+       {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?",
+        "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }

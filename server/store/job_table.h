@@ -22,11 +22,24 @@ namespace ballpiston::server {
 absl::Status InsertJob(Database& database, JobRecord& record);
 
 absl::StatusOr<std::optional<JobRecord>> FindJob(Database& database, const std::string& id);
-absl::StatusOr<std::optional<JobRecord>> FindJobByRequest(Database& database,
-                                                          const std::string& request_id);
+absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, int64_t sequence);
 
-// Newest first, those with a smaller sequence than `before`.
-absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database, int64_t before, int limit);
+// The principal's oldest job that SUCCEEDED in answering the question (JobRecord::question).
+absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
+                                                    const std::string& principal,
+                                                    const std::string& question);
+
+// Neither SUCCEEDED nor FAILED nor CANCELLED; the principal's, or everybody's.
+absl::StatusOr<int64_t> CountActiveJobs(Database& database,
+                                        const std::optional<std::string>& principal);
+
+// All there are.
+absl::StatusOr<int64_t> CountJobs(Database& database);
+
+// The principal's, or everybody's; newest first, those with a smaller sequence than `before`.
+absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
+                                                const std::optional<std::string>& principal,
+                                                int64_t before, int limit);
 
 // Neither SUCCEEDED nor FAILED nor CANCELLED; oldest first.
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);
@@ -52,9 +65,10 @@ struct JobEnd {
 absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
 // Of an engine that gives other numbers: what was computed is dropped, the version becomes this.
-absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version);
+absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
+                        const std::string& question);
 
-// With its results.
+// With its results and requests.
 absl::Status DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

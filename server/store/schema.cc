@@ -64,6 +64,55 @@ CREATE TABLE pilots (
 ) STRICT;
 )sql";
 
+// A job gets its owner, its priority and the question that it answers; requests become rows of
+// their own; results know the order in which they came.
+constexpr char kThirdVersion[] = R"sql(
+CREATE TABLE requests (
+  principal TEXT NOT NULL,
+  request_id TEXT NOT NULL,
+  payload BLOB NOT NULL,
+  job INTEGER NOT NULL,
+  answered_from_store INTEGER NOT NULL,
+  PRIMARY KEY (principal, request_id)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX requests_by_job ON requests (job);
+CREATE TABLE new_jobs (
+  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
+  id TEXT NOT NULL UNIQUE,
+  principal TEXT NOT NULL,
+  priority INTEGER NOT NULL,
+  spec BLOB NOT NULL,
+  question BLOB NOT NULL,
+  state INTEGER NOT NULL,
+  create_time INTEGER NOT NULL,
+  start_time INTEGER,
+  end_time INTEGER,
+  error BLOB NOT NULL,
+  engine_version TEXT NOT NULL,
+  cancel_request_id TEXT,
+  points INTEGER NOT NULL,
+  points_done INTEGER NOT NULL,
+  samples REAL NOT NULL,
+  work REAL NOT NULL
+) STRICT;
+INSERT INTO new_jobs SELECT sequence, id, 'local', 0, spec, x'', state, create_time, start_time,
+  end_time, error, engine_version, cancel_request_id, points, points_done, samples, work FROM jobs;
+INSERT INTO sqlite_sequence SELECT 'new_jobs', 0
+  WHERE NOT EXISTS (SELECT * FROM sqlite_sequence WHERE name = 'new_jobs');
+UPDATE sqlite_sequence SET seq = (SELECT coalesce(max(seq), 0) FROM sqlite_sequence
+  WHERE name IN ('jobs', 'new_jobs')) WHERE name = 'new_jobs';
+INSERT INTO requests SELECT 'local', request_id, x'', sequence, 0 FROM jobs
+  WHERE request_id IS NOT NULL;
+DROP TABLE jobs;
+ALTER TABLE new_jobs RENAME TO jobs;
+CREATE INDEX jobs_by_state ON jobs (state, principal);
+CREATE INDEX jobs_by_principal ON jobs (principal, sequence);
+CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
+ALTER TABLE results ADD COLUMN finish INTEGER NOT NULL DEFAULT 0;
+UPDATE results SET finish = rowid;
+CREATE INDEX results_by_finish ON results (job, finish);
+)sql";
+
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
@@ -174,9 +223,12 @@ absl::Status MakeTables(Database& database) {
   const auto version = database.Integer("PRAGMA user_version");
   if (!version.ok()) return version.status();
   if (*version == kSchemaVersion) return absl::OkStatus();
-  return database.Execute(absl::StrCat("BEGIN IMMEDIATE;", *version == 0 ? kTables : "",
-                                       kSecondVersion, "PRAGMA application_id = ", kApplicationId,
-                                       "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
+  const absl::Status made = database.Execute(absl::StrCat(
+      "BEGIN IMMEDIATE;", *version < 1 ? kTables : "", *version < 2 ? kSecondVersion : "",
+      kThirdVersion, "PRAGMA application_id = ", kApplicationId,
+      "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
+  if (!made.ok()) database.Execute("ROLLBACK").IgnoreError();
+  return made;
 }
 
 absl::Status Prepare(Database& database) {

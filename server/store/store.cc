@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/store/schema.h"
 
@@ -91,20 +92,26 @@ void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
   write.point = point;
   write.bytes = bytes;
   write.change = [=, serialize = std::move(serialize)](Database& database) {
+    Failpoint("block.before_insert");
     return InsertBlock(database, job, point, block, serialize());
   };
   Post(std::move(write));
 }
 
-void Store::RecordResult(int64_t job, PointRow row, Done done) {
+void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
+  const auto number = std::make_shared<int64_t>(0);
   Write write;
   write.job = job;
   write.point = row.point;
   write.is_result = true;
   write.bytes = row.result.size();
-  write.done = std::move(done);
-  write.change = [job, row = std::move(row)](Database& database) {
-    return InsertResult(database, job, row);
+  write.change = [job, row = std::move(row), number](Database& database) {
+    const absl::StatusOr<int64_t> inserted = InsertResult(database, job, row);
+    *number = inserted.value_or(0);
+    return inserted.status();
+  };
+  write.done = [number, stored = std::move(stored)](const absl::Status& status) {
+    if (status.ok() && stored && *number > 0) stored(*number);
   };
   Post(std::move(write));
 }
@@ -161,6 +168,7 @@ void Store::Close() {
     std::lock_guard lock(reader_mutex_);
     reader_.reset();
   }
+  Failpoint("stop.before_checkpoint");
   writer_.reset();  // last: the last connection to close checkpoints
 }
 
@@ -319,7 +327,10 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
     }
     if (!status.ok()) culprit = i;
   }
-  return status.ok() ? writer_->Execute("COMMIT") : status;
+  Failpoint("store.before_commit");
+  if (status.ok()) status = writer_->Execute("COMMIT");
+  Failpoint("store.after_commit");
+  return status;
 }
 
 // After a failure even an empty group writes something: that the disk works is seen by writing.

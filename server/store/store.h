@@ -80,7 +80,10 @@ class Store {
   // holds until then.
   void RecordBlock(int64_t job, int64_t point, int64_t block,
                    std::function<std::string()> serialize, size_t bytes = 0);
-  void RecordResult(int64_t job, PointRow row, Done done = nullptr);
+  // `stored`, if any, is called as a Done is, with the result's number in the store: when it is on
+  // disk, unless the point had a result.
+  void RecordResult(int64_t job, PointRow row,
+                    std::function<void(int64_t number)> stored = nullptr);
 
   // Runs `read` on the read-only connection, one at a time.
   absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read);

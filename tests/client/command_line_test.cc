@@ -100,6 +100,9 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"run", "first-hit", "--progress", "loud"},
                                                {"run", "first-hit", "--rho", "1", "--rho", "2"},
                                                {"run", "first-hit", "second"},
+                                               {"run", "first-hit", "--priority", "high"},
+                                               {"run", "first-hit", "--priority", "1e10"},
+                                               {"submit", "first-hit", "--priority", "0.5"},
                                                {"submit", "brownian"},
                                                {"watch"},
                                                {"watch", "a", "b"},
@@ -116,6 +119,8 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"plan", "equilibrium", "--format", "xml"},
                                                {"trace", "--events", "5"},
                                                {"list", "--server", "nowhere"},
+                                               {"status", "--format", "csv"},
+                                               {"status", "now"},
                                                {"analytic", "--rho", "0.53"},
                                                {"figure", "portrait", "--out", "x"},
                                                {"figure", "mean-free-time"},
@@ -185,7 +190,7 @@ TEST_F(CommandLineTest, VerbsOfLaterVersionsAreKnownAsSuch) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.err,
               "ballpiston: trace is not offered by this version; it offers analytic, plan, run, "
-              "submit, watch, result, list, cancel, delete, figure\n");
+              "submit, watch, result, list, cancel, delete, status, figure\n");
   }
 }
 
@@ -358,6 +363,74 @@ TEST_F(CommandLineTest, APlanWithoutAServerExitsWithThree) {
   EXPECT_EQ(WithServer({"plan", "equilibrium"}).code, 3);
 }
 
+// ---- how a job is asked for, and what becomes of it ----
+
+TEST_F(CommandLineTest, FreshAndPriorityReachTheServer) {
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "equilibrium"}).code, 0);
+  EXPECT_EQ(WithServer({"submit", "equilibrium", "--fresh", "--priority", "-7"}).code, 0);
+  EXPECT_EQ(WithServer({"run", "equilibrium", "--priority", "100", "--fresh"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_FALSE(asked[0].fresh());
+  EXPECT_EQ(asked[0].priority(), 0);
+  EXPECT_TRUE(asked[1].fresh());
+  EXPECT_EQ(asked[1].priority(), -7);
+  EXPECT_TRUE(asked[2].fresh());
+  EXPECT_EQ(asked[2].priority(), 100);
+}
+
+TEST_F(CommandLineTest, AnAnswerFromTheStoreIsTold) {
+  job().mutable_end_time()->set_seconds(1700000000);
+  server_.ensemble.answers_from_store = true;
+  server_.Start();
+  const std::string told = "answered from the store: " + job().name() +
+                           ", computed 2023-11-14 22:13 UTC (--fresh computes anew)";
+  const Outcome submitted = WithServer({"submit", "equilibrium"});
+  EXPECT_EQ(submitted.out, job().name() + "\n");
+  EXPECT_EQ(submitted.err, told + "\n");
+  const Outcome table = WithServer({"run", "equilibrium"});
+  EXPECT_EQ(table.err, told + "\n");
+  EXPECT_EQ(table.out, WithServer({"result", job().name()}).out);
+  EXPECT_THAT(WithServer({"run", "equilibrium", "--progress", "json"}).err,
+              testing::StartsWith("{\"note\": \"" + told + "\"}\n{\"job\": "));
+  const Outcome quiet =
+      WithServer({"run", "equilibrium", "--progress", "none", "--format", "json"});
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_THAT(quiet.out, HasSubstr("\"answered_from_store\":true"));
+}
+
+TEST_F(CommandLineTest, AnAnswerThatWasComputedIsNotSaidToBeFromTheStore) {
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "equilibrium"}).err, "");
+  const Outcome run = WithServer({"run", "equilibrium", "--format", "json"});
+  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.out, HasSubstr("\"answered_from_store\":false"));
+}
+
+TEST_F(CommandLineTest, AFullQueueExitsWithThreeAndSaysWhatToDo) {
+  server_.ensemble.create_end = LimitExceeded("QUEUE_FULL", "10 jobs are active already");
+  server_.Start();
+  for (const char* verb : {"run", "submit"}) {
+    const Outcome outcome = WithServer({verb, "equilibrium"});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err,
+              "ballpiston: 10 jobs are active already (QUEUE_FULL)\n"
+              "Try again when some of them have ended.\n");
+  }
+}
+
+TEST_F(CommandLineTest, AJobThatIsTooLargeForTheServerExitsWithTwoAndSaysWhatToDo) {
+  server_.ensemble.create_end = LimitExceeded("TOO_MANY_POINTS", "the grid has 9 points");
+  server_.Start();
+  const Outcome outcome = WithServer({"submit", "equilibrium"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "ballpiston: the grid has 9 points (TOO_MANY_POINTS)\n"
+            "Split the grid between several jobs.\n");
+}
+
 TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {
   server_.analytic.response.add_points()->set_rho(0.53);
   server_.Start();
@@ -365,6 +438,39 @@ TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {
       WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--format", "jsonl"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out.rfind("{\"rho\":0.53,", 0), 0u);
+}
+
+TEST_F(CommandLineTest, StatusPrintsWhatTheServerTells) {
+  server_.server.status.set_version("1.2.3");
+  server_.server.status.set_queued_jobs(17);
+  server_.Start();
+  const Outcome table = WithServer({"status"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("server    1.2.3\n"));
+  EXPECT_THAT(table.out, HasSubstr("17 queued"));
+  EXPECT_EQ(table.err, "");
+  EXPECT_THAT(WithServer({"status", "--format", "json"}).out, HasSubstr("\"queued_jobs\":17,"));
+}
+
+TEST_F(CommandLineTest, StatusOfAPrivateServerAsksTheOneThatRuns) {
+  const PrivateHome home(server_.Address());
+  server_.Start();
+  EXPECT_EQ(Ballpiston({"status"}).code, 0);
+}
+
+// The one that could be started is /bin/false: its failure would be told.
+TEST_F(CommandLineTest, StatusStartsNoServer) {
+  const PrivateHome home(server_.Address());
+  const Outcome outcome = Ballpiston({"status"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err.rfind("ballpiston: no private server is running (", 0), 0u) << outcome.err;
+}
+
+TEST_F(CommandLineTest, StatusOfANamedServerThatIsNotThereNamesIt) {
+  const Outcome outcome = WithServer({"status"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("no answer from the server at " + server_.Address()));
 }
 
 }  // namespace

@@ -57,6 +57,22 @@ TEST(EnsembleClient, EachCreateHasAnIdOfItsOwn) {
             server.ensemble.Asked().create[1].request_id());
 }
 
+TEST(EnsembleClient, CreateCarriesItsOptions) {
+  FakeServer server;
+  server.ensemble.jobs = {Named("ensembleJobs/a")};
+  server.Start();
+  const EnsembleClient client(server.Channel());
+  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
+  ASSERT_TRUE(
+      client.Create(v1::EnsembleSpec(), {.request_id = "id", .fresh = true, .priority = -7}).ok());
+  const auto asked = server.ensemble.Asked().create;
+  EXPECT_FALSE(asked[0].fresh());
+  EXPECT_EQ(asked[0].priority(), 0);
+  EXPECT_EQ(asked[1].request_id(), "id");
+  EXPECT_TRUE(asked[1].fresh());
+  EXPECT_EQ(asked[1].priority(), -7);
+}
+
 TEST(EnsembleClient, ListGathersAllPages) {
   FakeServer server;
   for (int i = 0; i < 5; ++i) server.ensemble.jobs.push_back(Named(std::to_string(i)));

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "client/library/error_text.h"
+#include "tests/client/fake_server.h"
+
 namespace ballpiston::client {
 namespace {
 
@@ -22,6 +27,18 @@ TEST(ExitCode, FollowsFromTheStatus) {
   for (const auto& [code, expected] : table) {
     EXPECT_EQ(static_cast<int>(ExitCodeOf(absl::Status(code, "text"))), expected)
         << absl::StatusCodeToString(code);
+  }
+}
+
+absl::Status LimitOf(const std::string& reason) { return FromGrpc(LimitExceeded(reason, "text")); }
+
+TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
+  for (const char* reason : {"TOO_MANY_POINTS", "TOO_MANY_SAMPLES"}) {
+    EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
+  }
+  for (const char* reason :
+       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_STREAMS", "STORE_FULL", "COMPARISON_RUNNING"}) {
+    EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }
 

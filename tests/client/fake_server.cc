@@ -16,7 +16,9 @@ grpc::Status FakeEnsembleService::CreateEnsembleJob(grpc::ServerContext*,
   const std::lock_guard lock(mutex_);
   asked_.create.push_back(*request);
   if (unavailable_creates-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  if (!create_end.ok()) return create_end;
   *job = jobs.at(0);
+  job->set_answered_from_store(answers_from_store);
   return grpc::Status::OK;
 }
 
@@ -129,6 +131,7 @@ void FakeServer::Start() {
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
   builder.RegisterService(&method);
+  builder.RegisterService(&server);
   server_ = builder.BuildAndStart();
 }
 
@@ -156,6 +159,14 @@ grpc::Status InvalidSpec(const std::string& field, const std::string& descriptio
   details.add_details()->PackFrom(request);
   return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "the specification is not valid",
                       details.SerializeAsString());
+}
+
+grpc::Status LimitExceeded(const std::string& reason, const std::string& message) {
+  google::rpc::ErrorInfo info;
+  info.set_reason(reason);
+  google::rpc::Status status;
+  status.add_details()->PackFrom(info);
+  return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, message, status.SerializeAsString());
 }
 
 grpc::Status JobNotFound(const std::string& name) {

@@ -13,6 +13,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/method.grpc.pb.h"
+#include "ballpiston/v1/server.grpc.pb.h"
 
 namespace ballpiston::client {
 
@@ -32,7 +33,9 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
   int unavailable_creates = 0;  // so many attempts fail first
-  int page_size = 2;            // whatever was asked for
+  grpc::Status create_end;
+  bool answers_from_store = false;  // says Create of what it answers
+  int page_size = 2;                // whatever was asked for
 
   // What was asked so far.
   struct Requests {
@@ -95,6 +98,16 @@ class FakeMethodService final : public v1::MethodService::Service {
                               grpc::ServerWriter<v1::MethodMeasurement>* writer) override;
 };
 
+class FakeServerService final : public v1::ServerService::Service {
+ public:
+  v1::ServerStatus status;
+  grpc::Status GetServerStatus(grpc::ServerContext*, const v1::GetServerStatusRequest*,
+                               v1::ServerStatus* answer) override {
+    *answer = status;
+    return grpc::Status::OK;
+  }
+};
+
 class FakeServer {
  public:
   FakeServer();
@@ -105,6 +118,7 @@ class FakeServer {
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
   FakeMethodService method;
+  FakeServerService server;
 
   std::string Address() const { return "unix:" + folder_ + "/socket"; }
   std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it
@@ -117,6 +131,9 @@ class FakeServer {
 
 // INVALID_ARGUMENT with the details a server attaches: one violation.
 grpc::Status InvalidSpec(const std::string& field, const std::string& description);
+
+// RESOURCE_EXHAUSTED with the details a server attaches.
+grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
 
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);

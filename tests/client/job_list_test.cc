@@ -8,18 +8,20 @@
 namespace ballpiston::client {
 namespace {
 
-std::string Printed(Format format) {
+std::string Printed(Format format, const std::string& principal = "", int priority = 0) {
   v1::EnsembleJob running;
   EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
-      R"(name: "ensembleJobs/b" state: RUNNING spec { experiment: EQUILIBRIUM }
+      R"(name: "ensembleJobs/b" state: RUNNING principal: "ann" spec { experiment: EQUILIBRIUM }
          create_time { seconds: 1700000000 }
          progress { points: 10 points_done: 3 samples: 1234567 })",
       &running));
   v1::EnsembleJob ended;
   EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
-      R"(name: "ensembleJobs/a" state: SUCCEEDED spec { experiment: FIRST_HIT }
+      R"(name: "ensembleJobs/a" state: SUCCEEDED principal: "ann" spec { experiment: FIRST_HIT }
          create_time { seconds: 0 } end_time { seconds: 60 } progress { points: 1 points_done: 1 })",
       &ended));
+  running.set_priority(priority);
+  if (!principal.empty()) ended.set_principal(principal);
   std::ostringstream out;
   PrintJobs({running, ended}, format, out);
   return out.str();
@@ -35,11 +37,31 @@ ensembleJobs/a  first-hit    succeeded     1       1        0  1970-01-01T00:00:
 }
 
 TEST(JobList, CsvHasARowForEachJob) {
-  EXPECT_EQ(Printed(Format::kCsv),
-            R"(name,experiment,state,points_done,points,samples,create_time,end_time
-ensembleJobs/b,equilibrium,running,3,10,1234567,2023-11-14T22:13:20Z,
-ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:00Z
+  EXPECT_EQ(
+      Printed(Format::kCsv),
+      R"(name,experiment,state,points_done,points,samples,create_time,end_time,principal,priority
+ensembleJobs/b,equilibrium,running,3,10,1234567,2023-11-14T22:13:20Z,,ann,0
+ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:00Z,ann,0
 )");
+}
+
+TEST(JobList, TheTableTellsWhoseAJobIsIfThereAreSeveralPrincipals) {
+  EXPECT_EQ(Printed(Format::kTable, "bob").substr(0, 120),
+            "name            experiment   state      done  points  samples  created               "
+            "ended                 principal\nensemb");
+}
+
+TEST(JobList, TheTableTellsPrioritiesIfThereAreAny) {
+  const std::string table = Printed(Format::kTable, "", -7);
+  EXPECT_NE(table.find("  ended                 priority\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("-7\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("ann"), std::string::npos) << table;
+}
+
+TEST(JobList, CsvQuotesAPrincipalsNameWhereItHasTo) {
+  const std::string csv = Printed(Format::kCsv, "Lab 3, \"the old one\"", 5);
+  EXPECT_NE(csv.find("Z,,ann,5\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("Z,\"Lab 3, \"\"the old one\"\"\",0\n"), std::string::npos) << csv;
 }
 
 TEST(JobList, JsonIsOneDocument) {

@@ -1,70 +1,202 @@
 #include "server/execution/fair_share.h"
 
 #include <map>
+#include <set>
+#include <vector>
 
 #include "gtest/gtest.h"
 
 namespace ballpiston::server {
 namespace {
 
-// One worker; each run's blocks take their time. Compute time a run got within `seconds`.
-std::map<int64_t, double> Served(FairShare& share, const std::map<int64_t, double>& block_seconds,
-                                 double seconds) {
-  std::map<int64_t, double> served;
+using Seconds = std::map<int64_t, double>;
+
+int64_t First(const FairShare& share) {
+  return share.First([](int64_t) { return true; }).value_or(-1);
+}
+
+// One worker; each run's blocks take their time, 0.1 s if none is given. What the runs got.
+Seconds Served(FairShare& share, double seconds, const Seconds& block_seconds = {},
+               const std::set<int64_t>& without_task = {}) {
+  Seconds served;
   for (double now = 0; now < seconds;) {
-    const int64_t run = share.order().begin()->second;
-    share.BlockBegins(run);
-    share.BlockEnds(run, block_seconds.at(run));
-    served[run] += block_seconds.at(run);
-    now += block_seconds.at(run);
+    const auto run = share.First([&](int64_t asked) { return !without_task.contains(asked); });
+    if (!run) break;
+    const auto given = block_seconds.find(*run);
+    const double block = given == block_seconds.end() ? 0.1 : given->second;
+    share.BlockBegins(*run);
+    share.BlockEnds(*run, block);
+    served[*run] += block;
+    now += block;
   }
   return served;
 }
 
+void Add(FairShare& share, const std::vector<int64_t>& runs, const std::string& principal = "a",
+         int32_t priority = 0) {
+  for (const int64_t run : runs) share.Add(run, principal, priority);
+}
+
 TEST(FairShare, UnequalBlocksGetEqualTime) {
   FairShare share;
-  share.Add(1);
-  share.Add(2);
-  const auto served = Served(share, {{1, 1.0}, {2, 0.01}}, 200);
+  Add(share, {1, 2});
+  const Seconds served = Served(share, 200, {{1, 1.0}, {2, 0.01}});
   EXPECT_NEAR(served.at(1), 100, 2);
   EXPECT_NEAR(served.at(2), 100, 2);
 }
 
+TEST(FairShare, PrincipalsGetEqualTimeWhateverTheirJobs) {
+  FairShare share;
+  Add(share, {1, 2, 3, 4, 5, 6, 7, 8, 9}, "many");
+  Add(share, {10}, "one");
+  Add(share, {11, 12}, "long blocks");
+  const Seconds served = Served(share, 300, {{11, 2.0}, {12, 2.0}});
+  EXPECT_NEAR(served.at(10), 100, 2.5);
+  EXPECT_NEAR(served.at(11) + served.at(12), 100, 2.5);
+  EXPECT_NEAR(served.at(11), 50, 2.5);
+  for (int64_t run = 1; run <= 9; ++run) EXPECT_NEAR(served.at(run), 100.0 / 9, 0.5);
+}
+
+TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
+  FairShare share;
+  Add(share, {1}, "a", -5);
+  Add(share, {2}, "a", 0);
+  Served(share, 10);
+  Add(share, {3, 4}, "a", 100);
+  const Seconds served = Served(share, 100);
+  EXPECT_NEAR(served.at(3), 50, 0.2);
+  EXPECT_NEAR(served.at(4), 50, 0.2);
+  EXPECT_EQ(served.size(), 2u);
+  share.Remove(3);
+  share.Remove(4);
+  EXPECT_EQ(First(share), 2);
+  share.Remove(2);
+  EXPECT_EQ(First(share), 1);
+}
+
+// What those of the highest priority cannot use goes to the next.
+TEST(FairShare, WhoHasNoTaskIsPassedOver) {
+  FairShare share;
+  Add(share, {1}, "a", 1);
+  Add(share, {2}, "a", 0);
+  Add(share, {3}, "b");
+  const Seconds served = Served(share, 100, {}, {1});
+  EXPECT_NEAR(served.at(2), 50, 0.2);
+  EXPECT_NEAR(served.at(3), 50, 0.2);
+  EXPECT_FALSE(share.First([](int64_t) { return false; }));
+}
+
+TEST(FairShare, APriorityDoesNotTakeFromOtherPrincipals) {
+  FairShare share;
+  Add(share, {1, 2}, "urgent", 100);
+  Add(share, {3}, "patient", -100);
+  const Seconds served = Served(share, 100);
+  EXPECT_NEAR(served.at(1) + served.at(2), 50, 0.2);
+  EXPECT_NEAR(served.at(3), 50, 0.2);
+}
+
+TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
+  FairShare share;
+  Add(share, {1, 2}, "old");
+  Served(share, 1000);
+  Add(share, {3}, "new");
+  const Seconds served = Served(share, 100);
+  EXPECT_NEAR(served.at(1) + served.at(2), 50, 0.2);
+  EXPECT_NEAR(served.at(3), 50, 0.2);
+}
+
 TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
   FairShare share;
-  share.Add(1);
-  Served(share, {{1, 1.0}}, 1000);
-  share.Add(2);
-  const auto served = Served(share, {{1, 1.0}, {2, 1.0}}, 100);
-  EXPECT_NEAR(served.at(1), 50, 1);
-  EXPECT_NEAR(served.at(2), 50, 1);
+  Add(share, {1});
+  Served(share, 1000);
+  Add(share, {2});
+  const Seconds served = Served(share, 100);
+  EXPECT_NEAR(served.at(1), 50, 0.2);
+  EXPECT_NEAR(served.at(2), 50, 0.2);
+}
+
+// A run that opens a point for a long time, say, and leaves the other workers to the others: when
+// it goes on they need not wait until it has caught up.
+TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
+  for (const bool of_one_principal : {false, true}) {
+    FairShare share;
+    Add(share, {1}, "a");
+    Add(share, {2}, of_one_principal ? "a" : "b");
+    EXPECT_NEAR(Served(share, 1000, {}, {1}).at(2), 1000, 0.2);
+    const Seconds served = Served(share, 100);
+    EXPECT_NEAR(served.at(1), 50, 0.2);
+    EXPECT_NEAR(served.at(2), 50, 0.2);
+  }
+}
+
+// A row of jobs of one long block each, every one of them new.
+TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
+  FairShare share;
+  Add(share, {1}, "steady");
+  Seconds served;
+  for (int64_t run = 2; run < 50; ++run) {
+    Add(share, {run}, "again");
+    while (true) {
+      const int64_t chosen = First(share);
+      const double block = chosen == 1 ? 0.1 : 10;
+      share.BlockBegins(chosen);
+      share.BlockEnds(chosen, block);
+      served[chosen == 1 ? 1 : 2] += block;
+      if (chosen == run) break;
+    }
+    share.Remove(run);
+  }
+  EXPECT_NEAR(served.at(1) / served.at(2), 1, 0.1);
+}
+
+// While nobody else was there it took nothing from anybody.
+TEST(FairShare, WhatWasUsedBeforeAllWereGoneIsForgotten) {
+  FairShare share;
+  Add(share, {1}, "a");
+  Add(share, {2}, "b");
+  Served(share, 100, {{1, 60}});
+  share.Remove(1);
+  share.Remove(2);
+  Add(share, {3}, "b");
+  Add(share, {4}, "a");
+  const Seconds served = Served(share, 100);
+  EXPECT_NEAR(served.at(3), 50, 0.2);
+  EXPECT_NEAR(served.at(4), 50, 0.2);
 }
 
 TEST(FairShare, TheOlderRunComesFirstAtEquality) {
   FairShare share;
-  share.Add(8);
-  share.Add(7);
-  EXPECT_EQ(share.order().begin()->second, 7);
+  Add(share, {8, 7});
+  EXPECT_EQ(First(share), 7);
 }
 
 TEST(FairShare, BlocksInFlightAreCharged) {
-  FairShare share;
-  share.Add(1);
-  share.Add(2);
-  share.BlockBegins(1);
-  EXPECT_EQ(share.order().begin()->second, 2);
-  share.BlockBegins(2);
-  share.BlockBegins(2);
-  EXPECT_EQ(share.order().begin()->second, 1);
+  for (const bool of_one_principal : {false, true}) {
+    FairShare share;
+    Add(share, {1}, "a");
+    Add(share, {2}, of_one_principal ? "a" : "b");
+    share.BlockBegins(1);
+    EXPECT_EQ(First(share), 2);
+    share.BlockBegins(2);
+    share.BlockBegins(2);
+    EXPECT_EQ(First(share), 1);
+  }
 }
 
 TEST(FairShare, ARemovedRunIsForgotten) {
   FairShare share;
-  share.Add(1);
+  Add(share, {1});
   share.BlockBegins(1);
   share.Remove(1);
   share.BlockEnds(1, 1.0);
-  EXPECT_TRUE(share.order().empty());
+  EXPECT_EQ(First(share), -1);
+  EXPECT_EQ(share.runs(), 0u);
+  Add(share, {2, 3}, "a");
+  Add(share, {4}, "b");
+  share.BlockBegins(2);
+  EXPECT_EQ(First(share), 4);
+  share.Remove(2);  // its block counts no more against its principal
+  EXPECT_EQ(First(share), 3);
 }
 
 }  // namespace

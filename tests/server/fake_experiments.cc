@@ -34,12 +34,17 @@ class FakeExperiment : public PointExperiment {
   std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override {
     if (before_block_) before_block_(index_, block, stop);
     if (stop.stop_requested()) return std::nullopt;
-    BlockResult result;
+    BlockResult result = EmptyResult();
     result.samples = plan().SamplesIn(block);
-    result.moments.resize(1);
     for (uint64_t i = 0; i < result.samples; ++i) {
       result.moments[0].Add(Uniform(seed_, index_, plan().FirstSample(block) + i));
     }
+    return result;
+  }
+
+  BlockResult EmptyResult() const override {
+    BlockResult result;
+    result.moments.resize(1);
     return result;
   }
 
@@ -78,6 +83,7 @@ class HeldUpExperiment : public PointExperiment {
     if (stop.stop_requested()) return std::nullopt;  // a short block would not notice
     return real_->RunBlock(block, stop);
   }
+  BlockResult EmptyResult() const override { return real_->EmptyResult(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return real_->FirstEstimate(merged);
   }

@@ -58,6 +58,7 @@ grpc::Status RunningServer::Create(const v1::CreateEnsembleJobRequest& request,
 std::string RunningServer::Submit(const v1::EnsembleSpec& spec) {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = spec;
+  request.set_fresh(true);
   v1::EnsembleJob job;
   const grpc::Status status = Create(request, &job);
   EXPECT_TRUE(status.ok()) << status.error_message();

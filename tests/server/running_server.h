@@ -34,7 +34,7 @@ class RunningServer {
   v1::MethodService::Stub& method() { return *method_; }
 
   grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job);
-  std::string Submit(const v1::EnsembleSpec& spec);  // its name
+  std::string Submit(const v1::EnsembleSpec& spec);  // a fresh job's name
   v1::EnsembleJob Get(const std::string& name);
   grpc::Status Cancel(const std::string& name, const std::string& request_id = "");
   grpc::Status Delete(const std::string& name);

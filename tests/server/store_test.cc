@@ -18,6 +18,7 @@
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
 #include "server/store/pilot_table.h"
+#include "server/store/request_table.h"
 #include "server/store/schema.h"
 #include "tests/server/temporary_folder.h"
 
@@ -31,13 +32,15 @@ std::string Contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-JobRecord Record(const std::string& id, const std::string& request_id = "") {
+JobRecord Record(const std::string& id) {
   JobRecord record;
   record.id = id;
   record.spec = "spec";
   record.create_time = absl::FromUnixNanos(1'700'000'000'123'456'789);
   record.engine_version = "1";
-  record.request_id = request_id;
+  record.principal = "ada";
+  record.priority = -3;
+  record.question = "question of " + id;
   record.points = 3;
   return record;
 }
@@ -116,6 +119,18 @@ class StoreTest : public testing::Test {
     return pilot;
   }
 
+  static std::optional<RequestRecord> StoredRequest(Store& store, const std::string& principal,
+                                                    const std::string& request_id) {
+    std::optional<RequestRecord> request;
+    const absl::Status read = store.Read([&](Database& database) {
+      auto found = FindRequest(database, principal, request_id);
+      if (found.ok()) request = *std::move(found);
+      return found.status();
+    });
+    EXPECT_TRUE(read.ok()) << read;
+    return request;
+  }
+
   static JobState End(Store& store, int64_t job, JobState wish) {
     JobState state{};
     EXPECT_TRUE(
@@ -133,14 +148,16 @@ class StoreTest : public testing::Test {
 };
 
 TEST_F(StoreTest, AJobIsThereAfterReopening) {
-  Insert(*Open(), Record("a", "request"));
+  Insert(*Open(), Record("a"));
   const auto found = Find(*Open(), "a");
   ASSERT_TRUE(found);
   EXPECT_EQ(found->spec, "spec");
   EXPECT_EQ(found->state, v1::EnsembleJob::QUEUED);
   EXPECT_EQ(found->create_time, Record("a").create_time);
   EXPECT_FALSE(found->start_time);
-  EXPECT_EQ(found->request_id, "request");
+  EXPECT_EQ(found->principal, "ada");
+  EXPECT_EQ(found->priority, -3);
+  EXPECT_EQ(found->question, "question of a");
   EXPECT_EQ(found->points, 3);
 }
 
@@ -217,7 +234,12 @@ TEST_F(StoreTest, AStoreOfTheFirstVersionIsTakenOverWithAllThatIsInIt) {
     EXPECT_EQ(found->spec, "spec");
     EXPECT_EQ(found->state, v1::EnsembleJob::SUCCEEDED);
     EXPECT_EQ(found->create_time, Record("a").create_time);
-    EXPECT_EQ(found->request_id, "request");
+    EXPECT_EQ(found->principal, "local");
+    EXPECT_EQ(found->priority, 0);
+    const auto request = StoredRequest(*store, "local", "request");
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->job, 7);
+    EXPECT_EQ(request->payload, "");
     EXPECT_EQ(found->points_done, 2);
     EXPECT_EQ(found->samples, 12.5);
     EXPECT_EQ(found->work, 0);
@@ -399,7 +421,8 @@ TEST_F(StoreTest, TheLogOfAnotherStoreIsNoticed) {
 TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   const auto broken = [](Database& database) {
-    return database.Execute("INSERT INTO results VALUES (1, 1, NULL, x'00')");
+    return database.Execute(
+        "INSERT INTO results (job, point, samples, result) VALUES (1, 1, NULL, x'00')");
   };
   absl::Status told;
   store->RecordBlock(1, 0, 0, [] { return "before"; });
@@ -627,7 +650,7 @@ TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
   store->RecordResult(job, {0, 1, "r"});
   store->RecordBlock(job, 1, 0, [] { return "r"; });
   ASSERT_TRUE(
-      store->Commit([&](Database& database) { return RestartJob(database, job, "2"); }).ok());
+      store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }).ok());
   EXPECT_TRUE(Results(*store, job).empty());
   EXPECT_TRUE(Blocks(*store, job, 1).empty());
   EXPECT_EQ(Find(*store, "a")->engine_version, "2");

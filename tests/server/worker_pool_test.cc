@@ -4,6 +4,7 @@
 #include <atomic>
 #include <ctime>
 #include <new>
+#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -98,6 +99,21 @@ TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   ASSERT_TRUE(journal->AwaitEnd().ok());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed, 0);
+}
+
+TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  journal->stored[0].emplace(0, *experiment->RunBlock(0, {}));
+  journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
+  journal->stored[0].at(1).moments.resize(1000);
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  EXPECT_TRUE(absl::IsDataLoss(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
 }
 
 TEST(WorkerPool, FinishedPointsAreLeftAlone) {
@@ -353,6 +369,137 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   gate.Open();
   EXPECT_TRUE(short_run->AwaitEnd().ok());
   EXPECT_EQ(long_run->ends, 0);
+}
+
+// What a worker does with a task. Block 5 of each point was stored before.
+void Do(const RunTask& task, const EnsembleSpec& spec, Run& run) {
+  if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
+    auto open = std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {}));
+    open->merge.Add(5, *open->experiment->RunBlock(5, {}), nullptr);
+    run.PointOpened(opening->point, std::move(open));
+  } else {
+    const auto& block = std::get<BlockTask>(task);
+    OpenPoint* open = run.FindOpen(block.point);
+    open->merge.Add(block.block, *block.experiment->RunBlock(block.block, {}), nullptr);
+    if (open->merge.finished()) run.PointClosed(block.point);
+  }
+  run.TaskDone(task);
+}
+
+// So that of 10,000 runs no more are asked in vain than there are workers.
+TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
+  const EnsembleSpec spec = FakeSpec(4, 10);
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::minstd_rand random(seed);
+    Run run(Request(1, spec, nullptr), 3);
+    std::vector<RunTask> out;
+    while (!run.over()) {
+      std::optional<RunTask> task = run.NextTask();
+      if (task) out.push_back(*std::move(task));
+      ASSERT_FALSE(out.empty());
+      if (task && random() % 2 == 0) continue;
+      std::swap(out[random() % out.size()], out.back());
+      Do(out.back(), spec, run);
+      out.pop_back();
+    }
+    EXPECT_TRUE(out.empty());
+  }
+}
+
+// Whose blocks were begun, by the seed of their specification, in that order.
+class Begun {
+ public:
+  void Add(uint64_t seed) {
+    std::lock_guard lock(mutex_);
+    seeds_.push_back(seed);
+  }
+  std::vector<uint64_t> seeds() const {
+    std::lock_guard lock(mutex_);
+    return seeds_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<uint64_t> seeds_;
+};
+
+RunRequest RequestOf(const char* principal, int32_t priority, int64_t key, const EnsembleSpec& spec,
+                     std::shared_ptr<RecordingJournal> journal) {
+  RunRequest request = Request(key, spec, std::move(journal));
+  request.principal = principal;
+  request.priority = priority;
+  return request;
+}
+
+// Added while the only worker is held up by a first run, so that all of them are there when it goes
+// on.
+TEST(WorkerPool, AHigherPriorityIsServedFirst) {
+  Gate gate;
+  Begun begun;
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token stop) {
+      begun.Add(seed);
+      if (seed == 1) gate.Pass(stop);
+    })(spec, index, told);
+  });
+  std::vector<std::shared_ptr<RecordingJournal>> journals;
+  const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
+    journals.push_back(std::make_shared<RecordingJournal>());
+    pool.Add(RequestOf("a", priority, key, FakeSpec(2, blocks, seed), journals.back()));
+  };
+  add(1, 0, 1, 1);
+  gate.AwaitWaiting(1);
+  add(2, -7, 2, 10);
+  add(3, 0, 3, 10);
+  add(4, 7, 4, 10);
+  gate.Open();
+  for (const auto& journal : journals) EXPECT_TRUE(journal->AwaitEnd().ok());
+  // The first run's second point comes when its priority's turn has come.
+  std::vector<uint64_t> others = begun.seeds();
+  std::erase(others, 1u);
+  std::vector<uint64_t> expected;
+  for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
+  EXPECT_EQ(others, expected);
+}
+
+// The first has a point that takes long to be opened; nothing but that keeps it from working.
+TEST(WorkerPool, ARunWithNothingToHandOutLetsTheNextGoOn) {
+  Gate gate;
+  auto first = std::make_shared<RecordingJournal>();
+  auto next = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    if (spec.seed == 1) gate.Pass(stop);
+    return FakeExperiments()(spec, index, stop);
+  });
+  pool.Add(RequestOf("a", 100, 1, FakeSpec(1, 5, 1), first));
+  gate.AwaitWaiting(1);
+  pool.Add(RequestOf("a", -100, 2, FakeSpec(3, 50, 2), next));
+  EXPECT_TRUE(next->AwaitEnd().ok());
+  EXPECT_EQ(first->ends, 0);
+  gate.Open();
+  EXPECT_TRUE(first->AwaitEnd().ok());
+}
+
+TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
+  struct Owner {
+    const char* principal;
+    int32_t priority;
+  };
+  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
+                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
+                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
+    WorkerPool pool(3, FakeExperiments());
+    std::vector<std::shared_ptr<RecordingJournal>> journals;
+    for (size_t i = 0; i < owners.size(); ++i) {
+      journals.push_back(std::make_shared<RecordingJournal>());
+      pool.Add(RequestOf(owners[i].principal, owners[i].priority, static_cast<int64_t>(i) + 1,
+                         FakeSpec(5, 40, i), journals.back()));
+    }
+    for (size_t i = 0; i < owners.size(); ++i) {
+      EXPECT_TRUE(journals[i]->AwaitEnd().ok());
+      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
+    }
+  }
 }
 
 TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {

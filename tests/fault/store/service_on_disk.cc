@@ -85,7 +85,8 @@ ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) : turnstile_
   status_ = store.status();
   if (!status_.ok()) return;
   store_ = *std::move(store);
-  book_ = std::make_unique<JobBook>(*store_, 1, Factory(turnstile), [this] { OnStateChange(); });
+  book_ = std::make_unique<JobBook>(*store_, Limits(), 1, Factory(turnstile),
+                                    [this] { OnStateChange(); });
   status_ = book_->Resume();
 }
 
@@ -96,21 +97,28 @@ ServiceOnDisk::~ServiceOnDisk() {
 
 absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Create(const v1::EnsembleSpec& spec,
                                                       const std::string& request_id) {
-  return book_->Create(spec, CheckSpec(spec), request_id);
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  request.set_request_id(request_id);
+  return book_->Create(LocalPrincipal(), request, CheckSpec(spec));
 }
 
 absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Cancel(const std::string& id,
                                                       const std::string& request_id) {
-  return book_->Cancel(id, request_id);
+  return book_->Cancel(LocalPrincipal(), id, request_id);
 }
 
-absl::Status ServiceOnDisk::Delete(const std::string& id) { return book_->Delete(id); }
+absl::Status ServiceOnDisk::Delete(const std::string& id) {
+  return book_->Delete(LocalPrincipal(), id);
+}
 
-absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Get(const std::string& id) { return book_->Get(id); }
+absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Get(const std::string& id) {
+  return book_->Get(LocalPrincipal(), id);
+}
 
 std::vector<v1::EnsembleJob> ServiceOnDisk::List() {
   std::vector<v1::EnsembleJob> jobs;
-  const auto listed = book_->List(std::numeric_limits<int64_t>::max(), 1000);
+  const auto listed = book_->List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 1000);
   if (!listed.ok()) return jobs;
   for (const ListedJob& row : *listed) jobs.push_back(row.job);
   return jobs;
@@ -142,7 +150,7 @@ std::vector<std::string> ServiceOnDisk::Results(const std::string& id) {
   ResultsQuery query;
   query.max_points = 1000;
   query.max_bytes = std::numeric_limits<size_t>::max();
-  const auto page = book_->Results(id, query);
+  const auto page = book_->Results(LocalPrincipal(), id, query);
   if (!page.ok()) return results;
   for (const v1::PointResult& point : page->points) results.push_back(PointResultBytes(point));
   return results;

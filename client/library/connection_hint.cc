@@ -1,0 +1,49 @@
+#include "client/library/connection_hint.h"
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::client {
+namespace {
+
+std::string HintWithTls(const ChannelSecurity& security, absl::string_view message) {
+  if (absl::StrContains(message, "certificate verify failed")) {
+    return absl::StrCat("the server's certificate has expired, or was not signed by an authority ",
+                        security.ca.empty() ? "that this system knows" : "in " + security.ca,
+                        ": name the right one with --ca FILE");
+  }
+  if (absl::StrContains(message, "is not in peer certificate")) {
+    return "the server's certificate is for another host: write the host as it stands there";
+  }
+  if (absl::StrContains(message, "wrong version number") ||
+      absl::StrContains(message, "packet length too long")) {
+    return "that server does not speak TLS: leave out --ca, --tls, --cert and --key";
+  }
+  if (security.certificate.empty() && (absl::StrContains(message, "Socket closed") ||
+                                       absl::StrContains(message, "certificate required"))) {
+    return "if that server wants a certificate of yours: --cert FILE --key FILE";
+  }
+  if (absl::StrContains(message, "Socket closed") || absl::StrContains(message, "alert")) {
+    return absl::StrCat("the server may not take the certificate in ", security.certificate,
+                        ": it has expired, or another authority signed it");
+  }
+  return "";
+}
+
+std::string HintWithoutTls(absl::string_view message) {
+  if (!absl::StrContains(message, "Socket closed") &&
+      !absl::StrContains(message, "Connection reset")) {
+    return "";
+  }
+  return "if that server wants TLS: --ca FILE, or --tls if this system knows its authority";
+}
+
+}  // namespace
+
+std::string ConnectionHint(const ChannelSecurity& security, absl::string_view message) {
+  const std::string hint =
+      security.HasTls() ? HintWithTls(security, message) : HintWithoutTls(message);
+  return hint.empty() ? "" : absl::StrCat("\n  ", hint);
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,45 @@
+#!/bin/bash
+# Runs fuzz targets one after the other, each from its seeds, and prints a table.
+#
+#   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
+#
+# FUZZ_RUNS (100000) is the number of executions of each; FUZZ_SEED (1) makes them repeatable. Inputs
+# that broke something stay in build/fuzz/found, the others that it went on from in
+# build/fuzz/corpus. Exits with 1 if any target failed.
+set -euo pipefail
+folder=$1
+shift
+readonly RUNS=${FUZZ_RUNS:-100000} SEED=${FUZZ_SEED:-1}
+readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
+# Inputs are below a page, but for blocks, of which the smallest of some experiments are not.
+readonly MAX_LEN=600 MAX_LEN_BLOCK=4096
+# Stacks of allocations and freed memory that is kept for long cost more time than all else.
+export ASAN_OPTIONS=malloc_context_size=2:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
+export UBSAN_OPTIONS=print_stacktrace=1
+
+targets=("$@")
+if ((${#targets[@]} == 0)); then
+  mapfile -t targets < <(cd "$folder" && ls -- *_fuzz | sed 's/_fuzz$//')
+fi
+mkdir -p "$FOUND"
+failed=0
+printf '%-20s %12s %8s %7s %7s  %s\n' target executions exec/s cov inputs result
+for target in "${targets[@]}"; do
+  program=$folder/${target}_fuzz log=$FOUND/$target.log
+  mkdir -p "$CORPUS/$target"
+  "$program" --write_seeds="$SEEDS" "$CORPUS/$target"
+  length=$MAX_LEN
+  [[ $target != stored_block ]] || length=$MAX_LEN_BLOCK
+  result=ok
+  "$program" -runs="$RUNS" -seed="$SEED" -max_len="$length" -len_control=0 -entropic=0 -timeout=10 \
+    -rss_limit_mb=2048 -reload=0 -print_final_stats=1 -verbosity=1 \
+    -artifact_prefix="$FOUND/$target-" "$CORPUS/$target" >"$log" 2>&1 || result=FAILED failed=1
+  awk -v target="$target" -v result="$result" '
+    /^#[0-9]+/ {for (i = 1; i < NF; i++) {if ($i == "cov:") cov = $(i + 1); if ($i == "corp:") corp = $(i + 1)}}
+    /^stat::number_of_executed_units:/ {runs = $2}
+    /^stat::average_exec_per_sec:/ {speed = $2}
+    END {sub("/.*", "", corp)
+         printf "%-20s %12d %8d %7d %7d  %s\n", target, runs, speed, cov, corp, result}' "$log"
+  [[ $result == ok ]] || grep -m 3 -E "ERROR|runtime error|what\(\)" "$log" || true
+done
+exit $failed

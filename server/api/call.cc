@@ -1,0 +1,44 @@
+#include "server/api/call.h"
+
+#include <algorithm>
+
+#include "absl/strings/ascii.h"
+#include "server/convert/errors.h"
+#include "server/jobs/job_name.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr char kRequestId[] = "x-request-id";
+constexpr size_t kMaxRequestId = 64;
+
+// It goes into the log: nothing that could pass for something else there.
+bool IsRequestId(const std::string& id) {
+  const auto permitted = [](unsigned char c) {
+    return absl::ascii_isalnum(c) || c == '-' || c == '_' || c == '.';
+  };
+  return !id.empty() && id.size() <= kMaxRequestId && std::all_of(id.begin(), id.end(), permitted);
+}
+
+std::string RequestIdOf(const grpc::CallbackServerContext& context) {
+  const auto found = context.client_metadata().find(kRequestId);
+  if (found == context.client_metadata().end()) return RandomId();
+  const std::string id(found->second.data(), found->second.size());
+  return IsRequestId(id) ? id : RandomId();
+}
+
+}  // namespace
+
+absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServerContext& context,
+                               const CallRule& rule) {
+  Call call = {.method = rule.method, .request_id = RequestIdOf(context), .caller = {}};
+  context.AddTrailingMetadata(kRequestId, call.request_id);
+  absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
+  if (!caller.ok()) return caller.status();
+  call.caller = *std::move(caller);
+  service.calls.Identify(context, call.caller.name);
+  if (call.caller.role < rule.least) return RoleTooLow(call.caller, rule.least);
+  return call;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,99 @@
+#include "server/jobs/acceptance.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/convert/errors.h"
+#include "server/store/job_table.h"
+
+namespace ballpiston::server {
+namespace {
+
+bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
+
+// What keeps one more job of the principal from being accepted, if anything does.
+absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits,
+                                        const std::string& principal) {
+  const auto all = CountActiveJobs(database, std::nullopt);
+  const auto own = CountActiveJobs(database, principal);
+  if (!all.ok()) return all.status();
+  if (!own.ok()) return own.status();
+  if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
+    return LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
+                         "max_active_jobs", static_cast<double>(limits.max_active_jobs));
+  }
+  if (limits.max_active_jobs_per_principal > 0 && *own >= limits.max_active_jobs_per_principal) {
+    return LimitExceeded(
+        "TOO_MANY_JOBS", absl::StrCat(principal, " has ", *own, " active jobs already"),
+        "max_active_jobs_per_principal", static_cast<double>(limits.max_active_jobs_per_principal));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status KeepRequest(Database& database, Acceptance& acceptance, int64_t job) {
+  if (acceptance.request.request_id.empty()) return absl::OkStatus();
+  acceptance.request.job = job;
+  acceptance.request.answered_from_store = acceptance.answered_from_store;
+  return InsertRequest(database, acceptance.request);
+}
+
+absl::Status Replay(Database& database, const RequestRecord& request, Acceptance& acceptance) {
+  auto job = FindJobBySequence(database, request.job);
+  if (!job.ok()) return job.status();
+  acceptance.earlier = *std::move(job);
+  acceptance.answered_from_store = request.answered_from_store;
+  // A store of an older version knows of its requests only which jobs they made.
+  const bool same = request.payload.empty()
+                        ? acceptance.earlier && acceptance.earlier->spec == acceptance.record.spec
+                        : request.payload == acceptance.request.payload;
+  if (!same) acceptance.refused = RequestIdReused(request.request_id);
+  return absl::OkStatus();
+}
+
+absl::Status FindEarlier(Database& database, Acceptance& acceptance) {
+  const std::string& principal = acceptance.record.principal;
+  if (!acceptance.request.request_id.empty()) {
+    const auto request = FindRequest(database, principal, acceptance.request.request_id);
+    if (!request.ok()) return request.status();
+    if (*request) return Replay(database, **request, acceptance);
+  }
+  if (acceptance.fresh) return absl::OkStatus();
+  auto answer = FindAnswer(database, principal, acceptance.record.question);
+  if (!answer.ok()) return answer.status();
+  acceptance.earlier = *std::move(answer);
+  acceptance.answered_from_store = acceptance.earlier.has_value();
+  return acceptance.earlier ? KeepRequest(database, acceptance, acceptance.earlier->sequence)
+                            : absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
+  const double points = static_cast<double>(PointCount(spec));
+  if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
+    return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
+                         "max_points_per_job", static_cast<double>(limits.max_points_per_job));
+  }
+  const Target& target = spec.target;
+  const double samples =
+      points * static_cast<double>(target.samples.value_or(target.collisions.value_or(0)));
+  if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
+  return LimitExceeded("TOO_MANY_SAMPLES", absl::StrCat("the job takes ", samples, " samples"),
+                       "max_samples_per_job", limits.max_samples_per_job);
+}
+
+absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+  acceptance.earlier.reset();
+  acceptance.answered_from_store = false;
+  acceptance.refused = absl::OkStatus();
+  const absl::Status looked = FindEarlier(database, acceptance);
+  if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
+  absl::StatusOr<absl::Status> room = CheckQueue(database, limits, acceptance.record.principal);
+  if (!room.ok()) return room.status();
+  acceptance.refused = *std::move(room);
+  if (!acceptance.refused.ok()) return absl::OkStatus();
+  const absl::Status inserted = InsertJob(database, acceptance.record);
+  return inserted.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : inserted;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,41 @@
+// What one Create comes to: an earlier job, a refusal, or a new job.
+//
+// A replay, the same request id with the same request, is answered with the job of the first time;
+// the same question as an earlier job's that succeeded with that one, unless a fresh answer is
+// wanted; then the limits on active jobs count. All of it is decided inside one transaction of the
+// store, where all writes pass in one order, so that of many equal requests at once one makes a
+// job.
+#ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
+#define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
+
+#include <optional>
+
+#include "absl/status/status.h"
+#include "core/experiment/ensemble_spec.h"
+#include "server/limits.h"
+#include "server/store/job_record.h"
+#include "server/store/request_table.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+struct Acceptance {
+  JobRecord record;       // the job that would be made
+  RequestRecord request;  // without an id: nothing is kept of it
+  bool fresh = false;     // an earlier answer will not do
+
+  // The outcome; if both are empty, the record was inserted.
+  std::optional<JobRecord> earlier;
+  bool answered_from_store = false;  // by `earlier`, now or the first time
+  absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
+};
+
+// Sets the outcome anew each time. Not OK: SQLite failed.
+absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance);
+
+// RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
+absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_

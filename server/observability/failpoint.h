@@ -1,0 +1,54 @@
+// Named places at which a test may have the server killed, as the power or the kernel would.
+//
+//   Failpoint("store.before_commit");
+//
+// Armed by the environment alone, BALLPISTON_FAILPOINT=NAME:N: at the N-th pass of NAME, counted
+// from 1 over all threads, the process kills itself with SIGKILL, so that nothing is flushed and no
+// destructor runs. With the variable unset a pass costs one load and one branch. A value that names
+// no failpoint of the list, or no number from 1 on, ends the process at once with exit code 2: a
+// test that waits for a place that does not exist would wait for ever. Thread-safe.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
+
+#include <array>
+#include <string_view>
+
+namespace ballpiston::server {
+
+// Every place there is, in the order of a job's life; tests visit them all.
+inline constexpr std::array<std::string_view, 19> kFailpoints = {
+    "create.committed",       // the job's row is on disk; the run is not begun
+    "create.before_answer",   // the run is begun; the client knows nothing
+    "store.before_commit",    // a group of writes is in the transaction
+    "store.after_commit",     // it is on disk; nobody was told
+    "block.merged",           // into its point; not recorded
+    "block.before_insert",    // in a transaction that has begun
+    "point.before_record",    // all its blocks are merged
+    "point.recorded",         // its result waits to be written
+    "job.before_end",         // all its points are finished; its end is not recorded
+    "job.end_recorded",       // its end waits to be written
+    "job.ended",              // its end is on disk; nobody was told
+    "cancel.in_transaction",  // CANCELLING is written, not committed
+    "cancel.committed",       // and committed; the workers do not know
+    "delete.in_transaction",  // the rows are gone, not committed
+    "delete.committed",       // the client knows nothing
+    "resume.job",             // after a restart: one of the unfinished jobs goes on
+    "resume.block",           // and one of its stored blocks is merged again
+    "stop.before_flush",      // SIGTERM: the workers have stopped
+    "stop.before_checkpoint"  // everything is written; the log is not yet folded into the store
+};
+
+namespace failpoint_internal {
+extern const bool armed;
+void Pass(std::string_view name);
+}  // namespace failpoint_internal
+
+inline void Failpoint(std::string_view name) {
+  if (failpoint_internal::armed) [[unlikely]] {
+    failpoint_internal::Pass(name);
+  }
+}
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_

@@ -1,0 +1,49 @@
+// One line of an access file: a credential, whose it is, and until when.
+//
+//   token sha256:HEX PRINCIPAL ROLE [EXPIRES]
+//   certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]
+//
+//   HEX          64 hexadecimal digits: the SHA-256 of a token
+//   COMMON_NAME  of a client's certificate; in double quotes if it holds blanks
+//   PRINCIPAL    1 to 64 of a-z, A-Z, 0-9, '.', '_', '@' and '-', and not `local`, which is whoever
+//                comes over a Unix socket
+//   ROLE         read | submit | admin (principal.h)
+//   EXPIRES      2027-01-31T12:00:00Z, or a date, which is its 00:00 UTC; refused from then on
+//
+// An error names the field and what is permitted, never what was found: whoever mixed up two fields
+// may have written a token where something harmless belongs. Pure functions.
+#ifndef BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
+#define BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+#include "server/security/principal.h"
+#include "server/security/token_hash.h"
+
+namespace ballpiston::server {
+
+struct AccessEntry {
+  std::variant<TokenHash, std::string> credential;  // of a token; or a certificate's common name
+  Principal principal;
+  absl::Time expires = absl::InfiniteFuture();
+};
+
+// Nothing for a line that is empty or a comment (what follows a word that begins with '#').
+absl::StatusOr<std::optional<AccessEntry>> ParseAccessEntry(absl::string_view line);
+
+// The line, without its end, that is read as `entry`.
+std::string FormatAccessEntry(const AccessEntry& entry);
+
+// INVALID_ARGUMENT tells what is permitted.
+absl::Status CheckPrincipalName(absl::string_view name);
+absl::StatusOr<Role> ParseRole(absl::string_view text);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_

@@ -1,0 +1,60 @@
+// Who calls: a bearer token, else the client's certificate, looked up in the list of those who may.
+//
+//   authorization: Bearer TOKEN    in the call's metadata; once
+//
+// A token that is shown decides, also beside a certificate. Each call is looked up anew, so a list
+// that was replaced holds from the next call on, on connections that were there before too; streams
+// that run go on. Thread-safe.
+#ifndef BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
+#define BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+#include "grpcpp/security/auth_context.h"
+#include "grpcpp/server_context.h"
+#include "server/security/access_list.h"
+#include "server/security/principal.h"
+
+namespace ballpiston::server {
+
+// What a call shows for itself.
+struct Credentials {
+  std::vector<std::string> authorization;  // every such header
+  std::optional<std::string> common_name;  // of a certificate that was verified
+};
+
+class Authenticator {
+ public:
+  Authenticator() = default;  // the open door: everybody is LocalPrincipal
+  explicit Authenticator(std::shared_ptr<const AccessList> list) : list_(std::move(list)) {}
+
+  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED.
+  absl::StatusOr<Principal> Authenticate(const grpc::ServerContextBase& context) const;
+  absl::StatusOr<Principal> Authenticate(const Credentials& shown, absl::Time now) const;
+
+  // A door that was open stays so.
+  void Replace(std::shared_ptr<const AccessList> list);
+
+ private:
+  std::shared_ptr<const AccessList> list() const;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const AccessList> list_;  // none: open
+};
+
+// The common name of the certificate that the connection was made with, if one was asked for.
+std::optional<std::string> CommonNameOf(const grpc::AuthContext& context);
+
+// The token of a header's value, `Bearer TOKEN`; empty if it is something else.
+absl::string_view BearerToken(absl::string_view authorization);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_

@@ -1,0 +1,32 @@
+// Making a token: 256 random bits, told once to whoever asked and kept only as a hash.
+#ifndef BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
+#define BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+#include "server/security/principal.h"
+#include "server/security/private_file.h"
+
+namespace ballpiston::server {
+
+struct TokenRequest {
+  Principal principal;
+  std::optional<int> days;  // until it expires
+};
+
+// PRINCIPAL:ROLE[:DAYS], DAYS 1 to 36500; INVALID_ARGUMENT names --new_token and what is permitted.
+absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
+
+// Appends the token's entry to the access file, which is made (mode 0600) if there is none, and
+// returns the token. It is on disk then. A file that is not an access file, or open to others, is
+// refused and left as it is.
+absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
+                                       absl::Time now);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_

@@ -1,0 +1,23 @@
+// Whose process is at the other end of a Unix socket. The kernel tells; it cannot be forged.
+#ifndef BALLPISTON_SERVER_SECURITY_PEER_USER_H_
+#define BALLPISTON_SERVER_SECURITY_PEER_USER_H_
+
+#include <sys/types.h>
+
+#include <optional>
+#include <set>
+
+namespace ballpiston::server {
+
+// The user the peer had when it connected; nothing if the descriptor is not such a socket.
+std::optional<uid_t> PeerUser(int descriptor);
+
+// This process's own, and root, whom no permission keeps out anyway.
+std::set<uid_t> OwnUserAndRoot();
+
+// A peer whose user is not known is nobody's.
+bool MayConnect(std::optional<uid_t> peer, const std::set<uid_t>& permitted);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_PEER_USER_H_

@@ -1,0 +1,39 @@
+// Reading the files that the server's security rests on.
+//
+// An error names the flag, the file and what is wrong with it, never its content.
+#ifndef BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
+#define BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
+
+#include <sys/stat.h>
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace ballpiston::server {
+
+struct NamedFile {
+  std::string flag;  // that names it, without hyphens
+  std::string path;
+
+  std::string Text() const { return "--" + flag + "=" + path; }  // for messages
+};
+
+// More than any list of credentials or chain of certificates.
+inline constexpr size_t kMaxSecurityFile = size_t{1} << 20;
+
+// A regular file (or a link to one) of at most kMaxSecurityFile bytes. INVALID_ARGUMENT if it is
+// not, or cannot be read.
+absl::StatusOr<std::string> ReadPublicFile(const NamedFile& file);
+
+// The same of one that has a secret, or decides who comes in: it has to be kept from others.
+absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file);
+
+// Whether a file with this status is kept from others: its owner is `user` or root, nobody else
+// writes to it, and at most its group reads it (a key is often root's, readable by a group).
+absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, uid_t user);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_

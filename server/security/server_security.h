@@ -1,0 +1,71 @@
+// What stands between the network and the services: which combinations of address and credentials
+// are safe, and the credentials themselves.
+//
+//   unix:PATH               the kernel says who comes: the server's own user and root, who may all
+//   loopback, no TLS        whoever is on this machine, who may all
+//   any HOST:PORT with TLS  who is on the access file's list; without an access file (loopback
+//   only)
+//                           everybody
+//
+// Everything else is refused at the start: an address that other machines reach needs TLS and an
+// access file; tokens need TLS.
+#ifndef BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
+#define BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
+
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "grpcpp/security/server_credentials.h"
+#include "server/listen_address.h"
+#include "server/security/authenticator.h"
+#include "server/security/server_tls.h"
+
+namespace ballpiston::server {
+
+// Paths, as the flags of these names give them; empty: not given.
+struct SecurityOptions {
+  std::string access_file;
+  std::string tls_certificate;
+  std::string tls_key;
+  std::string tls_client_ca;
+};
+
+// INVALID_ARGUMENT tells which flags are missing, or do not go together, and why. Reads no file.
+absl::Status CheckCombination(const SecurityOptions& options, const ListenAddress& address);
+
+class ServerSecurity {
+ public:
+  // Reads everything. INVALID_ARGUMENT names flag, file and what is permitted.
+  static absl::StatusOr<std::unique_ptr<ServerSecurity>> Create(const SecurityOptions& options,
+                                                                const ListenAddress& address);
+
+  // Outlives every call it is asked about.
+  const Authenticator& authenticator() const { return authenticator_; }
+
+  // For gRPC's port. The object has to outlive the server that uses them.
+  std::shared_ptr<grpc::ServerCredentials> Credentials() const;
+
+  // Reads the files again; of what is wrong the old stays, and is named in the error. The access
+  // file holds from the next call on, certificates for connections made a second later. One thread
+  // at a time.
+  absl::Status Reload();
+
+  // For the log: what holds now.
+  std::string Description() const;
+
+ private:
+  ServerSecurity(const SecurityOptions& options, std::shared_ptr<const AccessList> list,
+                 std::unique_ptr<ServerTls> tls);
+
+  const SecurityOptions options_;
+  size_t entries_;  // of the access file
+  Authenticator authenticator_;
+  std::unique_ptr<ServerTls> tls_;  // none: without TLS
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_

@@ -1,0 +1,51 @@
+#include "server/security/server_tls.h"
+
+#include <utility>
+
+#include "absl/memory/memory.h"
+#include "absl/time/clock.h"
+#include "grpcpp/security/tls_certificate_provider.h"
+#include "grpcpp/security/tls_credentials_options.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr unsigned kLookSeconds = 1;
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<ServerTls>> ServerTls::Create(TlsFiles files) {
+  auto tls = absl::WrapUnique(new ServerTls(std::move(files)));
+  const absl::Status read = tls->Reload();
+  if (!read.ok()) return read;
+  return tls;
+}
+
+absl::Status ServerTls::Reload() {
+  const absl::StatusOr<TlsIdentity> identity = ReadTlsIdentity(files_, absl::Now());
+  if (!identity.ok()) return identity.status();
+  absl::Status published = certificate_and_key_.Publish(identity->certificate_and_key);
+  if (published.ok() && !identity->client_ca.empty()) {
+    published = client_ca_.Publish(identity->client_ca);
+  }
+  if (published.ok()) expires_ = identity->expires;
+  return published;
+}
+
+std::shared_ptr<grpc::ServerCredentials> ServerTls::Credentials() const {
+  const bool asks_clients = !files_.client_ca.path.empty();
+  const std::string path = certificate_and_key_.Path();
+  grpc::experimental::TlsServerCredentialsOptions options(
+      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
+          path, path, asks_clients ? client_ca_.Path() : "", kLookSeconds));
+  options.watch_identity_key_cert_pairs();
+  if (asks_clients) {
+    options.watch_root_certs();
+    options.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  } else {
+    options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  }
+  return grpc::experimental::TlsServerCredentials(options);
+}
+
+}  // namespace ballpiston::server

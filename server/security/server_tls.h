@@ -1,0 +1,47 @@
+// The server's side of TLS (1.2 or later), with certificates that can be exchanged while it runs.
+//
+// gRPC's certificate provider looks at files every second; here these are files in memory
+// (published_file.h) that hold what has been tried out before. So a connection that is being made
+// sees the old pair or the new one, and connections that are there notice nothing. (gRPC has a
+// certificate callback for the purpose as well, but exchanges what it returns without a lock.)
+#ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
+#define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
+
+#include <memory>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "grpcpp/security/server_credentials.h"
+#include "server/security/published_file.h"
+#include "server/security/tls_files.h"
+
+namespace ballpiston::server {
+
+class ServerTls {
+ public:
+  // Errors as ReadTlsIdentity's.
+  static absl::StatusOr<std::unique_ptr<ServerTls>> Create(TlsFiles files);
+
+  // With a client_ca: a client without a certificate that one of it signed is not let in. The
+  // object has to outlive the server that uses them.
+  std::shared_ptr<grpc::ServerCredentials> Credentials() const;
+
+  // Reads the files again. What is wrong with them leaves all as it was; what is right serves new
+  // connections a second later. One thread at a time.
+  absl::Status Reload();
+
+  absl::Time expires() const { return expires_; }  // the certificate
+
+ private:
+  explicit ServerTls(TlsFiles files) : files_(std::move(files)) {}
+
+  const TlsFiles files_;
+  PublishedFile certificate_and_key_;
+  PublishedFile client_ca_;
+  absl::Time expires_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_

@@ -1,0 +1,18 @@
+// SHA-256, by OpenSSL. Pure function.
+#ifndef BALLPISTON_SERVER_SECURITY_SHA256_H_
+#define BALLPISTON_SERVER_SECURITY_SHA256_H_
+
+#include <string>
+
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kSha256Bytes = 32;
+
+// kSha256Bytes of them.
+std::string Sha256(absl::string_view bytes);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_SHA256_H_

@@ -1,0 +1,32 @@
+// The SQL about requests: which Create made, or was answered with, which job. Each function runs
+// inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+#ifndef BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
+#define BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+
+struct RequestRecord {
+  std::string principal;
+  std::string request_id;  // unique among the principal's
+  std::string payload;     // a hash of all the rest of the request
+  int64_t job = 0;         // its sequence
+  bool answered_from_store = false;
+};
+
+absl::Status InsertRequest(Database& database, const RequestRecord& record);
+
+absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
+                                                         const std::string& principal,
+                                                         const std::string& request_id);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_

@@ -1,0 +1,117 @@
+// Many Creates at once with one request id, kills, and Creates again: one job.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <latch>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/library/ensemble_client.h"
+#include "client/library/error_text.h"
+#include "client/library/request_id.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/server_process.h"
+#include "tests/fault/torture/sizes.h"
+
+namespace ballpiston::torture {
+namespace {
+
+constexpr size_t kAtOnce = 64;
+constexpr size_t kConnections = 8;
+constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
+
+using Clients = std::vector<client::EnsembleClient>;
+
+Clients ConnectedTo(ServerProcess& server) {
+  Clients clients;
+  for (size_t i = 0; i < kConnections; ++i) clients.emplace_back(server.Connect());
+  return clients;
+}
+
+// The name, in the end, of the job; the server may be away for a while.
+std::string Insist(const client::EnsembleClient& client, const v1::EnsembleSpec& spec,
+                   const std::string& request_id) {
+  while (true) {
+    const auto job = client.Create(spec, {.request_id = request_id});
+    if (job.ok()) return job->name();
+    if (!absl::IsUnavailable(job.status())) return job.status().ToString();
+    std::this_thread::sleep_for(kPauseBeforeRepeating);
+  }
+}
+
+// All the names that one request id is answered with.
+std::set<std::string> NamesOfOneRequest(const Clients& clients, const v1::EnsembleSpec& spec,
+                                        const std::string& request_id, ServerProcess* to_kill) {
+  std::vector<std::string> names(kAtOnce);
+  std::latch together(kAtOnce);
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < kAtOnce; ++i) {
+    threads.emplace_back([&, i] {
+      together.arrive_and_wait();
+      names[i] = Insist(clients[i % kConnections], spec, request_id);
+    });
+  }
+  if (to_kill != nullptr) {  // at the commit, armed beforehand
+    to_kill->AwaitEnd();
+    to_kill->Start();
+  }
+  for (std::thread& thread : threads) thread.join();
+  return {names.begin(), names.end()};
+}
+
+class BatchOfCreates : public testing::Test {
+ protected:
+  // `failpoint`: where the first server dies under them; empty: it lives.
+  void Round(const v1::EnsembleSpec& spec, const std::string& failpoint) {
+    server_.Spawn(failpoint);
+    ASSERT_TRUE(server_.AwaitReady());
+    const Clients clients = ConnectedTo(server_);
+    const std::string id = client::NewRequestId();
+    const std::set<std::string> names =
+        NamesOfOneRequest(clients, spec, id, failpoint.empty() ? nullptr : &server_);
+    findings_.Count("Creates at once", kAtOnce);
+    ASSERT_EQ(names.size(), 1u) << testing::PrintToString(names);
+    EXPECT_TRUE(made_.insert(*names.begin()).second);
+    server_.KillHard();
+    CheckReplay(spec, id, *names.begin());
+  }
+
+  void CheckReplay(const v1::EnsembleSpec& spec, const std::string& id, const std::string& name) {
+    server_.Start();
+    const client::EnsembleClient client(server_.Connect());
+    EXPECT_EQ(Insist(client, spec, id), name);
+    v1::EnsembleSpec other = spec;
+    other.set_seed(spec.seed() + 1);
+    const auto refused = client.Create(other, {.request_id = id});
+    EXPECT_TRUE(absl::IsInvalidArgument(refused.status())) << refused.status();
+    EXPECT_EQ(client::ErrorReason(refused.status()), "REQUEST_ID_REUSED");
+    const auto jobs = client.List();
+    ASSERT_TRUE(jobs.ok());
+    EXPECT_EQ(jobs->size(), made_.size());
+    findings_.Count("replays after a kill");
+    server_.KillHard();
+  }
+
+  Findings findings_{"one request id"};
+  ServerProcess server_;
+  std::set<std::string> made_;
+};
+
+TEST_F(BatchOfCreates, MakesOneJobThroughKills) {
+  const std::vector<std::string> failpoints = {"", "store.before_commit:1", "store.after_commit:1",
+                                               "create.committed:1", "create.before_answer:1"};
+  // Every question is another one, so that none is answered from the store.
+  for (int round = 0; round < Size(5, 100); ++round) {
+    v1::EnsembleSpec spec = ManyPoints(2, 1'000);
+    spec.set_seed(static_cast<uint64_t>(10 * round));
+    Round(spec, failpoints[static_cast<size_t>(round) % failpoints.size()]);
+    if (HasFatalFailure()) return;
+  }
+  findings_.Count("jobs made", static_cast<int64_t>(made_.size()));
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

@@ -1,0 +1,40 @@
+// What a test counted, and what it found wrong: printed as a table when the program ends.
+#ifndef BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
+#define BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace ballpiston::torture {
+
+// Thread-safe.
+class Findings {
+ public:
+  explicit Findings(std::string section) : section_(std::move(section)) {}
+  ~Findings();  // hands the counts to the table
+
+  void Count(const std::string& what, int64_t by = 1);
+  void Note(const std::string& what, const std::string& value);  // a measured number, as text
+  void Wrong(const std::string& what);                           // a broken promise
+
+  int64_t count(const std::string& what) const;
+  // The first of what was wrong, one a line; empty if nothing was.
+  std::string Report() const;
+
+ private:
+  const std::string section_;
+  mutable std::mutex mutex_;
+  std::map<std::string, int64_t> counts_;
+  std::map<std::string, std::string> notes_;
+  std::vector<std::string> wrong_;
+};
+
+// Of all that has ended.
+void PrintTable();
+
+}  // namespace ballpiston::torture
+
+#endif  // BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_

@@ -1,0 +1,173 @@
+// A thousand watchers of one job, and a server that stays well.
+#include <grpcpp/generic/generic_stub.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <list>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "client/library/ensemble_client.h"
+#include "client/library/job_watch.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/server_process.h"
+#include "tests/fault/torture/sizes.h"
+
+namespace ballpiston::torture {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kMostHealthSeconds = 0.05;
+constexpr size_t kConnections = 10;
+constexpr int kFullQueue = 2'000;  // unless the server refuses before
+
+// A watch without a thread of its own.
+class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse> {
+ public:
+  LiveWatcher(v1::EnsembleService::Stub& stub, const std::string& job) {
+    request_.set_name(job);
+    stub.async()->WatchEnsembleJob(&context_, &request_, this);
+    StartRead(&message_);
+    StartCall();
+  }
+
+  void OnReadDone(bool ok) override {
+    if (!ok) return;
+    ++heard_;
+    if (message_.has_job() && client::HasEnded(message_.job().state())) ++ends_;
+    StartRead(&message_);
+  }
+  void OnDone(const grpc::Status& status) override { done_.set_value(status.ok()); }
+
+  bool AwaitOk() { return done_.get_future().get(); }
+  int heard() const { return heard_; }
+  int ends() const { return ends_; }
+
+ private:
+  grpc::ClientContext context_;
+  v1::WatchEnsembleJobRequest request_;
+  v1::WatchEnsembleJobResponse message_;
+  std::atomic<int> heard_ = 0, ends_ = 0;
+  std::promise<bool> done_;
+};
+
+// One health check of the whole server, in seconds.
+double HealthCheckSeconds(grpc::GenericStub& stub) {
+  const grpc::Slice nothing;
+  grpc::ByteBuffer request(&nothing, 1), response;
+  grpc::ClientContext context;
+  std::promise<grpc::Status> done;
+  const auto start = Clock::now();
+  stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
+                 [&](grpc::Status status) { done.set_value(std::move(status)); });
+  const grpc::Status status = done.get_future().get();
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The 99th percentile of many checks, one every few milliseconds.
+double HealthP99(grpc::GenericStub& stub, int checks) {
+  std::vector<double> seconds;
+  for (int i = 0; i < checks; ++i) {
+    seconds.push_back(HealthCheckSeconds(stub));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return seconds[static_cast<size_t>(0.99 * static_cast<double>(seconds.size() - 1))];
+}
+
+// Returns how many jobs the server took, of at most so many.
+int FillQueue(const client::EnsembleClient& client, int most) {
+  std::atomic<int> asked = 0, taken = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 16; ++i) {
+    threads.emplace_back([&] {
+      while (asked++ < most) {
+        v1::EnsembleSpec spec = Endless();
+        spec.set_seed(static_cast<uint64_t>(1'000 + asked));
+        const auto job = client.Create(spec);
+        if (!job.ok()) {
+          EXPECT_TRUE(absl::IsResourceExhausted(job.status())) << job.status();
+          return;
+        }
+        ++taken;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return taken;
+}
+
+class LiveWatchers : public testing::Test {
+ protected:
+  LiveWatchers() {
+    server_.Start();
+    for (size_t i = 0; i < kConnections; ++i) {
+      stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
+    }
+  }
+
+  void Attach(int count, const std::string& job) {
+    for (int i = 0; i < count; ++i) {
+      watchers_.emplace_back(*stubs_[static_cast<size_t>(i) % kConnections], job);
+    }
+  }
+
+  // Until each has heard so many messages.
+  void AwaitHeard(int messages) const {
+    for (const LiveWatcher& watcher : watchers_) {
+      while (watcher.heard() < messages) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  void CheckEnds() {
+    for (LiveWatcher& watcher : watchers_) {
+      EXPECT_TRUE(watcher.AwaitOk());
+      EXPECT_EQ(watcher.ends(), 1);
+      findings_.Count("terminal messages, then OK", watcher.ends());
+      findings_.Count("messages", watcher.heard());
+    }
+  }
+
+  double Health(const std::string& when) {
+    grpc::GenericStub stub(server_.Connect());
+    const double p99 = HealthP99(stub, Size(50, 2000));
+    findings_.Note("health p99, ms, " + when, absl::StrFormat("%.1f", 1e3 * p99));
+    return p99;
+  }
+
+  Findings findings_{"live watchers"};
+  ServerProcess server_;
+  std::vector<std::unique_ptr<v1::EnsembleService::Stub>> stubs_;
+  std::list<LiveWatcher> watchers_;
+};
+
+TEST_F(LiveWatchers, AllHearTheEndAndHealthAnswersWithAFullQueue) {
+  const client::EnsembleClient client(server_.Connect());
+  Health("a quiet server");
+  const auto job = client.Create(Endless());
+  ASSERT_TRUE(job.ok()) << job.status();
+  Health("one job");
+  Attach(Size(100, 1000), job->name());
+  AwaitHeard(3);
+  findings_.Count("watchers", static_cast<int64_t>(watchers_.size()));
+  Health("one job, all watching");
+  findings_.Count("jobs in the queue", FillQueue(client, Size(100, kFullQueue)));
+  const double p99 = Health("a full queue, all watching");
+  ASSERT_TRUE(client.Cancel(job->name()).ok());
+  CheckEnds();
+  if (HoldsToTimes()) {
+    EXPECT_LT(p99, kMostHealthSeconds);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

@@ -1,0 +1,112 @@
+// A store of many jobs does not keep the server from starting.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "absl/strings/str_format.h"
+#include "absl/time/clock.h"
+#include "client/library/ensemble_client.h"
+#include "server/convert/spec.h"
+#include "server/jobs/job_name.h"
+#include "server/store/job_table.h"
+#include "server/store/store.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/server_process.h"
+#include "tests/fault/torture/sizes.h"
+
+namespace ballpiston::torture {
+namespace {
+
+using server::Database;
+using server::JobRecord;
+using server::Store;
+
+constexpr double kMostSeconds = 2;
+constexpr int kGroup = 1'000;
+
+std::string SomeResult() {
+  v1::PointResult result;
+  result.set_samples(10'000);
+  for (const char* name : {"mean_free_time", "mean_free_time_ball_wall"}) {
+    v1::Estimate& estimate = *result.add_estimates();
+    estimate.set_name(name);
+    estimate.set_value(1);
+    estimate.set_standard_error(0.01);
+  }
+  result.set_reason(std::string(200, 'r'));
+  return result.SerializeAsString();
+}
+
+// Ended jobs, with one result each.
+absl::Status InsertEnded(Database& database, int count, const std::string& result) {
+  for (int i = 0; i < count; ++i) {
+    JobRecord record;
+    record.id = server::RandomId();
+    record.spec = server::SpecBytes(ManyPoints(1, 10'000));
+    record.create_time = absl::Now();
+    record.engine_version = server::EngineVersion();
+    record.points = 1;
+    absl::Status status = server::InsertJob(database, record);
+    server::JobEnd end;
+    end.time = absl::Now();
+    end.points_done = 1;
+    end.samples = 10'000;
+    if (status.ok()) status = server::EndJob(database, record.sequence, end).status();
+    if (status.ok()) status = InsertResult(database, record.sequence, {0, 10'000, result});
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+void Fill(const std::string& path, int jobs) {
+  auto store = Store::Open(path, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const std::string result = SomeResult();
+  for (int i = 0; i < jobs; i += kGroup) {
+    const absl::Status filled =
+        (*store)->Commit([&](Database& database) { return InsertEnded(database, kGroup, result); });
+    ASSERT_TRUE(filled.ok()) << filled;
+  }
+}
+
+// From the process's start to the answer of its first call.
+double SecondsToFirstAnswer(ServerProcess& server) {
+  const auto start = std::chrono::steady_clock::now();
+  server.Start();
+  const client::EnsembleClient client(server.Connect());
+  const auto missing = client.Get("ensembleJobs/" + server::RandomId());
+  EXPECT_TRUE(absl::IsNotFound(missing.status())) << missing.status();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(StartUp, IsQuickWithManyJobsInTheStore) {
+  Findings findings("start-up");
+  const int jobs = Size(2'000, 100'000);
+  ServerProcess server;
+  findings.Note("seconds to ready, empty store",
+                absl::StrFormat("%.2f", SecondsToFirstAnswer(server)));
+  server.KillHard();
+  const std::string path = server.data_dir() + "/store.sqlite3";
+  Fill(path, jobs);
+  findings.Count("jobs in the store", jobs);
+  findings.Note(
+      "MiB of store",
+      absl::StrFormat("%.0f", static_cast<double>(std::filesystem::file_size(path)) / (1 << 20)));
+  const double after_stop = SecondsToFirstAnswer(server);
+  findings.Note("seconds to ready", absl::StrFormat("%.2f", after_stop));
+  server.KillHard();
+  const double after_kill = SecondsToFirstAnswer(server);
+  findings.Note("seconds to ready after a kill", absl::StrFormat("%.2f", after_kill));
+  if (HoldsToTimes()) {
+    EXPECT_LT(after_stop, kMostSeconds);
+    EXPECT_LT(after_kill, kMostSeconds);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

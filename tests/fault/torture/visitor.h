@@ -1,0 +1,86 @@
+// One client among several, at random: creates jobs, looks them up, watches, cancels, deletes, and
+// fetches their results, while the server is killed under it. It repeats each call until it has an
+// answer, remembers every answer, and says which of them the server did not keep:
+//   1. a request id means one job, however often it is asked;
+//   2. a job that was acknowledged is there until its deletion was asked for;
+//   3. a cancellation that was acknowledged ends in CANCELLED;
+//   4. an end that was seen stays that end;
+//   5. a job that succeeded has the undisturbed answer, byte by byte, and its samples once.
+#ifndef BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_
+#define BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+
+namespace ballpiston::torture {
+
+struct Exam {
+  std::vector<v1::EnsembleSpec> questions;
+  std::vector<Answer> answers;
+};
+
+// Of one thread.
+class Visitor {
+ public:
+  Visitor(std::shared_ptr<grpc::Channel> channel, const Exam& exam, uint64_t seed,
+          Findings& findings);
+
+  void VisitUntil(const std::atomic<bool>& enough);
+
+  // With a server that stays: waits for the end of every job and checks it.
+  void CheckAll();
+  std::set<std::string> names() const;  // of the jobs that have to be there
+
+ private:
+  struct OwnJob {
+    size_t question = 0;
+    std::string request_id;
+    std::string name;
+    bool cancelled = false;  // and acknowledged
+    v1::EnsembleJob::State end = v1::EnsembleJob::STATE_UNSPECIFIED;
+  };
+
+  template <typename Call>
+  auto UntilAnswered(Call call, bool& repeated);
+  template <typename Call>
+  auto UntilAnswered(Call call);
+
+  void DoSomething();
+  void Create();
+  void AskAgain(const OwnJob& job);
+  void Get(OwnJob& job);
+  void Watch(OwnJob& job);
+  void Cancel(OwnJob& job);
+  void Delete(size_t index);
+  void List();
+  void Fetch(const OwnJob& job);
+
+  void Learn(OwnJob& job, const v1::EnsembleJob& seen);
+  void CheckSamples(const OwnJob& job, const v1::EnsembleJob& seen);
+  bool Chance(double probability);
+  size_t Pick(size_t count);
+  size_t CountActive() const;
+  void Wrong(const OwnJob& job, const std::string& what);
+
+  std::unique_ptr<v1::EnsembleService::Stub> stub_;
+  const Exam& exam_;
+  Findings& findings_;
+  std::mt19937_64 random_;
+  std::vector<OwnJob> jobs_;
+};
+
+}  // namespace ballpiston::torture
+
+#endif  // BALLPISTON_TESTS_FAULT_TORTURE_VISITOR_H_

@@ -1,0 +1,42 @@
+// Comparing two ways of running by short windows in turn, so that whatever else the machine does
+// falls on both alike.
+#ifndef BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
+#define BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "client/library/ensemble_client.h"
+#include "tests/fault/torture/server_process.h"
+
+namespace ballpiston::torture {
+
+struct Window {
+  double samples = 0;
+  double processor_seconds = 0;
+  double seconds = 0;
+
+  double ProcessorCost() const { return processor_seconds / samples; }
+  double Cost() const { return seconds / samples; }
+};
+
+// What the server spends, all of its threads, and what a job of its gets done meanwhile.
+Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
+                    const std::string& job, std::chrono::milliseconds length);
+
+// Sum of the first over sum of the second.
+class PairedRatio {
+ public:
+  void Add(double first, double second);
+  double ratio() const;
+  double StandardError() const;  // by linearization, of independent pairs
+  std::string Text() const;      // (ratio - 1) in percent, with its error
+
+ private:
+  std::vector<double> first_, second_;
+};
+
+}  // namespace ballpiston::torture
+
+#endif  // BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_

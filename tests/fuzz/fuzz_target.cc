@@ -1,0 +1,67 @@
+#include "tests/fuzz/fuzz_target.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "google/protobuf/text_format.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<FuzzTarget>& MutableTargets() {
+  static auto* const targets = new std::vector<FuzzTarget>;
+  return *targets;
+}
+
+std::string TextOf(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw std::runtime_error("cannot read " + path.string());
+  return text.str();
+}
+
+std::string BytesSpelledBy(const fs::path& path, const google::protobuf::Message& kind) {
+  const std::unique_ptr<google::protobuf::Message> message(kind.New());
+  if (!google::protobuf::TextFormat::ParseFromString(TextOf(path), message.get())) {
+    throw std::runtime_error(path.string() + " does not spell a " + kind.GetTypeName());
+  }
+  return message->SerializeAsString();
+}
+
+}  // namespace
+
+Registration::Registration(FuzzTarget target) { MutableTargets().push_back(std::move(target)); }
+
+const std::vector<FuzzTarget>& Targets() { return MutableTargets(); }
+
+void Require(bool is_so, const char* what) {
+  if (!is_so) throw std::logic_error(what);
+}
+
+std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder) {
+  std::vector<fs::path> paths;
+  if (fs::exists(fs::path(folder) / target.name)) {
+    for (const auto& entry : fs::directory_iterator(fs::path(folder) / target.name)) {
+      paths.push_back(entry.path());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::string> seeds;
+  for (const fs::path& path : paths) {
+    const bool spelled = path.extension() == ".textproto";
+    seeds.push_back(spelled ? BytesSpelledBy(path, *target.message) : TextOf(path));
+  }
+  if (target.made_seeds == nullptr) return seeds;
+  for (std::string& seed : target.made_seeds()) seeds.push_back(std::move(seed));
+  return seeds;
+}
+
+}  // namespace ballpiston::fuzz

@@ -1,0 +1,249 @@
+#include "tests/fuzz/mutation.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace ballpiston::fuzz {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+constexpr int kLongestList = 12;
+
+// Ends of domains, and what no domain holds.
+constexpr std::array kNumbers = {0.0,
+                                 -0.0,
+                                 0.5,
+                                 0.25,
+                                 1.0 / 6,
+                                 0.1,
+                                 0.01,
+                                 1e-3,
+                                 1e-5,
+                                 1e-9,
+                                 0.53,
+                                 0.529561127988977,
+                                 0.6,
+                                 0.7,
+                                 0.70710678118654746,
+                                 0.70710678118654757,
+                                 0.50000000000000011,
+                                 1.0,
+                                 2.0,
+                                 60.0,
+                                 1000.0,
+                                 -1.0,
+                                 1e6,
+                                 1e300,
+                                 1e-300,
+                                 5e-324,
+                                 std::numeric_limits<double>::max(),
+                                 std::numeric_limits<double>::min(),
+                                 std::numeric_limits<double>::infinity(),
+                                 -std::numeric_limits<double>::infinity(),
+                                 std::numeric_limits<double>::quiet_NaN()};
+
+constexpr std::array<int64_t, 18> kIntegers = {0,
+                                               1,
+                                               2,
+                                               -1,
+                                               5,
+                                               50,
+                                               100,
+                                               1000,
+                                               1001,
+                                               10'000,
+                                               999'999'999,
+                                               1'000'000'000'000,
+                                               1'000'000'000'001,
+                                               std::numeric_limits<int32_t>::max(),
+                                               std::numeric_limits<int32_t>::min(),
+                                               std::numeric_limits<int64_t>::max(),
+                                               std::numeric_limits<int64_t>::min(),
+                                               7};
+
+constexpr std::array<std::string_view, 10> kWords = {"",
+                                                     "ensembleJobs/",
+                                                     "ensembleJobs/0123456789abcdef",
+                                                     "123e4567-e89b-12d3-a456-426614174000",
+                                                     "am9iczo1",
+                                                     "am9iczo1MA",
+                                                     "\xff",
+                                                     "\xc3\xa9",
+                                                     "-",
+                                                     "type.googleapis.com/google.rpc.ErrorInfo"};
+
+double Number(Dice& dice, double now) {
+  switch (dice.Below(4)) {
+    case 0:
+      return kNumbers[dice.Below(kNumbers.size())];
+    case 1:
+      return std::nextafter(now, dice.OneIn(2) ? -1e308 : 1e308);
+    case 2:
+      return now * (static_cast<double>(dice.Below(2000)) / 1000);
+    default:
+      return dice.OneIn(8) ? std::bit_cast<double>(dice.Bits())
+                           : static_cast<double>(dice.Below(1 << 20)) * 0x1p-20;
+  }
+}
+
+int64_t Integer(Dice& dice, int64_t now) {
+  switch (dice.Below(3)) {
+    case 0:
+      return kIntegers[dice.Below(kIntegers.size())];
+    case 1:
+      return static_cast<int64_t>(static_cast<uint64_t>(now) + (dice.OneIn(2) ? 1u : ~uint64_t{0}));
+    default:
+      return static_cast<int64_t>(dice.Bits() >> dice.Below(64));
+  }
+}
+
+std::string Text(Dice& dice, std::string now) {
+  if (dice.OneIn(3)) return std::string(kWords[dice.Below(kWords.size())]);
+  MutateBytes(dice, now);
+  return now;
+}
+
+// ---- one field ----
+
+void SetSingle(Dice& dice, const FieldDescriptor& field, Message& message) {
+  const Reflection& reflection = *message.GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return reflection.SetDouble(&message, &field,
+                                  Number(dice, reflection.GetDouble(message, &field)));
+    case FieldDescriptor::CPPTYPE_INT64:
+      return reflection.SetInt64(&message, &field,
+                                 Integer(dice, reflection.GetInt64(message, &field)));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return reflection.SetUInt64(&message, &field, static_cast<uint64_t>(Integer(dice, 0)));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return reflection.SetInt32(
+          &message, &field,
+          static_cast<int32_t>(Integer(dice, reflection.GetInt32(message, &field))));
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return reflection.SetEnumValue(&message, &field, static_cast<int>(dice.Below(9)) - 1);
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return reflection.SetBool(&message, &field, dice.OneIn(2));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection.SetString(&message, &field,
+                                  Text(dice, reflection.GetString(message, &field)));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return MutateMessage(dice, *reflection.MutableMessage(&message, &field));
+    default:
+      return;  // kinds that no message of the project has
+  }
+}
+
+void AddElement(Dice& dice, const FieldDescriptor& field, Message& message) {
+  const Reflection& reflection = *message.GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return reflection.AddDouble(&message, &field, Number(dice, 0.55));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return reflection.AddUInt64(&message, &field, static_cast<uint64_t>(Integer(dice, 0)));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return reflection.AddInt32(&message, &field, static_cast<int32_t>(Integer(dice, 0)));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection.AddString(&message, &field, Text(dice, ""));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return MutateMessage(dice, *reflection.AddMessage(&message, &field));
+    default:
+      return;
+  }
+}
+
+void SetElement(Dice& dice, const FieldDescriptor& field, int index, Message& message) {
+  const Reflection& reflection = *message.GetReflection();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return reflection.SetRepeatedDouble(
+          &message, &field, index,
+          Number(dice, reflection.GetRepeatedDouble(message, &field, index)));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return reflection.SetRepeatedUInt64(&message, &field, index,
+                                          static_cast<uint64_t>(Integer(dice, 0)));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return MutateMessage(dice, *reflection.MutableRepeatedMessage(&message, &field, index));
+    default:
+      return;
+  }
+}
+
+void MutateList(Dice& dice, const FieldDescriptor& field, Message& message) {
+  const Reflection& reflection = *message.GetReflection();
+  const int size = reflection.FieldSize(message, &field);
+  const size_t what = dice.Below(8);
+  if (size == 0 || (what < 2 && size < kLongestList)) return AddElement(dice, field, message);
+  if (what == 2) return reflection.RemoveLast(&message, &field);
+  const int index = static_cast<int>(dice.Below(static_cast<size_t>(size)));
+  if (what == 3) return reflection.SwapElements(&message, &field, index, size - 1);
+  SetElement(dice, field, index, message);
+}
+
+}  // namespace
+
+uint64_t Dice::Bits() {
+  uint64_t x = state_ += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+void MutateBytes(Dice& dice, std::string& bytes) {
+  const size_t at = dice.Below(bytes.size() + 1);
+  const auto random = static_cast<char>(dice.Bits());
+  switch (dice.Below(6)) {
+    case 0:
+      bytes.insert(at, 1, random);
+      return;
+    case 1:
+      bytes.insert(at, kWords[dice.Below(kWords.size())]);
+      return;
+    case 2:
+      bytes.insert(at, std::to_string(Integer(dice, 0)));
+      return;
+    case 3:
+      bytes.erase(at, 1 + dice.Below(4));
+      return;
+    case 4:
+      bytes.insert(at, bytes.substr(dice.Below(bytes.size() + 1), dice.Below(16)));
+      return;
+    default:
+      if (at < bytes.size())
+        bytes[at] = dice.OneIn(2) ? random : static_cast<char>(bytes[at] ^ (1 << dice.Below(8)));
+  }
+}
+
+void MutateMessage(Dice& dice, Message& message) {
+  const int fields = message.GetDescriptor()->field_count();
+  if (fields == 0) return;
+  const FieldDescriptor& field =
+      *message.GetDescriptor()->field(static_cast<int>(dice.Below(static_cast<size_t>(fields))));
+  if (field.is_map()) {
+    if (message.GetReflection()->FieldSize(message, &field) < kLongestList) {
+      AddElement(dice, field, message);
+    }
+    return;
+  }
+  if (dice.OneIn(16)) return message.GetReflection()->ClearField(&message, &field);
+  if (field.is_repeated()) return MutateList(dice, field, message);
+  SetSingle(dice, field, message);
+}
+
+bool MutateFields(Dice& dice, const Message& kind, std::string& bytes) {
+  const std::unique_ptr<Message> message(kind.New());
+  if (!message->ParsePartialFromString(bytes)) return false;
+  for (size_t changes = 1 + dice.Below(4); changes > 0; --changes) MutateMessage(dice, *message);
+  bytes = message->SerializePartialAsString();
+  return true;
+}
+
+}  // namespace ballpiston::fuzz

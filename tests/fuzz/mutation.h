@@ -1,0 +1,39 @@
+// Random changes of inputs: of bytes, and of messages field by field, which get past the parser.
+#ifndef BALLPISTON_TESTS_FUZZ_MUTATION_H_
+#define BALLPISTON_TESTS_FUZZ_MUTATION_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "google/protobuf/message.h"
+
+namespace ballpiston::fuzz {
+
+// SplitMix64: the same numbers everywhere.
+class Dice {
+ public:
+  explicit Dice(uint64_t seed) : state_(seed) {}
+
+  uint64_t Bits();
+  size_t Below(size_t end) { return static_cast<size_t>(Bits() % end); }  // end > 0
+  bool OneIn(size_t n) { return Below(n) == 0; }
+
+ private:
+  uint64_t state_;
+};
+
+// One flip, insertion, deletion, repetition or number of interest.
+void MutateBytes(Dice& dice, std::string& bytes);
+
+// One field of it, or of a message inside: set, cleared, added to, shortened, or moved to the edge
+// of its domain.
+void MutateMessage(Dice& dice, google::protobuf::Message& message);
+
+// The bytes of a message of this kind, changed in one to four fields; false, and nothing changed,
+// if they are not such bytes.
+bool MutateFields(Dice& dice, const google::protobuf::Message& kind, std::string& bytes);
+
+}  // namespace ballpiston::fuzz
+
+#endif  // BALLPISTON_TESTS_FUZZ_MUTATION_H_

@@ -1,0 +1,53 @@
+// The client's numbers, counts, seeds and lists of numbers.
+#include "client/command/number_list.h"
+
+#include <cmath>
+
+#include "absl/strings/match.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+constexpr char kFlag[] = "--rho";
+
+void RequireTold(const absl::Status& error) {
+  Require(absl::IsInvalidArgument(error), "what is wrong is the argument");
+  Require(absl::StartsWith(error.message(), kFlag), "the flag is named");
+}
+
+// Long lists take longer than all other inputs together, and differ by their length alone.
+bool IsLong(const std::string& text) {
+  size_t digits = 0;
+  for (const char c : text) {
+    digits = c >= '0' && c <= '9' ? digits + 1 : c == 'e' || c == 'E' ? 4 : 0;
+    if (digits > 4) return true;
+  }
+  return false;
+}
+
+void CheckList(const std::string& text) {
+  const auto list = client::ParseNumberList(kFlag, text);
+  if (!list.ok()) return RequireTold(list.status());
+  Require(!list->empty() && list->size() <= client::kMaxListLength, "a list has a length");
+  for (const double number : *list) Require(std::isfinite(number), "a number is finite");
+  const auto counts = client::ParseCountList(kFlag, text);
+  if (!counts.ok()) return RequireTold(counts.status());
+  Require(counts->size() == list->size(), "every number is a count");
+}
+
+void Check(const std::string& text) {
+  const auto number = client::ParseNumber(kFlag, text);
+  const auto count = client::ParseCount(kFlag, text);
+  const auto seed = client::ParseSeed(kFlag, text);
+  if (!number.ok()) RequireTold(number.status());
+  if (!count.ok()) RequireTold(count.status());
+  if (!seed.ok()) RequireTold(seed.status());
+  Require(!number.ok() || std::isfinite(*number), "a number is finite");
+  if (text.find(':') == std::string::npos || !IsLong(text)) CheckList(text);
+}
+
+const Registration registration({.name = "number_list", .check = Check});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

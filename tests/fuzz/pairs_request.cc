@@ -1,0 +1,47 @@
+// EvaluatePairs: the whole answer.
+#include <cmath>
+
+#include "ballpiston/v1/analytic.pb.h"
+#include "server/convert/analytic.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/rules.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+// Every answer is evaluated: few numbers make all that there is to be wrong.
+constexpr int kMostPairs = 64;
+
+void RequireFinite(const v1::PairAnalytics& point) {
+  Require(std::isfinite(point.tau_ball_piston()) && point.tau_ball_piston() > 0, "a mean time");
+  Require(std::isfinite(point.tau_ball_wall()) && point.tau_ball_wall() > 0, "a mean time");
+  Require(std::isfinite(point.volume()) && point.volume() > 0, "a volume");
+  for (const v1::EnergyAnalytics& energy : point.energies()) {
+    Require(std::isfinite(energy.f()) && energy.f() >= 0, "a rate");
+    for (const double kernel : energy.kernel()) Require(kernel >= 0, "a kernel");
+  }
+  for (const v1::CanonicalAnalytics& canonical : point.canonical()) {
+    Require(std::isfinite(canonical.mean_h()), "an average");
+  }
+}
+
+void Check(const std::string& bytes) {
+  v1::EvaluatePairsRequest request;
+  if (!request.ParseFromString(bytes)) return;
+  if (request.rho_size() * request.delta_size() > kMostPairs) return;
+  const auto response = server::EvaluatePairs(request);
+  if (!response.ok()) return RequireSendable(response.status());
+  Require(response->points_size() == request.rho_size() * request.delta_size(), "every pair");
+  for (const v1::PairAnalytics& point : response->points()) {
+    Require(point.energies_size() == request.epsilon_size(), "every energy");
+    Require(point.canonical_size() == request.beta_size(), "every temperature");
+    RequireFinite(point);
+  }
+}
+
+const Registration registration({.name = "pairs_request",
+                                 .check = Check,
+                                 .message = &v1::EvaluatePairsRequest::default_instance()});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

@@ -1,0 +1,42 @@
+// The client's printing of results that a server sent, in every format.
+#include <sstream>
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "client/output/result_writer.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+std::string Printed(const v1::ListResultsResponse& page, client::Format format) {
+  std::ostringstream out;
+  const auto writer = client::NewResultWriter(format, out);
+  writer->Begin(v1::EnsembleJob());
+  for (const v1::PointResult& point : page.points()) writer->Add(point);
+  writer->End();
+  return out.str();
+}
+
+void RequirePrinted(const v1::ListResultsResponse& page, client::Format format) {
+  const std::string printed = Printed(page, format);
+  const bool may_be_empty = format == client::Format::kJsonl && page.points().empty();
+  Require(may_be_empty || printed.ends_with("\n"), "what is printed ends with its line");
+}
+
+void Check(const std::string& bytes) {
+  v1::ListResultsResponse page;
+  if (!page.ParseFromString(bytes)) return;
+  RequirePrinted(page, client::Format::kTable);
+  RequirePrinted(page, client::Format::kCsv);
+  // Slow, and nearly all of it the library's.
+  constexpr size_t kOneIn = 16;
+  if (bytes.size() % kOneIn == 0) RequirePrinted(page, client::Format::kJson);
+  if (bytes.size() % kOneIn == 1) RequirePrinted(page, client::Format::kJsonl);
+}
+
+const Registration registration({.name = "printed_result",
+                                 .check = Check,
+                                 .message = &v1::ListResultsResponse::default_instance()});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

@@ -1,0 +1,71 @@
+#include "tests/fuzz/rules.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "client/library/error_text.h"
+#include "core/geometry/pair_geometry.h"
+#include "google/rpc/status.pb.h"
+#include "grpcpp/support/status.h"
+#include "server/convert/errors.h"
+#include "server/convert/spec.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+void RequirePointsThatMakePairs(const EnsembleSpec& spec) {
+  const size_t points = PointCount(spec);
+  Require(points >= 1 && points <= static_cast<size_t>(kMaxPoints), "points within the limit");
+  for (const size_t index : {size_t{0}, points / 2, points - 1}) {
+    const PointParameters point = PointAt(spec, index);
+    Require(PairGeometry::Create(point.rho, point.delta).ok(), "an accepted point makes a pair");
+  }
+}
+
+void RequireSameAfterConversion(const EnsembleSpec& spec) {
+  const v1::EnsembleSpec message = server::SpecMessage(spec);
+  const server::CheckedSpec again = server::CheckSpec(message);
+  Require(again.violations.empty(), "what was accepted is accepted again");
+  const std::string bytes = server::SpecBytes(message);
+  Require(server::SpecBytes(server::SpecMessage(again.spec)) == bytes, "the core's form is exact");
+  const absl::StatusOr<v1::EnsembleSpec> stored = server::SpecFromBytes(bytes);
+  Require(stored.ok() && server::SpecBytes(*stored) == bytes, "stored bytes come back");
+}
+
+}  // namespace
+
+void RequireSendable(const absl::Status& error) {
+  const grpc::Status sent = server::GrpcStatus(error);
+  Require(!sent.ok(), "an error is not OK");
+  Require(sent.error_details().size() <= server::kMaxErrorDetails, "details fit");
+  google::rpc::Status details;
+  Require(details.ParseFromString(sent.error_details()), "details can be read");
+  Require(details.code() == sent.error_code(), "details have the code");
+  const absl::Status received = client::FromGrpc(sent);
+  Require(received.code() == error.code(), "the client has the code");
+  Require(!client::ErrorReason(received).empty(), "the client has a reason");
+  Require(!received.message().empty(), "the client has words");
+}
+
+void RequireNamed(const std::vector<FieldViolation>& violations, const std::string& prefix) {
+  for (const FieldViolation& violation : violations) {
+    Require(absl::StartsWith(violation.field, prefix), "a violation names its field");
+    Require(!violation.description.empty(), "a violation says something");
+  }
+}
+
+bool RequireJudged(const v1::EnsembleSpec& spec) {
+  const server::CheckedSpec checked = server::CheckSpec(spec);
+  if (checked.violations.empty()) {
+    RequirePointsThatMakePairs(checked.spec);
+    RequireSameAfterConversion(checked.spec);
+    return true;
+  }
+  RequireNamed(checked.violations, "spec");
+  RequireSendable(server::InvalidSpec(checked.violations));
+  return false;
+}
+
+}  // namespace ballpiston::fuzz

@@ -1,0 +1,27 @@
+// What has to hold of several kinds of input. All throw what Require does.
+#ifndef BALLPISTON_TESTS_FUZZ_RULES_H_
+#define BALLPISTON_TESTS_FUZZ_RULES_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "ballpiston/v1/spec.pb.h"
+#include "core/experiment/ensemble_spec.h"
+
+namespace ballpiston::fuzz {
+
+// An error that a client can be sent: its details fit into gRPC's trailers, say a reason, and come
+// back from the client's library with the same code and reason.
+void RequireSendable(const absl::Status& error);
+
+// Each names a field that begins with `prefix`, and says something.
+void RequireNamed(const std::vector<FieldViolation>& violations, const std::string& prefix);
+
+// Accepted: it has points that make pairs, and comes back from the core's form and from bytes as it
+// went. Refused: every violation is named and they can be sent. True if it was accepted.
+bool RequireJudged(const v1::EnsembleSpec& spec);
+
+}  // namespace ballpiston::fuzz
+
+#endif  // BALLPISTON_TESTS_FUZZ_RULES_H_

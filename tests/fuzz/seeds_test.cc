@@ -1,0 +1,97 @@
+// Every target over its seeds and some thousands of changed ones: what any compiler can do. The
+// search for what is wrong is libFuzzer's (make fuzz).
+#include <gtest/gtest.h>
+
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "absl/strings/escaping.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "google/protobuf/stubs/logging.h"
+#include "server/convert/spec.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/mutation.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+constexpr char kSeeds[] = BALLPISTON_FUZZ_SEEDS_DIR;
+constexpr int kChangedInputs = 3000;
+constexpr size_t kLongestInput = 1 << 14;
+
+// What is wrong with the target on this input; empty if nothing is.
+std::string Fault(const FuzzTarget& target, const std::string& input) {
+  try {
+    target.check(input);
+  } catch (const std::exception& error) {
+    return std::string(error.what()) + ", with input \"" + std::string(absl::CHexEscape(input)) +
+           "\"";
+  }
+  return "";
+}
+
+std::string Changed(Dice& dice, const FuzzTarget& target, const std::vector<std::string>& seeds) {
+  std::string input = seeds[dice.Below(seeds.size())];
+  if (target.message != nullptr && !dice.OneIn(4)) MutateFields(dice, *target.message, input);
+  for (size_t changes = dice.Below(4); changes > 0; --changes) MutateBytes(dice, input);
+  if (dice.OneIn(8)) {  // its beginning, and the end of another
+    const std::string& other = seeds[dice.Below(seeds.size())];
+    input.resize(dice.Below(input.size() + 1));
+    input += other.substr(dice.Below(other.size() + 1));
+  }
+  if (input.size() > kLongestInput) input.resize(kLongestInput);
+  return input;
+}
+
+class EveryTarget : public testing::TestWithParam<FuzzTarget> {};
+
+TEST_P(EveryTarget, TakesItsSeedsAndChangedOnes) {
+  const google::protobuf::LogSilencer silence;
+  const FuzzTarget& target = GetParam();
+  const std::vector<std::string> seeds = SeedsOf(target, kSeeds);
+  ASSERT_FALSE(seeds.empty());
+  for (const std::string& seed : seeds) EXPECT_EQ(Fault(target, seed), "");
+  Dice dice(20);
+  for (int i = 0; i < kChangedInputs; ++i) {
+    ASSERT_EQ(Fault(target, Changed(dice, target, seeds)), "");
+  }
+}
+
+TEST_P(EveryTarget, TakesNothingAtAll) { EXPECT_EQ(Fault(GetParam(), ""), ""); }
+
+INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(Targets()),
+                         [](const auto& info) { return info.param.name; });
+
+void FailsOnX(const std::string& input) {
+  Require(input.find('x') == std::string::npos, "there is no x");
+}
+
+TEST(Fault, NamesTheRuleAndTheInput) {
+  const FuzzTarget target = {.name = "x", .check = FailsOnX};
+  EXPECT_EQ(Fault(target, "y"), "");
+  EXPECT_EQ(Fault(target, "x\n"), "there is no x, with input \"x\\n\"");
+}
+
+// Half of a search that the first check ends is no search.
+TEST(MutateFields, MakesSpecificationsOfBothKinds) {
+  std::vector<std::string> seeds;
+  for (const FuzzTarget& target : Targets()) {
+    if (target.name == "stored_spec") seeds = SeedsOf(target, kSeeds);
+  }
+  ASSERT_FALSE(seeds.empty());
+  Dice dice(1);
+  int accepted = 0, refused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    std::string bytes = seeds[dice.Below(seeds.size())];
+    ASSERT_TRUE(MutateFields(dice, v1::EnsembleSpec::default_instance(), bytes));
+    v1::EnsembleSpec spec;
+    ASSERT_TRUE(spec.ParseFromString(bytes));
+    ++(server::CheckSpec(spec).violations.empty() ? accepted : refused);
+  }
+  EXPECT_GT(accepted, 100);
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace ballpiston::fuzz

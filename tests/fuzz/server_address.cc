@@ -1,0 +1,40 @@
+// Addresses, as the client takes them and as the server does: the client can call every one that
+// the server can listen at.
+#include "client/library/server_address.h"
+
+#include "absl/strings/match.h"
+#include "server/listen_address.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+void CheckListening(const std::string& text) {
+  const absl::StatusOr<server::ListenAddress> address = server::ParseListenAddress(text);
+  if (!address.ok()) {
+    Require(absl::IsInvalidArgument(address.status()), "what is wrong is the argument");
+    return Require(absl::StrContains(address.status().message(), "--listen"), "the flag is named");
+  }
+  const auto again = server::ParseListenAddress(address->Text());
+  Require(again.ok() && again->Text() == address->Text(), "an address is its own");
+  const bool any_port = address->socket_path.empty() && address->port == 0;
+  if (any_port || address->socket_path.size() > client::kMaxSocketPath) return;
+  Require(client::GrpcTarget(address->Text()).ok(), "the client can call the server");
+}
+
+void Check(const std::string& text) {
+  if (text.find('\0') != std::string::npos) return;  // no argument of a program holds it
+  const absl::StatusOr<std::string> target = client::GrpcTarget(text);
+  if (target.ok()) {
+    Require(absl::StartsWith(*target, "unix:") || absl::StartsWith(*target, "dns:///"),
+            "a target has a scheme");
+  } else {
+    Require(absl::IsInvalidArgument(target.status()), "what is wrong is the argument");
+  }
+  CheckListening(text);
+}
+
+const Registration registration({.name = "server_address", .check = Check});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

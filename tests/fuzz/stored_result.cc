@@ -1,0 +1,37 @@
+// A finished point's result: read for pages of results, and for what a restart wants of it.
+#include "core/experiment/point_experiment.h"
+#include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/rules.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+// As ReadShortfall does.
+void CheckShortfall(const v1::PointResult& result) {
+  constexpr double kTolerance = 0.01;
+  const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
+  const Estimate reached = server::FirstEstimateOf(result);
+  if (MeetsTolerance(reached, kTolerance)) return;
+  RequireSendable(server::ToleranceNotReached(spec, 0, reached));
+}
+
+void Check(const std::string& bytes) {
+  absl::StatusOr<v1::PointResult> result = server::PointResultFromBytes(bytes);
+  if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
+  const std::string stored = server::PointResultBytes(*result);
+  const absl::StatusOr<v1::PointResult> again = server::PointResultFromBytes(stored);
+  Require(again.ok() && server::PointResultBytes(*again) == stored, "stored bytes come back");
+  CheckShortfall(*result);
+  server::ClearDetails(*result);
+  Require(result->histograms().empty() && result->curves().empty(), "details are left out");
+  Require(server::PointResultBytes(*result).size() <= stored.size(), "nothing is added");
+}
+
+const Registration registration({.name = "stored_result",
+                                 .check = Check,
+                                 .message = &v1::PointResult::default_instance()});
+
+}  // namespace
+}  // namespace ballpiston::fuzz
