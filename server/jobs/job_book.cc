@@ -25,11 +25,6 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
-// What the disk refused to take.
-absl::Status StoreFailed(const absl::Status& status) {
-  return status.ok() ? status : WithReason(status, "STORE_FAILED");
-}
-
 // The job, if the caller may see it.
 absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
                                                    const std::string& id) {
@@ -105,12 +100,39 @@ absl::Status JobBook::Resume() {
     return unfinished.status();
   });
   if (!read.ok()) return read;
+  const absl::Status restarted = RestartOlder(*unfinished);
+  if (!restarted.ok()) return restarted;
   for (JobRecord& record : *unfinished) {
     const absl::Status resumed = ResumeJob(std::move(record));
     Failpoint("resume.job");
     if (!resumed.ok()) return resumed;
   }
-  return absl::OkStatus();
+  return store_.Flush();
+}
+
+// Of another engine, and to be computed by this one: all in one commit, for there may be many.
+absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
+  std::vector<JobRecord*> older;
+  for (JobRecord& record : unfinished) {
+    if (record.engine_version == EngineVersion()) continue;
+    if (record.state == v1::EnsembleJob::CANCELLING) continue;
+    const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
+    if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
+    record.engine_version = EngineVersion();
+    record.question = QuestionOf(*message, record.engine_version);
+    older.push_back(&record);
+    LogInfo(
+        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
+  }
+  if (older.empty()) return absl::OkStatus();
+  return store_.Commit([&](Database& database) {
+    for (const JobRecord* record : older) {
+      const absl::Status restarted =
+          RestartJob(database, record->sequence, record->engine_version, record->question);
+      if (!restarted.ok()) return restarted;
+    }
+    return absl::OkStatus();
+  });
 }
 
 absl::Status JobBook::ResumeJob(JobRecord record) {
@@ -121,20 +143,10 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   if (!message.ok()) return EndUnresumable(record, message.status());
   CheckedSpec checked = CheckSpec(*message);
   if (!checked.violations.empty()) return EndUnresumable(record, InvalidSpec(checked.violations));
-  if (record.engine_version != EngineVersion()) {
-    record.engine_version = EngineVersion();
-    record.question = QuestionOf(*message, record.engine_version);
-    const absl::Status restarted = store_.Commit([&](Database& database) {
-      return RestartJob(database, record.sequence, record.engine_version, record.question);
-    });
-    if (!restarted.ok()) return restarted;
-    LogInfo(
-        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
-  }
   return ResumeRun(std::move(record), std::move(checked.spec));
 }
 
-// It ends as a run that had nothing more to do would.
+// It ends as a run that had nothing more to do would; on disk when all are resumed.
 absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status& why) {
   StoredPoints points;
   const absl::Status read =
@@ -143,7 +155,7 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
   auto job = std::make_shared<Job>(record, nullptr);
   job->AddRestoredPoints(points.count, points.samples, points.last);
   JobJournal(job, store_, nullptr).Ended(why);
-  return store_.Flush();
+  return absl::OkStatus();
 }
 
 absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
@@ -237,7 +249,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
     run.finished.assign(static_cast<size_t>(acceptance.record.points), false);
     StartRun(job, std::move(run));
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
   if (!acceptance.earlier) return job->Message();
@@ -260,7 +272,7 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
     if (found.ok()) record = *std::move(found);
     return found.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!record || !caller.MaySee(record->principal)) return JobNotFound(JobName(id));
   return *std::move(record);
 }
@@ -287,7 +299,7 @@ absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, in
         ListJobs(database, everybodys ? std::nullopt : std::optional(caller.name), before, limit);
     return records.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   std::vector<ListedJob> listed;
   for (const JobRecord& record : *records) {
     const auto job = active.find(record.id);
@@ -316,7 +328,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
     if (done.ok() && begun && job) job->Enter(v1::EnsembleJob::CANCELLING, absl::Now());
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   Failpoint("cancel.committed");
   if (begun) pool_.Cancel(record->sequence);
@@ -337,7 +349,7 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
     return deleted;
   });
   Failpoint("delete.committed");
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();
   const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
@@ -365,7 +377,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadResults(database, record->sequence, query.first_point, take);
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return page;
 }
@@ -378,7 +390,7 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller
   if (HasEnded(record->state)) return nullptr;
   // Committed a moment ago: it is in the book when the store has gone on to the next commit.
   const absl::Status settled = store_.Flush();
-  if (!settled.ok()) return StoreFailed(settled);
+  if (!settled.ok()) return StoreFailure(settled);
   return ActiveOrNull(caller, id);
 }
 
@@ -395,7 +407,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
     last = LastResultNumber(database, record->sequence);
     return last.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   return WatchedJob{nullptr, record->sequence, record->engine_version, *last,
                     JobMessage(*record).progress()};
 }
@@ -436,7 +448,7 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
   };
   const absl::Status read = store_.Read(
       [&](Database& database) { return ReadResultsStoredAfter(database, sequence, after, take); });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return points;
 }

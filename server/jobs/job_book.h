@@ -123,6 +123,7 @@ class JobBook {
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const CheckedSpec& checked) const;
+  absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
@@ -144,7 +145,7 @@ class JobBook {
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;
-  WorkerPool pool_;                                     // last: its threads use what is above
+  WorkerPool pool_;  // last: its threads use what is above
 };
 
 }  // namespace ballpiston::server

@@ -13,6 +13,15 @@
 namespace ballpiston::server {
 namespace {
 
+// Of memory: histograms are what takes room.
+size_t BytesHeld(const BlockResult& result) {
+  size_t bytes = sizeof(BlockResult);
+  for (const Histogram& histogram : result.histograms) {
+    bytes += histogram.counts.size() * sizeof(histogram.counts[0]);
+  }
+  return bytes;
+}
+
 JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
@@ -66,9 +75,10 @@ uint64_t JobJournal::BlockMerged(MergedBlock block) {
   if (block.restored) return change;
   // Shared, because the store's closures are copyable; made into bytes only if it is written.
   auto result = std::make_shared<const BlockResult>(std::move(block.result));
-  store_.RecordBlock(job_->sequence(), static_cast<int64_t>(block.point),
-                     static_cast<int64_t>(block.block),
-                     [result = std::move(result)] { return BlockRecordBytes(*result); });
+  const size_t bytes = BytesHeld(*result);
+  store_.RecordBlock(
+      job_->sequence(), static_cast<int64_t>(block.point), static_cast<int64_t>(block.block),
+      [result = std::move(result)] { return BlockRecordBytes(*result); }, bytes);
   return change;
 }
 
