@@ -147,7 +147,7 @@ TEST_F(MetricsTest, WhatIsNotAskedForInOrderHarmsNobody) {
   Start();
   Connection silent(Address()), slow(Address());
   slow.Send("GET /met");
-  for (const std::string request :
+  for (const std::string& request :
        {std::string("no HTTP at all\r\n\r\n"), "GET /" + std::string(100'000, 'a') + "\r\n\r\n",
         std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"),
         std::string("POST /metrics HTTP/1.0\r\nContent-Length: 9\r\n\r\n"),
