@@ -14,6 +14,7 @@ readonly PACKAGES=(
   libabsl-dev libeigen3-dev libhwy-dev librandom123-dev        # the core
   libboost-dev                                                 # its numbers of more than 64 bits
   libsqlite3-dev libssl-dev                                    # the store, the door
+  prometheus-cpp-dev                                           # metrics
   libcli11-dev gnuplot-nox                                     # the client, its figures
   libgtest-dev libgmock-dev libbenchmark-dev)                  # tests and benchmarks
 

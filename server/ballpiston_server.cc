@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server_builder.h"
+#include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
+#include "server/observability/metrics.h"
 
 namespace ballpiston::server {
 namespace {
@@ -19,6 +23,16 @@ constexpr int kRpcThreads = 8;
 // How often watches are looked at; their snapshots are further apart.
 constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
+constexpr char kStoreFile[] = "store.sqlite3";
+// How long health may go on to say that a store takes jobs when it does not.
+constexpr std::chrono::milliseconds kHealthInterval(500);
+
+Health::Services ServicesOfHealth() {
+  const std::string ensemble = v1::EnsembleService::service_full_name();
+  return {.all = {ensemble, v1::AnalyticService::service_full_name(),
+                  v1::MethodService::service_full_name(), v1::ServerService::service_full_name()},
+          .with_store = {ensemble}};
+}
 
 ServerOptions Completed(ServerOptions options) {
   if (!options.compare) options.compare = CoreComparer();
@@ -49,13 +63,14 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
   auto security = ServerSecurity::Create(options.security, *address);
   if (!security.ok()) return security.status();
   absl::StatusOr<std::unique_ptr<Store>> store =
-      Store::Open(directory->FilePath("store.sqlite3"), options.store);
+      Store::Open(directory->FilePath(kStoreFile), options.store);
   if (!store.ok()) return store.status();
   try {
     std::unique_ptr<BallpistonServer> server(
         new BallpistonServer(Completed(std::move(options)), *std::move(directory), *address,
                              *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
+    if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
     return server;
@@ -90,10 +105,15 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                activity_,
                draining_,
                RandomId(),
-               options_.watch},
+               options_.watch,
+               *store_,
+               calls_,
+               absl::Now(),
+               directory_.FilePath(kStoreFile)},
       ensemble_(context_),
       analytic_(context_),
-      method_(context_) {}
+      method_(context_),
+      server_(context_) {}
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 
@@ -105,7 +125,14 @@ absl::Status BallpistonServer::Listen() {
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&method_);
-  return address_.socket_path.empty() ? ListenAtPort(builder) : ListenAtSocket(builder);
+  builder.RegisterService(&server_);
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
+  interceptors.push_back(calls_.InterceptorFactory());
+  builder.experimental().SetInterceptorCreators(std::move(interceptors));
+  const absl::Status listening =
+      address_.socket_path.empty() ? ListenAtPort(builder) : ListenAtSocket(builder);
+  if (listening.ok()) StartHealth();
+  return listening;
 }
 
 absl::Status BallpistonServer::ListenAtPort(grpc::ServerBuilder& builder) {
@@ -140,6 +167,26 @@ absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
   return absl::OkStatus();
 }
 
+void BallpistonServer::StartHealth() {
+  health_ = std::make_unique<Health>(
+      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing(); },
+      kHealthInterval);
+}
+
+absl::Status BallpistonServer::StartMetrics() {
+  if (options_.metrics_listen.empty()) return absl::OkStatus();
+  for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
+  auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
+    std::vector<prometheus::MetricFamily> metrics = CallMetrics(calls_.statistics().Read());
+    for (auto& family : ServerMetrics(TakeSnapshot(context_))) {
+      metrics.push_back(std::move(family));
+    }
+    return metrics;
+  });
+  if (endpoint.ok()) metrics_ = *std::move(endpoint);
+  return endpoint.status();
+}
+
 std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
   if (book_.active_jobs() == 0) return activity_.IdleFor();
   activity_.Touch();
@@ -150,7 +197,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
   draining_ = true;
-  if (grpc_ != nullptr) grpc_->GetHealthCheckService()->SetServingStatus(false);
+  if (health_ != nullptr) health_->Drain();
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
@@ -160,6 +207,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
   watches_.Stop();
+  if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
   comparisons_.Stop();  // last: nothing waits for how soon it looks
 }

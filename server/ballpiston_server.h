@@ -21,6 +21,9 @@
 #include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
+#include "server/observability/call_observer.h"
+#include "server/observability/health.h"
+#include "server/observability/metrics_endpoint.h"
 #include "server/security/peer_user.h"
 #include "server/security/server_security.h"
 #include "server/security/socket_listener.h"
@@ -39,6 +42,7 @@ struct ServerOptions {
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
   Limits limits;
+  std::string metrics_listen;  // HOST:PORT on the loopback; empty: no metrics
   Store::Options store;
 };
 
@@ -59,6 +63,8 @@ class BallpistonServer {
   // Reads the access file and the certificates again; calls and connections go on. Of what is wrong
   // the old stays, and is named in the error. One thread at a time.
   absl::Status Reload() { return security_->Reload(); }
+  // Of the metrics; empty if there are none.
+  std::string metrics_address() const { return metrics_ ? metrics_->address() : ""; }
 
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
@@ -75,6 +81,8 @@ class BallpistonServer {
   absl::Status Listen();
   absl::Status ListenAtSocket(grpc::ServerBuilder& builder);
   absl::Status ListenAtPort(grpc::ServerBuilder& builder);
+  absl::Status StartMetrics();
+  void StartHealth();
 
   const ServerOptions options_;
   DataDirectory directory_;  // first: its lock guards all that follows
@@ -83,6 +91,7 @@ class BallpistonServer {
   std::atomic<bool> draining_ = false;
   bool shut_down_ = false;
   Activity activity_;
+  CallObserver calls_;
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_;
@@ -93,8 +102,11 @@ class BallpistonServer {
   EnsembleService ensemble_;
   AnalyticService analytic_;
   MethodService method_;
+  ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
-  std::unique_ptr<SocketListener> socket_;  // none: gRPC listens itself, at a port
+  std::unique_ptr<SocketListener> socket_;    // none: gRPC listens itself, at a port
+  std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
+  std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };
 
 }  // namespace ballpiston::server

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/flags/flag.h"
@@ -57,6 +59,12 @@ ABSL_FLAG(
     "one is not let in");
 ABSL_FLAG(double, watch_heartbeat_seconds, 10,
           "a watch of a job says that it lives after so long without news, 0.01 to 3600");
+ABSL_FLAG(
+    std::string, metrics_listen, "",
+    "where Prometheus collects, at /metrics: HOST:PORT with a loopback host (port 0 takes any, "
+    "and the log says which); empty: nowhere");
+ABSL_FLAG(std::string, log_format, "text", "of standard error: text, or json (an object a line)");
+ABSL_FLAG(std::string, log_level, "info", "the least severe lines written: info, warning, error");
 
 namespace ballpiston::server {
 namespace {
@@ -121,6 +129,30 @@ absl::StatusOr<std::chrono::milliseconds> Seconds(const char* flag, double value
   return OutOfRange(flag, absl::StrCat(value), absl::StrCat(lower, " to ", upper));
 }
 
+// The value that the flag's text names.
+template <typename Value>
+absl::StatusOr<Value> Named(const char* flag, const std::string& text,
+                            std::initializer_list<std::pair<const char*, Value>> values) {
+  std::string permitted;
+  for (const auto& [name, value] : values) {
+    if (text == name) return value;
+    absl::StrAppend(&permitted, permitted.empty() ? "" : ", ", name);
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--", flag, "=", text, " is not known; permitted: ", permitted));
+}
+
+absl::StatusOr<LogOptions> ParseLogOptions() {
+  const auto format = Named<LogFormat>("log_format", absl::GetFlag(FLAGS_log_format),
+                                       {{"text", LogFormat::kText}, {"json", LogFormat::kJson}});
+  const auto least = Named<Severity>(
+      "log_level", absl::GetFlag(FLAGS_log_level),
+      {{"info", Severity::kInfo}, {"warning", Severity::kWarning}, {"error", Severity::kError}});
+  if (!format.ok()) return format.status();
+  if (!least.ok()) return least.status();
+  return LogOptions{.format = *format, .least = *least};
+}
+
 SecurityOptions SecurityFlags() {
   return {.access_file = absl::GetFlag(FLAGS_access_file),
           .tls_certificate = absl::GetFlag(FLAGS_tls_certificate),
@@ -151,7 +183,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
       Seconds("idle_exit_seconds", absl::GetFlag(FLAGS_idle_exit_seconds), 0, kMaxSeconds);
   const auto heartbeat =
       Seconds("watch_heartbeat_seconds", absl::GetFlag(FLAGS_watch_heartbeat_seconds), 0.01, 3600);
-  for (const absl::Status& status : {drain.status(), idle.status(), heartbeat.status()}) {
+  const auto log = ParseLogOptions();
+  for (const absl::Status& status :
+       {drain.status(), idle.status(), heartbeat.status(), log.status()}) {
     if (!status.ok()) return status;
   }
   const auto new_token = NewTokenFlag();
@@ -159,6 +193,8 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
   CommandLine line;
   line.new_token = *new_token;
   line.server.security = SecurityFlags();
+  line.log = *log;
+  line.server.metrics_listen = absl::GetFlag(FLAGS_metrics_listen);
   line.server.data_dir = absl::GetFlag(FLAGS_data_dir);
   line.server.listen = absl::GetFlag(FLAGS_listen);
   line.server.workers = absl::GetFlag(FLAGS_workers);

@@ -7,12 +7,14 @@
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
+#include "server/observability/log.h"
 #include "server/security/new_token.h"
 
 namespace ballpiston::server {
 
 struct CommandLine {
   ServerOptions server;
+  LogOptions log;
   std::optional<std::chrono::milliseconds> idle_exit;
   std::chrono::milliseconds drain{0};
   std::optional<TokenRequest> new_token;  // instead of a server

@@ -96,11 +96,15 @@ int Main(int argc, char** argv) {
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (line->new_token) return PrintNewToken(*line);
+  SetLogOptions(line->log);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);
   if (!server.ok()) return Fail(server.status());
   LogInfo((*server)->security().Description());
-  std::fprintf(stderr, "ballpistond %s listening on %s\n", kVersion, (*server)->address().c_str());
+  if (!(*server)->metrics_address().empty()) {
+    LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
+  }
+  LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);
   // Not by way of the destructors: after large answers gRPC may wait 10 s for a poller of its own.

@@ -29,6 +29,7 @@ void AddVerbs(CLI::App& app, Action& action) {
   AddList(app, action);
   AddCancel(app, action);
   AddDelete(app, action);
+  AddStatus(app, action);
   AddFigure(app, action);
 }
 

@@ -51,10 +51,13 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const ServerFla
                     .security = security};
 }
 
-absl::StatusOr<Connection> ConnectPrivately() {
+// How to come to a private server.
+using PrivateWay = absl::StatusOr<std::shared_ptr<grpc::Channel>> (*)(const LocalServer&);
+
+absl::StatusOr<Connection> ConnectPrivately(PrivateWay connect) {
   absl::StatusOr<LocalServer> local = FindLocalServer();
   if (!local.ok()) return local.status();
-  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = ConnectToLocalServer(*local);
+  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = connect(*local);
   if (!channel.ok()) return channel.status();
   return Connection{.address = local->Address(),
                     .channel = *channel,
@@ -63,11 +66,11 @@ absl::StatusOr<Connection> ConnectPrivately() {
                     .security = {}};
 }
 
-absl::StatusOr<Connection> Connect(const ServerFlag& flag) {
+absl::StatusOr<Connection> Connect(const ServerFlag& flag, PrivateWay connect) {
   if (!flag.address.empty()) return ConnectTo(flag.address, flag);
   const std::string address = Variable("BALLPISTON_SERVER");
   if (!address.empty()) return ConnectTo(address, flag);
-  if (!flag.security.HasTls() && !flag.security.HasToken()) return ConnectPrivately();
+  if (!flag.security.HasTls() && !flag.security.HasToken()) return ConnectPrivately(connect);
   return absl::InvalidArgumentError(
       "the private server needs no TLS and no token; name another one with --server");
 }
@@ -82,6 +85,15 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
       absl::StrCat(
           "no answer from the server at ", connection.address, ": ", message,
           IsSocket(connection.address) ? "" : ConnectionHint(connection.security, message)));
+}
+
+using Verb = std::function<absl::StatusOr<ExitCode>(const Connection&)>;
+
+absl::StatusOr<ExitCode> Run(const absl::StatusOr<Connection>& connection, const Verb& verb) {
+  if (!connection.ok()) return connection.status();
+  absl::StatusOr<ExitCode> result = verb(*connection);
+  if (!result.ok()) return NameServer(result.status(), *connection);
+  return result;
 }
 
 }  // namespace
@@ -138,14 +150,12 @@ absl::Status Connection::Revive() const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ExitCode> WithServer(
-    const ServerFlag& flag,
-    const std::function<absl::StatusOr<ExitCode>(const Connection&)>& verb) {
-  absl::StatusOr<Connection> connection = Connect(flag);
-  if (!connection.ok()) return connection.status();
-  absl::StatusOr<ExitCode> result = verb(*connection);
-  if (!result.ok()) return NameServer(result.status(), *connection);
-  return result;
+absl::StatusOr<ExitCode> WithServer(const ServerFlag& flag, const Verb& verb) {
+  return Run(Connect(flag, &ConnectToLocalServer), verb);
+}
+
+absl::StatusOr<ExitCode> WithRunningServer(const ServerFlag& flag, const Verb& verb) {
+  return Run(Connect(flag, &ConnectIfRunning), verb);
 }
 
 }  // namespace ballpiston::client

@@ -61,6 +61,11 @@ struct Connection {
 absl::StatusOr<ExitCode> WithServer(
     const ServerFlag& flag, const std::function<absl::StatusOr<ExitCode>(const Connection&)>& verb);
 
+// The same for a verb that only looks: a private server is not started for it. `verb` does without
+// Connection::Ask, which would.
+absl::StatusOr<ExitCode> WithRunningServer(
+    const ServerFlag& flag, const std::function<absl::StatusOr<ExitCode>(const Connection&)>& verb);
+
 template <typename Call>
 auto Connection::Ask(const Call& call) const -> decltype(call()) {
   auto answer = call();

@@ -29,6 +29,7 @@ void AddResult(CLI::App& app, Action& action);
 void AddList(CLI::App& app, Action& action);
 void AddCancel(CLI::App& app, Action& action);
 void AddDelete(CLI::App& app, Action& action);
+void AddStatus(CLI::App& app, Action& action);
 void AddFigure(CLI::App& app, Action& action);
 
 }  // namespace ballpiston::client

@@ -217,4 +217,12 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalS
   return channel;
 }
 
+absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectIfRunning(const LocalServer& server) {
+  absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(server.Address());
+  if (!channel.ok() || Answers(**channel)) return channel;
+  return absl::UnavailableError(
+      absl::StrCat("no private server is running (one is started when it is needed, and lives in ",
+                   server.folder, ")"));
+}
+
 }  // namespace ballpiston::client

@@ -39,6 +39,9 @@ absl::StatusOr<LocalServer> FindLocalServer();
 // be brought to.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalServer& server);
 
+// The same, but nothing is started: UNAVAILABLE if nobody answers.
+absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectIfRunning(const LocalServer& server);
+
 }  // namespace ballpiston::client
 
 #endif  // BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_

@@ -4,6 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,6 +28,21 @@ size_t TerminalWidth() {
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kUsualWidth;
   return size.ws_col;
+}
+
+// The server sends unfinished points newest first, and finished ones in the order of finishing.
+template <typename Visit>
+void ForEachNewestFirst(const v1::StatisticsSnapshot& snapshot, Visit visit) {
+  for (const v1::PointResult& point : snapshot.points()) visit(point);
+  const auto& finished = snapshot.finished_points();
+  std::for_each(finished.rbegin(), finished.rend(), visit);
+}
+
+// Null if none changed.
+const v1::PointResult* NewestPoint(const v1::StatisticsSnapshot& snapshot) {
+  if (!snapshot.points().empty()) return &snapshot.points(0);
+  const auto& finished = snapshot.finished_points();
+  return finished.empty() ? nullptr : &*finished.rbegin();
 }
 
 class Silence : public ProgressReporter {
@@ -64,7 +80,7 @@ class BarReporter : public ProgressReporter {
   void OnSnapshot(const v1::StatisticsSnapshot& snapshot) override {
     const std::lock_guard lock(mutex_);
     meter_.Update(snapshot.progress(), absl::Now());
-    if (!snapshot.points().empty()) point_ = snapshot.points(0);  // the newest comes first
+    if (const v1::PointResult* newest = NewestPoint(snapshot)) point_ = *newest;
     Draw();
   }
 
@@ -130,9 +146,9 @@ class JsonReporter : public ProgressReporter {
     const std::lock_guard lock(mutex_);
     meter_.Update(snapshot.progress(), absl::Now());
     std::string points;
-    for (const v1::PointResult& point : snapshot.points()) {
+    ForEachNewestFirst(snapshot, [&points](const v1::PointResult& point) {
       absl::StrAppend(&points, points.empty() ? "" : ", ", Json(point));
-    }
+    });
     Write(points);
   }
 

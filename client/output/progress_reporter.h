@@ -3,7 +3,8 @@
 //   bar   one line, redrawn: bar, points, samples a second, time left, and the running estimate of
 //         the point that changed last
 //   json  one object a line: {"job", "state", "progress", "samples_per_second", "seconds_left",
-//         "points"}, or a note's {"note"}
+//         "points"}, or a note's {"note"}; the points that changed since the line before,
+//         unfinished ones first, the newest of each kind first
 //   none  nothing but notes
 //
 // Thread-safe: notes come from the thread that handles Ctrl-C while the bar is being redrawn.

@@ -36,6 +36,7 @@ absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServ
   absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
   if (!caller.ok()) return caller.status();
   call.caller = *std::move(caller);
+  service.calls.Identify(context, call.caller.name);
   if (call.caller.role < rule.least) return RoleTooLow(call.caller, rule.least);
   return call;
 }

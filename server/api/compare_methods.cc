@@ -23,8 +23,9 @@ CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
                                                     const v1::CompareMethodsRequest& request) {
   std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service));
   reactor->self_ = reactor;
-  service.watches.Add(reactor.get());
-  const absl::Status refused = call.ok() ? reactor->Begin(request) : call.status();
+  absl::Status refused = call.status();
+  if (call.ok()) refused = service.watches.Add(reactor.get(), call->caller.name, service.limits);
+  if (refused.ok()) refused = reactor->Begin(request);
   if (!refused.ok()) reactor->End(refused);
   return reactor.get();
 }
@@ -56,7 +57,7 @@ void CompareMethodsReactor::Look(std::chrono::steady_clock::time_point) {
     std::lock_guard lock(mutex_);
     if (end_) return;
   }
-  service_.executor.Post([self = shared_from_this()] { self->Cut(ShuttingDown()); });
+  service_.executor.PostOfStream([self = shared_from_this()] { self->Cut(ShuttingDown()); });
 }
 
 void CompareMethodsReactor::OnWriteDone(bool ok) {

@@ -2,6 +2,7 @@
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
 #include "server/convert/spec.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
 namespace {
@@ -13,6 +14,15 @@ absl::Status Check(const CheckedSpec& spec, const RequestCheck& check) {
   std::vector<FieldViolation> all = spec.violations;
   all.insert(all.end(), check.violations().begin(), check.violations().end());
   return InvalidSpec(all);
+}
+
+void LogAcceptance(const Call& call, const v1::EnsembleJob& job) {
+  Log(Severity::kInfo, job.answered_from_store() ? "question answered by a job" : "job accepted",
+      {{"method", call.method},
+       {"job", job.name()},
+       {"principal", call.caller.name},
+       {"request_id", call.request_id},
+       {"points", static_cast<double>(job.progress().points())}});
 }
 
 }  // namespace
@@ -31,7 +41,9 @@ absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const
   const absl::Status checked = Check(spec, check);
   if (!checked.ok()) return checked;
   if (request.validate_only()) return service.book.Preview(call.caller, accepted, spec);
-  return service.book.Create(call.caller, accepted, spec);
+  absl::StatusOr<v1::EnsembleJob> job = service.book.Create(call.caller, accepted, spec);
+  if (job.ok()) LogAcceptance(call, *job);
+  return job;
 }
 
 }  // namespace ballpiston::server

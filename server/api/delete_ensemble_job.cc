@@ -1,5 +1,6 @@
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
 
@@ -10,6 +11,11 @@ absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
   if (!check.ok()) return check.status();
   const absl::Status deleted = service.book.Delete(call.caller, id);
   if (!deleted.ok()) return deleted;
+  Log(Severity::kInfo, "job deleted",
+      {{"method", call.method},
+       {"job", request.name()},
+       {"principal", call.caller.name},
+       {"request_id", call.request_id}});
   return google::protobuf::Empty();
 }
 

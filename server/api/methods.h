@@ -5,6 +5,7 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/server.pb.h"
 #include "google/protobuf/empty.pb.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
@@ -29,6 +30,9 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
 
 absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext& service, const Call& call,
                                                         const v1::EvaluatePairsRequest& request);
+
+absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
+                                                 const v1::GetServerStatusRequest& request);
 
 }  // namespace ballpiston::server
 

@@ -1,23 +1,30 @@
 #include "server/api/rpc_executor.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace ballpiston::server {
 
-RpcExecutor::RpcExecutor(int threads) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
-}
+RpcExecutor::RpcExecutor(int threads) : calls_(threads), streams_(std::max(1, threads / 2)) {}
 
 RpcExecutor::~RpcExecutor() { Stop(); }
 
-void RpcExecutor::Post(std::function<void()> task) {
+void RpcExecutor::Stop() {
+  calls_.Stop();
+  streams_.Stop();
+}
+
+RpcExecutor::Lane::Lane(int threads) {
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+void RpcExecutor::Lane::Post(Task task) {
   std::lock_guard lock(mutex_);
   if (stopping_) return;
   tasks_.push_back(std::move(task));
   posted_.notify_one();
 }
 
-void RpcExecutor::Stop() {
+void RpcExecutor::Lane::Stop() {
   std::vector<std::thread> threads;
   {
     std::lock_guard lock(mutex_);
@@ -28,12 +35,12 @@ void RpcExecutor::Stop() {
   for (std::thread& thread : threads) thread.join();
 }
 
-void RpcExecutor::Work() {
+void RpcExecutor::Lane::Work() {
   std::unique_lock lock(mutex_);
   while (true) {
     posted_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
     if (tasks_.empty()) return;
-    std::function<void()> task = std::move(tasks_.front());
+    Task task = std::move(tasks_.front());
     tasks_.pop_front();
     lock.unlock();
     task();

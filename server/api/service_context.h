@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 
+#include "absl/time/time.h"
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
 #include "server/execution/comparison_thread.h"
@@ -13,7 +14,9 @@
 #include "server/jobs/job_book.h"
 #include "server/limits.h"
 #include "server/observability/activity.h"
+#include "server/observability/call_observer.h"
 #include "server/security/authenticator.h"
+#include "server/store/store.h"
 
 namespace ballpiston::server {
 
@@ -34,6 +37,10 @@ struct ServiceContext {
   const std::atomic<bool>& draining;
   std::string instance;  // of this server's life: numbers of changes mean nothing beyond it
   WatchTiming timing;
+  Store& store;
+  CallObserver& calls;
+  absl::Time start_time;
+  std::string store_path;
 };
 
 }  // namespace ballpiston::server

@@ -75,4 +75,10 @@ grpc::ServerWriteReactor<v1::MethodMeasurement>* MethodService::CompareMethods(
       service_, AdmitCall(service_, *context, {"CompareMethods", Role::kSubmit}), *request);
 }
 
+Unary* ServerService::GetServerStatus(Context* context, const v1::GetServerStatusRequest* request,
+                                      v1::ServerStatus* response) {
+  return RunUnary(service_, context, {"GetServerStatus", Role::kRead}, request, response,
+                  &server::GetServerStatus);
+}
+
 }  // namespace ballpiston::server

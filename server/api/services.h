@@ -6,6 +6,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/method.grpc.pb.h"
+#include "ballpiston/v1/server.grpc.pb.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {
@@ -61,6 +62,18 @@ class MethodService : public v1::MethodService::CallbackService {
 
   grpc::ServerWriteReactor<v1::MethodMeasurement>* CompareMethods(
       grpc::CallbackServerContext* context, const v1::CompareMethodsRequest* request) override;
+
+ private:
+  ServiceContext& service_;
+};
+
+class ServerService : public v1::ServerService::CallbackService {
+ public:
+  explicit ServerService(ServiceContext& service) : service_(service) {}
+
+  grpc::ServerUnaryReactor* GetServerStatus(grpc::CallbackServerContext* context,
+                                            const v1::GetServerStatusRequest* request,
+                                            v1::ServerStatus* response) override;
 
  private:
   ServiceContext& service_;

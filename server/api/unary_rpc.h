@@ -8,13 +8,11 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/strings/str_cat.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_callback.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
 #include "server/convert/errors.h"
-#include "server/observability/log.h"
 
 namespace ballpiston::server {
 
@@ -30,7 +28,6 @@ grpc::Status Answer(UnaryMethod<Request, Response> method, ServiceContext& servi
     if (result.ok()) response = *std::move(result);
     return GrpcStatus(result.status());
   } catch (const std::exception& error) {
-    LogError(absl::StrCat(call.method, " failed: ", error.what()));
     return GrpcStatus(WithReason(absl::InternalError(error.what()), "INTERNAL"));
   }
 }

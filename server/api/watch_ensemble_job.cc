@@ -1,12 +1,13 @@
 #include "server/api/watch_ensemble_job.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "server/api/request_check.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_state.h"
@@ -14,30 +15,40 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr size_t kMaxSnapshotPoints = 100;
+constexpr size_t kMaxPoints = 100;  // of a kind in a message
+
+// Of all watches together: some 50 us each, most of it gRPC's.
+constexpr int64_t kSnapshotsPerSecond = 1000;
 
 }  // namespace
 
-WatchReactor* WatchReactor::Start(ServiceContext& service, absl::StatusOr<Call> call,
+WatchReactor* WatchReactor::Start(ServiceContext& service, const absl::StatusOr<Call>& call,
                                   const v1::WatchEnsembleJobRequest& request) {
-  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, std::move(call), request));
+  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, request));
   reactor->self_ = reactor;
-  service.watches.Add(reactor.get());
-  reactor->Schedule();
+  absl::Status admitted = call.status();
+  if (call.ok()) {
+    reactor->caller_ = call->caller;
+    admitted = service.watches.Add(reactor.get(), call->caller.name, service.limits);
+  }
+  if (admitted.ok()) {
+    reactor->Schedule();
+  } else {
+    reactor->End(admitted);
+  }
   return reactor.get();
 }
 
-WatchReactor::WatchReactor(ServiceContext& service, absl::StatusOr<Call> call,
-                           const v1::WatchEnsembleJobRequest& request)
+WatchReactor::WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request)
     : service_(service),
       request_(request),
-      call_(std::move(call)),
       active_(service.activity.Begin()),
       next_heartbeat_(Clock::now() + service.timing.heartbeat) {}
 
 // ---- reactions: on gRPC's threads ----
 
 void WatchReactor::OnWriteDone(bool ok) {
+  message_.Clear();  // that of a job may be large, and the next one far away
   {
     std::lock_guard lock(mutex_);
     writing_ = false;
@@ -65,12 +76,27 @@ void WatchReactor::Look(Clock::time_point now) {
   {
     std::lock_guard lock(mutex_);
     if (writing_ || ended_) return;
-    const bool state_is_new = job_ != nullptr && job_->last_state_change() > told_state_;
-    const bool snapshot_is_due =
-        job_ != nullptr && now >= next_snapshot_ && job_->last_change() > told_;
-    if (!state_is_new && !snapshot_is_due && now < next_heartbeat_ && !service_.draining) return;
+    const bool has_news = watched_ != nullptr && (watched_->last_state_change() > told_state_ ||
+                                                  IsBehind() || IsSnapshotDue(now));
+    if (!has_news && now < next_heartbeat_ && !service_.draining) return;
   }
   Schedule();
+}
+
+// Requires the lock, or to be called by Advance, which alone changes what is told.
+bool WatchReactor::IsSnapshotDue(Clock::time_point now) const {
+  return now >= next_snapshot_ &&
+         (watched_->last_change() > told_ || watched_->last_finished() > told_finished_);
+}
+
+bool WatchReactor::IsBehind() const {
+  return watched_->last_finished() - told_finished_ >= static_cast<int64_t>(kMaxPoints);
+}
+
+WatchReactor::Clock::duration WatchReactor::SnapshotInterval() const {
+  const auto watches = static_cast<int64_t>(service_.watches.size());
+  const std::chrono::milliseconds fair(watches * 1000 / kSnapshotsPerSecond);
+  return std::max(service_.timing.snapshot, fair);
 }
 
 void WatchReactor::Schedule() {
@@ -80,15 +106,17 @@ void WatchReactor::Schedule() {
     again_ = scheduled_;
     if (std::exchange(scheduled_, true)) return;
   }
-  service_.executor.Post([self = shared_from_this()] { self->Advance(); });
+  service_.executor.PostOfStream([self = shared_from_this()] { self->Advance(); });
 }
 
 void WatchReactor::Advance() {
+  absl::Status told;
   try {
-    TellWhatIsNew();
+    told = TellWhatIsNew();
   } catch (const std::exception& error) {
-    End(WithReason(absl::InternalError(error.what()), "INTERNAL"));
+    told = WithReason(absl::InternalError(error.what()), "INTERNAL");
   }
+  if (!told.ok()) End(told);
   bool once_more = false;
   {
     std::lock_guard lock(mutex_);
@@ -100,105 +128,147 @@ void WatchReactor::Advance() {
 
 // ---- what to say ----
 
-void WatchReactor::TellWhatIsNew() {
-  bool cut = false;
+absl::Status WatchReactor::TellWhatIsNew() {
   {
     std::lock_guard lock(mutex_);
-    if (writing_ || ended_) return;
-    cut = cut_;
+    if (writing_ || ended_) return absl::OkStatus();
+    if (cut_) return absl::CancelledError("the client is gone");
   }
-  if (cut) return End(absl::CancelledError("the client is gone"));
-  if (!call_.ok()) return End(call_.status());
-  if (service_.draining) return End(ShuttingDown());
+  if (service_.draining) return ShuttingDown();
+  message_.Clear();
   if (id_.empty()) {
     const absl::Status found = FindJob();
-    if (!found.ok()) return End(found);
-    if (job_ == nullptr) return WriteLastAndEnd();
+    if (!found.ok()) return found;
   }
-  if (!TellJob() && !TellSnapshot()) TellHeartbeat();
+  if (job_.active == nullptr) return TellOfEndedJob();
+  absl::StatusOr<bool> told = TellState();
+  if (told.ok() && !*told) told = TellSnapshot();
+  if (told.ok() && !*told) TellHeartbeat();
+  return told.status();
 }
 
 absl::Status WatchReactor::FindJob() {
   RequestCheck check;
   const std::string id = check.JobId("name", request_.name());
   if (!check.ok()) return check.status();
-  absl::StatusOr<std::shared_ptr<Job>> job = service_.book.FindActive(call_->caller, id);
+  absl::StatusOr<WatchedJob> job = service_.book.FindWatched(caller_, id);
   if (!job.ok()) return job.status();
-  if (*job == nullptr) {
-    absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(call_->caller, id);
-    if (!ended.ok()) return ended.status();
-    *message_.mutable_job() = *std::move(ended);
-  }
-  std::lock_guard lock(mutex_);
   id_ = id;
   job_ = *std::move(job);
-  if (job_ != nullptr) ReadToken(request_.resume_token());
+  std::lock_guard lock(mutex_);
+  watched_ = job_.active;
+  ReadToken(request_.resume_token(), job_.last_finished);
   return absl::OkStatus();
 }
 
-bool WatchReactor::TellJob() {
-  const uint64_t change = job_->last_state_change();  // before the message: it may be newer
-  if (change <= told_state_) return false;
-  message_.Clear();
-  *message_.mutable_job() = job_->Message();
+absl::StatusOr<bool> WatchReactor::TellState() {
+  if (job_.active->last_state_change() <= told_state_) return false;
+  const bool has_ended = HasEnded(job_.active->state());
+  if (has_ended) {
+    absl::StatusOr<bool> told = TellFinishedPoints(job_.active->Progress());
+    if (!told.ok() || *told) return told;
+  }
+  Job::View view = job_.active->Now();
+  // One that has ended just now may have more points to tell.
+  if (!has_ended && HasEnded(view.job.state())) return TellState();
+  *message_.mutable_job() = std::move(view.job);
   {
     std::lock_guard lock(mutex_);
-    told_state_ = change;
+    told_state_ = view.state_change;
   }
-  if (HasEnded(message_.job().state())) {
-    WriteLastAndEnd();
-  } else {
-    Write();
-  }
+  has_ended ? WriteLastAndEnd() : Write();
   return true;
 }
 
-bool WatchReactor::TellSnapshot() {
-  const uint64_t change = job_->last_change();
-  if (change <= told_ || Clock::now() < next_snapshot_) return false;
-  message_.Clear();
-  v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
-  *snapshot.mutable_progress() = job_->Progress();
-  for (v1::PointResult& point :
-       service_.book.PointsChangedSince(*job_, told_, kMaxSnapshotPoints)) {
-    *snapshot.add_points() = std::move(point);
+absl::StatusOr<bool> WatchReactor::TellSnapshot() {
+  const Clock::time_point now = Clock::now();
+  if (!IsSnapshotDue(now)) {
+    return IsBehind() ? TellFinishedPoints(job_.active->Progress()) : absl::StatusOr<bool>(false);
   }
+  const auto shared = service_.book.Snapshot(*job_.active, service_.timing.snapshot, kMaxPoints);
+  v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
+  *snapshot.mutable_progress() = job_.active->Progress();
+  // One from before the last finished point told may have that one unfinished.
+  if (shared->finished >= told_finished_) {
+    for (const JobSnapshot::Point& point : shared->points) {
+      if (point.change > told_) *snapshot.add_points() = point.result;
+    }
+    std::lock_guard lock(mutex_);
+    told_ = std::max(told_, shared->change);
+  }
+  const absl::StatusOr<bool> finished = AddFinishedPoints();
+  if (!finished.ok()) return finished;
   {
     std::lock_guard lock(mutex_);
-    told_ = change;
-    next_snapshot_ = Clock::now() + service_.timing.snapshot;
+    next_snapshot_ = now + SnapshotInterval();
   }
   const std::string progress = snapshot.progress().SerializeAsString();
   const bool same_progress = std::exchange(told_progress_, progress) == progress;
-  if (snapshot.points().empty() && same_progress) return false;
+  if (snapshot.points().empty() && !*finished && same_progress) return false;
   Write();
   return true;
 }
 
-bool WatchReactor::TellHeartbeat() {
-  if (Clock::now() < next_heartbeat_) return false;
-  message_.Clear();
+absl::StatusOr<bool> WatchReactor::TellFinishedPoints(const v1::JobProgress& progress) {
+  *message_.mutable_snapshot()->mutable_progress() = progress;
+  const absl::StatusOr<bool> added = AddFinishedPoints();
+  if (added.ok() && *added) Write();
+  return added;
+}
+
+absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
+  const auto points =
+      service_.book.FinishedAfter(job_.sequence, job_.active.get(), told_finished_, kMaxPoints);
+  if (!points.ok()) return points.status();
+  if (points->empty()) return false;
+  for (const FinishedPoint& point : *points) {
+    *message_.mutable_snapshot()->add_finished_points() = *point.result;
+  }
+  std::lock_guard lock(mutex_);
+  told_finished_ = points->back().number;
+  return true;
+}
+
+absl::Status WatchReactor::TellOfEndedJob() {
+  const absl::StatusOr<bool> told = TellFinishedPoints(job_.progress);
+  if (!told.ok() || *told) return told.status();
+  absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
+  if (!ended.ok()) return ended.status();
+  *message_.mutable_job() = *std::move(ended);
+  WriteLastAndEnd();
+  return absl::OkStatus();
+}
+
+void WatchReactor::TellHeartbeat() {
+  if (Clock::now() < next_heartbeat_) return;
   message_.mutable_heartbeat();
   Write();
-  return true;
 }
 
 // ---- resume tokens ----
 
 std::string WatchReactor::Token() const {
   std::string token;
-  absl::WebSafeBase64Escape(absl::StrCat(service_.instance, ":", id_, ":", told_), &token);
+  absl::WebSafeBase64Escape(absl::StrCat(id_, ":", told_finished_, ":", service_.instance, ":",
+                                         told_, ":", job_.engine_version),
+                            &token);
   return token;
 }
 
-void WatchReactor::ReadToken(const std::string& token) {
+void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
   std::string text;
-  uint64_t told = 0;
-  const std::string prefix = absl::StrCat(service_.instance, ":", id_, ":");
-  if (absl::WebSafeBase64Unescape(token, &text) && text.rfind(prefix, 0) == 0 &&
-      absl::SimpleAtoi(text.substr(prefix.size()), &told) && told <= job_->last_change()) {
-    told_ = told;
+  if (!absl::WebSafeBase64Unescape(token, &text)) return;
+  const std::vector<std::string> parts = absl::StrSplit(text, absl::MaxSplits(':', 4));
+  int64_t finished = 0;
+  uint64_t change = 0;
+  if (parts.size() != 5 || parts[0] != id_ || parts[4] != job_.engine_version ||
+      !absl::SimpleAtoi(parts[1], &finished) || !absl::SimpleAtoi(parts[3], &change) ||
+      finished < 0 || finished > last_finished) {
+    return;
   }
+  told_finished_ = finished;
+  const bool of_this_life = watched_ != nullptr && parts[2] == service_.instance;
+  if (of_this_life && change <= watched_->last_change()) told_ = change;
 }
 
 // ---- writing ----

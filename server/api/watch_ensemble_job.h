@@ -1,11 +1,23 @@
 // WatchEnsembleJob: one write outstanding, and the next message made when it is done.
 //
-// What to say is decided when it can be said: whatever changed since the last message goes into one
-// snapshot, so a slow reader costs neither memory nor anybody's time. Messages are made on the
-// threads that answer calls, never on gRPC's, and outside of the lock the workers need.
+// What to say is decided when it can be said, so a slow reader costs one message of memory and
+// nobody's time: of unfinished points only the newest state is told, and finished ones are read,
+// from the job's memory or from the store, when their turn has come. Messages are made on the
+// threads for streams, never on gRPC's, and outside of the lock the workers need; watches of one
+// job share what takes that lock (jobs/job_snapshot.h). Many watches are told less often, so that
+// all of them together never take more than kSnapshotsPerSecond.
 //
-// The resume token names the server's life, the job and the last change told. A token of another
-// life or job is as good as none: the watch begins with everything.
+// Properties, over a watch and those that go on with its tokens, each with a test of its name:
+//   1. EachFinishedPointIsToldOnceInOrder: also over restarts, and before the terminal state.
+//   2. StatesAndProgressNeverGoBack: progress within a life of the server.
+//   3. TheTerminalStateIsToldOnce, last, and then OK. So the watch of a job that has ended begins
+//      with the finished points, if there are any left to tell.
+//
+// The resume token names the job, the engine that computes it, and the last finished point told;
+// and, for the unfinished ones, the server's life and the last change told. A token of another job,
+// of results that were dropped because another engine computes the job anew, or of points that the
+// store does not have, is as good as none: the watch begins with everything. Of another life, only
+// the unfinished points are told again.
 #ifndef BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 #define BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 
@@ -14,8 +26,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "grpcpp/support/server_callback.h"
 #include "server/api/call.h"
@@ -28,7 +42,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
                      public std::enable_shared_from_this<WatchReactor> {
  public:
   // Owns itself until gRPC is done with it. A call that was not admitted ends at once.
-  static WatchReactor* Start(ServiceContext& service, absl::StatusOr<Call> call,
+  //   RESOURCE_EXHAUSTED  TOO_MANY_STREAMS
+  static WatchReactor* Start(ServiceContext& service, const absl::StatusOr<Call>& call,
                              const v1::WatchEnsembleJobRequest& request);
 
   void Look(std::chrono::steady_clock::time_point now) override;
@@ -40,21 +55,28 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
  private:
   using Clock = std::chrono::steady_clock;
 
-  WatchReactor(ServiceContext& service, absl::StatusOr<Call> call,
-               const v1::WatchEnsembleJobRequest& request);
+  WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request);
 
   // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
   // writes and the end come from it.
   void Schedule();
   void Advance();
-  void TellWhatIsNew();
+  absl::Status TellWhatIsNew();
 
-  absl::Status FindJob();  // sets job_, or leaves it empty if the job has ended
-  bool TellJob();
-  bool TellSnapshot();
-  bool TellHeartbeat();
+  absl::Status FindJob();
+  // Each of these is one message, or false if there is nothing of the kind to tell now.
+  absl::StatusOr<bool> TellState();
+  absl::StatusOr<bool> TellSnapshot();
+  absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress);
+  void TellHeartbeat();
+  absl::Status TellOfEndedJob();
 
-  void ReadToken(const std::string& token);
+  bool IsSnapshotDue(Clock::time_point now) const;
+  bool IsBehind() const;  // by a whole message of finished points
+  Clock::duration SnapshotInterval() const;
+  absl::StatusOr<bool> AddFinishedPoints();  // to the message: whether there were any
+
+  void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;
   void Write();
   void WriteLastAndEnd();
@@ -62,12 +84,13 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   ServiceContext& service_;
   const v1::WatchEnsembleJobRequest request_;
-  const absl::StatusOr<Call> call_;
+  Principal caller_;
   const std::shared_ptr<void> active_;  // for Activity
   std::shared_ptr<WatchReactor> self_;
 
-  // Of Advance.
+  // Of Advance, and of gRPC during a write.
   std::string id_;
+  WatchedJob job_;
   v1::WatchEnsembleJobResponse message_;
   std::string told_progress_;
 
@@ -77,9 +100,10 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   bool writing_ = false;
   bool cut_ = false;  // the client is gone
   bool ended_ = false;
-  std::shared_ptr<Job> job_;
-  uint64_t told_state_ = 0;
+  std::shared_ptr<Job> watched_;  // job_.active
+  uint64_t told_state_ = 0;       // numbers of changes
   uint64_t told_ = 0;
+  int64_t told_finished_ = 0;  // the number of a point
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
 };

@@ -1,21 +1,58 @@
 #include "server/api/watch_registry.h"
 
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "server/convert/errors.h"
+
 namespace ballpiston::server {
+namespace {
+
+// A look at a thousand watches takes some 0.1 ms.
+constexpr std::chrono::milliseconds kShortestInterval(2);
+
+bool IsFull(int64_t streams, int64_t limit) { return limit != 0 && streams >= limit; }
+
+absl::Status TooManyStreams(const std::string& what, const std::string& flag, int64_t limit) {
+  return LimitExceeded("TOO_MANY_STREAMS",
+                       absl::StrCat(what, " watches and comparisons open already"), flag,
+                       static_cast<double>(limit));
+}
+
+}  // namespace
 
 WatchRegistry::WatchRegistry(std::chrono::milliseconds interval)
     : interval_(interval), thread_([this] { Run(); }) {}
 
 WatchRegistry::~WatchRegistry() { Stop(); }
 
-void WatchRegistry::Add(Watch* watch) {
+absl::Status WatchRegistry::Add(Watch* watch, const std::string& principal, const Limits& limits) {
   std::lock_guard lock(mutex_);
-  watches_.insert(watch);
+  const auto all = static_cast<int64_t>(watches_.size());
+  if (IsFull(all, limits.max_streams)) {
+    return TooManyStreams(absl::StrCat("there are ", all), "max_streams", limits.max_streams);
+  }
+  const auto found = streams_.find(principal);
+  const int64_t own = found == streams_.end() ? 0 : found->second;
+  if (IsFull(own, limits.max_streams_per_principal)) {
+    return TooManyStreams(absl::StrCat(principal, " has ", own), "max_streams_per_principal",
+                          limits.max_streams_per_principal);
+  }
+  watches_.emplace(watch, principal);
+  streams_[principal] = own + 1;
+  size_ = watches_.size();
   wake_.notify_one();
+  return absl::OkStatus();
 }
 
 void WatchRegistry::Remove(Watch* watch) {
   std::lock_guard lock(mutex_);
-  watches_.erase(watch);
+  const auto found = watches_.find(watch);
+  if (found == watches_.end()) return;
+  const auto streams = streams_.find(found->second);
+  if (--streams->second == 0) streams_.erase(streams);
+  watches_.erase(found);
+  size_ = watches_.size();
 }
 
 void WatchRegistry::LookNow() {
@@ -33,22 +70,26 @@ void WatchRegistry::Stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-size_t WatchRegistry::size() const {
+std::map<std::string, int64_t> WatchRegistry::StreamsByPrincipal() const {
   std::lock_guard lock(mutex_);
-  return watches_.size();
+  return streams_;
+}
+
+void WatchRegistry::AwaitLook(std::unique_lock<std::mutex>& lock, Clock::time_point last) {
+  wake_.wait_until(lock, last + std::min(kShortestInterval, interval_),
+                   [this] { return stopping_; });
+  wake_.wait(lock, [this] { return stopping_ || !watches_.empty(); });
+  wake_.wait_until(lock, last + interval_, [this] { return stopping_ || now_; });
 }
 
 void WatchRegistry::Run() {
   std::unique_lock lock(mutex_);
+  Clock::time_point last = Clock::now();
   while (!stopping_) {
-    if (watches_.empty()) {
-      wake_.wait(lock, [this] { return stopping_ || !watches_.empty(); });
-    } else {
-      wake_.wait_for(lock, interval_, [this] { return stopping_ || now_; });
-    }
+    AwaitLook(lock, last);
     now_ = false;
-    const auto now = std::chrono::steady_clock::now();
-    for (Watch* watch : watches_) watch->Look(now);
+    last = Clock::now();
+    for (const auto& [watch, whose] : watches_) watch->Look(last);
   }
 }
 

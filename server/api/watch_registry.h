@@ -1,16 +1,23 @@
-// All open watches, and the one thread that looks after them.
+// All open streams, watches and comparisons, and the one thread that looks after them.
 //
-// It looks at each watch a few times a second, and at once when a job changes its state, and asks
-// those that have something to tell to do so. Thread-safe.
+// It looks at each a few times a second, and at once when a job changes its state (but not more
+// often than every few milliseconds, however many jobs do), and asks those that have something to
+// tell to do so. It also counts them, by principal. Thread-safe.
 #ifndef BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
 #define BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <mutex>
-#include <set>
+#include <string>
 #include <thread>
+
+#include "absl/status/status.h"
+#include "server/limits.h"
 
 namespace ballpiston::server {
 
@@ -27,22 +34,31 @@ class WatchRegistry {
   explicit WatchRegistry(std::chrono::milliseconds interval);
   ~WatchRegistry();  // stops
 
-  void Add(Watch* watch);
-  void Remove(Watch* watch);  // after this it is not looked at any more
+  // RESOURCE_EXHAUSTED TOO_MANY_STREAMS: it was not taken in.
+  absl::Status Add(Watch* watch, const std::string& principal, const Limits& limits);
+  // After this it is not looked at any more; without effect if it was not taken in.
+  void Remove(Watch* watch);
 
   // Has all watches looked at now.
   void LookNow();
 
   void Stop();
-  size_t size() const;
+
+  size_t size() const { return size_; }
+  std::map<std::string, int64_t> StreamsByPrincipal() const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void Run();
+  void AwaitLook(std::unique_lock<std::mutex>& lock, Clock::time_point last);
 
   const std::chrono::milliseconds interval_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::set<Watch*> watches_;
+  std::map<Watch*, std::string> watches_;  // whose it is
+  std::map<std::string, int64_t> streams_;
+  std::atomic<size_t> size_ = 0;
   bool now_ = false;
   bool stopping_ = false;
   std::thread thread_;

@@ -180,6 +180,13 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
       "TOLERANCE_NOT_REACHED", "reached", error);
 }
 
+absl::Status StoreFailure(const absl::Status& status) {
+  const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
+  if (status.ok() || status.GetPayload(type)) return status;
+  if (absl::IsResourceExhausted(status)) return WithReason(status, "STORE_FULL");
+  return WithReason(absl::UnavailableError(status.message()), "STORE_FAILED");
+}
+
 absl::Status WithReason(absl::Status status, const std::string& reason) {
   SetDetail(status, Info(reason));
   return status;

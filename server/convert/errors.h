@@ -53,6 +53,11 @@ absl::Status RoleTooLow(const Principal& caller, Role least);  // PERMISSION_DEN
 // DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
+// What a call answers when the store did not take it or could not be read. RESOURCE_EXHAUSTED,
+// STORE_FULL: the disk is full. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status
+// that has a reason already keeps it.
+absl::Status StoreFailure(const absl::Status& status);
+
 // Any status, with the reason and domain that clients look for.
 absl::Status WithReason(absl::Status status, const std::string& reason);
 // The same, unless it has one.

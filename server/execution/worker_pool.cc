@@ -90,7 +90,8 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   if (run == runs_.end()) return changed;
   std::vector<std::pair<uint64_t, size_t>> newest;
   for (const auto& [index, point] : run->second->open_points()) {
-    if (point->version > version) newest.emplace_back(point->version, index);
+    const bool finished = point->merge.finished();  // about to be told as such
+    if (point->version > version && !finished) newest.emplace_back(point->version, index);
   }
   std::sort(newest.rbegin(), newest.rend());
   if (newest.size() > limit) newest.resize(limit);
@@ -101,10 +102,20 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   return changed;
 }
 
+PoolCounts WorkerPool::Counts() const {
+  return {.workers = workers_,
+          .busy = busy_.load(std::memory_order_relaxed),
+          .blocks = static_cast<double>(blocks_.load(std::memory_order_relaxed)),
+          .samples = samples_.load(std::memory_order_relaxed),
+          .processor_seconds = processor_seconds_.load(std::memory_order_relaxed)};
+}
+
 void WorkerPool::Work() {
   while (const auto assignment = AwaitAssignment()) {
     if (assignment->begins_run) assignment->run->journal().Began();
+    busy_.fetch_add(1, std::memory_order_relaxed);
     Execute(*assignment);
+    busy_.fetch_sub(1, std::memory_order_relaxed);
     Conclude(assignment->run);
     assignment->run->journal().AwaitRoom();
   }
@@ -142,6 +153,7 @@ void WorkerPool::Execute(const Assignment& assignment) {
                                   : OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
   const double seconds = ThreadSeconds() - start;
   run.journal().Worked(seconds);
+  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
   {
     std::lock_guard lock(mutex_);
     if (!status.ok()) run.Stop(status);
@@ -191,7 +203,10 @@ absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {
   return Guarded(task.point, [&]() -> absl::Status {
     const double start = ThreadSeconds();
     std::optional<BlockResult> result = task.experiment->RunBlock(task.block, task.stop);
-    if (result) MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
+    if (!result) return absl::OkStatus();
+    blocks_.fetch_add(1, std::memory_order_relaxed);
+    samples_.fetch_add(static_cast<double>(result->samples), std::memory_order_relaxed);
+    MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
     return absl::OkStatus();
   });
 }

@@ -7,6 +7,7 @@
 #ifndef BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 #define BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -31,6 +32,15 @@ struct LivePoint {
   BlockResult merged;
 };
 
+// Since the pool was made, but for the first two.
+struct PoolCounts {
+  int workers = 0;
+  int busy = 0;  // now
+  double blocks = 0;
+  double samples = 0;
+  double processor_seconds = 0;
+};
+
 class WorkerPool {
  public:
   WorkerPool(int workers, ExperimentFactory factory);
@@ -45,8 +55,11 @@ class WorkerPool {
   // what they stored lets a later process go on. May be called more than once.
   void Shutdown();
 
-  // Copies of the run's open points that changed after `version`, newest first, at most `limit`.
+  // Copies of the run's unfinished points that changed after `version`, newest first, at most
+  // `limit`.
   std::vector<LivePoint> ChangedSince(int64_t key, uint64_t version, size_t limit) const;
+
+  PoolCounts Counts() const;  // takes no lock
 
  private:
   struct Assignment {
@@ -73,6 +86,11 @@ class WorkerPool {
   const ExperimentFactory factory_;
   const int workers_;
   const uint64_t window_;
+
+  std::atomic<int> busy_ = 0;
+  std::atomic<uint64_t> blocks_ = 0;
+  std::atomic<double> samples_ = 0;
+  std::atomic<double> processor_seconds_ = 0;
 
   mutable std::mutex mutex_;
   std::condition_variable work_may_exist_;

@@ -3,15 +3,47 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "google/rpc/status.pb.h"
 #include "server/jobs/job_message.h"
+#include "server/jobs/job_name.h"
 #include "server/jobs/job_state.h"
+#include "server/observability/log.h"
 
 namespace ballpiston::server {
+namespace {
+
+void LogEnd(const JobRecord& job, const std::string& state) {
+  // One without a beginning was over before it began.
+  const absl::Time begin = job.start_time.value_or(job.create_time);
+  google::rpc::Status error;
+  error.ParseFromString(job.error);
+  Log(job.error.empty() ? Severity::kInfo : Severity::kWarning, absl::StrCat("job ", state),
+      {{"job", JobName(job.id)},
+       {"principal", job.principal},
+       {"state", state},
+       {"points", static_cast<double>(job.points_done)},
+       {"samples", job.samples},
+       {"processor_seconds", job.work},
+       {"seconds", absl::ToDoubleSeconds(job.end_time.value_or(begin) - begin)},
+       {"error", error.message()}});
+}
+
+void LogState(const JobRecord& job) {
+  const std::string state = absl::AsciiStrToLower(StateName(job.state));
+  if (HasEnded(job.state)) return LogEnd(job, state);
+  Log(Severity::kInfo, absl::StrCat("job ", state),
+      {{"job", JobName(job.id)}, {"principal", job.principal}, {"state", state}});
+}
+
+}  // namespace
 
 Job::Job(JobRecord record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
       id_(record.id),
       principal_(record.principal),
+      engine_version_(record.engine_version),
       open_ended_(IsOpenEnded(JobMessage(record).spec().target())),
       on_state_change_(std::move(on_state_change)),
       record_(std::move(record)) {}
@@ -26,14 +58,15 @@ JobRecord Job::Record() const {
   return record_;
 }
 
-v1::EnsembleJob Job::Message() const {
+Job::View Job::Now() const {
   std::unique_lock lock(mutex_);
   const JobRecord record = record_;
   const v1::JobProgress progress = ProgressLocked();
+  const uint64_t state_change = last_state_change_;
   lock.unlock();
-  v1::EnsembleJob message = JobMessage(record);
-  *message.mutable_progress() = progress;
-  return message;
+  View view = {JobMessage(record), state_change};
+  *view.job.mutable_progress() = progress;
+  return view;
 }
 
 v1::JobProgress Job::Progress() const {
@@ -53,17 +86,13 @@ v1::JobProgress Job::ProgressLocked() const {
   return progress;
 }
 
-uint64_t Job::last_change() const {
+int64_t Job::points_computed() const {
   std::lock_guard lock(mutex_);
-  return last_change_;
-}
-
-uint64_t Job::last_state_change() const {
-  std::lock_guard lock(mutex_);
-  return last_state_change_;
+  return points_computed_;
 }
 
 bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
+  JobRecord record;
   {
     std::lock_guard lock(mutex_);
     if (!MayFollow(record_.state, state)) return false;
@@ -71,8 +100,11 @@ bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
     record_.error = error;
     if (state == v1::EnsembleJob::RUNNING) record_.start_time = now;
     if (HasEnded(state)) record_.end_time = now;
-    last_state_change_ = ++last_change_;
+    last_state_change_ = last_change_ + 1;
+    ++last_change_;
+    record = record_;
   }
+  LogState(record);
   if (on_state_change_) on_state_change_();
   return true;
 }
@@ -89,35 +121,40 @@ void Job::AddWork(double seconds) {
   record_.work += seconds;
 }
 
-uint64_t Job::AddFinishedPoint(FinishedPoint point) {
+void Job::AddComputedPoint() {
+  std::lock_guard lock(mutex_);
+  ++points_computed_;
+}
+
+void Job::AddFinishedPoint(FinishedPoint point) {
   std::lock_guard lock(mutex_);
   ++record_.points_done;
-  RememberLocked(std::move(point));
-  return last_change_;
+  last_finished_ = point.number;
+  recent_.push_back(std::move(point));
+  if (recent_.size() > kRecentPoints) {
+    last_forgotten_ = recent_.front().number;
+    recent_.pop_front();
+  }
+  ++last_change_;
 }
 
-uint64_t Job::AddRestoredPoints(int64_t points, double samples, std::vector<FinishedPoint> recent) {
+void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
   std::lock_guard lock(mutex_);
   record_.points_done += points;
+  points_computed_ += points;
   record_.samples += samples;
   work_done_ += static_cast<double>(points);
-  for (FinishedPoint& point : recent) RememberLocked(std::move(point));
-  return last_change_;
+  last_finished_ = last_forgotten_ = last;
+  ++last_change_;
 }
 
-void Job::RememberLocked(FinishedPoint point) {
-  recent_.push_front({++last_change_, std::move(point)});
-  if (recent_.size() > kRecentPoints) recent_.pop_back();
-}
-
-std::vector<Job::Change> Job::FinishedSince(uint64_t number, size_t limit) const {
+std::optional<std::vector<FinishedPoint>> Job::FinishedAfter(int64_t after, size_t limit) const {
   std::lock_guard lock(mutex_);
-  std::vector<Change> changes;
-  for (const Change& change : recent_) {
-    if (change.number <= number || changes.size() == limit) break;
-    changes.push_back(change);
-  }
-  return changes;
+  if (after < last_forgotten_) return std::nullopt;
+  const auto is_older = [](int64_t number, const FinishedPoint& p) { return number < p.number; };
+  const auto first = std::upper_bound(recent_.begin(), recent_.end(), after, is_older);
+  const auto left = static_cast<size_t>(recent_.end() - first);
+  return std::vector<FinishedPoint>(first, first + static_cast<ptrdiff_t>(std::min(left, limit)));
 }
 
 }  // namespace ballpiston::server

@@ -2,34 +2,44 @@
 //
 // Every change has a number, counted from 1. A watcher remembers the number up to which it has told
 // and asks for what is newer, so that a slow one misses what was overtaken and never the newest.
-// Kept are the newest kRecentPoints finished points; all of them are in the store. Thread-safe.
+//
+// Finished points have numbers of their own, which the store gives them and which outlive the
+// server (point_tables.h). A point counts as done, and can be told, when it is stored. Kept are the
+// newest kRecentPoints; all of them are in the store. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_H_
 #define BALLPISTON_SERVER_JOBS_JOB_H_
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
+#include "server/jobs/job_snapshot.h"
 #include "server/store/job_record.h"
 
 namespace ballpiston::server {
 
 inline constexpr size_t kRecentPoints = 100;
 
+struct FinishedPoint {
+  int64_t number = 0;
+  std::shared_ptr<const v1::PointResult> result;  // without histograms and curves
+};
+
 class Job {
  public:
-  using FinishedPoint = std::shared_ptr<const v1::PointResult>;  // without histograms
-
-  struct Change {
-    uint64_t number = 0;
-    FinishedPoint point;
+  // The job at one moment.
+  struct View {
+    v1::EnsembleJob job;
+    uint64_t state_change = 0;  // the number of its last change of state
   };
 
   // `on_state_change` is called, without a lock, after each change of state.
@@ -38,46 +48,61 @@ class Job {
   int64_t sequence() const { return sequence_; }
   const std::string& id() const { return id_; }
   const std::string& principal() const { return principal_; }
+  const std::string& engine_version() const { return engine_version_; }
 
   JobState state() const;
-  v1::EnsembleJob Message() const;
+  View Now() const;
+  v1::EnsembleJob Message() const { return Now().job; }
   v1::JobProgress Progress() const;
   JobRecord Record() const;
 
-  uint64_t last_change() const;
-  uint64_t last_state_change() const;
+  // Points whose results were computed, but perhaps not stored yet.
+  int64_t points_computed() const;
+
+  // These three without a lock: a thousand watchers ask several times a second.
+  uint64_t last_change() const { return last_change_; }
+  uint64_t last_state_change() const { return last_state_change_; }
+  int64_t last_finished() const { return last_finished_; }  // the number of that point
 
   // False, and without effect, if `state` may not follow the present one.
   bool Enter(JobState state, absl::Time now, const std::string& error = std::string());
 
-  // The following return the number of the change.
-
-  // A block was merged: so many samples, that share of its point.
+  // A block was merged: so many samples, that share of its point. Returns the number of the change.
   uint64_t AddBlock(double samples, double share_of_point);
   void AddWork(double seconds);
-  uint64_t AddFinishedPoint(FinishedPoint point);
-  // Points that an earlier process finished; `recent` are some of them.
-  uint64_t AddRestoredPoints(int64_t points, double samples, std::vector<FinishedPoint> recent);
+  void AddComputedPoint();
+  // A computed point is stored; in the order of their numbers.
+  void AddFinishedPoint(FinishedPoint point);
+  // Points that an earlier process stored, `last` the number of the last of them. Before any other.
+  void AddRestoredPoints(int64_t points, double samples, int64_t last);
 
-  // Points finished after change `number`, newest first, at most `limit`.
-  std::vector<Change> FinishedSince(uint64_t number, size_t limit) const;
+  // The finished points after number `after`, oldest first, at most `limit`; nothing if some of
+  // those are not kept any more.
+  std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
+
+  SharedSnapshot& snapshot() { return snapshot_; }
 
  private:
   v1::JobProgress ProgressLocked() const;
-  void RememberLocked(FinishedPoint point);
 
   const int64_t sequence_;
   const std::string id_;
   const std::string principal_;
+  const std::string engine_version_;
   const bool open_ended_;  // how much there is to do is not known
   const std::function<void()> on_state_change_;
 
   mutable std::mutex mutex_;
   JobRecord record_;
+  int64_t points_computed_ = 0;
   double work_done_ = 0;  // in points
-  uint64_t last_change_ = 1;
-  uint64_t last_state_change_ = 1;
-  std::deque<Change> recent_;  // newest first
+  std::atomic<uint64_t> last_change_ = 1;
+  std::atomic<uint64_t> last_state_change_ = 1;
+  std::atomic<int64_t> last_finished_ = 0;
+  std::deque<FinishedPoint> recent_;  // oldest first
+  int64_t last_forgotten_ = 0;        // the number of the last point before these
+
+  SharedSnapshot snapshot_;
 };
 
 }  // namespace ballpiston::server

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -23,10 +22,8 @@
 namespace ballpiston::server {
 namespace {
 
-// What the disk refused to take.
-absl::Status StoreFailed(const absl::Status& status) {
-  return status.ok() ? status : WithReason(status, "STORE_FAILED");
-}
+// So much of finished points is read at once, and a last point more.
+constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
 // The job, if the caller may see it.
 absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
@@ -36,31 +33,20 @@ absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Pri
   return found;
 }
 
-struct FinishedPoints {
-  std::vector<bool> finished;
+// What an earlier process finished of a job.
+struct StoredPoints {
+  std::vector<bool> finished;  // by point of the grid
   int64_t count = 0;
+  int64_t last = 0;  // the number of the last of them
   double samples = 0;
-  std::vector<Job::FinishedPoint> recent;
 };
 
-absl::Status ReadRecent(Database& database, int64_t sequence, int64_t first,
-                        std::vector<Job::FinishedPoint>& recent) {
-  absl::Status parsed;
-  const absl::Status read = ReadResults(database, sequence, first, [&](PointRow row) {
-    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
-    parsed = result.status();
-    if (!parsed.ok()) return false;
-    ClearDetails(*result);
-    recent.push_back(std::make_shared<const v1::PointResult>(*std::move(result)));
-    return true;
-  });
-  return read.ok() ? parsed : read;
-}
-
-absl::Status ReadFinishedPoints(Database& database, const JobRecord& record,
-                                FinishedPoints& points) {
+absl::Status ReadStoredPoints(Database& database, const JobRecord& record, StoredPoints& points) {
+  const auto last = LastResultNumber(database, record.sequence);
+  if (!last.ok()) return last.status();
   const auto rows = ListFinishedPoints(database, record.sequence);
   if (!rows.ok()) return rows.status();
+  points.last = *last;
   points.finished.assign(static_cast<size_t>(record.points), false);
   for (const PointRow& row : *rows) {
     if (row.point < 0 || row.point >= record.points) continue;
@@ -68,9 +54,7 @@ absl::Status ReadFinishedPoints(Database& database, const JobRecord& record,
     points.samples += row.samples;
     ++points.count;
   }
-  if (rows->empty()) return absl::OkStatus();
-  const size_t first = rows->size() - std::min(rows->size(), kRecentPoints);
-  return ReadRecent(database, record.sequence, (*rows)[first].point, points.recent);
+  return absl::OkStatus();
 }
 
 // The first finished point that an earlier process had to leave short of the tolerance, if any.
@@ -116,12 +100,39 @@ absl::Status JobBook::Resume() {
     return unfinished.status();
   });
   if (!read.ok()) return read;
+  const absl::Status restarted = RestartOlder(*unfinished);
+  if (!restarted.ok()) return restarted;
   for (JobRecord& record : *unfinished) {
     const absl::Status resumed = ResumeJob(std::move(record));
     Failpoint("resume.job");
     if (!resumed.ok()) return resumed;
   }
-  return absl::OkStatus();
+  return store_.Flush();
+}
+
+// Of another engine, and to be computed by this one: all in one commit, for there may be many.
+absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
+  std::vector<JobRecord*> older;
+  for (JobRecord& record : unfinished) {
+    if (record.engine_version == EngineVersion()) continue;
+    if (record.state == v1::EnsembleJob::CANCELLING) continue;
+    const absl::StatusOr<v1::EnsembleSpec> message = SpecFromBytes(record.spec);
+    if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
+    record.engine_version = EngineVersion();
+    record.question = QuestionOf(*message, record.engine_version);
+    older.push_back(&record);
+    LogInfo(
+        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
+  }
+  if (older.empty()) return absl::OkStatus();
+  return store_.Commit([&](Database& database) {
+    for (const JobRecord* record : older) {
+      const absl::Status restarted =
+          RestartJob(database, record->sequence, record->engine_version, record->question);
+      if (!restarted.ok()) return restarted;
+    }
+    return absl::OkStatus();
+  });
 }
 
 absl::Status JobBook::ResumeJob(JobRecord record) {
@@ -132,41 +143,31 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   if (!message.ok()) return EndUnresumable(record, message.status());
   CheckedSpec checked = CheckSpec(*message);
   if (!checked.violations.empty()) return EndUnresumable(record, InvalidSpec(checked.violations));
-  if (record.engine_version != EngineVersion()) {
-    record.engine_version = EngineVersion();
-    record.question = QuestionOf(*message, record.engine_version);
-    const absl::Status restarted = store_.Commit([&](Database& database) {
-      return RestartJob(database, record.sequence, record.engine_version, record.question);
-    });
-    if (!restarted.ok()) return restarted;
-    LogInfo(
-        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
-  }
   return ResumeRun(std::move(record), std::move(checked.spec));
 }
 
-// It ends as a run that had nothing more to do would.
+// It ends as a run that had nothing more to do would; on disk when all are resumed.
 absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status& why) {
-  FinishedPoints points;
+  StoredPoints points;
   const absl::Status read =
-      store_.Read([&](Database& database) { return ReadFinishedPoints(database, record, points); });
+      store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
-  job->AddRestoredPoints(points.count, points.samples, {});
+  job->AddRestoredPoints(points.count, points.samples, points.last);
   JobJournal(job, store_, nullptr).Ended(why);
-  return store_.Flush();
+  return absl::OkStatus();
 }
 
 absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
-  FinishedPoints points;
+  StoredPoints points;
   std::optional<Shortfall> shortfall;
   const absl::Status read = store_.Read([&](Database& database) {
-    const absl::Status finished = ReadFinishedPoints(database, record, points);
+    const absl::Status finished = ReadStoredPoints(database, record, points);
     return finished.ok() ? ReadShortfall(database, record, spec, shortfall) : finished;
   });
   if (!read.ok()) return read;
   std::shared_ptr<Job> job = Register(std::move(record));
-  job->AddRestoredPoints(points.count, points.samples, std::move(points.recent));
+  job->AddRestoredPoints(points.count, points.samples, points.last);
   RunRequest request;
   request.spec = std::move(spec);
   request.finished = std::move(points.finished);
@@ -187,11 +188,18 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
   request.principal = job->principal();
   request.priority = job->Record().priority;
-  request.journal = std::make_shared<JobJournal>(std::move(job), store_, [this](const Job& ended) {
-    std::lock_guard lock(mutex_);
-    active_.erase(ended.id());
-  });
+  request.journal = std::make_shared<JobJournal>(std::move(job), store_,
+                                                 [this](const Job& ended) { Forget(ended); });
   pool_.Add(std::move(request));
+}
+
+void JobBook::Forget(const Job& ended) {
+  const JobState state = ended.state();
+  ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
+     : state == v1::EnsembleJob::FAILED  ? failed_
+                                         : cancelled_);
+  std::lock_guard lock(mutex_);
+  active_.erase(ended.id());
 }
 
 // ---- the methods ----
@@ -241,7 +249,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
     run.finished.assign(static_cast<size_t>(acceptance.record.points), false);
     StartRun(job, std::move(run));
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
   if (!acceptance.earlier) return job->Message();
@@ -264,7 +272,7 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
     if (found.ok()) record = *std::move(found);
     return found.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!record || !caller.MaySee(record->principal)) return JobNotFound(JobName(id));
   return *std::move(record);
 }
@@ -291,7 +299,7 @@ absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, in
         ListJobs(database, everybodys ? std::nullopt : std::optional(caller.name), before, limit);
     return records.status();
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   std::vector<ListedJob> listed;
   for (const JobRecord& record : *records) {
     const auto job = active.find(record.id);
@@ -320,7 +328,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
     const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
     if (done.ok() && begun && job) job->Enter(v1::EnsembleJob::CANCELLING, absl::Now());
   });
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   Failpoint("cancel.committed");
   if (begun) pool_.Cancel(record->sequence);
@@ -341,7 +349,7 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
     return deleted;
   });
   Failpoint("delete.committed");
-  if (!committed.ok()) return StoreFailed(committed);
+  if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   if (HasEnded(record->state)) return absl::OkStatus();
   const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
@@ -369,7 +377,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadResults(database, record->sequence, query.first_point, take);
   });
-  if (!read.ok()) return StoreFailed(read);
+  if (!read.ok()) return StoreFailure(read);
   if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return page;
 }
@@ -382,34 +390,95 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller
   if (HasEnded(record->state)) return nullptr;
   // Committed a moment ago: it is in the book when the store has gone on to the next commit.
   const absl::Status settled = store_.Flush();
-  if (!settled.ok()) return StoreFailed(settled);
+  if (!settled.ok()) return StoreFailure(settled);
   return ActiveOrNull(caller, id);
 }
 
-std::vector<v1::PointResult> JobBook::PointsChangedSince(const Job& job, uint64_t number,
-                                                         size_t limit) const {
-  std::vector<std::pair<uint64_t, v1::PointResult>> changed;
-  for (const LivePoint& point : pool_.ChangedSince(job.sequence(), number, limit)) {
-    changed.emplace_back(point.version, PointResultOf(point.index, *point.experiment, point.merged,
-                                                      Details::kLeftOut));
+absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const std::string& id) {
+  absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
+  if (!active.ok()) return active.status();
+  if (const std::shared_ptr<Job>& job = *active) {
+    return WatchedJob{job, job->sequence(), job->engine_version(), job->last_finished(), {}};
   }
-  for (const Job::Change& change : job.FinishedSince(number, limit)) {
-    changed.emplace_back(change.number, *change.point);
+  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+  if (!record.ok()) return record.status();
+  absl::StatusOr<int64_t> last;
+  const absl::Status read = store_.Read([&](Database& database) {
+    last = LastResultNumber(database, record->sequence);
+    return last.status();
+  });
+  if (!read.ok()) return StoreFailure(read);
+  return WatchedJob{nullptr, record->sequence, record->engine_version, *last,
+                    JobMessage(*record).progress()};
+}
+
+std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                                     size_t limit) const {
+  return job.snapshot().Get(job.last_change(), max_age, [&] {
+    JobSnapshot snapshot;
+    snapshot.change = job.last_change();  // before the points: they may be newer
+    snapshot.finished = job.last_finished();
+    for (const LivePoint& point : pool_.ChangedSince(job.sequence(), 0, limit)) {
+      snapshot.points.push_back({point.version, PointResultOf(point.index, *point.experiment,
+                                                              point.merged, Details::kLeftOut)});
+    }
+    return snapshot;
+  });
+}
+
+absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequence,
+                                                                  const Job* active, int64_t after,
+                                                                  size_t limit) {
+  if (active != nullptr) {
+    if (auto recent = active->FinishedAfter(after, limit)) return *std::move(recent);
   }
-  const auto newer = [](const auto& a, const auto& b) { return a.first > b.first; };
-  std::stable_sort(changed.begin(), changed.end(), newer);
-  std::vector<v1::PointResult> points;
-  std::set<int32_t> told;  // a point that is finished just now may be there twice
-  for (auto& [change, point] : changed) {
-    if (points.size() == limit) break;
-    if (told.insert(point.index()).second) points.push_back(std::move(point));
-  }
+  std::vector<FinishedPoint> points;
+  size_t bytes = 0;
+  absl::Status parsed;
+  const auto take = [&](int64_t number, const PointRow& row) {
+    // One that the job does not know of yet would make a token that it does not know either.
+    if (active != nullptr && number > active->last_finished()) return false;
+    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    parsed = result.status();
+    if (!parsed.ok()) return false;
+    ClearDetails(*result);
+    bytes += result->ByteSizeLong();
+    points.push_back({number, std::make_shared<const v1::PointResult>(*std::move(result))});
+    return points.size() < limit && bytes < kMaxBytesOfPoints;
+  };
+  const absl::Status read = store_.Read(
+      [&](Database& database) { return ReadResultsStoredAfter(database, sequence, after, take); });
+  if (!read.ok()) return StoreFailure(read);
+  if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return points;
 }
 
 size_t JobBook::active_jobs() const {
   std::lock_guard lock(mutex_);
   return active_.size();
+}
+
+std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
+  std::vector<std::shared_ptr<Job>> active;
+  {
+    std::lock_guard lock(mutex_);
+    active.reserve(active_.size());
+    for (const auto& [id, job] : active_) active.push_back(job);
+  }
+  std::map<std::string, ActiveJobs> by_principal;
+  for (const std::shared_ptr<Job>& job : active) {
+    const JobState state = job->state();
+    if (HasEnded(state)) continue;  // it is leaving just now
+    ActiveJobs& jobs = by_principal[job->principal()];
+    ++(state == v1::EnsembleJob::QUEUED    ? jobs.queued
+       : state == v1::EnsembleJob::RUNNING ? jobs.running
+                                           : jobs.cancelling);
+  }
+  return by_principal;
+}
+
+EndedJobs JobBook::ended_jobs() const {
+  return {.succeeded = succeeded_, .failed = failed_, .cancelled = cancelled_};
 }
 
 }  // namespace ballpiston::server

@@ -7,6 +7,8 @@
 #ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -33,6 +35,15 @@ struct ListedJob {
   v1::EnsembleJob job;
 };
 
+// What a watch needs of a job.
+struct WatchedJob {
+  std::shared_ptr<Job> active;  // null if it has ended
+  int64_t sequence = 0;
+  std::string engine_version;
+  int64_t last_finished = 0;  // the number of its last finished point
+  v1::JobProgress progress;
+};
+
 struct ResultsQuery {
   int64_t first_point = 0;
   int max_points = 1;
@@ -43,6 +54,20 @@ struct ResultsQuery {
 struct ResultsPage {
   std::vector<v1::PointResult> points;
   bool more = false;
+};
+
+// Active jobs, by state.
+struct ActiveJobs {
+  int64_t queued = 0;
+  int64_t running = 0;
+  int64_t cancelling = 0;
+};
+
+// Jobs that ended in this book's life, by state.
+struct EndedJobs {
+  uint64_t succeeded = 0;
+  uint64_t failed = 0;
+  uint64_t cancelled = 0;
 };
 
 class JobBook {
@@ -79,26 +104,37 @@ class JobBook {
   absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
                                       const ResultsQuery& query);
 
-  // For a watch: the active job; null if it has ended.
-  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
+  absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
-  // The job's points that changed after change `number`, newest first, without histograms.
-  std::vector<v1::PointResult> PointsChangedSince(const Job& job, uint64_t number,
-                                                  size_t limit) const;
+  // The job's unfinished points, the newest `limit`, as they are or were at most `max_age` ago.
+  std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
+                                              size_t limit) const;
+
+  // The finished points after number `after` of an active or (`active` null) ended job, in order,
+  // at most `limit`; fewer if they are large. None: there is no more. May read the store.
+  absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
+                                                           int64_t after, size_t limit);
 
   size_t active_jobs() const;
+  std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
+  EndedJobs ended_jobs() const;
+  PoolCounts pool_counts() const { return pool_.Counts(); }
 
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const CheckedSpec& checked) const;
+  absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   std::shared_ptr<Job> Register(JobRecord record);
   // Key and journal of the request are set here.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
+  void Forget(const Job& ended);
   // Also null if the caller may not see it.
   std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
+  // The active job; null if it has ended.
+  absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
 
   Store& store_;
@@ -106,7 +142,10 @@ class JobBook {
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
-  WorkerPool pool_;                                     // last: its threads use what is above
+  std::atomic<uint64_t> succeeded_ = 0;
+  std::atomic<uint64_t> failed_ = 0;
+  std::atomic<uint64_t> cancelled_ = 0;
+  WorkerPool pool_;  // last: its threads use what is above
 };
 
 }  // namespace ballpiston::server

@@ -3,24 +3,30 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
-#include "server/jobs/job_name.h"
 #include "server/observability/failpoint.h"
-#include "server/observability/log.h"
 #include "server/store/job_table.h"
 
 namespace ballpiston::server {
 namespace {
 
+// Of memory: histograms are what takes room.
+size_t BytesHeld(const BlockResult& result) {
+  size_t bytes = sizeof(BlockResult);
+  for (const Histogram& histogram : result.histograms) {
+    bytes += histogram.counts.size() * sizeof(histogram.counts[0]);
+  }
+  return bytes;
+}
+
 JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = record.points_done;
+  end.points_done = job.points_computed();
   end.samples = record.samples;
   end.work = record.work;
   if (outcome.ok()) {
@@ -42,9 +48,11 @@ JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
-  if (!job_->Enter(v1::EnsembleJob::RUNNING, now)) return;
-  store_.Record([sequence = job_->sequence(), now](Database& database) {
+  const auto begin = [sequence = job_->sequence(), now](Database& database) {
     return BeginJob(database, sequence, now);
+  };
+  store_.Record(begin, [job = job_, now](const absl::Status& done) {
+    if (done.ok()) job->Enter(v1::EnsembleJob::RUNNING, now);
   });
 }
 
@@ -67,9 +75,10 @@ uint64_t JobJournal::BlockMerged(MergedBlock block) {
   if (block.restored) return change;
   // Shared, because the store's closures are copyable; made into bytes only if it is written.
   auto result = std::make_shared<const BlockResult>(std::move(block.result));
-  store_.RecordBlock(job_->sequence(), static_cast<int64_t>(block.point),
-                     static_cast<int64_t>(block.block),
-                     [result = std::move(result)] { return BlockRecordBytes(*result); });
+  const size_t bytes = BytesHeld(*result);
+  store_.RecordBlock(
+      job_->sequence(), static_cast<int64_t>(block.point), static_cast<int64_t>(block.block),
+      [result = std::move(result)] { return BlockRecordBytes(*result); }, bytes);
   return change;
 }
 
@@ -79,19 +88,19 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
-  Failpoint("point.before_record");
-  store_.RecordResult(job_->sequence(),
-                      {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)});
-  Failpoint("point.recorded");
+  PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);
-  job_->AddFinishedPoint(std::make_shared<const v1::PointResult>(std::move(result)));
+  job_->AddComputedPoint();
+  const auto told = std::make_shared<const v1::PointResult>(std::move(result));
+  Failpoint("point.before_record");
+  store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
+    job->AddFinishedPoint({number, told});
+  });
+  Failpoint("point.recorded");
 }
 
 void JobJournal::Ended(const absl::Status& outcome) {
   const JobEnd end = EndOf(*job_, outcome);
-  if (end.state == v1::EnsembleJob::FAILED) {
-    LogError(absl::StrCat(JobName(job_->id()), " failed: ", outcome.message()));
-  }
   Failpoint("job.before_end");
   auto state = std::make_shared<JobState>();
   const auto change = [sequence = job_->sequence(), end, state](Database& database) {

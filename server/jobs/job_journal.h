@@ -1,7 +1,9 @@
 // Writes what a job's run reports into the store and into the job.
 //
 // Order in the store: a block after those merged before it, a point's result after its blocks, the
-// end of the job after all of it; the job is seen to have ended only when that is on disk.
+// end of the job after all of it. The job is seen to have begun, a point to be finished, and the
+// job to have ended, in this order and only when it is on disk: what was told, no restart takes
+// back.
 // Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 #define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_

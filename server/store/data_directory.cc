@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/observability/log.h"
+#include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
 namespace {
@@ -36,7 +37,9 @@ absl::Status MakeDirectories(const std::string& path) {
     const absl::Status above = MakeDirectories(path.substr(0, slash));
     if (!above.ok()) return above;
   }
-  if (mkdir(path.c_str(), 0700) == 0 || IsDirectory(path)) return absl::OkStatus();
+  // Flushed: or else a power cut could take the folder away with all that was acknowledged in it.
+  if (mkdir(path.c_str(), 0700) == 0) return SyncFolder(FolderOf(path));
+  if (IsDirectory(path)) return absl::OkStatus();
   return NotWritable(path, errno);
 }
 

@@ -124,6 +124,10 @@ absl::StatusOr<int64_t> CountActiveJobs(Database& database,
   return query.Integer(0);
 }
 
+absl::StatusOr<int64_t> CountJobs(Database& database) {
+  return database.Integer("SELECT count(*) FROM jobs");
+}
+
 absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
                                                 const std::optional<std::string>& principal,
                                                 int64_t before, int limit) {

@@ -33,6 +33,9 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
 absl::StatusOr<int64_t> CountActiveJobs(Database& database,
                                         const std::optional<std::string>& principal);
 
+// All there are.
+absl::StatusOr<int64_t> CountJobs(Database& database);
+
 // The principal's, or everybody's; newest first, those with a smaller sequence than `before`.
 absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
                                                 const std::optional<std::string>& principal,

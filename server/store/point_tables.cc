@@ -30,23 +30,54 @@ absl::Status ReadBlocks(
   }
 }
 
-absl::Status InsertResult(Database& database, int64_t job, const PointRow& row) {
+absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row) {
+  const absl::StatusOr<int64_t> last = LastResultNumber(database, job);
+  if (!last.ok()) return last.status();
+  const int64_t number = *last + 1;
   const absl::Status inserted =
       database
           .Prepare(
-              "INSERT OR IGNORE INTO results (job, point, samples, result, finish) VALUES"
-              " (?1, ?2, ?3, ?4, (SELECT coalesce(max(finish), 0) + 1 FROM results WHERE job = "
-              "?1))")
+              "INSERT OR IGNORE INTO results (job, point, samples, result, finish)"
+              " VALUES (?, ?, ?, ?, ?)")
           .Bind(job)
           .Bind(row.point)
           .Bind(row.samples)
           .BindBlob(row.result)
+          .Bind(number)
           .Run();
   if (!inserted.ok()) return inserted;
-  return database.Prepare("DELETE FROM blocks WHERE job = ? AND point = ?")
-      .Bind(job)
-      .Bind(row.point)
-      .Run();
+  const bool is_new = database.RowsChanged() == 1;
+  const absl::Status dropped = database.Prepare("DELETE FROM blocks WHERE job = ? AND point = ?")
+                                   .Bind(job)
+                                   .Bind(row.point)
+                                   .Run();
+  if (!dropped.ok()) return dropped;
+  return is_new ? number : 0;
+}
+
+absl::StatusOr<int64_t> LastResultNumber(Database& database, int64_t job) {
+  Query query = database.Prepare("SELECT coalesce(max(finish), 0) FROM results WHERE job = ?");
+  const absl::StatusOr<bool> row = query.Bind(job).Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
+}
+
+absl::Status ReadResultsStoredAfter(
+    Database& database, int64_t job, int64_t after,
+    const std::function<bool(int64_t number, PointRow row)>& on_row) {
+  Query query = database.Prepare(
+      "SELECT finish, point, samples, result FROM results WHERE job = ? AND finish > ?"
+      " ORDER BY finish");
+  query.Bind(job).Bind(after);
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return absl::OkStatus();
+    const int64_t number = query.Integer(0);
+    if (!on_row(number, {query.Integer(1), query.Real(2), query.Bytes(3)})) {
+      return absl::OkStatus();
+    }
+  }
 }
 
 absl::Status ReadResults(Database& database, int64_t job, int64_t first,

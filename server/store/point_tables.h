@@ -29,12 +29,23 @@ struct PointRow {
   std::string result;  // serialized v1::PointResult
 };
 
-// Drops the point's blocks, which nobody reads any more. Here, too, the first writer wins.
-absl::Status InsertResult(Database& database, int64_t job, const PointRow& row);
+// Drops the point's blocks, which nobody reads any more. Here, too, the first writer wins. The
+// result's number among the job's, greater than those before: 1, 2, 3, ... in the order in which
+// they were stored; 0 if the point had a result.
+absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row);
 
 // In grid order, from point `first`; ends when `on_row` returns false.
 absl::Status ReadResults(Database& database, int64_t job, int64_t first,
                          const std::function<bool(PointRow row)>& on_row);
+
+// In the order in which they were stored, those after number `after`; ends when `on_row` returns
+// false.
+absl::Status ReadResultsStoredAfter(
+    Database& database, int64_t job, int64_t after,
+    const std::function<bool(int64_t number, PointRow row)>& on_row);
+
+// The number of the job's last result; 0 if there is none.
+absl::StatusOr<int64_t> LastResultNumber(Database& database, int64_t job);
 
 // All finished points without their results, in grid order.
 absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int64_t job);

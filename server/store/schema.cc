@@ -1,6 +1,9 @@
 #include "server/store/schema.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -11,6 +14,7 @@ namespace {
 // Checking every page takes about a second a gigabyte; beyond this size only the structure that
 // opening it reads is checked.
 constexpr int64_t kFullCheckBytes = int64_t{256} << 20;
+constexpr int64_t kFirstPageBytes = 4096;  // a new store has no more before it has its tables
 
 constexpr char kTables[] = R"sql(
 CREATE TABLE jobs (
@@ -115,33 +119,104 @@ absl::Status Refused(const std::string& path, const std::string& why) {
                    "; it was left as it is: move it away, or choose another --data_dir"));
 }
 
-absl::Status CheckContents(const std::string& path, Database& database, int64_t bytes) {
+std::string Text(const absl::Status& status) {
+  return {status.message().data(), status.message().size()};
+}
+
+absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
+  const char* what = absl::IsUnavailable(found) ? "cannot be read (" : "is damaged (";
+  return Refused(path, absl::StrCat(what, Text(found), ")"));
+}
+
+bool IsFolder(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+// A store keeps a log beside it from the moment it has tables, and says so in its header, bytes 18
+// and 19. A file that does not, with a log beside it, is a copy that was put where another store
+// was: SQLite would read the other's pages into it.
+absl::Status CheckLog(const std::string& path, const Database& database, const std::string& vfs) {
+  const auto start = database.FileStart(20);
+  if (!start.ok()) return RefusedFor(path, start.status());
+  const bool empty = start->front() == '\0';
+  const bool logged = (*start)[18] == 2 && (*start)[19] == 2;
+  if (empty || logged || !Database::Exists(path + "-wal", vfs)) return absl::OkStatus();
+  return Refused(path, absl::StrCat("has the log of another store beside it: move ", path,
+                                    "-wal away if this is a restored copy"));
+}
+
+// What kind of file it is. Sets whether it was made, and then interrupted.
+absl::Status CheckKind(const std::string& path, Database& database, bool& unfinished) {
   const auto application = database.Integer("PRAGMA application_id");
   const auto version = database.Integer("PRAGMA user_version");
   const auto tables = database.Integer("SELECT count(*) FROM sqlite_schema");
   for (const absl::Status& status : {application.status(), version.status(), tables.status()}) {
-    if (!status.ok()) return Refused(path, absl::StrCat("is damaged (", status.message(), ")"));
+    if (!status.ok()) return RefusedFor(path, status);
   }
-  if (*tables == 0 && *version == 0) return absl::OkStatus();  // made, and then interrupted
+  unfinished = *tables == 0 && *version == 0 && *application == 0;
+  if (unfinished) return absl::OkStatus();
   if (*application != kApplicationId) return Refused(path, "is not a ballpiston store");
   if (*version > kSchemaVersion) {
     return Refused(path, absl::StrCat("has version ", *version,
                                       ", newer than this program's version ", kSchemaVersion));
   }
-  if (bytes > kFullCheckBytes) return absl::OkStatus();
-  const auto check = database.Text("PRAGMA quick_check(1)");
-  if (check.ok() && *check == "ok") return absl::OkStatus();
-  const std::string found = check.ok() ? *check : std::string(check.status().message());
-  return Refused(path, absl::StrCat("is damaged (", found, ")"));
+  if (*version < 1) return Refused(path, absl::StrCat("is damaged (version ", *version, ")"));
+  return absl::OkStatus();
 }
 
+absl::Status CheckContents(const std::string& path, Database& database) {
+  bool unfinished = false;
+  const absl::Status kind = CheckKind(path, database, unfinished);
+  if (!kind.ok() || unfinished) return kind;
+  const auto bytes = database.FileBytes();
+  if (!bytes.ok()) return RefusedFor(path, bytes.status());
+  if (*bytes > kFullCheckBytes) return absl::OkStatus();
+  const auto check = database.Text("PRAGMA quick_check(1)");
+  if (!check.ok()) return RefusedFor(path, check.status());
+  return *check == "ok" ? check.status() : RefusedFor(path, absl::DataLossError(*check));
+}
+
+// Making a store was interrupted when there was nothing in it yet: a journal tells how to undo it,
+// which the connection that writes will do.
+bool WasInterruptedAtFirstPage(const std::string& path, const Database& database,
+                               const std::string& vfs) {
+  const auto bytes = database.FileBytes();
+  return bytes.ok() && *bytes <= kFirstPageBytes && Database::Exists(path + "-journal", vfs);
+}
+
+// A connection that only reads still makes an (empty) log and its index, if there are none.
+class LogRemoval {
+ public:
+  LogRemoval(const std::string& path, const std::string& vfs) {
+    if (!vfs.empty()) return;
+    for (const char* suffix : {"-wal", "-shm"}) {
+      if (access((path + suffix).c_str(), F_OK) != 0) added_.push_back(path + suffix);
+    }
+  }
+  ~LogRemoval() {
+    for (const std::string& file : added_) {
+      struct stat found {};
+      const bool is_log = file.ends_with("-wal");
+      if (is_log && (stat(file.c_str(), &found) != 0 || found.st_size > 0)) continue;
+      unlink(file.c_str());
+    }
+  }
+
+ private:
+  std::vector<std::string> added_;
+};
+
 // Through a connection that cannot write.
-absl::Status CheckFile(const std::string& path) {
-  struct stat found {};
-  if (stat(path.c_str(), &found) != 0 || found.st_size == 0) return absl::OkStatus();
-  const auto database = Database::Open(path, Database::Mode::kReadOnly);
-  if (!database.ok()) return Refused(path, std::string(database.status().message()));
-  return CheckContents(path, **database, found.st_size);
+absl::Status CheckFile(const std::string& path, const std::string& vfs) {
+  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
+  if (!Database::Exists(path, vfs)) return absl::OkStatus();
+  const LogRemoval removal(path, vfs);
+  const auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
+  if (!database.ok()) return RefusedFor(path, database.status());
+  if (WasInterruptedAtFirstPage(path, **database, vfs)) return absl::OkStatus();
+  const absl::Status log = CheckLog(path, **database, vfs);
+  return log.ok() ? CheckContents(path, **database) : log;
 }
 
 absl::Status MakeTables(Database& database) {
@@ -168,11 +243,32 @@ absl::Status Prepare(Database& database) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path) {
-  const absl::Status checked = CheckFile(path);
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
+                                                          const std::string& vfs) {
+  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
+  if (!Database::Exists(path, vfs)) {
+    return absl::NotFoundError(absl::StrCat("there is no store ", path));
+  }
+  auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
+  if (!database.ok()) return RefusedFor(path, database.status());
+  const absl::Status log = CheckLog(path, **database, vfs);
+  if (!log.ok()) return log;
+  bool unfinished = false;
+  const absl::Status kind = CheckKind(path, **database, unfinished);
+  if (!kind.ok()) return kind;
+  if (unfinished) return Refused(path, "has no tables yet");
+  return database;
+}
+
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
+                                                        const std::string& vfs) {
+  const absl::Status checked = CheckFile(path, vfs);
   if (!checked.ok()) return checked;
-  auto database = Database::Open(path, Database::Mode::kReadWrite);
+  auto database = Database::Open(path, Database::Mode::kReadWrite, vfs);
   if (!database.ok()) return absl::PermissionDeniedError(database.status().message());
+  bool unfinished = false;  // again, for an interrupted change may have been undone by opening
+  const absl::Status kind = CheckKind(path, **database, unfinished);
+  if (!kind.ok()) return kind;
   const absl::Status prepared = Prepare(**database);
   if (!prepared.ok()) {
     return absl::PermissionDeniedError(absl::StrCat(path, ": ", prepared.message()));

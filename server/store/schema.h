@@ -25,7 +25,13 @@ inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 // The connection that writes and checkpoints, to a store that was checked, or made if there was
 // none. A file that is damaged, of a newer version or of another program is refused with
 // FAILED_PRECONDITION and left as it is.
-absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path);
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
+                                                        const std::string& vfs = std::string());
+
+// A read-only connection to a store of this version or an older one. Errors as above, but damage is
+// only seen as far as opening it looks; NOT_FOUND if there is no such file.
+absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
+                                                          const std::string& vfs = std::string());
 
 }  // namespace ballpiston::server
 

@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -12,11 +13,49 @@ namespace {
 // A reader never waits for the writer in WAL mode; this covers recovery after a crash.
 constexpr int kBusyMilliseconds = 5000;
 
-absl::Status Failure(sqlite3* connection) {
-  return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errmsg(connection)));
+// SQLite calls a full disk full, but a spent quota an input/output error.
+bool IsOutOfSpace(int code, int system_error) {
+  if ((code & 0xff) == SQLITE_FULL) return true;
+  return (code & 0xff) == SQLITE_IOERR && (system_error == EDQUOT || system_error == ENOSPC);
 }
 
+absl::StatusCode CodeOf(int code, int system_error) {
+  if (IsOutOfSpace(code, system_error)) return absl::StatusCode::kResourceExhausted;
+  switch (code & 0xff) {
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return absl::StatusCode::kDataLoss;
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+    case SQLITE_TOOBIG:
+    case SQLITE_RANGE:
+      return absl::StatusCode::kInvalidArgument;
+    case SQLITE_ERROR:
+    case SQLITE_MISUSE:
+    case SQLITE_INTERNAL:
+      return absl::StatusCode::kInternal;
+    default:
+      return absl::StatusCode::kUnavailable;
+  }
+}
+
+absl::Status Failure(sqlite3* connection) {
+  const int code = sqlite3_extended_errcode(connection);
+  return {CodeOf(code, sqlite3_system_errno(connection)),
+          absl::StrCat("store: ", sqlite3_errmsg(connection))};
+}
+
+const char* VfsName(const std::string& vfs) { return vfs.empty() ? nullptr : vfs.c_str(); }
+
 }  // namespace
+
+bool IsOfTheDisk(const absl::Status& status) {
+  bool has_payload = false;
+  status.ForEachPayload([&](absl::string_view, const absl::Cord&) { has_payload = true; });
+  if (has_payload) return false;
+  return absl::IsUnavailable(status) || absl::IsResourceExhausted(status) ||
+         absl::IsDataLoss(status);
+}
 
 Query::Query(sqlite3_stmt* statement, absl::Status prepared)
     : statement_(statement), status_(std::move(prepared)) {}
@@ -90,16 +129,26 @@ bool Query::IsNull(int column) const {
   return sqlite3_column_type(statement_, column) == SQLITE_NULL;
 }
 
-absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode) {
+absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path, Mode mode,
+                                                         const std::string& vfs) {
   const int flags =
       mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* connection = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &connection, flags | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int code =
+      sqlite3_open_v2(path.c_str(), &connection, flags | SQLITE_OPEN_NOMUTEX, VfsName(vfs));
   auto database = std::unique_ptr<Database>(new Database(connection));
   if (code != SQLITE_OK) return Failure(connection);
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, kBusyMilliseconds);
   return database;
+}
+
+bool Database::Exists(const std::string& path, const std::string& vfs) {
+  sqlite3_vfs* const files = sqlite3_vfs_find(VfsName(vfs));
+  int exists = 0;
+  return files != nullptr &&
+         files->xAccess(files, path.c_str(), SQLITE_ACCESS_EXISTS, &exists) == SQLITE_OK &&
+         exists != 0;
 }
 
 Database::~Database() {
@@ -137,6 +186,40 @@ absl::StatusOr<std::string> Database::Text(const std::string& sql) {
   const absl::StatusOr<bool> row = query.Step();
   if (!row.ok()) return row.status();
   return *row ? query.Bytes(0) : std::string();
+}
+
+absl::StatusOr<int64_t> Database::FileBytes() const {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  sqlite3_int64 bytes = 0;
+  if (file == nullptr || file->pMethods == nullptr ||
+      file->pMethods->xFileSize(file, &bytes) != SQLITE_OK) {
+    return absl::UnavailableError("store: the file's size cannot be read");
+  }
+  return bytes;
+}
+
+absl::StatusOr<std::string> Database::FileStart(int bytes) const {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  std::string start(static_cast<size_t>(bytes), '\0');
+  const int code = file == nullptr || file->pMethods == nullptr
+                       ? SQLITE_CANTOPEN
+                       : file->pMethods->xRead(file, start.data(), bytes, 0);
+  // What is missing of a short file reads as zeros.
+  if (code == SQLITE_OK || code == SQLITE_IOERR_SHORT_READ) return start;
+  return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code)));
+}
+
+absl::Status Database::CopyTo(Database& target) {
+  sqlite3_backup* copy = sqlite3_backup_init(target.connection_, "main", connection_, "main");
+  if (copy == nullptr) return Failure(target.connection_);
+  // All pages in one step, which is one reading transaction.
+  const int stepped = sqlite3_backup_step(copy, -1);
+  const int finished = sqlite3_backup_finish(copy);
+  if (stepped == SQLITE_DONE && finished == SQLITE_OK) return absl::OkStatus();
+  const int code = stepped == SQLITE_DONE ? finished : stepped;
+  return {CodeOf(code, 0), absl::StrCat("store: copying failed: ", sqlite3_errstr(code))};
 }
 
 int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }

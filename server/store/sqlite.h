@@ -1,7 +1,14 @@
 // SQLite with owners: a connection and its statements, errors as absl::Status.
 //
-// UNAVAILABLE carries SQLite's own message (disk full, input/output error, ...). A connection and
-// its statements belong to one thread at a time.
+// A status carries SQLite's own message, and says whose fault it was. Of the disk, so that the same
+// may succeed later (IsOfTheDisk):
+//   RESOURCE_EXHAUSTED  it is full, or the user's quota is
+//   UNAVAILABLE         input/output error, cannot open, locked, out of memory, ...
+//   DATA_LOSS           the file is damaged, or no database
+// Of the statement or what was bound to it, so that it will never succeed:
+//   INVALID_ARGUMENT    a constraint, a type, a value too big
+//   INTERNAL            anything else
+// A connection and its statements belong to one thread at a time.
 #ifndef BALLPISTON_SERVER_STORE_SQLITE_H_
 #define BALLPISTON_SERVER_STORE_SQLITE_H_
 
@@ -19,6 +26,10 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace ballpiston::server {
+
+// The disk failed, not what was asked of it. A status with a payload is somebody's considered
+// answer and never of the disk.
+bool IsOfTheDisk(const absl::Status& status);
 
 // One execution of a prepared statement; parameters are numbered from 1, columns from 0. Returns
 // the statement to its connection when it goes out of scope.
@@ -54,7 +65,13 @@ class Database {
  public:
   enum class Mode { kReadOnly, kReadWrite };
 
-  static absl::StatusOr<std::unique_ptr<Database>> Open(const std::string& path, Mode mode);
+  // `vfs` names one of SQLite's file systems; empty: that of the operating system.
+  static absl::StatusOr<std::unique_ptr<Database>> Open(const std::string& path, Mode mode,
+                                                        const std::string& vfs = std::string());
+
+  // Whether there is such a file, and something in it.
+  static bool Exists(const std::string& path, const std::string& vfs = std::string());
+
   ~Database();
 
   Database(const Database&) = delete;
@@ -69,6 +86,13 @@ class Database {
   // The first column of the only row.
   absl::StatusOr<int64_t> Integer(const std::string& sql);
   absl::StatusOr<std::string> Text(const std::string& sql);
+
+  // Of the file itself, as it lies on the disk: without its log.
+  absl::StatusOr<int64_t> FileBytes() const;
+  absl::StatusOr<std::string> FileStart(int bytes) const;
+
+  // Makes `target` a copy of this database, as it is at one moment.
+  absl::Status CopyTo(Database& target);
 
   int64_t LastInsertedRow() const;
   int64_t RowsChanged() const;  // by the last statement that was run

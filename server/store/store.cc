@@ -1,6 +1,9 @@
 #include "server/store/store.h"
 
+#include <algorithm>
 #include <future>
+#include <iterator>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -12,14 +15,21 @@
 namespace ballpiston::server {
 namespace {
 
+// Of records, on a full disk. More than one: what does not fit leaves some room for requests.
+constexpr size_t kSmallestGroup = 32;
+
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
+
+std::string Text(const absl::Status& status) {
+  return {status.message().data(), status.message().size()};
+}
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
-  auto writer = OpenStoreFile(path);
+  auto writer = OpenStoreFile(path, options.vfs);
   if (!writer.ok()) return writer.status();
-  auto reader = Database::Open(path, Database::Mode::kReadOnly);
+  auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
   if (!reader.ok()) return reader.status();
   return std::unique_ptr<Store>(
       new Store(*std::move(writer), *std::move(reader), std::move(options)));
@@ -33,7 +43,17 @@ Store::Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader,
 
 Store::~Store() { Close(); }
 
+// ---- posting ----
+
 absl::Status Store::Commit(Change change, Done done) {
+  return Await(std::move(change), std::move(done), false);
+}
+
+absl::Status Store::Flush() {
+  return Await([](Database&) { return absl::OkStatus(); }, nullptr, true);
+}
+
+absl::Status Store::Await(Change change, Done done, bool ordered) {
   // Shared: the store's thread may still be leaving set_value when this one returns.
   auto committed = std::make_shared<std::promise<absl::Status>>();
   std::future<absl::Status> result = committed->get_future();
@@ -41,6 +61,7 @@ absl::Status Store::Commit(Change change, Done done) {
   write.change = std::move(change);
   write.urgent = true;
   write.lasting = false;
+  write.ordered = ordered;
   write.done = [committed, done = std::move(done)](const absl::Status& status) {
     if (done) done(status);
     committed->set_value(status);
@@ -65,10 +86,11 @@ void Store::RecordSoon(Change change, Done done) {
 }
 
 void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
-                        std::function<std::string()> serialize) {
+                        std::function<std::string()> serialize, size_t bytes) {
   Write write;
   write.job = job;
   write.point = point;
+  write.bytes = bytes;
   write.change = [=, serialize = std::move(serialize)](Database& database) {
     Failpoint("block.before_insert");
     return InsertBlock(database, job, point, block, serialize());
@@ -76,13 +98,20 @@ void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
   Post(std::move(write));
 }
 
-void Store::RecordResult(int64_t job, PointRow row) {
+void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t number)> stored) {
+  const auto number = std::make_shared<int64_t>(0);
   Write write;
   write.job = job;
   write.point = row.point;
   write.is_result = true;
-  write.change = [job, row = std::move(row)](Database& database) {
-    return InsertResult(database, job, row);
+  write.bytes = row.result.size();
+  write.change = [job, row = std::move(row), number](Database& database) {
+    const absl::StatusOr<int64_t> inserted = InsertResult(database, job, row);
+    *number = inserted.value_or(0);
+    return inserted.status();
+  };
+  write.done = [number, stored = std::move(stored)](const absl::Status& status) {
+    if (status.ok() && stored && *number > 0) stored(*number);
   };
   Post(std::move(write));
 }
@@ -93,6 +122,9 @@ void Store::Post(Write write) {
     std::lock_guard lock(mutex_);
     if (!closing_) {
       urgent_ += write.urgent ? 1 : 0;
+      requests_ += write.lasting ? 0 : 1;
+      ordered_ += write.ordered ? 1 : 0;
+      bytes_ += write.bytes;
       pending_.push_back(std::move(write));
       posted_.notify_one();
       return;
@@ -110,12 +142,10 @@ absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
 void Store::AwaitRoom() {
   std::unique_lock lock(mutex_);
   written_.wait(lock, [this] {
-    return stop_waiting_ || closing_ || pending_.size() + in_batch_ <= options_.max_pending;
+    return stop_waiting_ || closing_ ||
+           (pending_.size() + in_batch_ <= options_.max_pending &&
+            bytes_ <= options_.max_pending_bytes);
   });
-}
-
-absl::Status Store::Flush() {
-  return Commit([](Database&) { return absl::OkStatus(); });
 }
 
 void Store::StopWaiting() {
@@ -142,6 +172,11 @@ void Store::Close() {
   writer_.reset();  // last: the last connection to close checkpoints
 }
 
+bool Store::failing() const {
+  std::lock_guard lock(mutex_);
+  return failing_;
+}
+
 int64_t Store::commits() const {
   std::lock_guard lock(mutex_);
   return commits_;
@@ -152,42 +187,69 @@ int64_t Store::blocks_written() const {
   return blocks_written_;
 }
 
+int64_t Store::failures() const {
+  std::lock_guard lock(mutex_);
+  return failures_;
+}
+
+int64_t Store::pending_writes() const {
+  std::lock_guard lock(mutex_);
+  return static_cast<int64_t>(pending_.size() + in_batch_);
+}
+
+// ---- which writes are next ----
+
 void Store::WriteUntilClosed() {
-  while (true) {
-    std::deque<Write> batch = AwaitBatch();
-    if (batch.empty()) return;
-    MarkSuperseded(batch);
-    const absl::Status status = CommitBatch(batch);
-    Settle(std::move(batch), status);
+  while (std::optional<Batch> batch = AwaitBatch()) {
+    MarkSuperseded(batch->writes);
+    const absl::Status status = CommitBatch(batch->writes);
+    Settle(*std::move(batch), status);
   }
 }
 
 bool Store::BatchIsDue(Clock::time_point now) const {
-  if (closing_) return true;
-  if (pending_.empty()) return false;
-  return urgent_ > 0 || pending_.front().due <= now;
+  if (closing_ || requests_ > 0) return true;
+  if (failing_) return !stop_waiting_ && retry_time_ <= now;
+  return urgent_ > 0 || (!pending_.empty() && pending_.front().due <= now);
 }
 
-// Empty only when the store is closed and nothing is left to write.
-std::deque<Store::Write> Store::AwaitBatch() {
+// None only when the store is closed and nothing is left to write.
+std::optional<Store::Batch> Store::AwaitBatch() {
   std::unique_lock lock(mutex_);
-  if (failing_ && urgent_ == 0) {
-    posted_.wait_for(lock, options_.retry,
-                     [this] { return closing_ || stop_waiting_ || urgent_ > 0; });
-  }
   while (!BatchIsDue(Clock::now())) {
-    if (pending_.empty()) {
+    if (failing_ && !stop_waiting_) {
+      posted_.wait_until(lock, retry_time_);
+    } else if (pending_.empty() || failing_) {
       posted_.wait(lock);
     } else {
       posted_.wait_until(lock, pending_.front().due);
     }
   }
-  urgent_ = 0;
-  in_batch_ = pending_.size();
-  return std::exchange(pending_, {});
+  if (closing_ && pending_.empty()) return std::nullopt;
+  return TakePending(closing_ || retry_time_ <= Clock::now());
 }
 
-void Store::MarkSuperseded(std::deque<Write>& batch) const {
+// While the disk fails and it is not yet time to `retry`, only requests: they are few and small.
+Store::Batch Store::TakePending(bool retry) {
+  Batch batch;
+  batch.whole = !failing_ || retry || ordered_ > 0;
+  batch.writes = batch.whole ? std::exchange(pending_, {}) : TakeRequests();
+  urgent_ -= batch.whole ? urgent_ : requests_;
+  requests_ = 0;
+  ordered_ = 0;
+  in_batch_ = batch.writes.size();
+  return batch;
+}
+
+Store::Writes Store::TakeRequests() {
+  const auto first = std::stable_partition(pending_.begin(), pending_.end(),
+                                           [](const Write& write) { return write.lasting; });
+  Writes requests(std::make_move_iterator(first), std::make_move_iterator(pending_.end()));
+  pending_.erase(first, pending_.end());
+  return requests;
+}
+
+void Store::MarkSuperseded(Writes& batch) const {
   std::set<std::pair<int64_t, int64_t>> finished;
   for (const Write& write : batch) {
     if (write.is_result) finished.emplace(write.job, write.point);
@@ -198,51 +260,137 @@ void Store::MarkSuperseded(std::deque<Write>& batch) const {
   }
 }
 
-absl::Status Store::CommitBatch(std::deque<Write>& batch) {
-  absl::Status status = writer_->Execute("BEGIN IMMEDIATE");
-  int64_t blocks = 0;
-  for (Write& write : batch) {
-    if (!status.ok()) break;
-    if (write.superseded) continue;
-    status = write.change(*writer_);
-    blocks += write.point >= 0 && !write.is_result ? 1 : 0;
+// ---- writing them ----
+
+absl::Status Store::CommitBatch(Writes& batch) {
+  size_t first = 0;
+  size_t group = std::max<size_t>(batch.size(), 1);
+  absl::Status status;
+  do {
+    const size_t last = std::min(first + group, batch.size());
+    status = CommitGroup(batch, first, last);
+    if (status.ok()) {
+      first = last;
+    } else if (absl::IsResourceExhausted(status)) {
+      WriteLogBack();
+      if (group <= kSmallestGroup) break;
+      group = std::max(kSmallestGroup, group / 2);
+    }
+  } while (first < batch.size() && (status.ok() || absl::IsResourceExhausted(status)));
+  if (absl::IsResourceExhausted(status)) return CommitRequestsAlone(batch, first, status);
+  return status;
+}
+
+// Of those from `first` on, the disk being `full`. OK if none of them has to wait.
+absl::Status Store::CommitRequestsAlone(Writes& batch, size_t first, const absl::Status& full) {
+  absl::Status failed = first < batch.size() ? absl::OkStatus() : full;
+  for (size_t i = first; i < batch.size(); ++i) {
+    const bool alone = !batch[i].lasting && !batch[i].ordered;
+    const absl::Status status = alone ? CommitGroup(batch, i, i + 1) : full;
+    if (!status.ok()) failed = status;
+  }
+  return failed;
+}
+
+absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
+  while (true) {
+    std::optional<size_t> culprit;
+    const absl::Status status = TryGroup(batch, first, last, culprit);
+    if (status.ok()) break;
+    writer_->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
+    if (!culprit || IsOfTheDisk(status)) return status;
+    Write& refused = batch[*culprit];
+    refused.outcome = status;
+    if (refused.lasting) LogError(absl::StrCat("a record is not kept: ", Text(status)));
+  }
+  std::lock_guard lock(mutex_);
+  ++commits_;
+  for (size_t i = first; i < last; ++i) {
+    Write& write = batch[i];
+    const bool is_block = write.point >= 0 && !write.is_result;
+    if (is_block && !write.superseded && !write.outcome) ++blocks_written_;
+    if (!write.outcome) write.outcome = absl::OkStatus();
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
+                             std::optional<size_t>& culprit) {
+  absl::Status status = BeginGroup();
+  for (size_t i = first; i < last && status.ok(); ++i) {
+    Write& write = batch[i];
+    if (write.superseded || write.outcome) continue;
+    try {
+      status = write.change(*writer_);
+    } catch (const std::bad_alloc&) {
+      status = absl::UnavailableError("store: out of memory");
+    }
+    if (!status.ok()) culprit = i;
   }
   Failpoint("store.before_commit");
   if (status.ok()) status = writer_->Execute("COMMIT");
   Failpoint("store.after_commit");
-  if (!status.ok()) {
-    writer_->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
-    return status;
-  }
-  std::lock_guard lock(mutex_);
-  ++commits_;
-  blocks_written_ += blocks;
   return status;
 }
 
-void Store::Settle(std::deque<Write> batch, const absl::Status& status) {
-  std::deque<Write> again;
-  for (Write& write : batch) {
-    if (!status.ok() && write.lasting) {
-      again.push_back(std::move(write));
-    } else if (write.done) {
-      write.done(status);
-    }
-  }
-  if (!status.ok()) LogError(status.message());
-  Requeue(std::move(again));
+// After a failure even an empty group writes something: that the disk works is seen by writing.
+absl::Status Store::BeginGroup() {
+  const absl::Status begun = writer_->Execute("BEGIN IMMEDIATE");
+  if (!begun.ok() || !failing()) return begun;
+  return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
 }
 
-void Store::Requeue(std::deque<Write> batch) {
+// What it cannot write back now stays in the log.
+void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").IgnoreError(); }
+
+// ---- what became of them ----
+
+void Store::Settle(Batch batch, const absl::Status& status) {
+  if (batch.whole) NoteHealth(status);  // before anybody hears of it
+  Writes again;
+  Writes settled;
+  size_t freed = 0;
+  for (Write& write : batch.writes) {
+    const bool waits = !write.outcome && write.lasting && !write.superseded;
+    if (!waits) freed += write.bytes;
+    (waits ? again : settled).push_back(std::move(write));
+  }
+  Requeue(std::move(again), freed);
+  for (const Write& write : settled) {
+    if (write.done) write.done(write.outcome.value_or(status));
+  }
+}
+
+void Store::Requeue(Writes again, size_t freed) {
   std::lock_guard lock(mutex_);
   in_batch_ = 0;
-  failing_ = !batch.empty();
-  if (!closing_ && !stop_waiting_) {
-    for (Write& write : batch) write.urgent = false;  // the wait before the next attempt decides
-    pending_.insert(pending_.begin(), std::make_move_iterator(batch.begin()),
-                    std::make_move_iterator(batch.end()));
+  bytes_ -= freed;
+  const bool dropped = closing_ || stop_waiting_;
+  for (const Write& write : again) {
+    if (dropped) bytes_ -= write.bytes;
+    if (!dropped && write.urgent) ++urgent_;
+  }
+  if (!dropped) {
+    pending_.insert(pending_.begin(), std::make_move_iterator(again.begin()),
+                    std::make_move_iterator(again.end()));
   }
   written_.notify_all();
+}
+
+// Told once, and again only if it fails in another way.
+void Store::NoteHealth(const absl::Status& status) {
+  std::lock_guard lock(mutex_);
+  if (!status.ok()) {
+    ++failures_;
+    retry_time_ = Clock::now() + options_.retry;
+    if (std::exchange(failure_, Text(status)) != Text(status)) {
+      LogError(absl::StrCat(Text(status), "; computed results wait until the disk works again"));
+    }
+  } else if (failing_) {
+    failure_.clear();
+    LogInfo("store: the disk works again");
+  }
+  failing_ = !status.ok();
 }
 
 }  // namespace ballpiston::server

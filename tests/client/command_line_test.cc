@@ -119,6 +119,8 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"plan", "equilibrium", "--format", "xml"},
                                                {"trace", "--events", "5"},
                                                {"list", "--server", "nowhere"},
+                                               {"status", "--format", "csv"},
+                                               {"status", "now"},
                                                {"analytic", "--rho", "0.53"},
                                                {"figure", "portrait", "--out", "x"},
                                                {"figure", "mean-free-time"},
@@ -188,7 +190,7 @@ TEST_F(CommandLineTest, VerbsOfLaterVersionsAreKnownAsSuch) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.err,
               "ballpiston: trace is not offered by this version; it offers analytic, plan, run, "
-              "submit, watch, result, list, cancel, delete, figure\n");
+              "submit, watch, result, list, cancel, delete, status, figure\n");
   }
 }
 
@@ -436,6 +438,39 @@ TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {
       WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--format", "jsonl"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out.rfind("{\"rho\":0.53,", 0), 0u);
+}
+
+TEST_F(CommandLineTest, StatusPrintsWhatTheServerTells) {
+  server_.server.status.set_version("1.2.3");
+  server_.server.status.set_queued_jobs(17);
+  server_.Start();
+  const Outcome table = WithServer({"status"});
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("server    1.2.3\n"));
+  EXPECT_THAT(table.out, HasSubstr("17 queued"));
+  EXPECT_EQ(table.err, "");
+  EXPECT_THAT(WithServer({"status", "--format", "json"}).out, HasSubstr("\"queued_jobs\":17,"));
+}
+
+TEST_F(CommandLineTest, StatusOfAPrivateServerAsksTheOneThatRuns) {
+  const PrivateHome home(server_.Address());
+  server_.Start();
+  EXPECT_EQ(Ballpiston({"status"}).code, 0);
+}
+
+// The one that could be started is /bin/false: its failure would be told.
+TEST_F(CommandLineTest, StatusStartsNoServer) {
+  const PrivateHome home(server_.Address());
+  const Outcome outcome = Ballpiston({"status"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err.rfind("ballpiston: no private server is running (", 0), 0u) << outcome.err;
+}
+
+TEST_F(CommandLineTest, StatusOfANamedServerThatIsNotThereNamesIt) {
+  const Outcome outcome = WithServer({"status"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("no answer from the server at " + server_.Address()));
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ void FakeServer::Start() {
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
   builder.RegisterService(&method);
+  builder.RegisterService(&server);
   server_ = builder.BuildAndStart();
 }
 

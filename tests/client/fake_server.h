@@ -13,6 +13,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/method.grpc.pb.h"
+#include "ballpiston/v1/server.grpc.pb.h"
 
 namespace ballpiston::client {
 
@@ -97,6 +98,16 @@ class FakeMethodService final : public v1::MethodService::Service {
                               grpc::ServerWriter<v1::MethodMeasurement>* writer) override;
 };
 
+class FakeServerService final : public v1::ServerService::Service {
+ public:
+  v1::ServerStatus status;
+  grpc::Status GetServerStatus(grpc::ServerContext*, const v1::GetServerStatusRequest*,
+                               v1::ServerStatus* answer) override {
+    *answer = status;
+    return grpc::Status::OK;
+  }
+};
+
 class FakeServer {
  public:
   FakeServer();
@@ -107,6 +118,7 @@ class FakeServer {
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
   FakeMethodService method;
+  FakeServerService server;
 
   std::string Address() const { return "unix:" + folder_ + "/socket"; }
   std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it

@@ -198,7 +198,7 @@ TEST_F(LadderTest, AToleranceThatAPilotAllowsIsAnsweredByTheSpectrum) {
   const std::string question = "energy-relaxation --rho 0.5296 --delta 0.005 --tolerance 0.02";
   const auto plan = Ask("plan " + question);
   EXPECT_THAT(ReasonOf(plan), HasSubstr("expected of a pilot"));
-  const std::vector<std::string> words = Words("run " + question + " --format json");
+  const std::vector<std::string> words = Words("run " + question + " --fresh --format json");
   const ProcessResult first = server_.Client(words);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const auto answer = ParseJson(first.out);

@@ -78,8 +78,10 @@ TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {
 }
 
 TEST_F(PrivateServerTest, ManyClientsAtOnceEndUpOnOneServer) {
+  std::vector<std::string> words = kRun;
+  words.push_back("--fresh");  // each wants an answer of its own
   std::vector<std::unique_ptr<Process>> clients;
-  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(Client(kRun)));
+  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(Client(words)));
   for (const auto& client : clients) {
     const ProcessResult result = client->Wait();
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -128,6 +130,19 @@ TEST_F(PrivateServerTest, ALongHomeIsNoObstacle) {
   options.environment["TMPDIR"] = home_.path().string();
   const ProcessResult result = RunProgram(options);
   EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST_F(PrivateServerTest, StatusLooksAtTheServerThatRunsAndStartsNone) {
+  const ProcessResult none = RunProgram(Client({"status"}));
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, HasSubstr("no private server is running"));
+  EXPECT_TRUE(Servers().empty());
+  EXPECT_FALSE(fs::exists(State("server.log")));
+
+  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+  const ProcessResult one = RunProgram(Client({"status", "--format", "json"}));
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(At(ParseJson(one.out), "stored_jobs").number_value(), 1);
 }
 
 }  // namespace

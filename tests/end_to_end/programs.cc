@@ -20,10 +20,11 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home) {
-  return {{"HOME", home.path().string()},
-          {"XDG_STATE_HOME", ""},
-          {"BALLPISTON_SERVER", ""},
-          {"BALLPISTON_SERVER_PROGRAM", ""}};
+  return {{"HOME", home.path().string()}, {"XDG_STATE_HOME", ""},
+          {"BALLPISTON_SERVER", ""},      {"BALLPISTON_CA", ""},
+          {"BALLPISTON_CERT", ""},        {"BALLPISTON_KEY", ""},
+          {"BALLPISTON_TLS", ""},         {"BALLPISTON_TOKEN", ""},
+          {"BALLPISTON_TOKEN_FILE", ""},  {"BALLPISTON_SERVER_PROGRAM", ""}};
 }
 
 ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {

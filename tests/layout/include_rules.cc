@@ -44,7 +44,8 @@ const std::vector<Rule>& Rules() {
       {"core/engine_version.h", {}, false},
       {"server/security/", {"server/", "absl/", "grpc/", "grpcpp/", "openssl/"}, true},
       {"server/",
-       {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h"},
+       {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h",
+        "prometheus/"},
        true},
       {"client/",
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
@@ -60,7 +61,8 @@ const std::vector<Rule>& Rules() {
        true},
       {"tests/",
        {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "google/", "absl/", "grpc/",
-        "grpcpp/", "sqlite3.h", "openssl/", "Eigen/", "gtest/", "gmock/", "benchmark/"},
+        "grpcpp/", "sqlite3.h", "openssl/", "prometheus/", "Eigen/", "gtest/", "gmock/",
+        "benchmark/"},
        true},
   };
   return *rules;

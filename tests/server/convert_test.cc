@@ -42,6 +42,23 @@ TEST(BlockRecord, GarbageIsDataLoss) {
   EXPECT_TRUE(absl::IsDataLoss(BlockResultFromBytes("\xff\xff\xff").status()));
 }
 
+TEST(BlockRecord, WhatItsExperimentCannotHaveWrittenIsDataLoss) {
+  const EnsembleSpec spec = {.experiment = Experiment::kEquilibrium,
+                             .grid = {.rho = {0.53}, .delta = {0.1}},
+                             .target = {.collisions = 1000}};
+  const auto experiment = PointExperiment::Create(spec, 0);
+  const BlockPlan& plan = experiment->plan();
+  const BlockResult empty = experiment->EmptyResult();
+  EXPECT_TRUE(CheckBlock(*experiment, 0, empty).ok());
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, plan.Blocks(), empty)));
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, BlockResult())));
+  BlockResult too_many = empty, no_error = empty;
+  too_many.samples = plan.SamplesIn(0) + 1;
+  no_error.health.max_energy_error = kNan;
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, too_many)));
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, no_error)));
+}
+
 v1::EnsembleSpec FirstHit() {
   v1::EnsembleSpec message;
   message.set_experiment(v1::EnsembleSpec::FIRST_HIT);
@@ -168,6 +185,17 @@ TEST(Spec, AFieldThatIsNotKnownIsAViolation) {
   v1::EnsembleSpec message;
   ASSERT_TRUE(message.ParseFromString(FirstHit().SerializeAsString() + "\xf8\x01\x01"));
   EXPECT_THAT(Fields(CheckSpec(message)), testing::ElementsAre("spec"));
+}
+
+// A message of 4 MiB may hold two million of them.
+TEST(Spec, OfManyFieldsThatAreNotKnownSomeAreTold) {
+  v1::EnsembleSpec message = FirstHit();
+  for (int i = 0; i < 10'000; ++i) {
+    message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);
+  }
+  const size_t told = CheckSpec(message).violations.size();
+  EXPECT_GE(told, 1u);
+  EXPECT_LE(told, 1000u);
 }
 
 TEST(Spec, NotANumberAndInfinityAreViolations) {

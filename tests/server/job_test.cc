@@ -1,14 +1,22 @@
 #include "server/jobs/job.h"
 
 #include <algorithm>
+#include <chrono>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/time/clock.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/jobs/job_journal.h"
 #include "server/jobs/job_name.h"
+#include "server/jobs/job_snapshot.h"
 #include "server/jobs/job_state.h"
+#include "server/store/job_table.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
@@ -23,10 +31,16 @@ JobRecord Record(int64_t points = 4) {
   return record;
 }
 
-Job::FinishedPoint Point(int index) {
+FinishedPoint Point(int number) {
   auto point = std::make_shared<v1::PointResult>();
-  point->set_index(index);
-  return point;
+  point->set_index(number);
+  return {number, point};
+}
+
+std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
+  std::vector<int64_t> numbers;
+  for (const FinishedPoint& point : points) numbers.push_back(point.number);
+  return numbers;
 }
 
 TEST(JobState, OnlyLegalTransitionsAreLegal) {
@@ -72,7 +86,7 @@ TEST(Job, TimesAreThoseOfTheTransitions) {
 
 TEST(Job, ProgressIsTheShareOfWorkDone) {
   Job job(Record(4), nullptr);
-  job.AddRestoredPoints(1, 100, {});
+  job.AddRestoredPoints(1, 100, 1);
   job.AddBlock(50, 0.5);
   const v1::JobProgress progress = job.Progress();
   EXPECT_EQ(progress.points(), 4);
@@ -89,20 +103,134 @@ TEST(Job, WithAToleranceThereIsNoFraction) {
   EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
 }
 
-TEST(Job, PointsFinishedSinceAreTheNewestFirst) {
+TEST(Job, APointIsDoneWhenItIsStored) {
+  Job job(Record(2), nullptr);
+  job.AddComputedPoint();
+  EXPECT_EQ(job.points_computed(), 1);
+  EXPECT_EQ(job.Progress().points_done(), 0);
+  const uint64_t before = job.last_change();
+  job.AddFinishedPoint(Point(1));
+  EXPECT_EQ(job.Progress().points_done(), 1);
+  EXPECT_EQ(job.last_finished(), 1);
+  EXPECT_GT(job.last_change(), before);
+}
+
+TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
   Job job(Record(1000), nullptr);
-  uint64_t change = 0;
-  for (int i = 0; i < 300; ++i) {
-    const uint64_t number = job.AddFinishedPoint(Point(i));
-    if (i == 290) change = number;
+  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(Point(number));
+  const auto last = static_cast<int64_t>(300 - kRecentPoints);
+  EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
+  EXPECT_EQ(job.FinishedAfter(last, 1000)->size(), kRecentPoints);
+  EXPECT_THAT(Numbers(*job.FinishedAfter(250, 3)), testing::ElementsAre(251, 252, 253));
+  EXPECT_THAT(Numbers(*job.FinishedAfter(298, 10)), testing::ElementsAre(299, 300));
+  EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
+}
+
+// A store of an older version numbers results with gaps.
+TEST(Job, RestoredPointsAreNotKept) {
+  Job job(Record(1000), nullptr);
+  job.AddRestoredPoints(3, 12, 70);
+  EXPECT_EQ(job.last_finished(), 70);
+  EXPECT_EQ(job.FinishedAfter(69, 10), std::nullopt);
+  EXPECT_TRUE(job.FinishedAfter(70, 10)->empty());
+  job.AddFinishedPoint(Point(75));
+  EXPECT_THAT(Numbers(*job.FinishedAfter(70, 10)), testing::ElementsAre(75));
+  EXPECT_EQ(job.Progress().points_done(), 4);
+}
+
+TEST(SharedSnapshot, IsMadeAnewOnlyIfItIsOldAndSomethingChanged) {
+  SharedSnapshot shared;
+  uint64_t made = 0;
+  const auto make = [&made] {
+    JobSnapshot snapshot;
+    snapshot.change = ++made;
+    return snapshot;
+  };
+  const auto ever = std::chrono::hours(1);
+  const auto never = std::chrono::milliseconds(0);
+  const auto first = shared.Get(1, ever, make);
+  EXPECT_EQ(shared.Get(2, ever, make), first);   // young
+  EXPECT_EQ(shared.Get(1, never, make), first);  // nothing changed
+  const auto second = shared.Get(2, never, make);
+  EXPECT_EQ(second->change, 2u);
+  EXPECT_EQ(made, 2u);
+}
+
+class JobJournalTest : public testing::Test {
+ protected:
+  // Nothing is committed before it is flushed.
+  void SetUp() override {
+    auto store = Store::Open(folder_.File("store"), {.delay = std::chrono::hours(1)});
+    ASSERT_TRUE(store.ok()) << store.status();
+    store_ = *std::move(store);
+    record_ = Record(3);
+    ASSERT_TRUE(
+        store_->Commit([this](Database& database) { return InsertJob(database, record_); }).ok());
+    job_ = std::make_shared<Job>(record_, nullptr);
+    journal_.emplace(job_, *store_, nullptr);
   }
-  EXPECT_EQ(job.FinishedSince(0, 1000).size(), kRecentPoints);
-  const auto since = job.FinishedSince(change, 1000);
-  ASSERT_EQ(since.size(), 9u);
-  EXPECT_EQ(since.front().point->index(), 299);
-  EXPECT_EQ(since.back().point->index(), 291);
-  EXPECT_EQ(job.FinishedSince(0, 3).size(), 3u);
-  EXPECT_TRUE(job.FinishedSince(job.last_change(), 10).empty());
+
+  void Finish(size_t point) {
+    const EnsembleSpec spec = FakeSpec(3, 1);
+    const auto experiment = FakeExperiments()(spec, point, std::stop_token());
+    journal_->PointFinished(point, *experiment, FakeMerged(spec, point, 1));
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<Store> store_;
+  JobRecord record_;
+  std::shared_ptr<Job> job_;
+  std::optional<JobJournal> journal_;
+};
+
+TEST_F(JobJournalTest, NothingIsToldThatIsNotOnDisk) {
+  journal_->Began();
+  Finish(2);
+  Finish(0);
+  EXPECT_EQ(job_->state(), EnsembleJob::QUEUED);
+  EXPECT_EQ(job_->last_finished(), 0);
+  ASSERT_TRUE(store_->Flush().ok());
+  EXPECT_EQ(job_->state(), EnsembleJob::RUNNING);
+  const auto told = *job_->FinishedAfter(0, 10);
+  EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
+  EXPECT_EQ(told[0].result->index(), 2);
+  EXPECT_EQ(told[1].result->index(), 0);
+}
+
+TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
+  for (const size_t point : {2, 0, 1}) Finish(point);
+  Finish(0);  // the first writer wins: no number for this one
+  ASSERT_TRUE(store_->Flush().ok());
+  std::vector<std::pair<int64_t, int64_t>> stored;
+  ASSERT_TRUE(store_
+                  ->Read([&](Database& database) {
+                    return ReadResultsStoredAfter(database, record_.sequence, 1,
+                                                  [&](int64_t number, const PointRow& row) {
+                                                    stored.emplace_back(number, row.point);
+                                                    return true;
+                                                  });
+                  })
+                  .ok());
+  EXPECT_THAT(stored, testing::ElementsAre(testing::Pair(2, 0), testing::Pair(3, 1)));
+  EXPECT_EQ(job_->last_finished(), 3);
+}
+
+// The results are told, and counted as told, only after the end was written down.
+TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
+  for (const size_t point : {0, 1, 2}) Finish(point);
+  journal_->Ended(absl::OkStatus());
+  ASSERT_TRUE(store_->Flush().ok());
+  std::optional<JobRecord> ended;
+  ASSERT_TRUE(store_
+                  ->Read([&](Database& database) {
+                    auto found = FindJob(database, record_.id);
+                    if (found.ok()) ended = *std::move(found);
+                    return found.status();
+                  })
+                  .ok());
+  EXPECT_EQ(ended->state, EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(ended->points_done, 3);
+  EXPECT_EQ(job_->Progress().points_done(), 3);
 }
 
 TEST(JobName, OnlyJobsHaveJobNames) {

@@ -107,23 +107,32 @@ TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
   while (server.server().IdleFor() < std::chrono::milliseconds(1)) std::this_thread::yield();
 }
 
-TEST(StartStop, HealthIsServedAndSaysWhenTheServerStops) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder.path()));
-  // grpc.health.v1 by hand: an empty request asks for the whole server; the answer's field 1 is
-  // its state, 1 for SERVING.
+// grpc.health.v1 by hand: the request's field 1 names a service, an empty one asks for the whole
+// server; the answer's field 1 is the state, 1 for SERVING.
+std::string HealthOf(RunningServer& server, const std::string& service) {
+  const std::string name =
+      service.empty() ? "" : std::string{'\x0a', static_cast<char>(service.size())} + service;
   grpc::GenericStub stub(server.channel());
-  const grpc::Slice nothing;
-  grpc::ByteBuffer request(&nothing, 1), response;
+  const grpc::Slice asked(name);
+  grpc::ByteBuffer request(&asked, 1), response;
   grpc::ClientContext context;
   std::promise<grpc::Status> done;
   stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
                  [&](grpc::Status status) { done.set_value(std::move(status)); });
   const grpc::Status status = done.get_future().get();
-  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_TRUE(status.ok()) << status.error_message();
   grpc::Slice slice;
-  ASSERT_TRUE(response.TrySingleSlice(&slice).ok());
-  EXPECT_EQ(std::string(slice.begin(), slice.end()), "\x08\x01");
+  EXPECT_TRUE(response.TrySingleSlice(&slice).ok());
+  return std::string(slice.begin(), slice.end());
+}
+
+TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder.path()));
+  for (const char* service : {"", "ballpiston.v1.EnsembleService", "ballpiston.v1.AnalyticService",
+                              "ballpiston.v1.MethodService", "ballpiston.v1.ServerService"}) {
+    EXPECT_EQ(HealthOf(server, service), "\x08\x01") << service;
+  }
 }
 
 }  // namespace

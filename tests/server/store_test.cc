@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <map>
+#include <new>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -325,6 +328,141 @@ TEST_F(StoreTest, ATruncatedFileIsRefused) {
   }
   std::filesystem::resize_file(File(), std::filesystem::file_size(File()) / 2);
   EXPECT_TRUE(absl::IsFailedPrecondition(Store::Open(File(), {}).status()));
+}
+
+// All that lies in the folder, by name.
+std::map<std::string, std::string> ContentsOfFolder(const std::string& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    contents[entry.path().filename()] = Contents(entry.path());
+  }
+  return contents;
+}
+
+void ExpectRefusedAndUntouched(const std::string& path, const std::string& why) {
+  const std::string folder = std::filesystem::path(path).parent_path();
+  const auto before = ContentsOfFolder(folder);
+  const auto store = Store::Open(path, {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr(why));
+  EXPECT_EQ(ContentsOfFolder(folder), before);
+}
+
+void WriteAt(const std::string& path, int64_t offset, const std::string& bytes) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(offset);
+  file << bytes;
+}
+
+// A store of some pages, closed.
+void MakeStore(const std::string& path, int jobs) {
+  const auto store = Store::Open(path, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_TRUE((*store)
+                  ->Commit([&](Database& database) {
+                    for (int i = 0; i < jobs; ++i) {
+                      JobRecord record = Record("job-" + std::to_string(i));
+                      record.spec = std::string(300, 's');
+                      if (const auto made = InsertJob(database, record); !made.ok()) return made;
+                    }
+                    return absl::OkStatus();
+                  })
+                  .ok());
+}
+
+TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
+  struct Damage {
+    const char* why;
+    std::function<void(const std::string&)> done;
+  };
+  const Damage damages[] = {
+      {"damaged", [](const std::string& path) { WriteAt(path, 0, "not a database"); }},
+      {"damaged", [](const std::string& path) { WriteAt(path, 100, std::string(8, '\x7f')); }},
+      {"damaged", [](const std::string& path) { WriteAt(path, 40960, std::string(4096, 'x')); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 20000); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 4096); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 10); }},
+      {"version -1", [](const std::string& path) { WriteAt(path, 60, "\xff\xff\xff\xff"); }},
+      {"newer", [](const std::string& path) { WriteAt(path, 60, std::string("\0\0\1\0", 4)); }},
+      {"not a ballpiston store", [](const std::string& path) { WriteAt(path, 68, "cake"); }},
+  };
+  for (const Damage& damage : damages) {
+    TemporaryFolder folder;
+    MakeStore(folder.File("store.sqlite3"), 200);
+    ASSERT_GT(std::filesystem::file_size(folder.File("store.sqlite3")), 50000u);
+    damage.done(folder.File("store.sqlite3"));
+    ExpectRefusedAndUntouched(folder.File("store.sqlite3"), damage.why);
+  }
+}
+
+TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
+  std::filesystem::create_directory(File());
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("is a folder"));
+  EXPECT_TRUE(std::filesystem::is_directory(File()));
+}
+
+TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
+  std::ofstream(File()).close();
+  EXPECT_GT(Insert(*Open(), Record("a")), 0);
+}
+
+// The log of a store that was in use, put beside another.
+TEST_F(StoreTest, TheLogOfAnotherStoreIsNoticed) {
+  TemporaryFolder other;
+  const auto used = Store::Open(other.File("store.sqlite3"), {});
+  for (int i = 0; i < 20; ++i) Insert(**used, Record("other-" + std::to_string(i)));
+  MakeStore(File(), 200);
+  std::filesystem::copy_file(other.File("store.sqlite3-wal"), File() + "-wal");
+  ExpectRefusedAndUntouched(File(), "damaged");
+}
+
+TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto broken = [](Database& database) {
+    return database.Execute(
+        "INSERT INTO results (job, point, samples, result) VALUES (1, 1, NULL, x'00')");
+  };
+  absl::Status told;
+  store->RecordBlock(1, 0, 0, [] { return "before"; });
+  store->Record(broken, [&](const absl::Status& status) { told = status; });
+  store->RecordBlock(1, 0, 1, [] { return "after"; });
+  const absl::Status commit = store->Commit(broken);
+  EXPECT_TRUE(absl::IsInvalidArgument(commit)) << commit;
+  EXPECT_TRUE(absl::IsInvalidArgument(told)) << told;
+  EXPECT_FALSE(store->failing());
+  EXPECT_EQ(store->pending_writes(), 0);
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0before", "1after"));
+}
+
+TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  absl::Status full = absl::ResourceExhaustedError("too many jobs");
+  full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
+  const absl::Status refused = store->Commit([&](Database& database) {
+    JobRecord record = Record("half");
+    EXPECT_TRUE(InsertJob(database, record).ok());
+    return full;
+  });
+  EXPECT_EQ(refused, full);
+  EXPECT_FALSE(store->failing());
+  EXPECT_FALSE(Find(*store, "half"));
+  EXPECT_EQ(Blocks(*store, 1, 0).size(), 1u);
+}
+
+TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
+  const auto store =
+      Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
+  int attempts = 0;
+  store->RecordBlock(1, 0, 0, [&]() -> std::string {
+    if (++attempts < 3) throw std::bad_alloc();
+    return "kept";
+  });
+  while (!store->Flush().ok()) {
+  }
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
 }
 
 TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {

@@ -101,6 +101,21 @@ TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   EXPECT_EQ(computed, 0);
 }
 
+TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  journal->stored[0].emplace(0, *experiment->RunBlock(0, {}));
+  journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
+  journal->stored[0].at(1).moments.resize(1000);
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  EXPECT_TRUE(absl::IsDataLoss(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
+}
+
 TEST(WorkerPool, FinishedPointsAreLeftAlone) {
   const EnsembleSpec spec = FakeSpec(4, 5);
   auto journal = std::make_shared<RecordingJournal>();
@@ -376,7 +391,7 @@ TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
   const EnsembleSpec spec = FakeSpec(4, 10);
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::minstd_rand random(seed);
-    Run run(Request(1, spec, nullptr), 3);
+    server::Run run(Request(1, spec, nullptr), 3);
     std::vector<RunTask> out;
     while (!run.over()) {
       std::optional<RunTask> task = run.NextTask();

@@ -41,5 +41,20 @@ TEST(BlockResult, MergeKeepsEverySample) {
   EXPECT_EQ(merged.health.max_energy_error, 2);
 }
 
+TEST(BlockResult, ShapesDifferInNumbersAndBins) {
+  const BlockResult block = Sample(1);
+  EXPECT_TRUE(Sample(2).HasShapeOf(block));
+  BlockResult moments = block, means = block, histograms = block, bins = block, range = block;
+  moments.moments.emplace_back();
+  means.batch_means.clear();
+  histograms.histograms.push_back(block.histograms[0]);
+  bins.histograms[0].counts.pop_back();
+  range.histograms[0].upper = 11;
+  for (const BlockResult& other : {moments, means, histograms, bins, range}) {
+    EXPECT_FALSE(other.HasShapeOf(block));
+    EXPECT_FALSE(block.HasShapeOf(other));
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

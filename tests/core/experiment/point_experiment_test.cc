@@ -74,6 +74,16 @@ TEST(PointExperiment, BlocksAreAPureFunctionOfTheirIndex) {
   }
 }
 
+TEST(BlockResult, EveryBlockHasTheShapeOfTheEmptyOne) {
+  for (const EnsembleSpec& spec : OneOfEach()) {
+    const auto point = PointExperiment::Create(spec, 0);
+    const BlockResult empty = point->EmptyResult();
+    EXPECT_TRUE(point->RunBlock(0, {})->HasShapeOf(empty)) << Described(spec);
+    EXPECT_EQ(empty.samples, 0u);
+    EXPECT_FALSE(BlockResult().HasShapeOf(empty)) << Described(spec);
+  }
+}
+
 TEST(PointExperiment, ResultDoesNotDependOnTheRestOfTheGrid) {
   for (EnsembleSpec spec : OneOfEach()) {
     SCOPED_TRACE(Described(spec));

@@ -1,0 +1,116 @@
+#include "client/output/status_output.h"
+
+#include <algorithm>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/output/json.h"
+#include "client/output/number_text.h"
+#include "client/output/spelling.h"
+#include "client/output/text_table.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr auto kLeft = TextTable::Column::kLeft;
+
+// 68 KiB, 1.2 GiB.
+std::string BytesText(double bytes) {
+  const char* const units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+  size_t unit = 0;
+  for (; bytes >= 1023.5 && unit + 1 < std::size(units); ++unit) bytes /= 1024;
+  return absl::StrFormat("%.*f %s", unit > 0 && bytes < 9.95 ? 1 : 0, bytes, units[unit]);
+}
+
+// In full as long as that can be read at a glance.
+std::string CountText(double count) {
+  return count < 1e7 ? ExactText(count) : absl::StrFormat("%.3g", count);
+}
+
+std::string LimitText(double limit) { return limit == 0 ? "no limit" : CountText(limit); }
+
+// 490 million a second.
+std::string SpeedText(double seconds) {
+  if (seconds <= 0) return "?";
+  const double rate = 1 / seconds;
+  return rate >= 1e6 ? absl::StrFormat("%.3g million", rate / 1e6) : absl::StrFormat("%.3g", rate);
+}
+
+std::string Started(const v1::ServerStatus& status, absl::Time now) {
+  const absl::Time start = absl::FromUnixSeconds(status.start_time().seconds());
+  const double up = std::max(0.0, absl::ToDoubleSeconds(now - start));  // clocks may differ
+  return absl::StrCat(absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", start, absl::UTCTimeZone()), ", ",
+                      DurationText(up), " ago");
+}
+
+std::string Computed(const v1::ServerStatus& status) {
+  return absl::StrCat(CountText(status.samples_computed()), " samples in ",
+                      CountText(status.blocks_computed()), " blocks, ",
+                      DurationText(status.processor_seconds()), " of processor time");
+}
+
+std::string Speed(const v1::ComputingRates& rates) {
+  return absl::StrCat(SpeedText(rates.wall_hit()), " wall hits/s, ", SpeedText(rates.jump()),
+                      " jumps/s, a core");
+}
+
+void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& out) {
+  TextTable table({{"server", kLeft}, {status.version(), kLeft}});
+  table.AddRow({"engine", status.engine_version()});
+  table.AddRow({"state", Spelling(status.state())});
+  table.AddRow({"started", Started(status, now)});
+  table.AddRow({"you", absl::StrCat(status.principal(), ", role ", status.role())});
+  table.AddRow({"jobs", absl::StrCat(CountText(status.queued_jobs()), " queued, ",
+                                     CountText(status.running_jobs()), " running, ",
+                                     CountText(status.stored_jobs()), " in the store")});
+  table.AddRow({"workers", absl::StrCat(status.busy_workers(), " of ", status.workers(), " busy")});
+  table.AddRow({"computed", Computed(status)});
+  if (status.has_rates()) table.AddRow({"speed", Speed(status.rates())});
+  table.AddRow({"streams", CountText(status.streams())});
+  table.AddRow({"store", BytesText(status.store_bytes())});
+  table.Print(out);
+}
+
+void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
+  TextTable table({{"limit", kLeft}, {"all"}, {"a principal"}});
+  table.AddRow({"active jobs", LimitText(limits.max_active_jobs()),
+                LimitText(limits.max_active_jobs_per_principal())});
+  table.AddRow(
+      {"streams", LimitText(limits.max_streams()), LimitText(limits.max_streams_per_principal())});
+  TextTable requests({{"limit", kLeft}, {"a job"}});
+  requests.AddRow({"points", LimitText(limits.max_points_per_job())});
+  requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
+  requests.AddRow({"message", limits.max_message_bytes() == 0
+                                  ? "no limit"
+                                  : BytesText(limits.max_message_bytes())});
+  out << '\n';
+  table.Print(out);
+  out << '\n';
+  requests.Print(out);
+}
+
+void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {
+  if (status.principals().empty()) return;
+  TextTable table({{"principal", kLeft}, {"queued"}, {"running"}, {"streams"}});
+  for (const v1::PrincipalStatus& principal : status.principals()) {
+    table.AddRow({principal.principal(), CountText(principal.queued_jobs()),
+                  CountText(principal.running_jobs()), CountText(principal.streams())});
+  }
+  out << '\n';
+  table.Print(out);
+}
+
+}  // namespace
+
+void PrintStatus(const v1::ServerStatus& status, absl::Time now, Format format, std::ostream& out) {
+  if (format != Format::kTable) {
+    out << Json(status) << '\n';
+    return;
+  }
+  PrintServer(status, now, out);
+  PrintPrincipals(status, out);
+  if (status.has_limits()) PrintLimits(status.limits(), out);
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,96 @@
+#include <map>
+#include <string>
+
+#include "server/api/methods.h"
+#include "server/api/take_snapshot.h"
+#include "server/convert/plan.h"
+#include "server/store/job_table.h"
+
+namespace ballpiston::server {
+namespace {
+
+v1::ServerStatus::State StateOf(const ServerSnapshot& now) {
+  if (now.draining) return v1::ServerStatus::DRAINING;
+  return now.store_failing ? v1::ServerStatus::STORE_FAILING : v1::ServerStatus::SERVING;
+}
+
+void SetTime(absl::Time time, google::protobuf::Timestamp& message) {
+  const int64_t seconds = absl::ToUnixSeconds(time);
+  message.set_seconds(seconds);
+  message.set_nanos(
+      static_cast<int32_t>((time - absl::FromUnixSeconds(seconds)) / absl::Nanoseconds(1)));
+}
+
+v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
+  v1::ServerStatus status;
+  status.set_state(StateOf(now));
+  status.set_version(now.version);
+  status.set_engine_version(now.engine_version);
+  SetTime(now.start_time, *status.mutable_start_time());
+  status.set_workers(now.workers);
+  status.set_busy_workers(now.busy_workers);
+  status.set_queued_jobs(static_cast<double>(now.queued_jobs));
+  status.set_running_jobs(static_cast<double>(now.running_jobs + now.cancelling_jobs));
+  status.set_streams(static_cast<double>(now.streams));
+  status.set_store_bytes(static_cast<double>(now.store_bytes));
+  status.set_blocks_computed(now.blocks_computed);
+  status.set_samples_computed(now.samples_computed);
+  status.set_processor_seconds(now.processor_seconds);
+  return status;
+}
+
+v1::ServerLimits LimitsMessage(const Limits& limits) {
+  v1::ServerLimits message;
+  message.set_max_active_jobs(static_cast<double>(limits.max_active_jobs));
+  message.set_max_active_jobs_per_principal(
+      static_cast<double>(limits.max_active_jobs_per_principal));
+  message.set_max_points_per_job(static_cast<double>(limits.max_points_per_job));
+  message.set_max_samples_per_job(limits.max_samples_per_job);
+  message.set_max_streams(static_cast<double>(limits.max_streams));
+  message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
+  message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
+  return message;
+}
+
+// 0 if the store cannot be read: the rest is worth telling then, too.
+double StoredJobs(Store& store) {
+  double jobs = 0;
+  store
+      .Read([&](Database& database) {
+        const auto count = CountJobs(database);
+        if (count.ok()) jobs = static_cast<double>(*count);
+        return count.status();
+      })
+      .IgnoreError();
+  return jobs;
+}
+
+void AddPrincipals(const ServiceContext& service, const Principal& caller,
+                   v1::ServerStatus& status) {
+  const std::map<std::string, int64_t> streams = service.watches.StreamsByPrincipal();
+  for (const auto& [name, jobs] : service.book.ActiveByPrincipal()) {
+    if (!caller.MaySee(name)) continue;
+    v1::PrincipalStatus& principal = *status.add_principals();
+    principal.set_principal(name);
+    principal.set_queued_jobs(static_cast<double>(jobs.queued));
+    principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
+    const auto own = streams.find(name);
+    principal.set_streams(own == streams.end() ? 0 : static_cast<double>(own->second));
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
+                                                 const v1::GetServerStatusRequest&) {
+  v1::ServerStatus status = StatusMessage(TakeSnapshot(service));
+  status.set_stored_jobs(StoredJobs(service.store));
+  *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
+  *status.mutable_limits() = LimitsMessage(service.limits);
+  status.set_principal(call.caller.name);
+  status.set_role(RoleName(call.caller.role));
+  AddPrincipals(service, call.caller, status);
+  return status;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,64 @@
+#include "server/api/take_snapshot.h"
+
+#include <sys/stat.h>
+
+#include "absl/strings/str_cat.h"
+#include "server/convert/spec.h"
+#include "server/version.h"
+
+namespace ballpiston::server {
+namespace {
+
+// 0 if there is no such file.
+int64_t FileBytes(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
+}
+
+void AddJobs(const JobBook& book, ServerSnapshot& snapshot) {
+  for (const auto& [principal, jobs] : book.ActiveByPrincipal()) {
+    snapshot.queued_jobs += jobs.queued;
+    snapshot.running_jobs += jobs.running;
+    snapshot.cancelling_jobs += jobs.cancelling;
+  }
+  const EndedJobs ended = book.ended_jobs();
+  snapshot.jobs_succeeded = ended.succeeded;
+  snapshot.jobs_failed = ended.failed;
+  snapshot.jobs_cancelled = ended.cancelled;
+}
+
+void AddWork(const PoolCounts& work, ServerSnapshot& snapshot) {
+  snapshot.workers = work.workers;
+  snapshot.busy_workers = work.busy;
+  snapshot.blocks_computed = work.blocks;
+  snapshot.samples_computed = work.samples;
+  snapshot.processor_seconds = work.processor_seconds;
+}
+
+void AddStore(const ServiceContext& service, ServerSnapshot& snapshot) {
+  snapshot.store_bytes =
+      FileBytes(service.store_path) + FileBytes(absl::StrCat(service.store_path, "-wal"));
+  snapshot.store_commits = service.store.commits();
+  snapshot.store_blocks_written = service.store.blocks_written();
+  snapshot.store_pending_writes = service.store.pending_writes();
+  snapshot.store_failing = service.store.failing();
+}
+
+}  // namespace
+
+ServerSnapshot TakeSnapshot(const ServiceContext& service) {
+  ServerSnapshot snapshot;
+  snapshot.version = kVersion;
+  snapshot.engine_version = EngineVersion();
+  snapshot.start_time = service.start_time;
+  snapshot.draining = service.draining;
+  AddJobs(service.book, snapshot);
+  AddWork(service.book.pool_counts(), snapshot);
+  AddStore(service, snapshot);
+  snapshot.streams = static_cast<int64_t>(service.watches.size());
+  snapshot.failed_authentications = service.calls.not_let_in();
+  snapshot.limit_refusals = service.calls.limits_reached();
+  return snapshot;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,196 @@
+#include "server/observability/call_observer.h"
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/observability/log.h"
+
+namespace ballpiston::server {
+namespace {
+
+using grpc::experimental::InterceptionHookPoints;
+using grpc::experimental::InterceptorBatchMethods;
+using grpc::experimental::ServerRpcInfo;
+using Clock = std::chrono::steady_clock;
+
+constexpr char kRequestId[] = "x-request-id";
+
+const char* TypeName(ServerRpcInfo::Type type) {
+  switch (type) {
+    case ServerRpcInfo::Type::UNARY:
+      return "unary";
+    case ServerRpcInfo::Type::CLIENT_STREAMING:
+      return "client_stream";
+    case ServerRpcInfo::Type::SERVER_STREAMING:
+      return "server_stream";
+    case ServerRpcInfo::Type::BIDI_STREAMING:
+      return "bidi_stream";
+  }
+  return "unary";
+}
+
+std::string ReasonIn(const std::string& error_details) {
+  google::rpc::Status status;
+  google::rpc::ErrorInfo info;
+  if (!status.ParseFromString(error_details)) return "";
+  for (const google::protobuf::Any& detail : status.details()) {
+    if (detail.UnpackTo(&info)) return info.reason();
+  }
+  return "";
+}
+
+std::string MethodIn(absl::string_view path) {
+  return std::string(path.substr(path.rfind('/') + 1));
+}
+
+}  // namespace
+
+Verdict VerdictOn(const FailedCall& call) {
+  switch (call.code) {
+    case absl::StatusCode::kUnauthenticated:
+    case absl::StatusCode::kPermissionDenied:
+      return Verdict::kNotLetIn;
+    case absl::StatusCode::kResourceExhausted:  // the disk may be what is exhausted
+      return absl::StartsWith(call.reason, "STORE_") ? Verdict::kServerFailed
+                                                     : Verdict::kLimitReached;
+    case absl::StatusCode::kUnavailable:
+      return call.reason == "SHUTTING_DOWN" ? Verdict::kOrdinary : Verdict::kServerFailed;
+    case absl::StatusCode::kUnknown:
+    case absl::StatusCode::kInternal:
+    case absl::StatusCode::kDataLoss:
+      return Verdict::kServerFailed;
+    default:
+      return Verdict::kOrdinary;
+  }
+}
+
+// One call. Its hooks run one after the other.
+class CallObserver::Interceptor : public grpc::experimental::Interceptor {
+ public:
+  Interceptor(CallObserver& observer, ServerRpcInfo& info)
+      : observer_(observer),
+        call_(*info.server_context()),
+        path_(info.method()),
+        counts_(observer.statistics_.Of(path_, TypeName(info.type()))),
+        begin_(Clock::now()) {
+    counts_.Began();
+  }
+
+  ~Interceptor() override {
+    if (!ended_) counts_.Ended(absl::StatusCode::kCancelled, Seconds());
+    observer_.Ended(call_);
+  }
+
+  void Intercept(InterceptorBatchMethods* batch) override {
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS))
+      StatusOf(*batch);
+    batch->Proceed();
+  }
+
+ private:
+  double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+  void StatusOf(InterceptorBatchMethods& batch) {
+    if (ended_.exchange(true)) return;
+    const grpc::Status status = batch.GetSendStatus();
+    const auto code = static_cast<absl::StatusCode>(status.error_code());
+    const double seconds = Seconds();
+    counts_.Ended(code, seconds);
+    const std::string principal = observer_.Ended(call_);
+    if (status.ok()) return;
+    const auto* trailing = batch.GetSendTrailingMetadata();
+    const auto id = trailing->find(kRequestId);
+    observer_.Failed({.method = MethodIn(path_),
+                      .principal = principal,
+                      .request_id = id == trailing->end() ? "" : id->second,
+                      .code = code,
+                      .reason = ReasonIn(status.error_details()),
+                      .message = status.error_message(),
+                      .seconds = seconds});
+  }
+
+  CallObserver& observer_;
+  const grpc::ServerContextBase& call_;
+  const std::string path_;
+  MethodCounts& counts_;
+  const Clock::time_point begin_;
+  std::atomic<bool> ended_ = false;
+};
+
+class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
+ public:
+  explicit Factory(CallObserver& observer) : observer_(observer) {}
+  grpc::experimental::Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
+    return new Interceptor(observer_, *info);
+  }
+
+ private:
+  CallObserver& observer_;
+};
+
+std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>
+CallObserver::InterceptorFactory() {
+  return std::make_unique<Factory>(*this);
+}
+
+// ---- who calls ----
+
+void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
+  std::lock_guard lock(mutex_);
+  callers_[&call] = principal;
+}
+
+std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
+  std::lock_guard lock(mutex_);
+  const auto node = callers_.extract(&call);
+  return node.empty() ? "" : std::move(node.mapped());
+}
+
+// ---- what failed ----
+
+void CallObserver::Failed(const FailedCall& call) {
+  const Verdict verdict = VerdictOn(call);
+  if (verdict == Verdict::kOrdinary) return;
+  const std::string reason =
+      call.reason.empty() ? absl::StatusCodeToString(call.code) : call.reason;
+  if (verdict != Verdict::kServerFailed) {
+    std::lock_guard lock(mutex_);
+    ++(verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)[reason];
+  }
+  WriteLine(call, verdict);
+}
+
+void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
+  const bool failed = verdict == Verdict::kServerFailed;
+  const std::optional<int64_t> left_out = (failed ? failures_ : refusals_).Take(Clock::now());
+  if (!left_out) return;
+  const char* what = failed                          ? "call failed: "
+                     : verdict == Verdict::kNotLetIn ? "call not let in: "
+                                                     : "call refused: ";
+  Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
+      {{"method", call.method},
+       {"principal", call.principal},
+       {"request_id", call.request_id},
+       {"code", absl::StatusCodeToString(call.code)},
+       {"reason", call.reason},
+       {"seconds", call.seconds},
+       {"lines_left_out", *left_out == 0 ? "" : absl::StrCat(*left_out)}});
+}
+
+std::map<std::string, uint64_t> CallObserver::not_let_in() const {
+  std::lock_guard lock(mutex_);
+  return not_let_in_;
+}
+
+std::map<std::string, uint64_t> CallObserver::limits_reached() const {
+  std::lock_guard lock(mutex_);
+  return limits_reached_;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,82 @@
+// Sees every call of every service begin and end: counts it, remembers who makes it while it runs,
+// and writes a line for each that the server failed at or refused.
+//
+// It sits inside gRPC (an interceptor), so it also sees calls that never reach their method: a
+// message that is malformed, health, reflection. A call counts as ended just before its status is
+// sent: whoever has the answer finds it counted. A method that no service offers is not counted:
+// anybody could invent any number of them. Thread-safe.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "absl/status/status.h"
+#include "grpcpp/server_context.h"
+#include "grpcpp/support/server_interceptor.h"
+#include "server/observability/call_statistics.h"
+#include "server/observability/line_budget.h"
+
+namespace ballpiston::server {
+
+// A call that ended with anything but OK.
+struct FailedCall {
+  std::string method;      // WatchEnsembleJob
+  std::string principal;   // empty: it was not let in
+  std::string request_id;  // empty: it was not looked at by the project's own frame
+  absl::StatusCode code = absl::StatusCode::kUnknown;
+  std::string reason;  // of its ErrorInfo, if there is one
+  std::string message;
+  double seconds = 0;
+};
+
+// What an operator is told of.
+enum class Verdict {
+  kOrdinary,      // the request was wrong, the job is not there, the client left: nothing
+  kNotLetIn,      // no credentials, wrong ones, or a role too low
+  kLimitReached,  // a limit of the server's, or of the caller's, is reached
+  kServerFailed   // an error of the server's own, or of its disk
+};
+Verdict VerdictOn(const FailedCall& call);
+
+class CallObserver {
+ public:
+  // For ServerBuilder::experimental().SetInterceptorCreators. This has to outlive the server.
+  std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
+
+  // Who makes the call, for the log. Before its method runs.
+  void Identify(const grpc::ServerContextBase& call, const std::string& principal);
+
+  CallStatistics& statistics() { return statistics_; }
+  const CallStatistics& statistics() const { return statistics_; }
+
+  // Calls that were not let in, and those refused because a limit was reached, by reason.
+  std::map<std::string, uint64_t> not_let_in() const;
+  std::map<std::string, uint64_t> limits_reached() const;
+
+  // Counts and logs. For the interceptors, and for tests.
+  void Failed(const FailedCall& call);
+
+ private:
+  class Interceptor;
+  class Factory;
+
+  std::string Ended(const grpc::ServerContextBase& call);  // returns who made it
+  void WriteLine(const FailedCall& call, Verdict verdict);
+
+  CallStatistics statistics_;
+  LineBudget refusals_{10, std::chrono::seconds(1)};
+  LineBudget failures_{10, std::chrono::seconds(1)};
+
+  mutable std::mutex mutex_;
+  std::map<const grpc::ServerContextBase*, std::string> callers_;  // of calls in progress
+  std::map<std::string, uint64_t> not_let_in_;
+  std::map<std::string, uint64_t> limits_reached_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_

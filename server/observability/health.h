@@ -1,0 +1,52 @@
+// What grpc.health.v1 answers: each service by its name, and the empty name for the whole server.
+//
+// While the disk refuses writes, the services that need it are NOT_SERVING, so that who can choose
+// asks another server; the others, and the whole server, go on: whoever restarts what is not
+// healthy would not help the disk. When the server stops, all are NOT_SERVING, for good.
+// Thread-safe.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "grpcpp/health_check_service_interface.h"
+
+namespace ballpiston::server {
+
+class Health {
+ public:
+  struct Services {
+    std::vector<std::string> all;
+    std::vector<std::string> with_store;  // among them
+  };
+
+  // `store_fails` is asked every `interval`, on a thread of its own. `health` has to outlive this.
+  Health(grpc::HealthCheckServiceInterface& health, Services services,
+         std::function<bool()> store_fails, std::chrono::milliseconds interval);
+  ~Health();
+
+  void Drain();
+
+ private:
+  void Look();
+
+  grpc::HealthCheckServiceInterface& health_;
+  const Services services_;
+  const std::function<bool()> store_fails_;
+  const std::chrono::milliseconds interval_;
+
+  std::mutex mutex_;
+  std::condition_variable stop_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_

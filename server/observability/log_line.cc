@@ -1,0 +1,124 @@
+#include "server/observability/log_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/observability/utf8.h"
+
+namespace ballpiston::server {
+namespace {
+
+// Of the escaped texts; together with at most twelve fields they stay below kMaxLogLine.
+constexpr size_t kMaxMessage = 1500;
+constexpr size_t kMaxValue = 160;
+constexpr absl::string_view kCut = "...";
+
+// Controls of either kind, the separators of lines and paragraphs, and what turns the direction of
+// writing: none of them is to reach a terminal, nor end a line.
+bool IsHarmless(uint32_t c) {
+  const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0);
+  const bool separator = c == 0x2028 || c == 0x2029;
+  const bool direction = (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+  return !control && !separator && !direction;
+}
+
+// As JSON writes a character that it cannot, or need not, hold as it is.
+std::string Escape(uint32_t c) {
+  if (c == '\n') return "\\n";
+  if (c < 0x10000) return absl::StrFormat("\\u%04x", c);
+  const uint32_t rest = c - 0x10000;
+  return absl::StrFormat("\\u%04x\\u%04x", 0xD800 + (rest >> 10), 0xDC00 + (rest & 0x3FF));
+}
+
+// `quoted`: quotes and backslashes are escaped as well. JSON has ASCII only.
+std::string Escaped(absl::string_view text, bool ascii, bool quoted, size_t limit) {
+  std::string escaped;
+  while (!text.empty()) {
+    const Utf8Character c = TakeUtf8(text);
+    std::string next;
+    if (quoted && (c.code == '"' || c.code == '\\')) {
+      next = {'\\', static_cast<char>(c.code)};
+    } else if (!IsHarmless(c.code) || (ascii && c.code >= 0x80)) {
+      next = Escape(c.code);
+    } else {
+      next = std::string(c.bytes);
+    }
+    if (escaped.size() + next.size() > limit) return absl::StrCat(escaped, kCut);
+    escaped += next;
+  }
+  return escaped;
+}
+
+const char* Name(Severity severity) {
+  return severity == Severity::kInfo      ? "INFO"
+         : severity == Severity::kWarning ? "WARNING"
+                                          : "ERROR";
+}
+
+std::string JsonQuoted(absl::string_view text, size_t limit) {
+  return absl::StrCat("\"", Escaped(text, true, true, limit), "\"");
+}
+
+std::string JsonLine(absl::Time now, Severity severity, absl::string_view message,
+                     LogFields fields) {
+  std::string line = absl::StrCat(
+      "{\"time\":\"", absl::FormatTime("%Y-%m-%dT%H:%M:%E6SZ", now, absl::UTCTimeZone()),
+      "\",\"severity\":\"", Name(severity), "\",\"message\":", JsonQuoted(message, kMaxMessage));
+  for (const LogField& field : fields) {
+    if (field.value.empty()) continue;
+    absl::StrAppend(&line, ",\"", field.name,
+                    "\":", field.is_number ? field.value : JsonQuoted(field.value, kMaxValue));
+  }
+  return absl::StrCat(line, "}\n");
+}
+
+bool IsPlain(absl::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return absl::ascii_isalnum(static_cast<unsigned char>(c)) ||
+           absl::string_view("-_./:@+%").find(c) != absl::string_view::npos;
+  });
+}
+
+std::string TextValue(const LogField& field) {
+  if (IsPlain(field.value) && field.value.size() <= kMaxValue) return field.value;
+  return absl::StrCat("\"", Escaped(field.value, false, true, kMaxValue), "\"");
+}
+
+std::string TextFields(LogFields fields) {
+  std::string text;
+  for (const LogField& field : fields) {
+    if (field.value.empty()) continue;
+    absl::StrAppend(&text, text.empty() ? "" : " ", field.name, "=", TextValue(field));
+  }
+  return text;
+}
+
+std::string TextLine(Severity severity, absl::string_view message, LogFields fields) {
+  const char* kind = severity == Severity::kInfo      ? ""
+                     : severity == Severity::kWarning ? "warning: "
+                                                      : "error: ";
+  const std::string told = TextFields(fields);
+  return absl::StrCat("ballpistond: ", kind, Escaped(message, false, false, kMaxMessage),
+                      told.empty() ? "" : absl::StrCat(" (", told, ")"), "\n");
+}
+
+}  // namespace
+
+// Infinity and what is no number have no place in JSON.
+LogField::LogField(const char* field, double number)
+    : name(field),
+      value(std::isfinite(number) ? absl::StrFormat("%.9g", number) : "null"),
+      is_number(true) {}
+
+std::string LogLine(LogFormat format, absl::Time now, Severity severity, absl::string_view message,
+                    LogFields fields) {
+  return format == LogFormat::kJson ? JsonLine(now, severity, message, fields)
+                                    : TextLine(severity, message, fields);
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,44 @@
+// One line of the log, as text. Pure functions.
+//
+//   kText  ballpistond: error: message (job=ensembleJobs/1f0c principal=alice)
+//   kJson  {"time":"2026-01-02T03:04:05.678901Z","severity":"ERROR","message":"...","job":"..."}
+//
+// Whatever a client sent may stand in a message or a value: control characters, quotes and bytes
+// that are no UTF-8 are escaped, so that it stays one line and looks like nothing else. Messages
+// and values are cut so that a line is at most kMaxLogLine bytes: a pipe takes that in one piece.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
+
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+
+#include "absl/strings/string_view.h"
+#include "absl/time/time.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kMaxLogLine = 4096;
+
+enum class Severity { kInfo, kWarning, kError };
+enum class LogFormat { kText, kJson };
+
+// A name and a text or a number. A field whose text is empty is left out.
+struct LogField {
+  LogField(const char* field, absl::string_view text) : name(field), value(text) {}
+  LogField(const char* field, double number);
+
+  const char* name;
+  std::string value;
+  bool is_number = false;
+};
+
+using LogFields = std::initializer_list<LogField>;
+
+// With the line's end.
+std::string LogLine(LogFormat format, absl::Time now, Severity severity, absl::string_view message,
+                    LogFields fields);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_

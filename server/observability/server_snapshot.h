@@ -1,0 +1,50 @@
+// What the server is doing, in numbers, at one moment.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "absl/time/time.h"
+
+namespace ballpiston::server {
+
+struct ServerSnapshot {
+  std::string version;
+  std::string engine_version;
+  absl::Time start_time;
+  bool draining = false;
+
+  // Active jobs, by state.
+  int64_t queued_jobs = 0;
+  int64_t running_jobs = 0;
+  int64_t cancelling_jobs = 0;
+  // Those that ended since the start.
+  uint64_t jobs_succeeded = 0;
+  uint64_t jobs_failed = 0;
+  uint64_t jobs_cancelled = 0;
+
+  int workers = 0;
+  int busy_workers = 0;
+  // Since the start.
+  double blocks_computed = 0;
+  double samples_computed = 0;
+  double processor_seconds = 0;  // of the workers
+
+  int64_t streams = 0;
+
+  int64_t store_bytes = 0;  // on disk, the log included
+  int64_t store_commits = 0;
+  int64_t store_blocks_written = 0;
+  int64_t store_pending_writes = 0;
+  bool store_failing = false;
+
+  // Calls that were turned away since the start, by reason.
+  std::map<std::string, uint64_t> failed_authentications;
+  std::map<std::string, uint64_t> limit_refusals;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_

@@ -1,0 +1,22 @@
+// Characters of UTF-8, one after the other. Pure function.
+#ifndef BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_
+#define BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_
+
+#include <cstdint>
+
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::server {
+
+struct Utf8Character {
+  uint32_t code = 0;
+  absl::string_view bytes;  // valid UTF-8
+};
+
+// Takes the first character off the text, which is not empty. A byte that begins none (cut short,
+// overlong, a surrogate, beyond U+10FFFF) counts as one character, U+FFFD.
+Utf8Character TakeUtf8(absl::string_view& text);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_OBSERVABILITY_UTF8_H_

@@ -1,0 +1,115 @@
+#include "server/store/backup.h"
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "server/store/folder_sync.h"
+#include "server/store/schema.h"
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+namespace {
+
+absl::Status TargetExists(const std::string& target) {
+  return absl::AlreadyExistsError(
+      absl::StrCat("backup ", target, ": there is such a file; name another one"));
+}
+
+absl::Status CannotWrite(const std::string& target, int error) {
+  const std::string what =
+      absl::StrCat("backup ", target, " cannot be written: ", std::strerror(error));
+  if (error == ENOSPC || error == EDQUOT) return absl::ResourceExhaustedError(what);
+  if (error == EIO) return absl::UnavailableError(what);
+  return absl::PermissionDeniedError(what);
+}
+
+// An empty file beside the target, for its owner only, that is gone when the object is.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& target) : path_(target + ".XXXXXX") {
+    const int file = mkostemp(path_.data(), O_CLOEXEC);
+    error_ = file < 0 ? errno : 0;
+    if (file >= 0) close(file);
+  }
+  ~TemporaryFile() {
+    if (error_ == 0) unlink(path_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  int error() const { return error_; }  // 0: it was made
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  int error_ = 0;
+};
+
+absl::Status Copy(Database& store, const std::string& path) {
+  const auto copy = Database::Open(path, Database::Mode::kReadWrite);
+  if (!copy.ok()) return copy.status();
+  // No journal: until it is complete it is nothing. Flushed once, at the end.
+  const absl::Status set = (*copy)->Execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
+  if (!set.ok()) return set;
+  const absl::Status copied = store.CopyTo(**copy);
+  if (!copied.ok()) return copied;
+  // Out of WAL mode, which the copied header says it is in.
+  const auto mode = (*copy)->Text("PRAGMA journal_mode = DELETE");
+  if (!mode.ok()) return mode.status();
+  return *mode == "delete" ? absl::OkStatus() : absl::InternalError("backup: it keeps a log");
+}
+
+absl::Status Sync(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = file >= 0 && fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) close(file);
+  return synced ? absl::OkStatus() : CannotWrite(path, error);
+}
+
+// Not over a file that has come to be there meanwhile.
+absl::Status MoveTo(const std::string& path, const std::string& target) {
+  if (renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
+    return absl::OkStatus();
+  }
+  if (errno == EEXIST) return TargetExists(target);
+  // This file system cannot tell; a moment ago there was none.
+  if (errno == EINVAL && rename(path.c_str(), target.c_str()) == 0) return absl::OkStatus();
+  return CannotWrite(target, errno);
+}
+
+}  // namespace
+
+absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
+  struct stat found {};
+  if (lstat(target.c_str(), &found) == 0) return TargetExists(target);
+  const auto source = OpenStoreToRead(store);
+  if (!source.ok()) return source.status();
+  const TemporaryFile copy(target);
+  if (copy.error() != 0) return CannotWrite(target, copy.error());
+  const absl::Status copied = Copy(**source, copy.path());
+  if (!copied.ok()) return copied;
+  absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
+  if (!summary.ok()) return summary.status();
+  if (!summary->sound()) {
+    return absl::DataLossError(absl::StrCat("backup ", target, " is not made: store ", store,
+                                            " is damaged (", summary->problems.front(),
+                                            "); --check tells more"));
+  }
+  absl::Status placed = Sync(copy.path());
+  if (placed.ok()) placed = MoveTo(copy.path(), target);
+  if (placed.ok()) placed = SyncFolder(FolderOf(target));
+  if (!placed.ok()) return placed;
+  return summary;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,44 @@
+// Whether a store is sound: SQLite's own check of every page and index, then ours of what is in it.
+//
+// Through a read-only connection, at one moment, also while a server uses the store (whose log
+// cannot be begun anew meanwhile, and grows). Takes about a second a gigabyte for the first part.
+#ifndef BALLPISTON_SERVER_STORE_CHECK_STORE_H_
+#define BALLPISTON_SERVER_STORE_CHECK_STORE_H_
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::server {
+
+inline constexpr size_t kMaxProblems = 100;
+
+struct StoreSummary {
+  int64_t version = 0;
+  int64_t bytes = 0;
+  std::map<std::string, int64_t> jobs;  // by state
+  int64_t results = 0;
+  int64_t blocks = 0;
+  std::vector<std::string> problems;  // a sentence each; the first kMaxProblems
+  int64_t problem_count = 0;
+
+  bool sound() const { return problem_count == 0; }
+};
+
+// What is checked: states and times belong together; specifications, results, blocks and errors can
+// be read; every result and block belongs to a point of a job; an ended job has as many results as
+// it says, one that succeeded all of them, and no ended job and no finished point has blocks.
+//   NOT_FOUND            no such file
+//   FAILED_PRECONDITION  no store of ours, newer, or too damaged to be opened
+absl::StatusOr<StoreSummary> CheckStore(const std::string& path,
+                                        const std::string& vfs = std::string());
+
+// For people: some lines, without a newline after the last.
+std::string SummaryText(const StoreSummary& summary);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_CHECK_STORE_H_

@@ -1,0 +1,103 @@
+#include "client/output/status_output.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/json_util.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+v1::ServerStatus Busy() {
+  v1::ServerStatus status;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+      R"(state: SERVING version: "0.1.0" engine_version: "0.3.0" start_time { seconds: 1700000000 }
+         workers: 2 busy_workers: 1 queued_jobs: 3 running_jobs: 1 streams: 4 store_bytes: 70048
+         stored_jobs: 1024 blocks_computed: 5000 samples_computed: 1.28e9
+         processor_seconds: 5400 rates { wall_hit: 2e-9 jump: 8e-9 }
+         limits { max_active_jobs: 10000 max_active_jobs_per_principal: 1000
+                  max_points_per_job: 100000 max_samples_per_job: 1e15 max_streams: 4096
+                  max_streams_per_principal: 2048 max_message_bytes: 4194304 }
+         principal: "alice" role: "submit"
+         principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 })",
+      &status));
+  return status;
+}
+
+std::string Printed(const v1::ServerStatus& status, Format format = Format::kTable) {
+  std::ostringstream out;
+  PrintStatus(status, absl::FromUnixSeconds(1700000000 + 7200), format, out);
+  return out.str();
+}
+
+TEST(StatusOutput, TheTableTellsAllAtAGlance) {
+  EXPECT_EQ(Printed(Busy()),
+            R"(server    0.1.0
+engine    0.3.0
+state     serving
+started   2023-11-14T22:13:20Z, 2.0 h ago
+you       alice, role submit
+jobs      3 queued, 1 running, 1024 in the store
+workers   1 of 2 busy
+computed  1.28e+09 samples in 5000 blocks, 1.5 h of processor time
+speed     500 million wall hits/s, 125 million jumps/s, a core
+streams   4
+store     68 KiB
+
+principal  queued  running  streams
+alice           3        1        4
+
+limit          all  a principal
+active jobs  10000         1000
+streams       4096         2048
+
+limit      a job
+points    100000
+samples    1e+15
+message  4.0 MiB
+)");
+}
+
+TEST(StatusOutput, ALimitOfZeroIsNone) {
+  v1::ServerStatus status = Busy();
+  status.mutable_limits()->Clear();
+  const std::string table = Printed(status);
+  EXPECT_THAT(table, HasSubstr("active jobs  no limit     no limit\n"));
+  EXPECT_THAT(table, HasSubstr("message  no limit\n"));
+}
+
+TEST(StatusOutput, StoppingAndAFailingStoreAreSaid) {
+  v1::ServerStatus status = Busy();
+  status.set_state(v1::ServerStatus::STORE_FAILING);
+  EXPECT_THAT(Printed(status), HasSubstr("state     store-failing\n"));
+  status.set_state(v1::ServerStatus::DRAINING);
+  EXPECT_THAT(Printed(status), HasSubstr("state     draining\n"));
+}
+
+TEST(StatusOutput, NobodyActiveIsNoTable) {
+  v1::ServerStatus status = Busy();
+  status.clear_principals();
+  EXPECT_THAT(Printed(status), Not(HasSubstr("principal  queued")));
+}
+
+TEST(StatusOutput, AServersClockAheadIsNoNegativeTime) {
+  v1::ServerStatus status = Busy();
+  status.mutable_start_time()->set_seconds(1700000000 + 9999);
+  EXPECT_THAT(Printed(status), HasSubstr(", 0 s ago"));
+}
+
+TEST(StatusOutput, JsonIsTheMessage) {
+  const std::string text = Printed(Busy(), Format::kJson);
+  v1::ServerStatus read;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text, &read).ok()) << text;
+  EXPECT_EQ(read.SerializeAsString(), Busy().SerializeAsString());
+  EXPECT_THAT(text, HasSubstr("\"queued_jobs\":3,"));
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,408 @@
+// The disk refuses a write or a flush, once or from then on: a call fails or has done its work,
+// never the one said and the other done, and what was computed is kept until the disk works again.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "google/rpc/error_details.pb.h"
+#include "gtest/gtest.h"
+#include "server/store/check_store.h"
+#include "tests/fault/store/fault_disk.h"
+#include "tests/fault/store/power_cut.h"
+#include "tests/fault/store/service_on_disk.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::IsEmpty;
+using Refusal = FaultDisk::Refusal;
+using v1::EnsembleJob;
+
+constexpr Refusal kRefusals[] = {Refusal::kFull, Refusal::kWriteError, Refusal::kSyncError};
+
+std::string NameOf(Refusal refusal) {
+  const char* const names[] = {"full", "write error", "sync error"};
+  return names[static_cast<size_t>(refusal)];
+}
+
+std::string ReasonOf(const absl::Status& status) {
+  const auto payload = status.GetPayload("type.googleapis.com/google.rpc.ErrorInfo");
+  google::rpc::ErrorInfo info;
+  if (payload) info.ParseFromString(std::string(*payload));
+  return info.reason();
+}
+
+void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
+  const bool full = refusal == Refusal::kFull;
+  EXPECT_EQ(status.code(),
+            full ? absl::StatusCode::kResourceExhausted : absl::StatusCode::kUnavailable)
+      << status;
+  EXPECT_EQ(ReasonOf(status), full ? "STORE_FULL" : "STORE_FAILED");
+}
+
+// A flush that succeeds does so when all that was pending is written.
+void AwaitWritten(Store& store) {
+  while (!store.Flush().ok()) {
+  }
+}
+
+// The job that a turnstile holds up, one that has ended, and the three calls that write.
+class Scene {
+ public:
+  Scene() : service_(std::make_unique<ServiceOnDisk>(disk_, &turnstile_)) {
+    EXPECT_TRUE(service_->status().ok()) << service_->status();
+    ended_ = Make(1);
+    turnstile_.AdmitAll();
+    service_->AwaitEnd(ended_);
+    turnstile_.AdmitNoMore();
+    running_ = Make(2);
+    turnstile_.AwaitWaiting();
+    turnstile_.Admit(1);
+    AwaitWritten(service_->store());
+    service_->WriteLogBackOften();
+  }
+
+  FaultDisk& disk() { return disk_; }
+  Turnstile& turnstile() { return turnstile_; }
+  ServiceOnDisk& service() { return *service_; }
+  const std::string& running() const { return running_; }
+
+  absl::Status Create() { return service_->Create(JobOf(1, 2, 3), "request").status(); }
+  absl::Status Cancel() { return service_->Cancel(running_, "cancel").status(); }
+  absl::Status Delete() { return service_->Delete(ended_); }
+
+  bool IsCreated() { return Count(*service_, 3) == 1; }
+  bool IsCancelled() {
+    const auto state = service_->Get(running_)->state();
+    return state == EnsembleJob::CANCELLING || state == EnsembleJob::CANCELLED;
+  }
+  bool IsDeleted() { return Count(*service_, 1) == 0; }
+
+  // Of a service, jobs with that seed.
+  static int Count(ServiceOnDisk& service, uint64_t seed) {
+    int count = 0;
+    for (const EnsembleJob& job : service.List()) count += job.spec().seed() == seed ? 1 : 0;
+    return count;
+  }
+
+  // The files as a power cut now would leave them.
+  DiskFiles CutNow(Survival survival) const {
+    const std::vector<DiskOperation> operations = disk_.operations();
+    return AfterPowerCut({}, operations, operations.size(), survival, 1);
+  }
+
+ private:
+  std::string Make(uint64_t seed) {
+    const auto job = service_->Create(JobOf(1, 3, seed), "");
+    EXPECT_TRUE(job.ok()) << job.status();
+    return job.ok() ? IdOf(*job) : "";
+  }
+
+  FaultDisk disk_;
+  Turnstile turnstile_;
+  std::unique_ptr<ServiceOnDisk> service_;
+  std::string ended_;
+  std::string running_;
+};
+
+struct Operation {
+  const char* name;
+  absl::Status (Scene::*call)();
+  bool (Scene::*is_done)();
+};
+
+constexpr Operation kOperations[] = {{"create", &Scene::Create, &Scene::IsCreated},
+                                     {"cancel", &Scene::Cancel, &Scene::IsCancelled},
+                                     {"delete", &Scene::Delete, &Scene::IsDeleted}};
+
+// One call on a disk that refuses its operation number `at` (and all later ones).
+class Refused {
+ public:
+  Refused(const Operation& operation, Refusal refusal, size_t at, bool persistent)
+      : operation_(operation), refusal_(refusal) {
+    const size_t first = scene_.disk().operation_count() + at;
+    if (persistent) {
+      scene_.disk().Refuse(refusal, first);
+    } else {
+      scene_.disk().Refuse(refusal, first, 1);
+    }
+    status_ = Call();
+  }
+
+  Scene& scene() { return scene_; }
+  bool was_refused() { return scene_.disk().refusals() > 0; }
+  absl::Status Call() { return (scene_.*operation_.call)(); }
+  bool IsDone() { return (scene_.*operation_.is_done)(); }
+
+  void ExpectNoFalseAnswer() {
+    EXPECT_EQ(IsDone(), status_.ok()) << status_;
+    if (!status_.ok()) ExpectDiskFailure(status_, refusal_);
+    if (!status_.ok()) {
+      EXPECT_GT(scene_.service().store().failures(), 0);
+    }
+  }
+
+  // What was said is so after a power cut; a failed call is in doubt, and asked again does its work
+  // once.
+  void ExpectItSurvives() {
+    for (const Survival survival : kSurvivals) {
+      FaultDisk left(scene_.CutNow(survival));
+      ServiceOnDisk service(left);
+      ASSERT_TRUE(service.status().ok()) << service.status();
+      const bool deletes = operation_.is_done == &Scene::IsDeleted;
+      if (status_.ok() && deletes) {
+        EXPECT_EQ(Scene::Count(service, 1), 0);
+      }
+      if (operation_.call != &Scene::Create) continue;
+      if (status_.ok()) {
+        EXPECT_EQ(Scene::Count(service, 3), 1);
+      }
+      EXPECT_TRUE(service.Create(JobOf(1, 2, 3), "request").ok());
+      EXPECT_EQ(Scene::Count(service, 3), 1);
+    }
+  }
+
+  // The disk works again: the repeated call does its work, and all goes on.
+  void ExpectItGoesOn() {
+    scene_.disk().StopRefusing();
+    const absl::Status again = Call();
+    scene_.turnstile().AdmitAll();
+    const bool done_before = absl::IsNotFound(again) && operation_.call == &Scene::Delete;
+    EXPECT_TRUE(again.ok() || done_before) << again;
+    EXPECT_TRUE(IsDone());
+    AwaitWritten(scene_.service().store());
+    EXPECT_FALSE(scene_.service().store().failing());
+    const EnsembleJob end = scene_.service().AwaitEnd(scene_.running());
+    const bool cancels = operation_.call == &Scene::Cancel;
+    EXPECT_EQ(end.state(), cancels ? EnsembleJob::CANCELLED : EnsembleJob::SUCCEEDED);
+    const auto summary = CheckStore(kStorePath, scene_.disk().vfs());
+    ASSERT_TRUE(summary.ok()) << summary.status();
+    EXPECT_THAT(summary->problems, IsEmpty());
+  }
+
+ private:
+  Scene scene_;
+  const Operation& operation_;
+  const Refusal refusal_;
+  absl::Status status_;
+};
+
+// Calls `test` for every operation of the disk that a call makes.
+void ForEachRefused(bool persistent, const std::function<void(Refused&)>& test) {
+  for (const Operation& operation : kOperations) {
+    for (const Refusal refusal : kRefusals) {
+      int refused = 0;
+      for (size_t at = 0; at < 100; ++at) {
+        SCOPED_TRACE(absl::StrCat(operation.name, ", ", NameOf(refusal), " at ", at));
+        Refused attempt(operation, refusal, at, persistent);
+        if (!attempt.was_refused() && at > 40) break;
+        if (!attempt.was_refused()) continue;  // another kind of operation
+        ++refused;
+        test(attempt);
+      }
+      EXPECT_GT(refused, 0) << operation.name << ", " << NameOf(refusal);
+    }
+  }
+}
+
+TEST(DiskFailure, ACallRefusedOnceHasFailedOrIsDone) {
+  ForEachRefused(false, [](Refused& attempt) {
+    attempt.ExpectNoFalseAnswer();
+    attempt.ExpectItSurvives();
+    attempt.ExpectItGoesOn();
+  });
+}
+
+TEST(DiskFailure, ACallRefusedUntilTheDiskWorksHasFailedOrIsDone) {
+  ForEachRefused(true, [](Refused& attempt) {
+    attempt.ExpectNoFalseAnswer();
+    attempt.ExpectItSurvives();
+    attempt.ExpectItGoesOn();
+  });
+}
+
+// The transaction whose flush failed is on the disk all the same when the power goes.
+TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
+  Scene scene;
+  scene.disk().Refuse(Refusal::kSyncError, scene.disk().operation_count());
+  ExpectDiskFailure(scene.Create(), Refusal::kSyncError);
+  EXPECT_FALSE(scene.IsCreated());
+  std::set<int> before;
+  const std::vector<DiskOperation> operations = scene.disk().operations();
+  const auto failed = std::find_if(operations.begin(), operations.end(),
+                                   [](const DiskOperation& done) { return done.refused; });
+  const auto cut = static_cast<size_t>(failed - operations.begin()) + 1;
+  for (const Survival survival : {Survival::kNothing, Survival::kEverything}) {
+    FaultDisk left(AfterPowerCut({}, operations, cut, survival, 0));
+    ServiceOnDisk service(left);
+    before.insert(Scene::Count(service, 3));
+    EXPECT_TRUE(service.Create(JobOf(1, 2, 3), "request").ok());
+    EXPECT_EQ(Scene::Count(service, 3), 1);
+  }
+  EXPECT_THAT(before, testing::ElementsAre(0, 1));  // so it was in doubt
+}
+
+TEST(DiskFailure, WhatIsComputedMeanwhileIsWrittenWhenTheDiskWorksAgain) {
+  for (const Refusal refusal : kRefusals) {
+    Scene scene;
+    scene.disk().Refuse(refusal, scene.disk().operation_count());
+    scene.turnstile().AdmitAll();
+    // The job's end has been tried and refused.
+    while (!scene.service().store().failing()) scene.service().store().Flush().IgnoreError();
+    EXPECT_EQ(scene.service().Get(scene.running())->state(), EnsembleJob::RUNNING);
+    scene.disk().StopRefusing();
+    EXPECT_EQ(scene.service().AwaitEnd(scene.running()).state(), EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(scene.service().Results(scene.running()).size(), 1u);
+    const auto summary = CheckStore(kStorePath, scene.disk().vfs());
+    EXPECT_TRUE(summary.ok() && summary->sound());
+  }
+}
+
+TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
+  Scene scene;
+  scene.disk().Refuse(Refusal::kWriteError, scene.disk().operation_count());
+  EXPECT_FALSE(scene.Create().ok());
+  EXPECT_TRUE(scene.service().store().failing());
+  const int64_t refusals = scene.disk().refusals();
+  while (scene.disk().refusals() < refusals + 3) std::this_thread::yield();  // it tries
+  EXPECT_TRUE(scene.service().store().failing());
+  scene.disk().StopRefusing();
+  while (scene.service().store().failing()) std::this_thread::yield();  // nobody asks for anything
+}
+
+// Not one more byte fits, but what the log held may be written over.
+TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
+  Scene scene;
+  Store& store = scene.service().store();
+  store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(100'000, 'x')});
+  EXPECT_TRUE(store.Flush().ok());  // a long log, which is written back
+  scene.disk().SetCapacity(scene.disk().bytes_used());
+  EXPECT_TRUE(scene.Delete().ok());
+  EXPECT_TRUE(scene.IsDeleted());
+  EXPECT_TRUE(scene.Cancel().ok());
+  EXPECT_EQ(scene.service().AwaitEnd(scene.running()).state(), EnsembleJob::CANCELLED);
+}
+
+// Results too big for the disk wait, and do not hold up those who would make room.
+TEST(DiskFailure, OnAFullDiskRequestsOvertakeWhatDoesNotFit) {
+  Scene scene;
+  Store& store = scene.service().store();
+  scene.disk().SetCapacity(scene.disk().bytes_used() + 100'000);
+  store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(400'000, 'x')});
+  EXPECT_FALSE(store.Flush().ok());
+  EXPECT_TRUE(store.failing());
+  EXPECT_TRUE(scene.Delete().ok());
+  EXPECT_TRUE(store.failing());
+  EXPECT_EQ(store.pending_writes(), 1);
+  scene.disk().StopRefusing();
+  AwaitWritten(store);
+  EXPECT_EQ(store.pending_writes(), 0);
+}
+
+// Many records of which some fit: in smaller groups they are written.
+TEST(DiskFailure, OnAFullDiskWhatFitsIsWritten) {
+  Scene scene;
+  Store& store = scene.service().store();
+  scene.disk().SetCapacity(scene.disk().bytes_used() + 300'000);
+  for (int point = 0; point < 1000; ++point) {
+    store.RecordResult(99, {.point = point, .samples = 1, .result = std::string(1000, 'x')});
+  }
+  EXPECT_FALSE(store.Flush().ok());
+  EXPECT_GT(store.pending_writes(), 100);
+  EXPECT_LT(store.pending_writes(), 900);
+}
+
+TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
+  FaultDisk disk;
+  Store::Options options;
+  options.retry = std::chrono::milliseconds(1);
+  options.max_pending_bytes = 1000;
+  options.vfs = disk.vfs();
+  const auto opened = Store::Open(kStorePath, options);
+  ASSERT_TRUE(opened.ok()) << opened.status();
+  Store& store = **opened;
+  disk.Refuse(Refusal::kWriteError, disk.operation_count());
+  store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(1001, 'x')});
+  EXPECT_FALSE(store.Flush().ok());
+  std::atomic<bool> has_room = false;
+  std::thread worker([&] {
+    store.AwaitRoom();
+    has_room = true;
+  });
+  const int64_t refusals = disk.refusals();
+  while (disk.refusals() < refusals + 3) std::this_thread::yield();
+  EXPECT_FALSE(has_room);
+  disk.StopRefusing();
+  worker.join();
+}
+
+// ---- a whole life with one refusal in it ----
+
+// Asks until it is answered, as the client library does.
+std::string CreateAtLast(ServiceOnDisk& service, uint64_t seed) {
+  while (true) {
+    const auto job = service.Create(JobOf(2, 3, seed), absl::StrCat("request-", seed));
+    if (job.ok()) return IdOf(*job);
+  }
+}
+
+// Submits and finishes three jobs; false if the disk refused nothing.
+bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>& results) {
+  FaultDisk disk;
+  { ServiceOnDisk made(disk); }
+  disk.Refuse(refusal, disk.operation_count() + at, 1);
+  {
+    ServiceOnDisk service(disk);
+    if (!service.status().ok()) return disk.refusals() > 0;  // refused to start: no false success
+    service.WriteLogBackOften();
+    for (const uint64_t seed : {7, 8, 9}) {
+      EXPECT_EQ(service.AwaitEnd(CreateAtLast(service, seed)).state(), EnsembleJob::SUCCEEDED);
+    }
+    const std::vector<DiskOperation> done = disk.operations();
+    for (const Survival survival : {Survival::kNothing, Survival::kTornSectors}) {
+      FaultDisk left(AfterPowerCut({}, done, done.size(), survival, at));
+      ServiceOnDisk again(left);
+      EXPECT_TRUE(again.status().ok()) << again.status();
+      for (const uint64_t seed : {7, 8, 9}) EXPECT_EQ(Scene::Count(again, seed), 1);
+      for (const EnsembleJob& job : again.List()) {
+        EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
+        if (job.spec().seed() == 7) {
+          EXPECT_EQ(again.Results(IdOf(job)), results);
+        }
+      }
+      const auto summary = CheckStore(kStorePath, left.vfs());
+      EXPECT_TRUE(summary.ok() && summary->sound());
+    }
+  }
+  return disk.refusals() > 0;
+}
+
+// Wherever in a life the disk fails once, and the power goes at its end.
+TEST(DiskFailure, AfterOneRefusalAnywhereAllThatWasToldIsThere) {
+  const size_t stride = std::getenv("BALLPISTON_TORTURE") != nullptr ? 1 : 3;
+  FaultDisk undisturbed;
+  ServiceOnDisk service(undisturbed);
+  const std::string id = CreateAtLast(service, 7);
+  service.AwaitEnd(id);
+  const std::vector<std::string> results = service.Results(id);
+  for (const Refusal refusal : kRefusals) {
+    int refused = 0;
+    for (size_t at = 0; at < 150; at += stride) {
+      SCOPED_TRACE(absl::StrCat(NameOf(refusal), " at ", at));
+      refused += LiveWithARefusal(refusal, at, results) ? 1 : 0;
+    }
+    EXPECT_GT(refused, 3);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

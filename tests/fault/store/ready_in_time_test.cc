@@ -1,0 +1,143 @@
+// How long a server takes to be ready with a large store. Measured in the long form only, where the
+// machine is this test's own.
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "gtest/gtest.h"
+#include "server/convert/point_result.h"
+#include "server/convert/spec.h"
+#include "server/jobs/job_book.h"
+#include "server/store/job_table.h"
+#include "server/store/point_tables.h"
+#include "server/store/store.h"
+#include "tests/fault/store/service_on_disk.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr int kEndedJobs = 100'000;
+constexpr int kUnfinishedJobs = 10'000;
+constexpr double kPermittedSeconds = 2;
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string ResultWithHistogram() {
+  v1::PointResult result;
+  auto* histogram = result.add_histograms();
+  for (int i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
+  return PointResultBytes(result);
+}
+
+JobRecord NewJob(int number) {
+  JobRecord record;
+  record.id = absl::StrCat("job-", number);
+  record.principal = LocalPrincipal().name;
+  record.spec = SpecBytes(JobOf(1, 2, static_cast<uint64_t>(number)));
+  record.question = absl::StrCat("question-", number);
+  record.engine_version = EngineVersion();
+  record.points = 1;
+  return record;
+}
+
+absl::Status AddEnded(Database& database, int number, const std::string& result) {
+  JobRecord record = NewJob(number);
+  const absl::Status made = InsertJob(database, record);
+  if (!made.ok()) return made;
+  const auto kept = InsertResult(database, record.sequence, {0, 8, result});
+  if (!kept.ok()) return kept.status();
+  return EndJob(database, record.sequence,
+                {v1::EnsembleJob::SUCCEEDED, absl::UnixEpoch(), "", 1, 8, 0.1})
+      .status();
+}
+
+absl::Status AddUnfinished(Database& database, int number, JobState state,
+                           const std::string& engine) {
+  JobRecord record = NewJob(number);
+  record.state = state;
+  record.engine_version = engine;
+  return InsertJob(database, record);
+}
+
+// Fills a store in one commit, and closes it.
+void Fill(const std::string& path, const Store::Change& change) {
+  const auto store = Store::Open(path, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const absl::Status filled = (*store)->Commit(change);
+  ASSERT_TRUE(filled.ok()) << filled;
+}
+
+// What stands between the start of a server and its first answer.
+double SecondsUntilReady(const std::string& path) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto store = Store::Open(path, {});
+  const double opened = SecondsSince(start);
+  EXPECT_TRUE(store.ok()) << store.status();
+  // Held up, so that what is measured is not what the jobs cost.
+  JobBook book(**store, Limits(), 2,
+               FakeExperiments(
+                   [](size_t, uint64_t, const std::stop_token& stop) { Turnstile().Pass(stop); }),
+               nullptr);
+  EXPECT_TRUE(book.Resume().ok());
+  const double resumed = SecondsSince(start);
+  EXPECT_TRUE(book.List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 50).ok());
+  const double ready = SecondsSince(start);
+  std::cout << "opened after " << opened << " s, resumed after " << resumed << " s, listed after "
+            << ready << " s\n";
+  return ready;
+}
+
+class ReadyInTime : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("BALLPISTON_TORTURE") == nullptr) GTEST_SKIP() << "measures time";
+  }
+  std::string File() const { return folder_.File("store.sqlite3"); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ReadyInTime, WithAHundredThousandEndedJobs) {
+  const std::string result = ResultWithHistogram();
+  Fill(File(), [&](Database& database) {
+    for (int i = 0; i < kEndedJobs; ++i) {
+      if (const absl::Status added = AddEnded(database, i, result); !added.ok()) return added;
+    }
+    return absl::OkStatus();
+  });
+  std::cout << std::filesystem::file_size(File()) / 1'000'000 << " MB, ";
+  EXPECT_LT(SecondsUntilReady(File()), kPermittedSeconds);
+}
+
+void ExpectReadyWithUnfinished(const std::string& path, JobState state, const std::string& engine) {
+  Fill(path, [&](Database& database) {
+    for (int i = 0; i < kUnfinishedJobs; ++i) {
+      if (const auto added = AddUnfinished(database, i, state, engine); !added.ok()) return added;
+    }
+    return absl::OkStatus();
+  });
+  EXPECT_LT(SecondsUntilReady(path), kPermittedSeconds);
+}
+
+TEST_F(ReadyInTime, WithTenThousandUnfinishedJobs) {
+  ExpectReadyWithUnfinished(File(), v1::EnsembleJob::QUEUED, EngineVersion());
+}
+
+TEST_F(ReadyInTime, WithTenThousandJobsThatWereBeingCancelled) {
+  ExpectReadyWithUnfinished(File(), v1::EnsembleJob::CANCELLING, EngineVersion());
+}
+
+TEST_F(ReadyInTime, WithTenThousandJobsOfAnotherEngine) {
+  ExpectReadyWithUnfinished(File(), v1::EnsembleJob::QUEUED, "0.1");
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,167 @@
+#include "tests/fault/store/service_on_disk.h"
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "server/convert/point_result.h"
+#include "server/convert/spec.h"
+#include "server/jobs/job_state.h"
+#include "tests/server/fake_experiments.h"
+
+namespace ballpiston::server {
+namespace {
+
+ExperimentFactory Factory(Turnstile* turnstile) {
+  if (turnstile == nullptr) return FakeExperiments();
+  return FakeExperiments(
+      [turnstile](size_t, uint64_t, const std::stop_token& stop) { turnstile->Pass(stop); });
+}
+
+// Records wait until a request takes them along, so that a trace does not depend on time.
+Store::Options StoreOptions(const FaultDisk& disk) {
+  Store::Options options;
+  options.delay = std::chrono::hours(1);
+  options.retry = std::chrono::milliseconds(1);
+  options.vfs = disk.vfs();
+  return options;
+}
+
+}  // namespace
+
+// ---- Turnstile ----
+
+void Turnstile::Pass(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  ++waiting_;
+  changed_.notify_all();
+  changed_.wait(lock, stop, [this] { return all_ || admitted_ > 0; });
+  --waiting_;
+  if (admitted_ > 0) --admitted_;
+  changed_.notify_all();
+}
+
+void Turnstile::Admit(int blocks) {
+  std::unique_lock lock(mutex_);
+  admitted_ += blocks;
+  changed_.notify_all();
+  AwaitWaiting(lock);
+}
+
+void Turnstile::AdmitAll() {
+  std::lock_guard lock(mutex_);
+  all_ = true;
+  changed_.notify_all();
+}
+
+void Turnstile::AdmitNoMore() {
+  std::lock_guard lock(mutex_);
+  all_ = false;
+}
+
+void Turnstile::AwaitWaiting() {
+  std::unique_lock lock(mutex_);
+  AwaitWaiting(lock);
+}
+
+void Turnstile::AwaitWaiting(std::unique_lock<std::mutex>& lock) {
+  changed_.wait(lock, [this] { return admitted_ == 0 && waiting_ > 0; });
+}
+
+// ---- ServiceOnDisk ----
+
+v1::EnsembleSpec JobOf(int points, int blocks, uint64_t seed) {
+  v1::EnsembleSpec spec;
+  spec.set_experiment(v1::EnsembleSpec::EQUILIBRIUM);
+  spec.mutable_grid()->add_rho(0.53);
+  for (int i = 0; i < points; ++i) spec.mutable_grid()->add_delta(0.1 + 1e-6 * i);
+  spec.mutable_target()->set_collisions(blocks);
+  spec.set_seed(seed);
+  return spec;
+}
+
+ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) : turnstile_(turnstile) {
+  auto store = Store::Open(kStorePath, StoreOptions(disk));
+  status_ = store.status();
+  if (!status_.ok()) return;
+  store_ = *std::move(store);
+  book_ = std::make_unique<JobBook>(*store_, Limits(), 1, Factory(turnstile),
+                                    [this] { OnStateChange(); });
+  status_ = book_->Resume();
+}
+
+ServiceOnDisk::~ServiceOnDisk() {
+  if (book_ != nullptr) book_->Shutdown();
+  if (store_ != nullptr) store_->Close();
+}
+
+absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Create(const v1::EnsembleSpec& spec,
+                                                      const std::string& request_id) {
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  request.set_request_id(request_id);
+  return book_->Create(LocalPrincipal(), request, CheckSpec(spec));
+}
+
+absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Cancel(const std::string& id,
+                                                      const std::string& request_id) {
+  return book_->Cancel(LocalPrincipal(), id, request_id);
+}
+
+absl::Status ServiceOnDisk::Delete(const std::string& id) {
+  return book_->Delete(LocalPrincipal(), id);
+}
+
+absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Get(const std::string& id) {
+  return book_->Get(LocalPrincipal(), id);
+}
+
+std::vector<v1::EnsembleJob> ServiceOnDisk::List() {
+  std::vector<v1::EnsembleJob> jobs;
+  const auto listed = book_->List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 1000);
+  if (!listed.ok()) return jobs;
+  for (const ListedJob& row : *listed) jobs.push_back(row.job);
+  return jobs;
+}
+
+void ServiceOnDisk::OnStateChange() {
+  std::lock_guard lock(mutex_);
+  ++changes_;
+  changed_.notify_all();
+}
+
+v1::EnsembleJob ServiceOnDisk::AwaitEnd(const std::string& id) {
+  while (true) {
+    uint64_t seen = 0;
+    {
+      std::lock_guard lock(mutex_);
+      seen = changes_;
+    }
+    const auto job = Get(id);
+    if (job.ok() && HasEnded(job->state())) return *job;
+    if (absl::IsNotFound(job.status())) return {};
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return changes_ != seen; });
+  }
+}
+
+std::vector<std::string> ServiceOnDisk::Results(const std::string& id) {
+  std::vector<std::string> results;
+  ResultsQuery query;
+  query.max_points = 1000;
+  query.max_bytes = std::numeric_limits<size_t>::max();
+  const auto page = book_->Results(LocalPrincipal(), id, query);
+  if (!page.ok()) return results;
+  for (const v1::PointResult& point : page->points) results.push_back(PointResultBytes(point));
+  return results;
+}
+
+void ServiceOnDisk::WriteLogBackOften() {
+  store_
+      ->Commit([](Database& database) { return database.Execute("PRAGMA wal_autocheckpoint = 8"); })
+      .IgnoreError();
+}
+
+std::string IdOf(const v1::EnsembleJob& job) { return job.name().substr(job.name().find('/') + 1); }
+
+}  // namespace ballpiston::server

@@ -1,0 +1,93 @@
+// One life of the server's insides, without gRPC, over a disk that can fail: store, book of jobs
+// and one worker with the fake experiments.
+#ifndef BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
+#define BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/jobs/job_book.h"
+#include "server/store/store.h"
+#include "tests/fault/store/fault_disk.h"
+
+namespace ballpiston::server {
+
+inline constexpr char kStorePath[] = "/data/store.sqlite3";
+
+// Lets blocks through one by one.
+class Turnstile {
+ public:
+  void Pass(const std::stop_token& stop);
+  // So many more blocks may pass; returns when they have, and the next one waits.
+  void Admit(int blocks);
+  void AdmitAll();
+  void AdmitNoMore();
+  // Returns when a block waits.
+  void AwaitWaiting();
+
+ private:
+  void AwaitWaiting(std::unique_lock<std::mutex>& lock);
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  int admitted_ = 0;
+  bool all_ = false;
+  int waiting_ = 0;
+};
+
+// So many points of so many blocks; the seed tells jobs apart.
+v1::EnsembleSpec JobOf(int points, int blocks, uint64_t seed);
+
+class ServiceOnDisk {
+ public:
+  // A null turnstile lets everything through.
+  explicit ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile = nullptr);
+  ~ServiceOnDisk();  // stops as a server does that is told to
+
+  // Of opening the store and resuming its jobs. Nothing else may be called unless it is OK.
+  const absl::Status& status() const { return status_; }
+  Store& store() { return *store_; }
+  JobBook& book() { return *book_; }
+
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
+                                         const std::string& request_id);
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& id, const std::string& request_id);
+  absl::Status Delete(const std::string& id);
+  absl::StatusOr<v1::EnsembleJob> Get(const std::string& id);
+  std::vector<v1::EnsembleJob> List();
+
+  // Returns when the job has ended, and how.
+  v1::EnsembleJob AwaitEnd(const std::string& id);
+  // All points, each serialized.
+  std::vector<std::string> Results(const std::string& id);
+
+  // Makes the log short, so that it is written back and begun anew within a small trace.
+  void WriteLogBackOften();
+
+ private:
+  void OnStateChange();
+
+  Turnstile* const turnstile_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  uint64_t changes_ = 0;
+  absl::Status status_;
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<JobBook> book_;
+};
+
+// The part of a job's name that the book knows it by.
+std::string IdOf(const v1::EnsembleJob& job);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_

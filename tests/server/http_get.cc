@@ -1,0 +1,47 @@
+#include "tests/server/http_get.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdint>
+
+#include "gtest/gtest.h"
+
+namespace ballpiston::server {
+
+Connection::Connection(const std::string& address)
+    : descriptor_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  const size_t colon = address.rfind(':');
+  sockaddr_in to = {};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<uint16_t>(std::stoi(address.substr(colon + 1))));
+  inet_pton(AF_INET, address.substr(0, colon).c_str(), &to.sin_addr);
+  EXPECT_EQ(connect(descriptor_, reinterpret_cast<const sockaddr*>(&to), sizeof(to)), 0);
+}
+
+Connection::~Connection() { close(descriptor_); }
+
+void Connection::Send(const std::string& bytes) {
+  const ssize_t sent = send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  EXPECT_EQ(sent, static_cast<ssize_t>(bytes.size()));
+}
+
+std::string Connection::ReadToTheEnd() {
+  std::string all;
+  char buffer[4096];
+  for (ssize_t n; (n = recv(descriptor_, buffer, sizeof(buffer), 0)) > 0;) {
+    all.append(buffer, static_cast<size_t>(n));
+  }
+  return all;
+}
+
+std::string HttpGet(const std::string& address, const std::string& path) {
+  Connection connection(address);
+  connection.Send("GET " + path + " HTTP/1.1\r\nHost: " + address +
+                  "\r\nConnection: close\r\n\r\n");
+  return connection.ReadToTheEnd();
+}
+
+}  // namespace ballpiston::server

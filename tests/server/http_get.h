@@ -1,0 +1,29 @@
+// One request to an HTTP server on the loopback, byte by byte as the test wants it.
+#ifndef BALLPISTON_TESTS_SERVER_HTTP_GET_H_
+#define BALLPISTON_TESTS_SERVER_HTTP_GET_H_
+
+#include <string>
+
+namespace ballpiston::server {
+
+// A TCP connection; closed when the object ends.
+class Connection {
+ public:
+  explicit Connection(const std::string& address);  // 127.0.0.1:PORT
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void Send(const std::string& bytes);
+  std::string ReadToTheEnd();
+
+ private:
+  int descriptor_;
+};
+
+// The whole answer to GET `path`, headers included.
+std::string HttpGet(const std::string& address, const std::string& path);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_HTTP_GET_H_
