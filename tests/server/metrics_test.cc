@@ -1,7 +1,6 @@
 #include <future>
 #include <map>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -17,6 +16,7 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -24,17 +24,19 @@ constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_service=\"ballpiston.v1.EnsembleService\",grpc_method="
     "\"CreateEnsembleJob\",grpc_type=\"unary\",grpc_code=\"OK\"}";
 
+constexpr char kSample[] =
+    R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
+
 // By name with labels. A test failure where a line is not of the text format.
 std::map<std::string, double> Samples(const std::string& page) {
-  static const std::regex sample(
-      R"(([a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})?) (\S+))");
   std::map<std::string, double> samples;
   std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
-    std::smatch parts;
-    EXPECT_TRUE(std::regex_match(line, parts, sample)) << line;
-    const auto inserted = samples.emplace(parts[1], std::strtod(parts[5].str().c_str(), nullptr));
+    EXPECT_THAT(line, MatchesRegex(kSample));
+    const size_t space = line.rfind(' ');
+    const auto inserted =
+        samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
     EXPECT_TRUE(inserted.second) << "twice: " << line;
   }
   return samples;
