@@ -149,7 +149,7 @@ class JsonReporter : public ProgressReporter {
     ForEachNewestFirst(snapshot, [&points](const v1::PointResult& point) {
       absl::StrAppend(&points, points.empty() ? "" : ", ", Json(point));
     });
-    Write(points);
+    if (!name_.empty()) Write(points);  // else it has ended, and its name comes last
   }
 
   void OnDisconnect(const absl::Status&, absl::Duration) override {}

@@ -172,7 +172,13 @@ TEST(ProgressBar, ShowsThePointThatFinishedLast) {
 
 TEST(ProgressJson, TellsUnfinishedAndFinishedPointsNewestFirst) {
   std::ostringstream err;
-  NewProgressReporter(ProgressStyle::kJson, err)->OnSnapshot(WithFinishedPoints(1));
+  const auto reporter = NewProgressReporter(ProgressStyle::kJson, err);
+  reporter->OnSnapshot(WithFinishedPoints(1));
+  EXPECT_EQ(err.str(), "");  // of a job that has ended: its name is not known yet
+  v1::EnsembleJob job;
+  job.set_name("ensembleJobs/abc");
+  reporter->OnJob(job);
+  reporter->OnSnapshot(WithFinishedPoints(1));
   const std::string text = err.str();
   EXPECT_LT(text.find("21.63"), text.find("66.5"));
   EXPECT_LT(text.find("66.5"), text.find("55.5"));
