@@ -4,7 +4,7 @@ SHELL := /bin/bash
 TEST_JOBS ?= 2
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart ladder bench stability asan tsan fuzz format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability torture asan tsan fuzz format check-format tidy setup clean help
 
 build: build-release ## Build everything, optimised, in build/release (the default)
 
@@ -29,6 +29,10 @@ bench: build-release ## Build, then run the benchmarks on one core
 stability: build/release/.configured ## Show where methods fail and which do; write the tables of core/README.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out core/README.md
+
+torture: build/release/.configured ## Kill the server a thousand times, cut its watches, stall its readers; print what was counted (20 minutes)
+	@cmake --build build/release --target ballpistond torture_test
+	@BALLPISTON_TORTURE=1 build/release/bin/torture_test --gtest_brief=1
 
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 	@ctest --preset asan -j$(TEST_JOBS)

@@ -31,7 +31,7 @@ for target in "${targets[@]}"; do
   length=$MAX_LEN
   [[ $target != stored_block ]] || length=$MAX_LEN_BLOCK
   result=ok
-  "$program" -runs="$RUNS" -seed="$SEED" -max_len="$length" -len_control=0 -entropic=0 -timeout=10 \
+  "$program" -runs="$RUNS" -seed="$SEED" -max_len="$length" -len_control=0 -entropic=0 -timeout=60 \
     -rss_limit_mb=2048 -reload=0 -print_final_stats=1 -verbosity=1 \
     -artifact_prefix="$FOUND/$target-" "$CORPUS/$target" >"$log" 2>&1 || result=FAILED failed=1
   awk -v target="$target" -v result="$result" '

@@ -23,7 +23,6 @@ constexpr int kRpcThreads = 8;
 // How often watches are looked at; their snapshots are further apart.
 constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
-constexpr char kStoreFile[] = "store.sqlite3";
 // How long health may go on to say that a store takes jobs when it does not.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 
@@ -122,6 +121,7 @@ absl::Status BallpistonServer::Listen() {
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   AllowPings(builder);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&method_);

@@ -23,6 +23,8 @@
 
 namespace {
 
+constexpr ballpiston::server::Limits kLimits;
+
 int DefaultWorkers() {
   const unsigned cores = std::thread::hardware_concurrency();
   return cores == 0 ? 1 : static_cast<int>(cores);
@@ -64,6 +66,26 @@ ABSL_FLAG(
     "where Prometheus collects, at /metrics: HOST:PORT with a loopback host (port 0 takes any, "
     "and the log says which); empty: nowhere");
 ABSL_FLAG(std::string, log_format, "text", "of standard error: text, or json (an object a line)");
+ABSL_FLAG(int64_t, max_active_jobs, kLimits.max_active_jobs,
+          "jobs of all principals that have not ended; more are refused; 0: no limit");
+ABSL_FLAG(int64_t, max_active_jobs_per_principal, kLimits.max_active_jobs_per_principal,
+          "the same, of one principal");
+ABSL_FLAG(int64_t, max_points_per_job, kLimits.max_points_per_job,
+          "points of a job's grid; 0: no limit but the engine's, 100,000");
+ABSL_FLAG(double, max_samples_per_job, kLimits.max_samples_per_job,
+          "samples or collisions of a job, over all its points; 0: no limit");
+ABSL_FLAG(int64_t, max_streams, kLimits.max_streams,
+          "open watches and comparisons of all principals; 0: no limit");
+ABSL_FLAG(int64_t, max_streams_per_principal, kLimits.max_streams_per_principal,
+          "the same, of one principal");
+ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
+ABSL_FLAG(
+    bool, check, false,
+    "check the store in --data_dir, page by page and row by row, print what is in it, and end: "
+    "with exit code 0 if it is sound; a server may run meanwhile");
+ABSL_FLAG(
+    std::string, backup, "",
+    "copy the store in --data_dir to this file, checked, and end; a server may run meanwhile");
 ABSL_FLAG(std::string, log_level, "info", "the least severe lines written: info, warning, error");
 
 namespace ballpiston::server {
@@ -72,6 +94,8 @@ namespace {
 constexpr char kProgram[] = "ballpistond";
 constexpr int kMaxWorkers = 1024;
 constexpr double kMaxSeconds = 1e6;
+constexpr int64_t kLeastMessage = 1024;
+constexpr int64_t kMostMessage = int64_t{256} << 20;
 
 bool parsing = false;
 bool help_asked = false;
@@ -90,7 +114,10 @@ void Configure() {
       "  ballpistond --listen=0.0.0.0:PORT --tls_certificate=FILE --tls_key=FILE "
       "--access_file=FILE\n"
       "  ballpistond --access_file=FILE --new_token=PRINCIPAL:ROLE[:DAYS]\n"
-      "Exit codes: 0 stopped, 2 a wrong flag, or address or data folder in use, 6 data folder not "
+      "  ballpistond --data_dir=DIR --check | --backup=FILE\n"
+      "Exit codes: 0 stopped, 2 a wrong flag, address or data folder in use, or a store that is "
+      "not "
+      "sound, 6 data folder not "
       "writable.");
   absl::FlagsUsageConfig config;
   const auto of_this_program = [](absl::string_view file) { return file == kProgram; };
@@ -153,6 +180,38 @@ absl::StatusOr<LogOptions> ParseLogOptions() {
   return LogOptions{.format = *format, .least = *least};
 }
 
+// A number from 0, which is no limit.
+absl::Status CheckLimit(const char* flag, double value) {
+  return value >= 0 ? absl::OkStatus() : OutOfRange(flag, absl::StrCat(value), "0 (none) and more");
+}
+
+absl::StatusOr<Limits> LimitFlags() {
+  Limits limits;
+  limits.max_active_jobs = absl::GetFlag(FLAGS_max_active_jobs);
+  limits.max_active_jobs_per_principal = absl::GetFlag(FLAGS_max_active_jobs_per_principal);
+  limits.max_points_per_job = absl::GetFlag(FLAGS_max_points_per_job);
+  limits.max_samples_per_job = absl::GetFlag(FLAGS_max_samples_per_job);
+  limits.max_streams = absl::GetFlag(FLAGS_max_streams);
+  limits.max_streams_per_principal = absl::GetFlag(FLAGS_max_streams_per_principal);
+  limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
+  for (const absl::Status& status :
+       {CheckLimit("max_active_jobs", static_cast<double>(limits.max_active_jobs)),
+        CheckLimit("max_active_jobs_per_principal",
+                   static_cast<double>(limits.max_active_jobs_per_principal)),
+        CheckLimit("max_points_per_job", static_cast<double>(limits.max_points_per_job)),
+        CheckLimit("max_samples_per_job", limits.max_samples_per_job),
+        CheckLimit("max_streams", static_cast<double>(limits.max_streams)),
+        CheckLimit("max_streams_per_principal",
+                   static_cast<double>(limits.max_streams_per_principal))}) {
+    if (!status.ok()) return status;
+  }
+  if (limits.max_message_bytes >= kLeastMessage && limits.max_message_bytes <= kMostMessage) {
+    return limits;
+  }
+  return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
+                    absl::StrCat(kLeastMessage, " to ", kMostMessage));
+}
+
 SecurityOptions SecurityFlags() {
   return {.access_file = absl::GetFlag(FLAGS_access_file),
           .tls_certificate = absl::GetFlag(FLAGS_tls_certificate),
@@ -190,7 +249,12 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
   }
   const auto new_token = NewTokenFlag();
   if (!new_token.ok()) return new_token.status();
+  const auto limits = LimitFlags();
+  if (!limits.ok()) return limits.status();
   CommandLine line;
+  line.server.limits = *limits;
+  line.check = absl::GetFlag(FLAGS_check);
+  line.backup = absl::GetFlag(FLAGS_backup);
   line.new_token = *new_token;
   line.server.security = SecurityFlags();
   line.log = *log;

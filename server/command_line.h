@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "server/ballpiston_server.h"
@@ -17,7 +18,11 @@ struct CommandLine {
   LogOptions log;
   std::optional<std::chrono::milliseconds> idle_exit;
   std::chrono::milliseconds drain{0};
-  std::optional<TokenRequest> new_token;  // instead of a server
+
+  // Each instead of a server:
+  std::optional<TokenRequest> new_token;
+  bool check = false;
+  std::string backup;  // where to; empty: no
 };
 
 // Ends the program on --help, --version, and (with exit code 2) on flags that do not exist.

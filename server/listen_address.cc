@@ -44,20 +44,23 @@ bool IsIpv4(const std::string& host) {
   return inet_pton(AF_INET, host.c_str(), &address) == 1;
 }
 
+bool IsOfName(unsigned char c) {
+  return absl::ascii_isalnum(c) || c == '-' || c == '.' || c == '_';
+}
+
 bool IsIpv6(const std::string& host) {
+  const size_t percent = host.find('%');
+  const std::string zone = percent == std::string::npos ? "none" : host.substr(percent + 1);
   in6_addr address{};
-  const std::string without_zone = host.substr(0, host.find('%'));
-  return inet_pton(AF_INET6, without_zone.c_str(), &address) == 1;
+  return inet_pton(AF_INET6, host.substr(0, percent).c_str(), &address) == 1 && !zone.empty() &&
+         std::all_of(zone.begin(), zone.end(), &IsOfName);
 }
 
 // What ends in a number would be read as an address: 127.1 is 127.0.0.1 to some programs.
 bool IsName(const std::string& host) {
-  const auto permitted = [](unsigned char c) {
-    return absl::ascii_isalnum(c) || c == '-' || c == '.' || c == '_';
-  };
   const std::string last = host.substr(host.find_last_of('.') + 1);
   return host.size() <= kLongestName && !last.empty() &&
-         std::all_of(host.begin(), host.end(), permitted) &&
+         std::all_of(host.begin(), host.end(), &IsOfName) &&
          !absl::ascii_isdigit(static_cast<unsigned char>(last.front()));
 }
 

@@ -17,6 +17,9 @@
 #include "server/command_line.h"
 #include "server/observability/log.h"
 #include "server/security/new_token.h"
+#include "server/store/backup.h"
+#include "server/store/check_store.h"
+#include "server/store/data_directory.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -26,7 +29,7 @@ constexpr int kExitUsage = 2;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
 // What stopping the workers and closing the store may take beyond the time to drain.
-constexpr std::chrono::seconds kGrace(5);
+constexpr std::chrono::milliseconds kGrace(800);
 
 // Blocked in this thread before any other is started, so in all of them.
 sigset_t BlockSignals() {
@@ -90,12 +93,25 @@ int PrintNewToken(const CommandLine& line) {
   return std::fflush(stdout) == 0 ? 0 : kExitUsage;
 }
 
+// Of a check or a backup.
+int Report(const absl::StatusOr<StoreSummary>& summary) {
+  if (!summary.ok()) return Fail(summary.status());
+  std::printf("%s\n", SummaryText(*summary).c_str());
+  return std::fflush(stdout) == 0 && summary->sound() ? 0 : kExitUsage;
+}
+
+std::string StoreIn(const CommandLine& line) {
+  return absl::StrCat(line.server.data_dir, "/", kStoreFile);
+}
+
 int Main(int argc, char** argv) {
   umask(0077);                              // store and socket are their owner's
   setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
   if (line->new_token) return PrintNewToken(*line);
+  if (line->check) return Report(CheckStore(StoreIn(*line)));
+  if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogOptions(line->log);
   const sigset_t signals = BlockSignals();
   const auto server = BallpistonServer::Start(line->server);

@@ -17,7 +17,7 @@ constexpr int kMaxMessageBytes = 256 << 20;
 constexpr char kServiceConfig[] = R"({"methodConfig": [
   {"name": [{}],
    "retryPolicy": {"maxAttempts": 4, "initialBackoff": "0.1s", "maxBackoff": "1s",
-                   "backoffMultiplier": 2, "retryableStatusCodes": ["UNAVAILABLE"]}},
+                   "backoffMultiplier": 2, "retryableStatusCodes": ["UNAVAILABLE", "CANCELLED"]}},
   {"name": [
     {"service": "ballpiston.v1.EnsembleService", "method": "WatchEnsembleJob"},
     {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"},

@@ -21,11 +21,11 @@ namespace ballpiston::client {
 
 struct ChannelSecurity {
   bool tls = false;
-  std::string ca;           // PEM file
-  std::string certificate;  // PEM file, with
-  std::string key;          // PEM file, which only its owner may read
-  std::string token_file;   // likewise; what it holds, without the end of the line
-  std::string token;        // in place of a file
+  std::string ca = {};           // PEM file
+  std::string certificate = {};  // PEM file, with
+  std::string key = {};          // PEM file, which only its owner may read
+  std::string token_file = {};   // likewise; what it holds, without the end of the line
+  std::string token = {};        // in place of a file
 
   bool HasTls() const { return tls || !ca.empty() || !certificate.empty() || !key.empty(); }
   bool HasToken() const { return !token_file.empty() || !token.empty(); }

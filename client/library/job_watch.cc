@@ -27,6 +27,11 @@ bool Pause(absl::Duration length, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+// gRPC ends a stream that reaches a server just as it stops with CANCELLED, and gives no reason.
+bool IsBrokenStream(const absl::Status& end) {
+  return absl::IsUnavailable(end) || (absl::IsCancelled(end) && ErrorReason(end).empty());
+}
+
 class Watch {
  public:
   Watch(v1::EnsembleService::StubInterface& stub, const WatchCallbacks& callbacks,
@@ -39,7 +44,7 @@ class Watch {
       const absl::Status end = ReadStream();
       if (ended_) return *std::move(ended_);
       if (stop_.stop_requested()) return Stopped();
-      if (!absl::IsUnavailable(end)) return end;
+      if (!IsBrokenStream(end)) return end;
       if (absl::Status wait = WaitToReattach(end); !wait.ok()) return wait;
     }
   }

@@ -1,6 +1,7 @@
 // Following a job to its end, through restarts of the server and cut connections.
 //
-// When the stream breaks (UNAVAILABLE, or an end without a terminal state), the watch attaches
+// When the stream breaks (UNAVAILABLE, CANCELLED without a reason, as by a server that stops, or an
+// end without a terminal state), the watch attaches
 // again with the last resume token it saw, after pauses that double from `initial_backoff` to
 // `max_backoff`, until nothing was heard for `give_up_after`. Every other error ends it.
 //

@@ -67,7 +67,7 @@ double StoredJobs(Store& store) {
 
 void AddPrincipals(const ServiceContext& service, const Principal& caller,
                    v1::ServerStatus& status) {
-  const std::map<std::string, int64_t> streams = service.calls.Streams();
+  const std::map<std::string, int64_t> streams = service.watches.StreamsByPrincipal();
   for (const auto& [name, jobs] : service.book.ActiveByPrincipal()) {
     if (!caller.MaySee(name)) continue;
     v1::PrincipalStatus& principal = *status.add_principals();

@@ -55,7 +55,7 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   AddJobs(service.book, snapshot);
   AddWork(service.book.pool_counts(), snapshot);
   AddStore(service, snapshot);
-  for (const auto& [principal, streams] : service.calls.Streams()) snapshot.streams += streams;
+  snapshot.streams = static_cast<int64_t>(service.watches.size());
   snapshot.failed_authentications = service.calls.not_let_in();
   snapshot.limit_refusals = service.calls.limits_reached();
   return snapshot;

@@ -55,7 +55,8 @@ class WorkerPool {
   // what they stored lets a later process go on. May be called more than once.
   void Shutdown();
 
-  // Copies of the run's unfinished points that changed after `version`, newest first, at most `limit`.
+  // Copies of the run's unfinished points that changed after `version`, newest first, at most
+  // `limit`.
   std::vector<LivePoint> ChangedSince(int64_t key, uint64_t version, size_t limit) const;
 
   PoolCounts Counts() const;  // takes no lock

@@ -75,8 +75,10 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                          "max_points_per_job", static_cast<double>(limits.max_points_per_job));
   }
   const Target& target = spec.target;
-  const double samples =
-      points * static_cast<double>(target.samples.value_or(target.collisions.value_or(0)));
+  const bool open_ended = target.tolerance || target.budget_seconds;
+  const int64_t of_a_point =
+      target.samples.value_or(target.collisions.value_or(open_ended ? 0 : kDefaultSamples));
+  const double samples = points * static_cast<double>(of_a_point);
   if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
   return LimitExceeded("TOO_MANY_SAMPLES", absl::StrCat("the job takes ", samples, " samples"),
                        "max_samples_per_job", limits.max_samples_per_job);

@@ -1,5 +1,6 @@
 #include "server/observability/call_observer.h"
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -78,7 +79,6 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
         path_(info.method()),
         counts_(observer.statistics_.Of(path_, TypeName(info.type()))),
         begin_(Clock::now()) {
-    observer_.Began(call_, info.type() != ServerRpcInfo::Type::UNARY);
     counts_.Began();
   }
 
@@ -97,7 +97,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   void StatusOf(InterceptorBatchMethods& batch) {
-    if (std::exchange(ended_, true)) return;
+    if (ended_.exchange(true)) return;
     const grpc::Status status = batch.GetSendStatus();
     const auto code = static_cast<absl::StatusCode>(status.error_code());
     const double seconds = Seconds();
@@ -120,7 +120,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   const std::string path_;
   MethodCounts& counts_;
   const Clock::time_point begin_;
-  bool ended_ = false;
+  std::atomic<bool> ended_ = false;
 };
 
 class CallObserver::Factory : public grpc::experimental::ServerInterceptorFactoryInterface {
@@ -141,30 +141,15 @@ CallObserver::InterceptorFactory() {
 
 // ---- who calls ----
 
-void CallObserver::Began(const grpc::ServerContextBase& call, bool stream) {
-  std::lock_guard lock(mutex_);
-  in_progress_[&call] = {.principal = {}, .stream = stream};
-}
-
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
   std::lock_guard lock(mutex_);
-  const auto found = in_progress_.find(&call);
-  if (found != in_progress_.end()) found->second.principal = principal;
+  callers_[&call] = principal;
 }
 
 std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
   std::lock_guard lock(mutex_);
-  const auto node = in_progress_.extract(&call);
-  return node.empty() ? "" : std::move(node.mapped().principal);
-}
-
-std::map<std::string, int64_t> CallObserver::Streams() const {
-  std::lock_guard lock(mutex_);
-  std::map<std::string, int64_t> streams;
-  for (const auto& [call, caller] : in_progress_) {
-    if (caller.stream && !caller.principal.empty()) ++streams[caller.principal];
-  }
-  return streams;
+  const auto node = callers_.extract(&call);
+  return node.empty() ? "" : std::move(node.mapped());
 }
 
 // ---- what failed ----

@@ -47,14 +47,11 @@ class CallObserver {
   // For ServerBuilder::experimental().SetInterceptorCreators. This has to outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
 
-  // Who makes the call: for the log, and for Streams. Before its method runs.
+  // Who makes the call, for the log. Before its method runs.
   void Identify(const grpc::ServerContextBase& call, const std::string& principal);
 
   CallStatistics& statistics() { return statistics_; }
   const CallStatistics& statistics() const { return statistics_; }
-
-  // Streams in progress of those who were let in, by principal.
-  std::map<std::string, int64_t> Streams() const;
 
   // Calls that were not let in, and those refused because a limit was reached, by reason.
   std::map<std::string, uint64_t> not_let_in() const;
@@ -67,12 +64,6 @@ class CallObserver {
   class Interceptor;
   class Factory;
 
-  struct Caller {
-    std::string principal;
-    bool stream = false;
-  };
-
-  void Began(const grpc::ServerContextBase& call, bool stream);
   std::string Ended(const grpc::ServerContextBase& call);  // returns who made it
   void WriteLine(const FailedCall& call, Verdict verdict);
 
@@ -81,7 +72,7 @@ class CallObserver {
   LineBudget failures_{10, std::chrono::seconds(1)};
 
   mutable std::mutex mutex_;
-  std::map<const grpc::ServerContextBase*, Caller> in_progress_;
+  std::map<const grpc::ServerContextBase*, std::string> callers_;  // of calls in progress
   std::map<std::string, uint64_t> not_let_in_;
   std::map<std::string, uint64_t> limits_reached_;
 };

@@ -12,6 +12,9 @@
 
 namespace ballpiston::server {
 
+// The store, in it.
+inline constexpr char kStoreFile[] = "store.sqlite3";
+
 class DataDirectory {
  public:
   //   FAILED_PRECONDITION  another server uses it

@@ -46,9 +46,10 @@ ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:0
 }
 
 TEST(JobList, TheTableTellsWhoseAJobIsIfThereAreSeveralPrincipals) {
-  EXPECT_EQ(Printed(Format::kTable, "bob").substr(0, 120),
-            "name            experiment   state      done  points  samples  created               "
-            "ended                 principal\nensemb");
+  const std::string table = Printed(Format::kTable, "bob");
+  EXPECT_NE(table.find("  ended                 principal\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("Z                        ann\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("Z  bob\n"), std::string::npos) << table;
 }
 
 TEST(JobList, TheTableTellsPrioritiesIfThereAreAny) {

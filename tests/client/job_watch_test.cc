@@ -113,13 +113,32 @@ TEST(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
 }
 
 TEST(JobWatch, OtherErrorsEndTheWatch) {
+  for (const grpc::Status& end :
+       {JobNotFound(kName), grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "who is this?"),
+        grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many")}) {
+    FakeServer server;
+    server.ensemble.watches = {{{SnapshotMessage(10, "t1")}, kUnavailable}, {{}, end}};
+    server.Start();
+    Watcher watcher;
+    const auto job = watcher.Watch(server, Quick());
+    EXPECT_EQ(static_cast<int>(job.status().code()), static_cast<int>(end.error_code()));
+    EXPECT_EQ(server.ensemble.Asked().watch.size(), 2u);
+  }
+}
+
+// As after a restart: nobody listens at the address for a while.
+TEST(JobWatch, AServerThatIsNotThereIsWaitedFor) {
   FakeServer server;
-  server.ensemble.watches = {{{}, JobNotFound(kName)}};
-  server.Start();
-  Watcher watcher;
-  const auto job = watcher.Watch(server, Quick());
-  EXPECT_EQ(job.status().code(), absl::StatusCode::kNotFound);
-  EXPECT_EQ(server.ensemble.Asked().watch.size(), 1u);
+  server.ensemble.watches = {
+      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t1")}, grpc::Status::OK}};
+  int disconnects = 0;
+  WatchCallbacks callbacks;
+  callbacks.on_disconnect = [&](const absl::Status&, absl::Duration) {
+    if (++disconnects == 3) server.Start();
+  };
+  const auto job = EnsembleClient(server.Channel()).Watch(kName, callbacks, Quick());
+  ASSERT_TRUE(job.ok()) << job.status();
+  EXPECT_GE(disconnects, 3);
 }
 
 TEST(JobWatch, GivesUpAfterTheConfiguredTime) {

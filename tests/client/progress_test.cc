@@ -152,6 +152,33 @@ TEST(ProgressBar, ShowsThePointThatChangedLast) {
   EXPECT_THAT(err.str(), Not(HasSubstr("99.5")));
 }
 
+v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
+  v1::StatisticsSnapshot snapshot;
+  *snapshot.mutable_progress() = Progress(50, 1000, 0.5);
+  for (int i = 0; i < unfinished; ++i) *snapshot.add_points() = Point();
+  for (const double mean : {55.5, 66.5}) {
+    *snapshot.add_finished_points() = Point();
+    snapshot.mutable_finished_points()->rbegin()->mutable_estimates(0)->set_value(mean);
+  }
+  return snapshot;
+}
+
+// Where no point is being computed, as at the end of a job of one worker.
+TEST(ProgressBar, ShowsThePointThatFinishedLast) {
+  std::ostringstream err;
+  NewProgressReporter(ProgressStyle::kBar, err)->OnSnapshot(WithFinishedPoints(0));
+  EXPECT_THAT(err.str(), HasSubstr("tau_conditional 66.5"));
+}
+
+TEST(ProgressJson, TellsUnfinishedAndFinishedPointsNewestFirst) {
+  std::ostringstream err;
+  NewProgressReporter(ProgressStyle::kJson, err)->OnSnapshot(WithFinishedPoints(1));
+  const std::string text = err.str();
+  EXPECT_LT(text.find("21.63"), text.find("66.5"));
+  EXPECT_LT(text.find("66.5"), text.find("55.5"));
+  EXPECT_NE(text.find("55.5"), std::string::npos);
+}
+
 TEST(ProgressJson, NotesAreObjectsToo) {
   std::ostringstream err;
   NewProgressReporter(ProgressStyle::kJson, err)->Note("a \"hint\"\nof two lines");

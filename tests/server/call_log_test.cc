@@ -91,7 +91,9 @@ TEST_F(CallLog, AJobsLifeIsToldWithJobPrincipalAndRequest) {
   for (const Line& line : lines) {
     EXPECT_EQ(Text(line, "job"), name);
     EXPECT_EQ(Text(line, "principal"), "local");
-    if (Text(line, "message") == "job accepted") EXPECT_EQ(Text(line, "request_id"), "my-request");
+    if (Text(line, "message") == "job accepted") {
+      EXPECT_EQ(Text(line, "request_id"), "my-request");
+    }
     if (Text(line, "message") == "job succeeded") {
       EXPECT_EQ(line.fields().at("samples").number_value(), 2 * 3 * kFakeSamplesPerBlock);
       EXPECT_GE(line.fields().at("seconds").number_value(), 0);

@@ -30,7 +30,9 @@ TEST(ListenAddress, OnlyLoopbackIsLoopback) {
                            "[::ffff:127.0.0.1]:1", "[fe80::1%lo]:1", "example.org:1",
                            "localhost.example.org:1", "LOCALHOST.:1"}) {
     const auto address = ParseListenAddress(text);
-    if (address.ok()) EXPECT_FALSE(address->IsLoopback()) << text;
+    if (address.ok()) {
+      EXPECT_FALSE(address->IsLoopback()) << text;
+    }
   }
 }
 
@@ -55,7 +57,9 @@ TEST(ListenAddress, NonsenseIsRefusedWithTheFlagAndTheValue) {
                            "a b:1",
                            "a/b:1",
                            "host.:1",
-                           "[::1]%lo:1"}) {
+                           "[::1]%lo:1",
+                           "[::1%]:1",
+                           "[::1%a/b]:1"}) {
     const auto address = ParseListenAddress(text);
     EXPECT_TRUE(absl::IsInvalidArgument(address.status())) << text;
     EXPECT_THAT(std::string(address.status().message()),

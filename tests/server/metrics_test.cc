@@ -1,9 +1,9 @@
 #include <future>
 #include <map>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -16,6 +16,7 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -23,17 +24,19 @@ constexpr char kCreated[] =
     "grpc_server_handled_total{grpc_service=\"ballpiston.v1.EnsembleService\",grpc_method="
     "\"CreateEnsembleJob\",grpc_type=\"unary\",grpc_code=\"OK\"}";
 
+constexpr char kSample[] =
+    R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
+
 // By name with labels. A test failure where a line is not of the text format.
 std::map<std::string, double> Samples(const std::string& page) {
-  static const std::regex sample(
-      R"(([a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})?) (\S+))");
   std::map<std::string, double> samples;
   std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
-    std::smatch parts;
-    EXPECT_TRUE(std::regex_match(line, parts, sample)) << line;
-    const auto inserted = samples.emplace(parts[1], std::strtod(parts[5].str().c_str(), nullptr));
+    EXPECT_THAT(line, MatchesRegex(kSample));
+    const size_t space = line.rfind(' ');
+    const auto inserted =
+        samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
     EXPECT_TRUE(inserted.second) << "twice: " << line;
   }
   return samples;
@@ -58,6 +61,10 @@ class MetricsTest : public testing::Test {
   std::string Address() { return server_->server().metrics_address(); }
   std::string Page() { return HttpGet(Address(), "/metrics"); }
   std::map<std::string, double> Metrics() { return Samples(Page()); }
+  // A job or a stream is told to have ended just before it is counted.
+  void Await(const std::string& metric, double value) {
+    while (Metrics().at(metric) != value) std::this_thread::yield();
+  }
 
   TemporaryFolder folder_;
   Gate gate_;
@@ -77,6 +84,7 @@ TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
 TEST_F(MetricsTest, CountersMoveWithCallsJobsAndBlocks) {
   RunningServer& server = Start();
   for (int i = 0; i < 3; ++i) server.AwaitEnd(server.Submit(Equilibrium(2, 50)));
+  Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
   const auto metrics = Metrics();
   EXPECT_EQ(metrics.at(kCreated), 3);
   EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
@@ -104,7 +112,7 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   const auto watch = server.ensemble().WatchEnsembleJob(&context, request);
   v1::WatchEnsembleJobResponse message;
   ASSERT_TRUE(watch->Read(&message));
-  auto metrics = Metrics();
+  const auto metrics = Metrics();
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_queue_length"), 1);
@@ -114,9 +122,8 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   while (watch->Read(&message)) {
   }
   server.AwaitEnd(second);
-  metrics = Metrics();
-  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 0);
-  EXPECT_EQ(metrics.at("ballpiston_streams"), 0);
+  Await("ballpiston_streams", 0);
+  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
 }
 
 TEST_F(MetricsTest, RefusalsAreCountedByReason) {
@@ -142,7 +149,7 @@ TEST_F(MetricsTest, WhatIsNotAskedForInOrderHarmsNobody) {
   Start();
   Connection silent(Address()), slow(Address());
   slow.Send("GET /met");
-  for (const std::string request :
+  for (const std::string& request :
        {std::string("no HTTP at all\r\n\r\n"), "GET /" + std::string(100'000, 'a') + "\r\n\r\n",
         std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"),
         std::string("POST /metrics HTTP/1.0\r\nContent-Length: 9\r\n\r\n"),

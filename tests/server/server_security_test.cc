@@ -38,7 +38,9 @@ SecurityOptions Flags(const std::string& letters) {
 
 std::string Refusal(const std::string& listen, const std::string& flags) {
   const absl::Status status = CheckCombination(Flags(flags), *ParseListenAddress(listen));
-  if (!status.ok()) EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  if (!status.ok()) {
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  }
   return std::string(status.message());
 }
 

@@ -137,7 +137,9 @@ class Chain {
     EXPECT_GE(progress.points_done(), progress_.points_done());
     EXPECT_GE(progress.samples(), progress_.samples());
     // The store does not know what was begun of points that a cancelled job leaves unfinished.
-    if (!HasEnded(state_)) EXPECT_GE(progress.fraction(), progress_.fraction());
+    if (!HasEnded(state_)) {
+      EXPECT_GE(progress.fraction(), progress_.fraction());
+    }
     progress_ = progress;
   }
 

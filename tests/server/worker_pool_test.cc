@@ -391,7 +391,7 @@ TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
   const EnsembleSpec spec = FakeSpec(4, 10);
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::minstd_rand random(seed);
-    Run run(Request(1, spec, nullptr), 3);
+    server::Run run(Request(1, spec, nullptr), 3);
     std::vector<RunTask> out;
     while (!run.over()) {
       std::optional<RunTask> task = run.NextTask();

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -58,6 +59,12 @@ std::string TextOf(const std::string& path) {
 
 }  // namespace
 
+int RunMortal(char** command) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  execv(command[0], command);
+  return 127;
+}
+
 ServerProcess::ServerProcess(ServerSetUp set_up) : set_up_(std::move(set_up)) {
   std::string pattern = (std::filesystem::temp_directory_path() / "torture_XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no folder at " + pattern);
@@ -72,8 +79,9 @@ ServerProcess::~ServerProcess() {
 
 void ServerProcess::Spawn(const std::string& failpoint) {
   std::vector<std::string> command = {
-      BALLPISTON_SERVER_BINARY,       "--listen", address(), "--data_dir", data_dir(), "--workers",
-      std::to_string(set_up_.workers)};
+      "/proc/self/exe", kMortal,     BALLPISTON_SERVER_BINARY,
+      "--listen",       address(),   "--data_dir",
+      data_dir(),       "--workers", std::to_string(set_up_.workers)};
   command.insert(command.end(), set_up_.flags.begin(), set_up_.flags.end());
   log_start_ = log().size();
   pid_ = SpawnWithLog(std::move(command), Environment(failpoint), folder_ + "/log");

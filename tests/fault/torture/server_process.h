@@ -14,6 +14,11 @@
 
 namespace ballpiston::torture {
 
+// The first argument of this program as a server's launcher: the rest is the server's command. The
+// server becomes one that dies with the thread that started it, as when a test is killed.
+inline constexpr char kMortal[] = "--mortal";
+int RunMortal(char** command);
+
 struct ServerSetUp {
   int workers = 2;
   std::vector<std::string> flags = {};  // further ones

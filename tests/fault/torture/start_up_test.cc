@@ -57,7 +57,9 @@ absl::Status InsertEnded(Database& database, int count, const std::string& resul
     end.points_done = 1;
     end.samples = 10'000;
     if (status.ok()) status = server::EndJob(database, record.sequence, end).status();
-    if (status.ok()) status = InsertResult(database, record.sequence, {0, 10'000, result});
+    if (status.ok()) {
+      status = InsertResult(database, record.sequence, {0, 10'000, result}).status();
+    }
     if (!status.ok()) return status;
   }
   return absl::OkStatus();

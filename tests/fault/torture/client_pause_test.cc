@@ -1,0 +1,101 @@
+// To the client library a restart of the server is a short pause of a watch.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "absl/strings/str_format.h"
+#include "client/library/channel.h"
+#include "client/library/ensemble_client.h"
+#include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
+#include "tests/fault/torture/server_process.h"
+#include "tests/fault/torture/sizes.h"
+
+namespace ballpiston::torture {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The pause between attempts that the test's watch makes at most.
+constexpr absl::Duration kMostBackoff = absl::Milliseconds(500);
+// Between the server's being ready and the watch's hearing of it, apart from that pause.
+constexpr double kMostSeconds = 1;
+
+// How often the job was told: at first, and after each restart.
+class Told {
+ public:
+  void Add() {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    news_.notify_all();
+  }
+  void End() {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    news_.notify_all();
+  }
+  // False if nothing will be told any more.
+  bool Await(int count) {
+    std::unique_lock lock(mutex_);
+    news_.wait(lock, [&] { return ended_ || count_ >= count; });
+    return count_ >= count;
+  }
+  int Count() {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable news_;
+  int count_ = 0;
+  bool ended_ = false;
+};
+
+TEST(ClientLibrary, HearsOfAJobSoonAfterARestart) {
+  Findings findings("client's pause");
+  ServerProcess server;
+  server.Start();
+  // The library's own channel: nothing else in this process hurries it.
+  const auto channel = client::OpenChannel(server.address());
+  ASSERT_TRUE(channel.ok()) << channel.status();
+  const client::EnsembleClient client(*channel);
+  const auto job = client.Create(Endless());
+  ASSERT_TRUE(job.ok()) << job.status();
+  Told told;
+  client::WatchCallbacks callbacks;
+  callbacks.on_job = [&](const v1::EnsembleJob&) { told.Add(); };
+  client::WatchOptions options;
+  options.max_backoff = kMostBackoff;
+  absl::StatusOr<v1::EnsembleJob> ended;
+  std::thread watch([&] {
+    ended = client.Watch(job->name(), callbacks, options);
+    told.End();
+  });
+  told.Await(1);
+  double longest = 0;
+  for (int i = 0; i < Size(2, 20); ++i) {
+    const int before = told.Count();
+    server.Signal(i % 2 == 0 ? SIGKILL : SIGTERM);
+    server.AwaitEnd();
+    server.Start();
+    const auto ready = Clock::now();
+    if (!told.Await(before + 1)) break;
+    longest = std::max(longest, std::chrono::duration<double>(Clock::now() - ready).count());
+    findings.Count("restarts");
+  }
+  findings.Note("longest, seconds from ready to heard", absl::StrFormat("%.2f", longest));
+  EXPECT_TRUE(client.Cancel(job->name()).ok());
+  watch.join();
+  EXPECT_TRUE(ended.ok()) << ended.status();
+  EXPECT_LT(longest, HoldsToTimes() ? absl::ToDoubleSeconds(kMostBackoff) + kMostSeconds : 60);
+}
+
+}  // namespace
+}  // namespace ballpiston::torture

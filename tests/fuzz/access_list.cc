@@ -1,0 +1,78 @@
+// Who may come in: the access file, what a call shows for itself, and --new_token. What is refused
+// is told without what was found.
+#include "server/security/access_list.h"
+
+#include <memory>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_split.h"
+#include "absl/time/time.h"
+#include "server/security/access_entry.h"
+#include "server/security/authenticator.h"
+#include "server/security/new_token.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/rules.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+// A call at this time, by one who shows the text.
+void CheckCalls(const server::AccessList& list, const std::string& text) {
+  const server::Authenticator door(std::make_shared<const server::AccessList>(list));
+  const absl::Time now = absl::FromUnixSeconds(1'800'000'000);
+  for (const server::Credentials& shown :
+       {server::Credentials{{text}, {}}, server::Credentials{{"Bearer " + text}, {}},
+        server::Credentials{{text, text}, text}, server::Credentials{{}, text}}) {
+    const auto caller = door.Authenticate(shown, now);
+    if (caller.ok()) {
+      Require(server::CheckPrincipalName(caller->name).ok(), "who comes in has a name");
+    } else {
+      Require(absl::IsUnauthenticated(caller.status()), "who is refused is told so");
+      RequireSendable(caller.status());
+    }
+  }
+}
+
+// Entries of tokens, which the server writes itself.
+void CheckWritten(const std::string& line) {
+  const auto entry = server::ParseAccessEntry(line);
+  if (!entry.ok() || !entry->has_value()) return;
+  const auto* hash = std::get_if<server::TokenHash>(&(*entry)->credential);
+  if (hash == nullptr || (*entry)->expires != absl::InfiniteFuture()) return;
+  const auto again = server::ParseAccessEntry(server::FormatAccessEntry(**entry));
+  Require(again.ok() && again->has_value(), "what is written can be read");
+  Require((*again)->credential == (*entry)->credential, "a token stays");
+  Require((*again)->principal.name == (*entry)->principal.name, "a principal stays");
+  Require((*again)->principal.role == (*entry)->principal.role, "a role stays");
+}
+
+// None of a token or its hash, either of which is longer than every word of a message.
+void RequireSilence(const absl::Status& error, const std::string& text) {
+  constexpr size_t kLongerThanAnyWordOfOurs = 32;
+  for (const absl::string_view word : absl::StrSplit(text, absl::ByAnyChar(" \t\r\n"))) {
+    if (word.size() <= kLongerThanAnyWordOfOurs) continue;
+    Require(!absl::StrContains(error.message(), word), "nothing of the file is told");
+  }
+}
+
+void Check(const std::string& text) {
+  const auto list = server::AccessList::Parse({"access_file", "FILE"}, text);
+  if (list.ok()) {
+    CheckCalls(*list, text);
+  } else {
+    Require(absl::IsInvalidArgument(list.status()), "what is wrong is the argument");
+    Require(absl::StartsWith(list.status().message(), "--access_file=FILE, line "),
+            "flag and line are named");
+    RequireSilence(list.status(), text);
+  }
+  CheckWritten(text);
+  const auto request = server::ParseTokenRequest(text);
+  Require(!request.ok() || server::CheckPrincipalName(request->principal.name).ok(),
+          "a token is somebody's");
+}
+
+const Registration registration({.name = "access_list", .check = Check});
+
+}  // namespace
+}  // namespace ballpiston::fuzz
