@@ -18,10 +18,11 @@ void RequireTold(const absl::Status& error) {
 
 // Long lists take longer than all other inputs together, and differ by their length alone.
 bool IsLong(const std::string& text) {
+  constexpr size_t kLong = 4;
   size_t digits = 0;
   for (const char c : text) {
-    digits = c >= '0' && c <= '9' ? digits + 1 : c == 'e' || c == 'E' ? 4 : 0;
-    if (digits > 4) return true;
+    digits = c >= '0' && c <= '9' ? digits + 1 : c == 'e' || c == 'E' ? kLong : 0;
+    if (digits >= kLong) return true;
   }
   return false;
 }
