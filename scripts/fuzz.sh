@@ -11,8 +11,9 @@ folder=$1
 shift
 readonly RUNS=${FUZZ_RUNS:-100000} SEED=${FUZZ_SEED:-1}
 readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
-# Inputs are below a page, but for blocks, of which the smallest of some experiments are not.
-readonly MAX_LEN=600 MAX_LEN_BLOCK=4096
+# Longer ones only repeat what shorter ones show.
+declare -A max_len=([stored_block]=4096 [log_line]=160 [number_list]=80 [server_address]=160)
+readonly MAX_LEN=600
 # Stacks of allocations and freed memory that is kept for long cost more time than all else.
 export ASAN_OPTIONS=malloc_context_size=2:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
 export UBSAN_OPTIONS=print_stacktrace=1
@@ -28,10 +29,8 @@ for target in "${targets[@]}"; do
   program=$folder/${target}_fuzz log=$FOUND/$target.log
   mkdir -p "$CORPUS/$target"
   "$program" --write_seeds="$SEEDS" "$CORPUS/$target"
-  length=$MAX_LEN
-  [[ $target != stored_block ]] || length=$MAX_LEN_BLOCK
   result=ok
-  "$program" -runs="$RUNS" -seed="$SEED" -max_len="$length" -len_control=0 -entropic=0 -timeout=60 \
+  "$program" -runs="$RUNS" -seed="$SEED" -max_len="${max_len[$target]:-$MAX_LEN}" -len_control=0 -entropic=0 -timeout=60 \
     -rss_limit_mb=2048 -reload=0 -print_final_stats=1 -verbosity=1 \
     -artifact_prefix="$FOUND/$target-" "$CORPUS/$target" >"$log" 2>&1 || result=FAILED failed=1
   awk -v target="$target" -v result="$result" '

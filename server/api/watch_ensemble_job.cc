@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <utility>
 
-#include "absl/strings/escaping.h"
-#include "absl/strings/numbers.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "server/api/request_check.h"
+#include "server/api/resume_token.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_state.h"
 
@@ -248,27 +246,22 @@ void WatchReactor::TellHeartbeat() {
 // ---- resume tokens ----
 
 std::string WatchReactor::Token() const {
-  std::string token;
-  absl::WebSafeBase64Escape(absl::StrCat(id_, ":", told_finished_, ":", service_.instance, ":",
-                                         told_, ":", job_.engine_version),
-                            &token);
-  return token;
+  return ResumeTokenText({.job = id_,
+                          .finished = told_finished_,
+                          .instance = service_.instance,
+                          .change = told_,
+                          .engine_version = job_.engine_version});
 }
 
 void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
-  std::string text;
-  if (!absl::WebSafeBase64Unescape(token, &text)) return;
-  const std::vector<std::string> parts = absl::StrSplit(text, absl::MaxSplits(':', 4));
-  int64_t finished = 0;
-  uint64_t change = 0;
-  if (parts.size() != 5 || parts[0] != id_ || parts[4] != job_.engine_version ||
-      !absl::SimpleAtoi(parts[1], &finished) || !absl::SimpleAtoi(parts[3], &change) ||
-      finished < 0 || finished > last_finished) {
+  const std::optional<ResumeToken> told = ParseResumeToken(token);
+  if (!told || told->job != id_ || told->engine_version != job_.engine_version ||
+      told->finished > last_finished) {
     return;
   }
-  told_finished_ = finished;
-  const bool of_this_life = watched_ != nullptr && parts[2] == service_.instance;
-  if (of_this_life && change <= watched_->last_change()) told_ = change;
+  told_finished_ = told->finished;
+  const bool of_this_life = watched_ != nullptr && told->instance == service_.instance;
+  if (of_this_life && told->change <= watched_->last_change()) told_ = told->change;
 }
 
 // ---- writing ----

@@ -16,12 +16,15 @@ void RequireTold(const absl::Status& error) {
   Require(absl::StartsWith(error.message(), kFlag), "the flag is named");
 }
 
-// Long lists take longer than all other inputs together, and differ by their length alone.
+// A count of thousands, or one that has an exponent: such lists take longer than all other inputs
+// together, and differ by their length alone.
 bool IsLong(const std::string& text) {
+  constexpr size_t kLong = 4;
   size_t digits = 0;
-  for (const char c : text) {
-    digits = c >= '0' && c <= '9' ? digits + 1 : c == 'e' || c == 'E' ? 4 : 0;
-    if (digits > 4) return true;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool exponent = (text[i] | 0x20) == 'e' && text.substr(i + 1, 1) != "-";
+    digits = exponent ? kLong : text[i] >= '0' && text[i] <= '9' ? digits + 1 : 0;
+    if (digits >= kLong) return true;
   }
   return false;
 }

@@ -1,0 +1,58 @@
+// The server's log, in which what a client sent may stand: it stays one line of a form.
+#include "server/observability/log_line.h"
+
+#include <algorithm>
+
+#include "absl/time/time.h"
+#include "google/protobuf/struct.pb.h"
+#include "google/protobuf/util/json_util.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+using server::LogFormat;
+
+std::string Line(LogFormat format, const std::string& text) {
+  return server::LogLine(format, absl::UnixEpoch(), server::Severity::kError, text,
+                         {{"job", text}, {"principal", text}, {"seconds", 0.5}});
+}
+
+void RequireOneLine(const std::string& line) {
+  Require(line.size() <= server::kMaxLogLine, "a line fits into a pipe");
+  Require(std::count(line.begin(), line.end(), '\n') == 1 && line.ends_with("\n"), "it is one");
+  const auto is_control = [](unsigned char c) { return c < 0x20 && c != '\n'; };
+  Require(std::none_of(line.begin(), line.end(), is_control), "no control reaches a terminal");
+}
+
+void RequireJson(const std::string& line) {
+  google::protobuf::Struct object;
+  Require(google::protobuf::util::JsonStringToMessage(line, &object).ok(), "it is JSON");
+  Require(object.fields().contains("severity"), "with a severity");
+}
+
+// Beyond where a message is cut, wherever that falls.
+std::string Repeated(const std::string& text) {
+  std::string repeated;
+  while (!text.empty() && repeated.size() < server::kMaxLogLine) repeated += text;
+  return repeated;
+}
+
+void Check(const std::string& text) {
+  constexpr size_t kOneIn = 16;  // of what is slow
+  const std::string message = text.size() % kOneIn == 1 ? Repeated(text) : text;
+  RequireOneLine(Line(LogFormat::kText, message));
+  const std::string json = Line(LogFormat::kJson, message);
+  RequireOneLine(json);
+  if (text.size() % kOneIn == 0) RequireJson(json);
+}
+
+std::vector<std::string> Texts() {
+  return {"ensembleJobs/1f0c was cancelled", "two\nlines and a \"quote\\",
+          "\xe2\x80\xa8\xf0\x9f\x8e\xb1", "\xff\xfe\xc3(\x1b[2J", std::string(145, 'x')};
+}
+
+const Registration registration({.name = "log_line", .check = Check, .made_seeds = Texts});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

@@ -1,0 +1,40 @@
+// WatchEnsembleJob: a job's name, and a resume token.
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/api/request_check.h"
+#include "server/api/resume_token.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/rules.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+void Check(const std::string& bytes) {
+  v1::WatchEnsembleJobRequest request;
+  if (!request.ParseFromString(bytes)) return;
+  server::RequestCheck check;
+  check.JobId("name", request.name());
+  if (!check.ok()) RequireSendable(check.status());
+  const auto token = server::ParseResumeToken(request.resume_token());
+  if (!token) return;
+  Require(token->finished >= 0, "a number of points");
+  Require(server::ParseResumeToken(server::ResumeTokenText(*token)) == token, "a token stays");
+}
+
+std::vector<std::string> Tokens() {
+  v1::WatchEnsembleJobRequest request;
+  request.set_name("ensembleJobs/0123456789abcdef");
+  request.set_resume_token(server::ResumeTokenText({.job = "0123456789abcdef",
+                                                    .finished = 12,
+                                                    .instance = "fedcba9876543210",
+                                                    .change = 345,
+                                                    .engine_version = "7"}));
+  return {request.SerializeAsString()};
+}
+
+const Registration registration({.name = "watch_request",
+                                 .check = Check,
+                                 .message = &v1::WatchEnsembleJobRequest::default_instance(),
+                                 .made_seeds = Tokens});
+
+}  // namespace
+}  // namespace ballpiston::fuzz
