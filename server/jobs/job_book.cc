@@ -84,7 +84,10 @@ JobBook::JobBook(Store& store, const Limits& limits, int workers, ExperimentFact
       on_state_change_(std::move(on_state_change)),
       pool_(workers, std::move(factory)) {}
 
-JobBook::~JobBook() { Shutdown(); }
+JobBook::~JobBook() {
+  Shutdown();
+  store_.Flush().IgnoreError();  // what tells this book of jobs that have ended was told then
+}
 
 void JobBook::Shutdown() {
   store_.StopWaiting();

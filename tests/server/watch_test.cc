@@ -530,11 +530,11 @@ class Quiet : public Watch {
 };
 
 TEST(WatchRegistry, CountsStreamsByPrincipal) {
+  Quiet a, b, c, d;
   WatchRegistry registry(std::chrono::hours(1));
   Limits limits;
   limits.max_streams = 3;
   limits.max_streams_per_principal = 2;
-  Quiet a, b, c, d;
   EXPECT_TRUE(registry.Add(&a, "ann", limits).ok());
   EXPECT_TRUE(registry.Add(&b, "ann", limits).ok());
   EXPECT_TRUE(absl::IsResourceExhausted(registry.Add(&c, "ann", limits)));
