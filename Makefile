@@ -30,8 +30,9 @@ stability: build/release/.configured ## Show where methods fail and which do; wr
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out core/README.md
 
-torture: build/release/.configured ## Kill the server a thousand times, cut its watches, stall its readers; print what was counted (20 minutes)
-	@cmake --build build/release --target ballpistond torture_test
+torture: build/release/.configured ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (20 minutes)
+	@cmake --build build/release --target ballpistond store_fault_test torture_test
+	@BALLPISTON_TORTURE=1 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 build/release/bin/torture_test --gtest_brief=1
 
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
