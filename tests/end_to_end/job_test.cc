@@ -87,7 +87,7 @@ TEST(Run, ProgressGoesToStandardErrorOnly) {
   const ProcessResult bar = server.Client(With("run", kQuick, {"--progress", "bar"}));
   EXPECT_THAT(bar.err, HasSubstr("2/2 points"));
   EXPECT_EQ(bar.out.find('\r'), std::string::npos);
-  const ProcessResult json = server.Client(With("run", kQuick, {"--progress", "json"}));
+  const ProcessResult json = server.Client(With("run", kQuick, {"--fresh", "--progress", "json"}));
   const auto first = ParseJson(json.err.substr(0, json.err.find('\n')));
   EXPECT_THAT(At(first, "job").string_value(), StartsWith("ensembleJobs/"));
 }
@@ -127,7 +127,9 @@ TEST(Submit, PrintsTheNameAloneAndWatchAndResultTakeIt) {
 TEST(List, ShowsTheNewestFirst) {
   const TestServer server;
   const std::string older = server.Submit(kQuick);
-  const std::string newer = server.Submit(kQuick);
+  std::vector<std::string> again = kQuick;
+  again.push_back("--fresh");
+  const std::string newer = server.Submit(again);
   const auto json = ParseJson(server.Client({"list", "--format", "json"}).out);
   EXPECT_EQ(At(json, "jobs", 0, "name").string_value(), newer);
   EXPECT_EQ(At(json, "jobs", 1, "name").string_value(), older);
