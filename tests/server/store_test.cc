@@ -20,6 +20,7 @@
 #include "server/store/pilot_table.h"
 #include "server/store/request_table.h"
 #include "server/store/schema.h"
+#include "tests/server/first_store_version.h"
 #include "tests/server/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -195,30 +196,19 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
   EXPECT_EQ(Contents(File()), before);
 }
 
-// The tables as the first version made them, with a job, a block and a result in them.
-constexpr char kStoreOfVersion1[] = R"sql(
-CREATE TABLE jobs (
-  sequence INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, spec BLOB NOT NULL,
-  state INTEGER NOT NULL, create_time INTEGER NOT NULL, start_time INTEGER, end_time INTEGER,
-  error BLOB NOT NULL, engine_version TEXT NOT NULL, request_id TEXT UNIQUE,
-  cancel_request_id TEXT, points INTEGER NOT NULL, points_done INTEGER NOT NULL,
-  samples REAL NOT NULL) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state);
-CREATE TABLE blocks (job INTEGER NOT NULL, point INTEGER NOT NULL, block INTEGER NOT NULL,
-  record BLOB NOT NULL, PRIMARY KEY (job, point, block)) STRICT;
-CREATE TABLE results (job INTEGER NOT NULL, point INTEGER NOT NULL, samples REAL NOT NULL,
-  result BLOB NOT NULL, PRIMARY KEY (job, point)) STRICT;
+// A job, a block and a result.
+constexpr char kRowsOfVersion1[] = R"sql(
 INSERT INTO jobs VALUES (7, 'old', x'73706563', 4, 1700000000123456789, 1700000001000000000,
   1700000002000000000, x'', '0.2', 'request', NULL, 3, 2, 12.5);
 INSERT INTO blocks VALUES (7, 2, 0, x'72');
 INSERT INTO results VALUES (7, 1, 12.5, x'72');
-PRAGMA user_version = 1;
 )sql";
 
 void MakeStoreOfVersion1(const std::string& path) {
   auto database = Database::Open(path, Database::Mode::kReadWrite);
   ASSERT_TRUE(database.ok()) << database.status();
-  ASSERT_TRUE((*database)->Execute(kStoreOfVersion1).ok());
+  ASSERT_TRUE((*database)->Execute(kTablesOfVersion1).ok());
+  ASSERT_TRUE((*database)->Execute(kRowsOfVersion1).ok());
   ASSERT_TRUE(
       (*database)->Execute("PRAGMA application_id = " + std::to_string(kApplicationId)).ok());
 }

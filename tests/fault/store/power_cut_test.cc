@@ -20,6 +20,7 @@
 #include "tests/fault/store/acknowledged.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/service_on_disk.h"
+#include "tests/server/first_store_version.h"
 
 namespace ballpiston::server {
 namespace {
@@ -243,21 +244,9 @@ TEST(PowerCut, ADeletedJobThatComesBackIsFoundOut) {
 
 // ---- a store of an older version that is taken over ----
 
-constexpr char kStoreOfVersion1[] = R"sql(
-CREATE TABLE jobs (
-  sequence INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, spec BLOB NOT NULL,
-  state INTEGER NOT NULL, create_time INTEGER NOT NULL, start_time INTEGER, end_time INTEGER,
-  error BLOB NOT NULL, engine_version TEXT NOT NULL, request_id TEXT UNIQUE,
-  cancel_request_id TEXT, points INTEGER NOT NULL, points_done INTEGER NOT NULL,
-  samples REAL NOT NULL) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state);
-CREATE TABLE blocks (job INTEGER NOT NULL, point INTEGER NOT NULL, block INTEGER NOT NULL,
-  record BLOB NOT NULL, PRIMARY KEY (job, point, block)) STRICT;
-CREATE TABLE results (job INTEGER NOT NULL, point INTEGER NOT NULL, samples REAL NOT NULL,
-  result BLOB NOT NULL, PRIMARY KEY (job, point)) STRICT;
+constexpr char kRowsOfVersion1[] = R"sql(
 INSERT INTO jobs VALUES (7, 'old', x'', 6, 1700000000123456789, 1700000001000000000,
   1700000002000000000, x'', '0.2', 'request', NULL, 3, 0, 12.5);
-PRAGMA user_version = 1;
 )sql";
 
 DiskFiles StoreOfVersion1() {
@@ -265,7 +254,8 @@ DiskFiles StoreOfVersion1() {
   {
     const auto database = Database::Open(kStorePath, Database::Mode::kReadWrite, disk.vfs());
     EXPECT_TRUE((*database)->Execute("PRAGMA journal_mode = WAL").ok());
-    EXPECT_TRUE((*database)->Execute(kStoreOfVersion1).ok());
+    EXPECT_TRUE((*database)->Execute(kTablesOfVersion1).ok());
+    EXPECT_TRUE((*database)->Execute(kRowsOfVersion1).ok());
     EXPECT_TRUE(
         (*database)->Execute(absl::StrCat("PRAGMA application_id = ", kApplicationId)).ok());
   }

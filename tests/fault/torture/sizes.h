@@ -1,4 +1,4 @@
-// How much the harness does: little by default, so that it belongs to `make test`; all of it where
+// How much the harness does: little by default, a few seconds each; all of it where
 // the environment says BALLPISTON_TORTURE=1 (`make torture`); BALLPISTON_TORTURE=0.1 does a tenth.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
