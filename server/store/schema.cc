@@ -113,6 +113,10 @@ UPDATE results SET finish = rowid;
 CREATE INDEX results_by_finish ON results (job, finish);
 )sql";
 
+constexpr char kFourthVersion[] = R"sql(
+ALTER TABLE jobs ADD COLUMN restarts INTEGER NOT NULL DEFAULT 0;
+)sql";
+
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
@@ -225,7 +229,7 @@ absl::Status MakeTables(Database& database) {
   if (*version == kSchemaVersion) return absl::OkStatus();
   const absl::Status made = database.Execute(absl::StrCat(
       "BEGIN IMMEDIATE;", *version < 1 ? kTables : "", *version < 2 ? kSecondVersion : "",
-      kThirdVersion, "PRAGMA application_id = ", kApplicationId,
+      *version < 3 ? kThirdVersion : "", kFourthVersion, "PRAGMA application_id = ", kApplicationId,
       "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
   if (!made.ok()) database.Execute("ROLLBACK").IgnoreError();
   return made;

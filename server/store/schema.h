@@ -19,7 +19,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 3;
+inline constexpr int64_t kSchemaVersion = 4;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints, to a store that was checked, or made if there was
