@@ -240,7 +240,11 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   acceptance.request.request_id = request.request_id();
   acceptance.request.payload = PayloadOf(request);
   acceptance.fresh = request.fresh();
-  const auto accept = [&](Database& database) { return Accept(database, limits_, acceptance); };
+  const auto accept = [&](Database& database) {
+    const absl::Status accepted = Accept(database, limits_, acceptance);
+    Failpoint("create.in_transaction");
+    return accepted;
+  };
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
