@@ -14,6 +14,7 @@ namespace {
 
 std::atomic<LogFormat> chosen_format = LogFormat::kText;
 std::atomic<Severity> least_severity = Severity::kInfo;
+std::atomic<bool> silent = false;
 
 // A line that standard error takes in pieces must not be mixed with another. What it does not take
 // at all (it is closed, or its disk is full) is lost: the server goes on.
@@ -33,10 +34,11 @@ void Write(absl::string_view line) {
 void SetLogOptions(const LogOptions& options) {
   chosen_format = options.format;
   least_severity = options.least;
+  silent = options.silent;
 }
 
 void Log(Severity severity, absl::string_view message, LogFields fields) {
-  if (severity < least_severity.load(std::memory_order_relaxed)) return;
+  if (silent || severity < least_severity.load(std::memory_order_relaxed)) return;
   Write(LogLine(chosen_format, absl::Now(), severity, message, fields));
 }
 

@@ -23,7 +23,7 @@ void AddRow(const std::string& section, const std::string& what, const std::stri
 }
 
 void PrintRow(const std::string& section, const std::string& what, const std::string& value) {
-  std::printf("| %-17s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
+  std::printf("| %-21s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ void PrintTable() {
   if (Rows().empty()) return;
   std::printf("\n");
   PrintRow("test", "what", "counted or measured");
-  PrintRow(std::string(17, '-'), std::string(52, '-'), std::string(19, '-'));
+  PrintRow(std::string(21, '-'), std::string(52, '-'), std::string(19, '-'));
   std::string section;  // named in its first row
   for (const Row& row : Rows()) {
     PrintRow(row.section == section ? "" : row.section, row.what, row.value);
