@@ -26,7 +26,6 @@
 namespace ballpiston::torture {
 namespace {
 
-constexpr int kVisitors = 6;
 constexpr std::chrono::milliseconds kLongestLife(600);
 // After it a failpoint that nobody came by is given up, and the server killed all the same.
 constexpr std::chrono::milliseconds kWaitForFailpoint(1500);
@@ -139,8 +138,8 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
 
   ServerProcess server;
   std::vector<Visitor> visitors;
-  for (uint64_t seed = 0; seed < kVisitors; ++seed) {
-    visitors.emplace_back(server.Connect(), exam, seed, findings);
+  for (int i = 0; i < Size(4, 6); ++i) {
+    visitors.emplace_back(server.Connect(), exam, static_cast<uint64_t>(i), findings);
   }
   std::atomic<bool> enough = false;
   std::vector<std::thread> threads;
