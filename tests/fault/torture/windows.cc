@@ -48,10 +48,14 @@ double Median(std::vector<double> values) {
 }  // namespace
 
 Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
-                    const std::string& job, std::chrono::milliseconds length) {
+                    const std::string& job, std::chrono::milliseconds length,
+                    double least_samples) {
   const Reading start = Read(server, client, job);
-  std::this_thread::sleep_for(length);
-  const Reading end = Read(server, client, job);
+  Reading end;
+  do {
+    std::this_thread::sleep_for(length);
+    end = Read(server, client, job);
+  } while (end.samples - start.samples < least_samples);
   return {end.samples - start.samples, end.processor_seconds - start.processor_seconds,
           std::chrono::duration<double>(end.at - start.at).count()};
 }

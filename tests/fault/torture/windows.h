@@ -21,9 +21,11 @@ struct Window {
   double Cost() const { return seconds / samples; }
 };
 
-// What the server spends, all of its threads, and what a job of its gets done meanwhile.
+// What the server spends, all of its threads, and what a job of its gets done meanwhile: for so
+// long, and on until it is as much as `least_samples`, for the machine may be busy.
 Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
-                    const std::string& job, std::chrono::milliseconds length);
+                    const std::string& job, std::chrono::milliseconds length,
+                    double least_samples = 1);
 
 // First over second. The pairs are added up in ten groups, because a window begins and ends within
 // blocks that are only counted whole; the ratio is the groups' median, because something else may
