@@ -15,6 +15,7 @@
 #include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/security/new_token.h"
 #include "server/store/backup.h"
@@ -122,6 +123,7 @@ int Main(int argc, char** argv) {
   if (!(*server)->metrics_address().empty()) {
     LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
   }
+  CountFailpointsOfReadyServer();
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);

@@ -71,6 +71,7 @@ class EnsembleClient {
                                         std::stop_token stop = {}) const;
 
  private:
+  std::shared_ptr<grpc::ChannelInterface> channel_;
   std::unique_ptr<v1::EnsembleService::StubInterface> stub_;
   absl::Duration timeout_;
 };

@@ -279,7 +279,11 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
   acceptance.record.id = RandomId();
-  const auto accept = [&](Database& database) { return Accept(database, limits_, acceptance); };
+  const auto accept = [&](Database& database) {
+    const absl::Status accepted = Accept(database, limits_, acceptance);
+    Failpoint("create.in_transaction");
+    return accepted;
+  };
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {

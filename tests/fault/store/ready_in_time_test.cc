@@ -90,8 +90,8 @@ double SecondsUntilReady(const std::string& path) {
   const double resumed = SecondsSince(start);
   EXPECT_TRUE(book.List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 50).ok());
   const double ready = SecondsSince(start);
-  std::cout << "opened after " << opened << " s, resumed after " << resumed << " s, listed after "
-            << ready << " s\n";
+  std::cout << testing::UnitTest::GetInstance()->current_test_info()->name() << ": opened after "
+            << opened << " s, resumed after " << resumed << " s, listed after " << ready << " s\n";
   return ready;
 }
 
