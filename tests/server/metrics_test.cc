@@ -204,6 +204,15 @@ TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
   }
 }
 
+// The HTTP server takes no names.
+TEST_F(MetricsTest, LocalhostIsAnAddress) {
+  ServerOptions options;
+  options.data_dir = folder_.File("data");
+  options.metrics_listen = "localhost:0";
+  RunningServer server(options);
+  EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
+}
+
 TEST_F(MetricsTest, AnAddressInUseIsRefused) {
   Start();
   TemporaryFolder other;

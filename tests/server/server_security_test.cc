@@ -9,9 +9,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
