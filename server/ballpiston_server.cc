@@ -185,7 +185,9 @@ absl::Status BallpistonServer::StartMetrics() {
   for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
     std::vector<prometheus::MetricFamily> metrics = CallMetrics(calls_.statistics().Read());
-    for (auto& family : ServerMetrics(TakeSnapshot(context_))) {
+    ServerSnapshot now = TakeSnapshot(context_);
+    now.certificate_expiry = security_->CertificateExpiry();
+    for (auto& family : ServerMetrics(now)) {
       metrics.push_back(std::move(family));
     }
     return metrics;

@@ -19,6 +19,7 @@
 #include "absl/flags/usage_config.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/version.h"
 
 namespace {
@@ -217,6 +218,17 @@ SecurityOptions SecurityFlags() {
           .tls_client_ca = absl::GetFlag(FLAGS_tls_client_ca)};
 }
 
+// Each of them is done instead of everything else.
+absl::Status CheckOneMode() {
+  std::vector<std::string> given;
+  if (absl::GetFlag(FLAGS_check)) given.push_back("--check");
+  if (!absl::GetFlag(FLAGS_backup).empty()) given.push_back("--backup");
+  if (!absl::GetFlag(FLAGS_new_token).empty()) given.push_back("--new_token");
+  if (given.size() <= 1) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      absl::StrJoin(given, " and "), " exclude each other: give one of them, and do one thing"));
+}
+
 absl::StatusOr<std::optional<TokenRequest>> NewTokenFlag() {
   const std::string text = absl::GetFlag(FLAGS_new_token);
   if (text.empty()) return std::nullopt;
@@ -245,6 +257,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
        {drain.status(), idle.status(), heartbeat.status(), log.status()}) {
     if (!status.ok()) return status;
   }
+  if (absl::Status status = CheckOneMode(); !status.ok()) return status;
   const auto new_token = NewTokenFlag();
   if (!new_token.ok()) return new_token.status();
   const auto limits = LimitFlags();

@@ -109,6 +109,7 @@ std::string StoreIn(const CommandLine& line) {
 
 int Main(int argc, char** argv) {
   umask(0077);                              // store and socket are their owner's
+  signal(SIGXFSZ, SIG_IGN);                 // a limit on a file's size is told like a full disk
   setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());

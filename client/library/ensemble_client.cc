@@ -66,10 +66,11 @@ absl::StatusOr<std::vector<v1::EnsembleJob>> EnsembleClient::List() const {
   return jobs;
 }
 
-absl::StatusOr<v1::EnsembleJob> EnsembleClient::Cancel(const std::string& name) const {
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Cancel(const std::string& name,
+                                                       const std::string& request_id) const {
   v1::CancelEnsembleJobRequest request;
   request.set_name(name);
-  request.set_request_id(NewRequestId());
+  request.set_request_id(request_id.empty() ? NewRequestId() : request_id);
   return CallUnary(*stub_, &Stub::CancelEnsembleJob, request, timeout_);
 }
 

@@ -19,8 +19,6 @@ using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 using Clock = std::chrono::steady_clock;
 
-constexpr char kRequestId[] = "x-request-id";
-
 const char* TypeName(ServerRpcInfo::Type type) {
   switch (type) {
     case ServerRpcInfo::Type::UNARY:

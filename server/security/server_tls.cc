@@ -28,7 +28,7 @@ absl::Status ServerTls::Reload() {
   if (published.ok() && !identity->client_ca.empty()) {
     published = client_ca_.Publish(identity->client_ca);
   }
-  if (published.ok()) expires_ = identity->expires;
+  if (published.ok()) expires_ = absl::ToUnixSeconds(identity->expires);
   return published;
 }
 

@@ -7,6 +7,8 @@
 #ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 #define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 
 #include "absl/status/status.h"
@@ -31,7 +33,8 @@ class ServerTls {
   // connections a second later. One thread at a time.
   absl::Status Reload();
 
-  absl::Time expires() const { return expires_; }  // the certificate
+  // The certificate in use. Any thread.
+  absl::Time expires() const { return absl::FromUnixSeconds(expires_); }
 
  private:
   explicit ServerTls(TlsFiles files) : files_(std::move(files)) {}
@@ -39,7 +42,7 @@ class ServerTls {
   const TlsFiles files_;
   PublishedFile certificate_and_key_;
   PublishedFile client_ca_;
-  absl::Time expires_;
+  std::atomic<int64_t> expires_ = 0;  // seconds since 1970, which is all that a certificate tells
 };
 
 }  // namespace ballpiston::server

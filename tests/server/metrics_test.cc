@@ -1,3 +1,5 @@
+#include "server/observability/metrics.h"
+
 #include <future>
 #include <map>
 #include <optional>
@@ -70,6 +72,21 @@ class MetricsTest : public testing::Test {
   Gate gate_;
   std::optional<RunningServer> server_;
 };
+
+TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
+  const auto names = [](const ServerSnapshot& server) {
+    std::map<std::string, double> values;
+    for (const auto& family : ServerMetrics(server)) {
+      if (!family.metric.empty()) values[family.name] = family.metric[0].gauge.value;
+    }
+    return values;
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  ServerSnapshot server;
+  EXPECT_EQ(names(server).count(kExpiry), 0u);
+  server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
+  EXPECT_EQ(names(server)[kExpiry], 2e9);
+}
 
 TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
   Start();
@@ -185,6 +202,15 @@ TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
     EXPECT_THAT(std::string(server.status().message()),
                 HasSubstr("--metrics_listen=" + std::string(address)));
   }
+}
+
+// The HTTP server takes no names.
+TEST_F(MetricsTest, LocalhostIsAnAddress) {
+  ServerOptions options;
+  options.data_dir = folder_.File("data");
+  options.metrics_listen = "localhost:0";
+  RunningServer server(options);
+  EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
 }
 
 TEST_F(MetricsTest, AnAddressInUseIsRefused) {

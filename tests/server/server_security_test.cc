@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
@@ -271,6 +273,23 @@ TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
   while (ServedCommonName(server_->address()) != "good") {
   }
   EXPECT_TRUE(List(Channel(), kAlice).ok());
+}
+
+// Of 24 hours, as these are, and then of a year.
+TEST_F(SecureServer, ACertificateThatEndsSoonIsWarnedOf) {
+  const auto reload = [this] {
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(server_->Reload().ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(reload(), HasSubstr("is valid until 2"));
+  const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
+  EXPECT_NEAR(static_cast<double>(absl::ToUnixSeconds(*server_->security().CertificateExpiry())),
+              static_cast<double>(day), 600);
+  files_.WriteCertificate(
+      files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
+  EXPECT_THAT(reload(), Not(HasSubstr("is valid until")));
+  EXPECT_GT(*server_->security().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
 }
 
 class MutualServer : public SecureServer {
