@@ -176,7 +176,7 @@ absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
 
 void BallpistonServer::StartHealth() {
   health_ = std::make_unique<Health>(
-      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing(); },
+      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing() || store_->stalled(); },
       kHealthInterval);
 }
 
