@@ -540,7 +540,7 @@ TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
 }
 
 TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
-  Limit({.max_active_points = 10, .max_active_points_per_principal = 6});
+  Limit({.max_active_points = 20, .max_active_points_per_principal = 6});
   const auto held = [](int points, const char* request_id = "") {
     v1::EnsembleSpec spec = Equilibrium(points, 5);
     spec.set_seed(kHeldSeed);
@@ -553,8 +553,9 @@ TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
   };
   expect_full();
   Name(kBob, held(6));
-  ExpectRefused(Create({"eve", Role::kSubmit}, held(1)).status(), "TOO_MANY_ACTIVE_POINTS",
-                "max_active_points", "10");
+  Name({"eve", Role::kSubmit}, held(6));
+  ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)).status(), "TOO_MANY_ACTIVE_POINTS",
+                "max_active_points", "20");
   EXPECT_EQ(Name(kAnn, held(4, kUuid)), first);  // a replay
   StartAgain();
   expect_full();
