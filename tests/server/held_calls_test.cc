@@ -2,9 +2,9 @@
 #include "server/api/held_calls.h"
 
 #include <memory>
+#include <stop_token>
 #include <string>
 
-#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "grpcpp/generic/generic_stub.h"
