@@ -176,8 +176,8 @@ absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
 
 void BallpistonServer::StartHealth() {
   health_ = std::make_unique<Health>(
-      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing(); },
-      kHealthInterval);
+      *grpc_->GetHealthCheckService(), ServicesOfHealth(),
+      [this] { return store_->failing() || store_->stalled(); }, kHealthInterval);
 }
 
 absl::Status BallpistonServer::StartMetrics() {

@@ -71,6 +71,10 @@ ABSL_FLAG(int64_t, max_active_jobs, kLimits.max_active_jobs,
           "jobs of all principals that have not ended; more are refused; 0: no limit");
 ABSL_FLAG(int64_t, max_active_jobs_per_principal, kLimits.max_active_jobs_per_principal,
           "the same, of one principal");
+ABSL_FLAG(int64_t, max_active_points, kLimits.max_active_points,
+          "points of the grids of all jobs that have not ended; 0: no limit");
+ABSL_FLAG(int64_t, max_active_points_per_principal, kLimits.max_active_points_per_principal,
+          "the same, of one principal");
 ABSL_FLAG(int64_t, max_points_per_job, kLimits.max_points_per_job,
           "points of a job's grid; 0: no limit but the engine's, 100,000");
 ABSL_FLAG(double, max_samples_per_job, kLimits.max_samples_per_job,
@@ -79,6 +83,10 @@ ABSL_FLAG(int64_t, max_streams, kLimits.max_streams,
           "open watches and comparisons of all principals; 0: no limit");
 ABSL_FLAG(int64_t, max_streams_per_principal, kLimits.max_streams_per_principal,
           "the same, of one principal");
+ABSL_FLAG(int64_t, max_calls_per_principal, kLimits.max_calls_per_principal,
+          "calls in progress of one principal, watches and comparisons not counted; 0: no limit");
+ABSL_FLAG(int64_t, max_call_bytes_per_principal, kLimits.max_call_bytes_per_principal,
+          "bytes of their requests, and of answers that are not read yet; 0: no limit");
 ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
 ABSL_FLAG(
     bool, check, false,
@@ -188,20 +196,30 @@ absl::StatusOr<Limits> LimitFlags() {
   Limits limits;
   limits.max_active_jobs = absl::GetFlag(FLAGS_max_active_jobs);
   limits.max_active_jobs_per_principal = absl::GetFlag(FLAGS_max_active_jobs_per_principal);
+  limits.max_active_points = absl::GetFlag(FLAGS_max_active_points);
+  limits.max_active_points_per_principal = absl::GetFlag(FLAGS_max_active_points_per_principal);
   limits.max_points_per_job = absl::GetFlag(FLAGS_max_points_per_job);
   limits.max_samples_per_job = absl::GetFlag(FLAGS_max_samples_per_job);
   limits.max_streams = absl::GetFlag(FLAGS_max_streams);
   limits.max_streams_per_principal = absl::GetFlag(FLAGS_max_streams_per_principal);
+  limits.max_calls_per_principal = absl::GetFlag(FLAGS_max_calls_per_principal);
+  limits.max_call_bytes_per_principal = absl::GetFlag(FLAGS_max_call_bytes_per_principal);
   limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
   for (const absl::Status& status :
        {CheckLimit("max_active_jobs", static_cast<double>(limits.max_active_jobs)),
         CheckLimit("max_active_jobs_per_principal",
                    static_cast<double>(limits.max_active_jobs_per_principal)),
+        CheckLimit("max_active_points", static_cast<double>(limits.max_active_points)),
+        CheckLimit("max_active_points_per_principal",
+                   static_cast<double>(limits.max_active_points_per_principal)),
         CheckLimit("max_points_per_job", static_cast<double>(limits.max_points_per_job)),
         CheckLimit("max_samples_per_job", limits.max_samples_per_job),
         CheckLimit("max_streams", static_cast<double>(limits.max_streams)),
         CheckLimit("max_streams_per_principal",
-                   static_cast<double>(limits.max_streams_per_principal))}) {
+                   static_cast<double>(limits.max_streams_per_principal)),
+        CheckLimit("max_calls_per_principal", static_cast<double>(limits.max_calls_per_principal)),
+        CheckLimit("max_call_bytes_per_principal",
+                   static_cast<double>(limits.max_call_bytes_per_principal))}) {
     if (!status.ok()) return status;
   }
   if (limits.max_message_bytes >= kLeastMessage && limits.max_message_bytes <= kMostMessage) {
