@@ -15,6 +15,7 @@ struct Limits {
   int64_t max_streams = 4'096;        // watches and comparisons
   int64_t max_streams_per_principal = 2'048;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
+  int64_t max_transfer_mib = 512;                // of all requests that are being received
 };
 
 }  // namespace ballpiston::server

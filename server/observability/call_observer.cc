@@ -96,10 +96,17 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  private:
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
+  // gRPC's own services say UNKNOWN of a client that left, which would look like their fault.
+  absl::StatusCode CodeOf(const grpc::Status& status) const {
+    const bool left = status.error_code() == grpc::StatusCode::UNKNOWN &&
+                      absl::StartsWith(path_, "/grpc.") && call_.IsCancelled();
+    return left ? absl::StatusCode::kCancelled : static_cast<absl::StatusCode>(status.error_code());
+  }
+
   void StatusOf(InterceptorBatchMethods& batch) {
     if (ended_.exchange(true)) return;
     const grpc::Status status = batch.GetSendStatus();
-    const auto code = static_cast<absl::StatusCode>(status.error_code());
+    const absl::StatusCode code = CodeOf(status);
     const double seconds = Seconds();
     counts_.Ended(code, seconds);
     const std::string principal = observer_.Ended(call_);
