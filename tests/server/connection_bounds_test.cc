@@ -1,0 +1,168 @@
+// What clients may take before it is known who they are: descriptors, streams, threads.
+#include <fcntl.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/security/socket_listener.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/http_get.h"
+#include "tests/server/running_server.h"
+#include "tests/server/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+constexpr char kList[] = "/ballpiston.v1.EnsembleService/ListEnsembleJobs";
+
+ServerOptions Options(const TemporaryFolder& folder) {
+  ServerOptions options;
+  options.data_dir = folder.path();
+  options.listen = "127.0.0.1:0";
+  options.factory = FakeExperiments();
+  return options;
+}
+
+// The number that the next descriptor gets.
+rlim_t NextDescriptor() {
+  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(next);
+  return static_cast<rlim_t>(next);
+}
+
+class DescriptorLimit {
+ public:
+  explicit DescriptorLimit(rlim_t limit) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit lowered{limit, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &lowered);
+  }
+  ~DescriptorLimit() { setrlimit(RLIMIT_NOFILE, &before_); }
+  DescriptorLimit(const DescriptorLimit&) = delete;
+  DescriptorLimit& operator=(const DescriptorLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(ConnectionBounds, AQuarterOfAFewDescriptorsIsReservedAndNoMoreThan32) {
+  EXPECT_EQ(ReservedDescriptors(64), 16u);
+  EXPECT_EQ(ReservedDescriptors(128), 32u);
+  EXPECT_EQ(ReservedDescriptors(1'000'000), 32u);
+}
+
+// As many connections as the process has descriptors, and more: the surplus is closed, the process
+// can still open files, and when they have gone the server serves as before.
+TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsAndPasses) {
+  constexpr rlim_t kFlood = 100;
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  ASSERT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  testing::internal::CaptureStderr();
+  {
+    // Descriptors of the clients, in this same process, are below the limit; half as many of the
+    // server's are above what is reserved.
+    const rlim_t limit = std::max<rlim_t>(NextDescriptor() + 3 * kFlood / 2, 128);
+    const DescriptorLimit lowered(limit);
+    std::vector<std::unique_ptr<Connection>> flood;
+    int closed = 0;
+    for (rlim_t i = 0; i < kFlood && closed < 3; ++i) {
+      flood.push_back(std::make_unique<Connection>(server.server().address()));
+      if (flood.back()->ReadSome().empty()) ++closed;
+    }
+    EXPECT_EQ(closed, 3);
+    EXPECT_LT(NextDescriptor(), limit);
+  }
+  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  EXPECT_FALSE(Connection(server.server().address()).ReadSome().empty());
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr("1 connection closed: the process has nearly as many descriptors"));
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
+}
+
+TEST(ConnectionBounds, AConnectionIsToldHowManyStreamsItMayHave) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  Connection connection(server.server().address());
+  // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 1,024 is 0x400.
+  EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x4\0", 6)));
+}
+
+// A bidirectional stream that says nothing.
+class SilentStream {
+ public:
+  SilentStream(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
+      : stub_(channel), call_(stub_.PrepareCall(&context_, method, &queue_)) {
+    call_->StartCall(this);
+    Next();
+  }
+  ~SilentStream() {
+    context_.TryCancel();
+    Finish();
+    queue_.Shutdown();
+    Next();
+  }
+  SilentStream(const SilentStream&) = delete;
+  SilentStream& operator=(const SilentStream&) = delete;
+
+  grpc::Status Finish() {
+    if (!finished_) call_->Finish(&status_, this);
+    if (!std::exchange(finished_, true)) Next();
+    return status_;
+  }
+
+ private:
+  void Next() {
+    void* tag = nullptr;
+    bool ok = false;
+    queue_.Next(&tag, &ok);
+  }
+
+  grpc::ClientContext context_;
+  grpc::CompletionQueue queue_;
+  grpc::GenericStub stub_;
+  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+  grpc::Status status_;
+  bool finished_ = false;
+};
+
+size_t Threads() {
+  const std::filesystem::directory_iterator all("/proc/self/task");
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(ConnectionBounds, ReflectionTakesSoManyThreadsAndOtherCallsGoOn) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  const std::string list_services("\x3a\x00", 2);
+  ASSERT_TRUE(CallByName(server.channel(), kReflection, list_services, {}).ok());
+  const size_t before = Threads();
+  std::vector<std::unique_ptr<SilentStream>> streams;
+  for (int i = 0; i < 60; ++i) {
+    streams.push_back(std::make_unique<SilentStream>(server.channel(), kReflection));
+  }
+  // The last is refused, in a moment; it would be open as long as the client likes.
+  EXPECT_EQ(streams.back()->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_LE(Threads(), before + 32);
+  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  EXPECT_TRUE(CallByName(server.channel(), "/grpc.health.v1.Health/Check", "", {}).ok());
+  streams.clear();
+  while (!CallByName(server.channel(), kReflection, list_services, {}).ok()) {
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server
