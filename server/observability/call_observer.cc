@@ -96,11 +96,15 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  private:
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  // gRPC's own services say UNKNOWN of a client that left, which would look like their fault.
+  // gRPC's own services call it UNKNOWN if the client left, and INTERNAL if its request was no
+  // message, or none came, which would look like the server's fault.
   absl::StatusCode CodeOf(const grpc::Status& status) const {
-    const bool left = status.error_code() == grpc::StatusCode::UNKNOWN &&
-                      absl::StartsWith(path_, "/grpc.") && call_.IsCancelled();
-    return left ? absl::StatusCode::kCancelled : static_cast<absl::StatusCode>(status.error_code());
+    const auto code = static_cast<absl::StatusCode>(status.error_code());
+    if (!absl::StartsWith(path_, "/grpc.")) return code;
+    const bool unparsed = status.error_message() == "could not parse request";
+    if (code != absl::StatusCode::kUnknown && !unparsed) return code;
+    if (call_.IsCancelled()) return absl::StatusCode::kCancelled;
+    return unparsed ? absl::StatusCode::kInvalidArgument : code;
   }
 
   void StatusOf(InterceptorBatchMethods& batch) {
