@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -212,7 +213,9 @@ TEST(ConnectionBounds, RequestsThatNeverEndAreEndedWhenMemoryIsUsedUp) {
 class SilentStream {
  public:
   SilentStream(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
-      : stub_(channel), call_(stub_.PrepareCall(&context_, method, &queue_)) {
+      : stub_(channel) {
+    context_.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
+    call_ = stub_.PrepareCall(&context_, method, &queue_);
     call_->StartCall(this);
     Next();
   }
