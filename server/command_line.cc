@@ -81,7 +81,8 @@ ABSL_FLAG(int64_t, max_streams_per_principal, kLimits.max_streams_per_principal,
 ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
 ABSL_FLAG(int64_t, max_transfer_mib, kLimits.max_transfer_mib,
           "memory for connections and for requests that are being received, of all clients; beyond "
-          "it such calls are refused; at least twice --max_message_bytes, to 1048576; 0: no limit");
+          "it such calls are refused; at least 16 and twice --max_message_bytes, to 1048576; 0: no "
+          "limit");
 ABSL_FLAG(
     bool, check, false,
     "check the store in --data_dir, page by page and row by row, print what is in it, and end: "
