@@ -88,6 +88,10 @@ ABSL_FLAG(int64_t, max_calls_per_principal, kLimits.max_calls_per_principal,
 ABSL_FLAG(int64_t, max_call_bytes_per_principal, kLimits.max_call_bytes_per_principal,
           "bytes of their requests, and of answers that are not read yet; 0: no limit");
 ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
+ABSL_FLAG(int64_t, max_transfer_mib, kLimits.max_transfer_mib,
+          "memory for connections and for requests that are being received, of all clients; beyond "
+          "it such calls are refused; at least 16 and twice --max_message_bytes, to 1048576; 0: no "
+          "limit");
 ABSL_FLAG(
     bool, check, false,
     "check the store in --data_dir, page by page and row by row, print what is in it, and end: "
@@ -105,6 +109,8 @@ constexpr int kMaxWorkers = 1024;
 constexpr double kMaxSeconds = 1e6;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
+constexpr int64_t kLeastTransferMib = 16;
+constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 
 bool parsing = false;
 bool help_asked = false;
@@ -192,6 +198,16 @@ absl::Status CheckLimit(const char* flag, double value) {
   return value >= 0 ? absl::OkStatus() : OutOfRange(flag, absl::StrCat(value), "0 (none) and more");
 }
 
+// Below twice the longest message, two clients could keep each other from ever sending one.
+absl::Status CheckTransfer(const Limits& limits) {
+  const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
+  const int64_t mib = limits.max_transfer_mib;
+  if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
+  return OutOfRange("max_transfer_mib", absl::StrCat(mib),
+                    absl::StrCat("0 (none), or ", least, " to ", kMostTransferMib,
+                                 " with --max_message_bytes=", limits.max_message_bytes));
+}
+
 absl::StatusOr<Limits> LimitFlags() {
   Limits limits;
   limits.max_active_jobs = absl::GetFlag(FLAGS_max_active_jobs);
@@ -205,6 +221,7 @@ absl::StatusOr<Limits> LimitFlags() {
   limits.max_calls_per_principal = absl::GetFlag(FLAGS_max_calls_per_principal);
   limits.max_call_bytes_per_principal = absl::GetFlag(FLAGS_max_call_bytes_per_principal);
   limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
+  limits.max_transfer_mib = absl::GetFlag(FLAGS_max_transfer_mib);
   for (const absl::Status& status :
        {CheckLimit("max_active_jobs", static_cast<double>(limits.max_active_jobs)),
         CheckLimit("max_active_jobs_per_principal",
@@ -222,11 +239,13 @@ absl::StatusOr<Limits> LimitFlags() {
                    static_cast<double>(limits.max_call_bytes_per_principal))}) {
     if (!status.ok()) return status;
   }
-  if (limits.max_message_bytes >= kLeastMessage && limits.max_message_bytes <= kMostMessage) {
-    return limits;
+  if (limits.max_message_bytes < kLeastMessage || limits.max_message_bytes > kMostMessage) {
+    return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
+                      absl::StrCat(kLeastMessage, " to ", kMostMessage));
   }
-  return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
-                    absl::StrCat(kLeastMessage, " to ", kMostMessage));
+  const absl::Status transfer = CheckTransfer(limits);
+  if (!transfer.ok()) return transfer;
+  return limits;
 }
 
 SecurityOptions SecurityFlags() {

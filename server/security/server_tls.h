@@ -29,8 +29,8 @@ class ServerTls {
   // object has to outlive the server that uses them.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Reads the files again. What is wrong with them leaves all as it was; what is right serves new
-  // connections a second later. One thread at a time.
+  // Reads the files again. What is wrong with one of them, or with the system, leaves all as they
+  // were; what is right serves new connections a second later. One thread at a time.
   absl::Status Reload();
 
   // The certificate in use. Any thread.

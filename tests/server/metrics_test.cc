@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "gmock/gmock.h"
+#include "grpcpp/generic/generic_stub.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
@@ -86,6 +87,45 @@ TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
   EXPECT_EQ(names(server).count(kExpiry), 0u);
   server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
   EXPECT_EQ(names(server)[kExpiry], 2e9);
+}
+
+TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
+  testing::internal::CaptureStderr();
+  RunningServer& server = Start();
+  {
+    grpc::ClientContext context;
+    grpc::CompletionQueue queue;
+    const auto await = [&queue] {
+      void* tag = nullptr;
+      bool ok = false;
+      return queue.Next(&tag, &ok) && ok;
+    };
+    grpc::GenericStub stub(server.channel());
+    const auto call = stub.PrepareCall(&context, "/grpc.health.v1.Health/Watch", &queue);
+    call->StartCall(nullptr);
+    ASSERT_TRUE(await());
+    const grpc::Slice whole_server(std::string("\x0a\0", 2));
+    call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
+    ASSERT_TRUE(await());
+    grpc::ByteBuffer state;
+    call->Read(&state, nullptr);
+    ASSERT_TRUE(await());
+    context.TryCancel();
+    grpc::Status status;
+    call->Finish(&status, nullptr);
+    await();
+  }
+  const auto ended_as = [this](const std::string& code) {
+    const auto metrics = Metrics();
+    const auto found = metrics.find(
+        "grpc_server_handled_total{grpc_service=\"grpc.health.v1.Health\",grpc_method=\"Watch\","
+        "grpc_type=\"server_stream\",grpc_code=\"" +
+        code + "\"}");
+    return found == metrics.end() ? 0 : found->second;
+  };
+  while (ended_as("CANCELLED") + ended_as("UNKNOWN") == 0) std::this_thread::yield();
+  EXPECT_EQ(ended_as("CANCELLED"), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
