@@ -98,8 +98,8 @@ TEST(ConnectionBounds, AConnectionIsToldHowManyStreamsItMayHave) {
   TemporaryFolder folder;
   RunningServer server(Options(folder));
   Connection connection(server.server().address());
-  // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 1,024 is 0x400.
-  EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x4\0", 6)));
+  // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 2,048 is 0x800.
+  EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x8\0", 6)));
 }
 
 // A client, HTTP/2 by hand, whose requests never end: each announces more than it sends.
