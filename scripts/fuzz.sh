@@ -15,7 +15,7 @@ readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
 declare -A max_len=([stored_block]=4096 [log_line]=160 [number_list]=80 [server_address]=160)
 readonly MAX_LEN=600
 # Stacks of allocations and freed memory that is kept for long cost more time than all else.
-export ASAN_OPTIONS=malloc_context_size=2:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
+export ASAN_OPTIONS=malloc_context_size=0:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
 export UBSAN_OPTIONS=print_stacktrace=1
 
 targets=("$@")
