@@ -1,6 +1,8 @@
 // The server's log, in which what a client sent may stand: it stays one line of a form.
 #include "server/observability/log_line.h"
 
+#include <algorithm>
+
 #include "absl/time/time.h"
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
@@ -17,13 +19,10 @@ std::string Line(LogFormat format, const std::string& text) {
 }
 
 void RequireOneLine(const std::string& line) {
-  constexpr char kControls[] =
-      "\0\x01\x02\x03\x04\x05\x06\x07\x08\x09\x0b\x0c\x0d\x0e\x0f\x10\x11\x12\x13\x14\x15\x16\x17"
-      "\x18\x19\x1a\x1b\x1c\x1d\x1e\x1f\x7f";
   Require(line.size() <= server::kMaxLogLine, "a line fits into a pipe");
   Require(!line.empty() && line.find('\n') == line.size() - 1, "it is one");
-  Require(line.find_first_of(kControls, 0, sizeof(kControls) - 1) == std::string::npos,
-          "no control reaches a terminal");
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  Require(std::none_of(line.begin(), line.end() - 1, is_control), "no control reaches a terminal");
 }
 
 void RequireJson(const std::string& line) {
@@ -49,7 +48,7 @@ void Check(const std::string& text) {
 
 std::vector<std::string> Texts() {
   return {"ensembleJobs/1f0c was cancelled", "two\nlines and a \"quote\\",
-          "\xe2\x80\xa8\xf0\x9f\x8e\xb1", "\xff\xfe\xc3(\x1b[2J", std::string(145, 'x')};
+          "\xe2\x80\xa8\xf0\x9f\x8e\xb1", "\xff\xfe\xc3(\x1b[2J", std::string(49, 'x')};
 }
 
 const Registration registration({.name = "log_line", .check = Check, .made_seeds = Texts});

@@ -30,7 +30,7 @@ void Check(const std::string& bytes) {
   if (!request.ParseFromString(bytes)) return;
   if (request.rho_size() * request.delta_size() > kMostPairs) return;
   const auto response = server::EvaluatePairs(request);
-  if (!response.ok()) return RequireSendable(response.status());
+  if (!response.ok()) return RequireSendable(response.status(), bytes);
   Require(response->points_size() == request.rho_size() * request.delta_size(), "every pair");
   for (const v1::PairAnalytics& point : response->points()) {
     Require(point.energies_size() == request.epsilon_size(), "every energy");
