@@ -38,7 +38,14 @@ ServerOptions Completed(ServerOptions options) {
   return options;
 }
 
-void AllowPings(grpc::ServerBuilder& builder) {
+void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
+  const auto set = [&builder](const char* argument, std::chrono::milliseconds time) {
+    builder.AddChannelArgument(argument, static_cast<int>(time.count()));
+  };
+  set(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
+  set(GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
+  set(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, timing.ping_timeout);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kMinPingIntervalMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
@@ -120,7 +127,7 @@ absl::Status BallpistonServer::Listen() {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  AllowPings(builder);
+  SetPings(builder, options_.connections);
   builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);

@@ -32,6 +32,13 @@
 
 namespace ballpiston::server {
 
+// When a connection at whose other end nobody is any more is given up, with the streams on it.
+struct ConnectionTiming {
+  std::chrono::milliseconds handshake{20'000};      // the longest
+  std::chrono::milliseconds ping_interval{60'000};  // of silence before the other end is asked
+  std::chrono::milliseconds ping_timeout{20'000};   // and has to have answered
+};
+
 struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
@@ -41,6 +48,7 @@ struct ServerOptions {
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   MethodComparer compare;     // empty: the core's
   WatchTiming watch;
+  ConnectionTiming connections;
   Limits limits;
   std::string metrics_listen;  // HOST:PORT on the loopback; empty: no metrics
   Store::Options store;

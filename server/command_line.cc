@@ -115,10 +115,8 @@ void Configure() {
       "--access_file=FILE\n"
       "  ballpistond --access_file=FILE --new_token=PRINCIPAL:ROLE[:DAYS]\n"
       "  ballpistond --data_dir=DIR --check | --backup=FILE\n"
-      "Exit codes: 0 stopped, 2 a wrong flag, address or data folder in use, or a store that is "
-      "not "
-      "sound, 6 data folder not "
-      "writable.");
+      "Exit codes: 0 stopped, 1 the store's disk is full or fails (try again), 2 a wrong flag, "
+      "address or data folder in use, or a store that is not sound, 6 data folder not writable.");
   absl::FlagsUsageConfig config;
   const auto of_this_program = [](absl::string_view file) { return file == kProgram; };
   config.contains_helpshort_flags = of_this_program;

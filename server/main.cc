@@ -25,6 +25,7 @@
 namespace ballpiston::server {
 namespace {
 
+constexpr int kExitTryAgain = 1;
 constexpr int kExitUsage = 2;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
@@ -81,6 +82,7 @@ void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
 
 int Fail(const absl::Status& status) {
   LogError(status.message());
+  if (absl::IsUnavailable(status)) return kExitTryAgain;
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
 

@@ -22,9 +22,8 @@ absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, con
   if (!page.ok()) return page.status();
   v1::ListResultsResponse response;
   for (v1::PointResult& point : page->points) *response.add_points() = std::move(point);
-  if (page->more) {
-    const int64_t next = response.points(response.points_size() - 1).index() + int64_t{1};
-    response.set_next_page_token(RequestCheck::PageToken(list, next));
+  if (page->next_point) {
+    response.set_next_page_token(RequestCheck::PageToken(list, *page->next_point));
   }
   return response;
 }

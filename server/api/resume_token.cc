@@ -11,8 +11,8 @@ namespace ballpiston::server {
 
 std::string ResumeTokenText(const ResumeToken& token) {
   std::string text;
-  absl::WebSafeBase64Escape(absl::StrCat(token.job, ":", token.finished, ":", token.instance, ":",
-                                         token.change, ":", token.engine_version),
+  absl::WebSafeBase64Escape(absl::StrCat(token.job, ":", token.restarts, ":", token.finished, ":",
+                                         token.instance, ":", token.change),
                             &text);
   return text;
 }
@@ -20,15 +20,15 @@ std::string ResumeTokenText(const ResumeToken& token) {
 std::optional<ResumeToken> ParseResumeToken(const std::string& text) {
   std::string told;
   if (!absl::WebSafeBase64Unescape(text, &told)) return std::nullopt;
-  const std::vector<std::string> parts = absl::StrSplit(told, absl::MaxSplits(':', 4));
+  const std::vector<std::string> parts = absl::StrSplit(told, ':');
   ResumeToken token;
-  if (parts.size() != 5 || !absl::SimpleAtoi(parts[1], &token.finished) ||
-      !absl::SimpleAtoi(parts[3], &token.change) || token.finished < 0) {
+  if (parts.size() != 5 || !absl::SimpleAtoi(parts[1], &token.restarts) ||
+      !absl::SimpleAtoi(parts[2], &token.finished) || !absl::SimpleAtoi(parts[4], &token.change) ||
+      token.finished < 0) {
     return std::nullopt;
   }
   token.job = parts[0];
-  token.instance = parts[2];
-  token.engine_version = parts[4];
+  token.instance = parts[3];
   return token;
 }
 

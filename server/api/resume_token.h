@@ -10,11 +10,11 @@
 namespace ballpiston::server {
 
 struct ResumeToken {
-  std::string job;  // its id
+  std::string job;       // its id
+  int64_t restarts = 0;  // of the job: its points of before are not those of after
   int64_t finished = 0;
   std::string instance;  // of the server's life in which `change` means something
   uint64_t change = 0;
-  std::string engine_version;
 
   friend bool operator==(const ResumeToken&, const ResumeToken&) = default;
 };

@@ -247,15 +247,15 @@ void WatchReactor::TellHeartbeat() {
 
 std::string WatchReactor::Token() const {
   return ResumeTokenText({.job = id_,
+                          .restarts = job_.restarts,
                           .finished = told_finished_,
                           .instance = service_.instance,
-                          .change = told_,
-                          .engine_version = job_.engine_version});
+                          .change = told_});
 }
 
 void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
   const std::optional<ResumeToken> told = ParseResumeToken(token);
-  if (!told || told->job != id_ || told->engine_version != job_.engine_version ||
+  if (!told || told->job != id_ || told->restarts != job_.restarts ||
       told->finished > last_finished) {
     return;
   }

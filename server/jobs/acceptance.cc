@@ -31,7 +31,7 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
 }
 
 absl::Status KeepRequest(Database& database, Acceptance& acceptance, int64_t job) {
-  if (acceptance.request.request_id.empty()) return absl::OkStatus();
+  if (acceptance.request.request_id.empty() || acceptance.replay) return absl::OkStatus();
   acceptance.request.job = job;
   acceptance.request.answered_from_store = acceptance.answered_from_store;
   return InsertRequest(database, acceptance.request);
@@ -41,6 +41,7 @@ absl::Status Replay(Database& database, const RequestRecord& request, Acceptance
   auto job = FindJobBySequence(database, request.job);
   if (!job.ok()) return job.status();
   acceptance.earlier = *std::move(job);
+  acceptance.replay = true;
   acceptance.answered_from_store = request.answered_from_store;
   // A store of an older version knows of its requests only which jobs they made.
   const bool same = request.payload.empty()
@@ -62,8 +63,7 @@ absl::Status FindEarlier(Database& database, Acceptance& acceptance) {
   if (!answer.ok()) return answer.status();
   acceptance.earlier = *std::move(answer);
   acceptance.answered_from_store = acceptance.earlier.has_value();
-  return acceptance.earlier ? KeepRequest(database, acceptance, acceptance.earlier->sequence)
-                            : absl::OkStatus();
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -84,16 +84,23 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                        "max_samples_per_job", limits.max_samples_per_job);
 }
 
-absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
   acceptance.earlier.reset();
-  acceptance.answered_from_store = false;
+  acceptance.replay = acceptance.answered_from_store = false;
   acceptance.refused = absl::OkStatus();
   const absl::Status looked = FindEarlier(database, acceptance);
   if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
-  absl::StatusOr<absl::Status> room = CheckQueue(database, limits, acceptance.record.principal);
-  if (!room.ok()) return room.status();
-  acceptance.refused = *std::move(room);
+  acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
+  absl::StatusOr<absl::Status> room = CheckQueue(database, limits, acceptance.record.principal);
+  if (room.ok()) acceptance.refused = *std::move(room);
+  return room.status();
+}
+
+absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
+  const absl::Status judged = Judge(database, limits, acceptance);
+  if (!judged.ok() || !acceptance.refused.ok()) return judged;
+  if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
   const absl::Status inserted = InsertJob(database, acceptance.record);
   return inserted.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : inserted;
 }

@@ -2,9 +2,9 @@
 //
 // A replay, the same request id with the same request, is answered with the job of the first time;
 // the same question as an earlier job's that succeeded with that one, unless a fresh answer is
-// wanted; then the limits on active jobs count. All of it is decided inside one transaction of the
-// store, where all writes pass in one order, so that of many equal requests at once one makes a
-// job.
+// wanted; then the limits on a job's size and on active jobs count. All of it is decided inside one
+// transaction of the store, where all writes pass in one order, so that of many equal requests at
+// once one makes a job.
 #ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 #define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 
@@ -23,14 +23,17 @@ struct Acceptance {
   JobRecord record;       // the job that would be made
   RequestRecord request;  // without an id: nothing is kept of it
   bool fresh = false;     // an earlier answer will not do
+  absl::Status fits;      // CheckSize, which counts for new jobs only
 
-  // The outcome; if both are empty, the record was inserted.
+  // The outcome; if nothing is earlier and nothing refused, there is to be a new job.
   std::optional<JobRecord> earlier;
+  bool replay = false;               // `earlier` is what the same request came to before
   bool answered_from_store = false;  // by `earlier`, now or the first time
   absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
 };
 
-// Sets the outcome anew each time. Not OK: SQLite failed.
+// Each sets the outcome anew; Accept then writes what it comes to. Not OK: SQLite failed.
+absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance);
 absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES

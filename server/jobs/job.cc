@@ -43,7 +43,7 @@ Job::Job(JobRecord record, std::function<void()> on_state_change)
     : sequence_(record.sequence),
       id_(record.id),
       principal_(record.principal),
-      engine_version_(record.engine_version),
+      restarts_(record.restarts),
       open_ended_(IsOpenEnded(JobMessage(record).spec().target())),
       on_state_change_(std::move(on_state_change)),
       record_(std::move(record)) {}
@@ -86,11 +86,6 @@ v1::JobProgress Job::ProgressLocked() const {
   return progress;
 }
 
-int64_t Job::points_computed() const {
-  std::lock_guard lock(mutex_);
-  return points_computed_;
-}
-
 bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
   JobRecord record;
   {
@@ -121,11 +116,6 @@ void Job::AddWork(double seconds) {
   record_.work += seconds;
 }
 
-void Job::AddComputedPoint() {
-  std::lock_guard lock(mutex_);
-  ++points_computed_;
-}
-
 void Job::AddFinishedPoint(FinishedPoint point) {
   std::lock_guard lock(mutex_);
   ++record_.points_done;
@@ -141,7 +131,6 @@ void Job::AddFinishedPoint(FinishedPoint point) {
 void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
   std::lock_guard lock(mutex_);
   record_.points_done += points;
-  points_computed_ += points;
   record_.samples += samples;
   work_done_ += static_cast<double>(points);
   last_finished_ = last_forgotten_ = last;

@@ -48,16 +48,13 @@ class Job {
   int64_t sequence() const { return sequence_; }
   const std::string& id() const { return id_; }
   const std::string& principal() const { return principal_; }
-  const std::string& engine_version() const { return engine_version_; }
+  int64_t restarts() const { return restarts_; }
 
   JobState state() const;
   View Now() const;
   v1::EnsembleJob Message() const { return Now().job; }
   v1::JobProgress Progress() const;
   JobRecord Record() const;
-
-  // Points whose results were computed, but perhaps not stored yet.
-  int64_t points_computed() const;
 
   // These three without a lock: a thousand watchers ask several times a second.
   uint64_t last_change() const { return last_change_; }
@@ -70,7 +67,6 @@ class Job {
   // A block was merged: so many samples, that share of its point. Returns the number of the change.
   uint64_t AddBlock(double samples, double share_of_point);
   void AddWork(double seconds);
-  void AddComputedPoint();
   // A computed point is stored; in the order of their numbers.
   void AddFinishedPoint(FinishedPoint point);
   // Points that an earlier process stored, `last` the number of the last of them. Before any other.
@@ -88,13 +84,12 @@ class Job {
   const int64_t sequence_;
   const std::string id_;
   const std::string principal_;
-  const std::string engine_version_;
+  const int64_t restarts_;
   const bool open_ended_;  // how much there is to do is not known
   const std::function<void()> on_state_change_;
 
   mutable std::mutex mutex_;
   JobRecord record_;
-  int64_t points_computed_ = 0;
   double work_done_ = 0;  // in points
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;

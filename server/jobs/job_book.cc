@@ -35,44 +35,72 @@ absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Pri
 
 // What an earlier process finished of a job.
 struct StoredPoints {
-  std::vector<bool> finished;  // by point of the grid
-  int64_t count = 0;
-  int64_t last = 0;  // the number of the last of them
+  std::vector<PointRow> rows;  // without results
+  int64_t last = 0;            // the number of the last of them
   double samples = 0;
+
+  int64_t count() const { return static_cast<int64_t>(rows.size()); }
 };
 
 absl::Status ReadStoredPoints(Database& database, const JobRecord& record, StoredPoints& points) {
   const auto last = LastResultNumber(database, record.sequence);
   if (!last.ok()) return last.status();
-  const auto rows = ListFinishedPoints(database, record.sequence);
+  auto rows = ListFinishedPoints(database, record.sequence);
   if (!rows.ok()) return rows.status();
   points.last = *last;
-  points.finished.assign(static_cast<size_t>(record.points), false);
-  for (const PointRow& row : *rows) {
-    if (row.point < 0 || row.point >= record.points) continue;
-    points.finished[static_cast<size_t>(row.point)] = true;
-    points.samples += row.samples;
-    ++points.count;
-  }
+  points.rows = *std::move(rows);
+  for (const PointRow& row : points.rows) points.samples += row.samples;
   return absl::OkStatus();
+}
+
+absl::Status CheckStoredPoints(const JobRecord& record, const EnsembleSpec& spec,
+                               const StoredPoints& points) {
+  const auto in_grid = static_cast<int64_t>(PointCount(spec));
+  const auto is_beyond = [&](const PointRow& row) { return row.point < 0 || row.point >= in_grid; };
+  if (record.points == in_grid && std::ranges::none_of(points.rows, is_beyond)) {
+    return absl::OkStatus();
+  }
+  return absl::DataLossError(absl::StrCat("the store's rows of ", JobName(record.id),
+                                          " do not fit its specification of ", in_grid, " points"));
+}
+
+// By point of the grid.
+std::vector<bool> Finished(const JobRecord& record, const StoredPoints& points) {
+  std::vector<bool> finished(static_cast<size_t>(record.points), false);
+  for (const PointRow& row : points.rows) finished[static_cast<size_t>(row.point)] = true;
+  return finished;
 }
 
 // The first finished point that an earlier process had to leave short of the tolerance, if any.
 absl::Status ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
-                           std::optional<Shortfall>& shortfall) {
+                           std::optional<Shortfall>& shortfall, absl::Status& damage) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
-  absl::Status parsed;
-  const absl::Status read = ReadResults(database, record.sequence, 0, [&](PointRow row) {
+  return ReadResults(database, record.sequence, 0, [&](PointRow row) {
     const absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
-    parsed = result.status();
-    if (!parsed.ok()) return false;
+    damage = result.status();
+    if (!damage.ok()) return false;
     const Estimate reached = FirstEstimateOf(*result);
     if (MeetsTolerance(reached, *spec.target.tolerance)) return true;
     const auto point = static_cast<size_t>(row.point);
     shortfall = {point, ToleranceNotReached(spec, point, reached)};
     return false;
   });
-  return read.ok() ? parsed : read;
+}
+
+// What a run goes on from. `damage`: what the store has of the job is not what it wrote.
+struct Restored {
+  StoredPoints points;
+  std::optional<Shortfall> shortfall;
+  absl::Status damage;
+};
+
+absl::Status ReadRestored(Database& database, const JobRecord& record, const EnsembleSpec& spec,
+                          Restored& restored) {
+  const absl::Status read = ReadStoredPoints(database, record, restored.points);
+  if (!read.ok()) return read;
+  restored.damage = CheckStoredPoints(record, spec, restored.points);
+  if (!restored.damage.ok()) return absl::OkStatus();
+  return ReadShortfall(database, record, spec, restored.shortfall, restored.damage);
 }
 
 }  // namespace
@@ -123,6 +151,7 @@ absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
     if (!message.ok() || !CheckSpec(*message).violations.empty()) continue;
     record.engine_version = EngineVersion();
     record.question = QuestionOf(*message, record.engine_version);
+    ++record.restarts;
     older.push_back(&record);
     LogInfo(
         absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
@@ -156,26 +185,27 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
       store_.Read([&](Database& database) { return ReadStoredPoints(database, record, points); });
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
-  job->AddRestoredPoints(points.count, points.samples, points.last);
+  job->AddRestoredPoints(points.count(), points.samples, points.last);
   JobJournal(job, store_, nullptr).Ended(why);
   return absl::OkStatus();
 }
 
 absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
-  StoredPoints points;
-  std::optional<Shortfall> shortfall;
-  const absl::Status read = store_.Read([&](Database& database) {
-    const absl::Status finished = ReadStoredPoints(database, record, points);
-    return finished.ok() ? ReadShortfall(database, record, spec, shortfall) : finished;
-  });
+  Restored restored;
+  const absl::Status read = store_.Read(
+      [&](Database& database) { return ReadRestored(database, record, spec, restored); });
   if (!read.ok()) return read;
-  std::shared_ptr<Job> job = Register(std::move(record));
-  job->AddRestoredPoints(points.count, points.samples, points.last);
+  if (!restored.damage.ok()) {
+    return EndUnresumable(record, WithReason(restored.damage, "STORE_FAILED"));
+  }
+  const StoredPoints& points = restored.points;
   RunRequest request;
+  request.finished = Finished(record, points);
   request.spec = std::move(spec);
-  request.finished = std::move(points.finished);
   request.has_stored_blocks = true;
-  request.shortfall = std::move(shortfall);
+  request.shortfall = std::move(restored.shortfall);
+  std::shared_ptr<Job> job = Register(std::move(record));
+  job->AddRestoredPoints(points.count(), points.samples, points.last);
   StartRun(std::move(job), std::move(request));
   return absl::OkStatus();
 }
@@ -220,26 +250,35 @@ JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJo
   return record;
 }
 
+Acceptance JobBook::NewAcceptance(const Principal& caller,
+                                  const v1::CreateEnsembleJobRequest& request,
+                                  const CheckedSpec& checked) const {
+  Acceptance acceptance;
+  acceptance.record = NewRecord(caller, request, checked);
+  acceptance.request.principal = caller.name;
+  acceptance.request.request_id = request.request_id();
+  acceptance.request.payload = PayloadOf(request);
+  acceptance.fresh = request.fresh();
+  acceptance.fits = CheckSize(checked.spec, limits_);
+  return acceptance;
+}
+
 absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const v1::CreateEnsembleJobRequest& request,
-                                                 const CheckedSpec& checked) const {
-  const absl::Status fits = CheckSize(checked.spec, limits_);
-  if (!fits.ok()) return fits;
-  return JobMessage(NewRecord(caller, request, checked));
+                                                 const CheckedSpec& checked) {
+  Acceptance acceptance = NewAcceptance(caller, request, checked);
+  const absl::Status read =
+      store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
+  if (!read.ok()) return StoreFailure(read);
+  if (!acceptance.refused.ok()) return acceptance.refused;
+  return acceptance.earlier ? EarlierJob(caller, acceptance) : JobMessage(acceptance.record);
 }
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const v1::CreateEnsembleJobRequest& request,
                                                 const CheckedSpec& checked) {
-  const absl::Status fits = CheckSize(checked.spec, limits_);
-  if (!fits.ok()) return fits;
-  Acceptance acceptance;
-  acceptance.record = NewRecord(caller, request, checked);
+  Acceptance acceptance = NewAcceptance(caller, request, checked);
   acceptance.record.id = RandomId();
-  acceptance.request.principal = caller.name;
-  acceptance.request.request_id = request.request_id();
-  acceptance.request.payload = PayloadOf(request);
-  acceptance.fresh = request.fresh();
   const auto accept = [&](Database& database) { return Accept(database, limits_, acceptance); };
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
@@ -255,10 +294,16 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   if (!committed.ok()) return StoreFailure(committed);
   Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
-  if (!acceptance.earlier) return job->Message();
-  absl::StatusOr<v1::EnsembleJob> earlier = Get(caller, acceptance.earlier->id);
-  if (earlier.ok()) earlier->set_answered_from_store(acceptance.answered_from_store);
-  return earlier;
+  return acceptance.earlier ? EarlierJob(caller, acceptance) : job->Message();
+}
+
+// As it is now; if somebody has deleted it since, as it was when it was found.
+absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
+                                                    const Acceptance& acceptance) {
+  absl::StatusOr<v1::EnsembleJob> job = Get(caller, acceptance.earlier->id);
+  if (absl::IsNotFound(job.status())) job = JobMessage(*acceptance.earlier);
+  if (job.ok()) job->set_answered_from_store(acceptance.answered_from_store);
+  return job;
 }
 
 std::shared_ptr<Job> JobBook::ActiveOrNull(const Principal& caller, const std::string& id) const {
@@ -290,11 +335,6 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
 
 absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, int64_t before,
                                                      int limit) {
-  std::map<std::string, std::shared_ptr<Job>> active;
-  {
-    std::lock_guard lock(mutex_);
-    active = active_;
-  }
   const bool everybodys = caller.role == Role::kAdmin;
   absl::StatusOr<std::vector<JobRecord>> records;
   const absl::Status read = store_.Read([&](Database& database) {
@@ -305,9 +345,12 @@ absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, in
   if (!read.ok()) return StoreFailure(read);
   std::vector<ListedJob> listed;
   for (const JobRecord& record : *records) {
-    const auto job = active.find(record.id);
-    const bool now = job != active.end() && !HasEnded(record.state);
-    listed.push_back({record.sequence, now ? job->second->Message() : JobMessage(record)});
+    // How far an active one has come, the store does not know.
+    absl::StatusOr<v1::EnsembleJob> job =
+        HasEnded(record.state) ? JobMessage(record) : Get(caller, record.id);
+    if (absl::IsNotFound(job.status())) continue;  // it has ended and was deleted just now
+    if (!job.ok()) return job.status();
+    listed.push_back({record.sequence, *std::move(job)});
   }
   return listed;
 }
@@ -373,9 +416,10 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
     if (!query.histograms) ClearDetails(*result);
     bytes += result->ByteSizeLong();
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
-    page.more = full || (!page.points.empty() && bytes > query.max_bytes);
-    if (!page.more) page.points.push_back(*std::move(result));
-    return !page.more;
+    const bool ends = full || (!page.points.empty() && bytes > query.max_bytes);
+    if (ends) page.next_point = row.point;
+    if (!ends) page.points.push_back(*std::move(result));
+    return !ends;
   };
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadResults(database, record->sequence, query.first_point, take);
@@ -401,7 +445,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
   absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
   if (!active.ok()) return active.status();
   if (const std::shared_ptr<Job>& job = *active) {
-    return WatchedJob{job, job->sequence(), job->engine_version(), job->last_finished(), {}};
+    return WatchedJob{job, job->sequence(), job->restarts(), job->last_finished(), {}};
   }
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
@@ -411,7 +455,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
     return last.status();
   });
   if (!read.ok()) return StoreFailure(read);
-  return WatchedJob{nullptr, record->sequence, record->engine_version, *last,
+  return WatchedJob{nullptr, record->sequence, record->restarts, *last,
                     JobMessage(*record).progress()};
 }
 

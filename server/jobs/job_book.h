@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/convert/spec.h"
 #include "server/execution/worker_pool.h"
+#include "server/jobs/acceptance.h"
 #include "server/jobs/job.h"
 #include "server/limits.h"
 #include "server/security/principal.h"
@@ -39,7 +41,7 @@ struct ListedJob {
 struct WatchedJob {
   std::shared_ptr<Job> active;  // null if it has ended
   int64_t sequence = 0;
-  std::string engine_version;
+  int64_t restarts = 0;
   int64_t last_finished = 0;  // the number of its last finished point
   v1::JobProgress progress;
 };
@@ -53,7 +55,7 @@ struct ResultsQuery {
 
 struct ResultsPage {
   std::vector<v1::PointResult> points;
-  bool more = false;
+  std::optional<int64_t> next_point;  // none: this is the last page
 };
 
 // Active jobs, by state.
@@ -83,10 +85,10 @@ class JobBook {
   // Stops computing; what is unfinished stays so in the store.
   void Shutdown();
 
-  // The job as Create would make it.
+  // What Create would answer now.
   absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
                                           const v1::CreateEnsembleJobRequest& request,
-                                          const CheckedSpec& checked) const;
+                                          const CheckedSpec& checked);
 
   // `checked` is the specification of the request, without violations; the request's id is in lower
   // case. Answered with an earlier job if this is a replay, or the same question as before.
@@ -123,6 +125,9 @@ class JobBook {
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const CheckedSpec& checked) const;
+  Acceptance NewAcceptance(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
+                           const CheckedSpec& checked) const;
+  absl::StatusOr<v1::EnsembleJob> EarlierJob(const Principal& caller, const Acceptance& acceptance);
   absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);

@@ -3,12 +3,14 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
+#include "server/store/point_tables.h"
 
 namespace ballpiston::server {
 namespace {
@@ -26,7 +28,6 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   const JobRecord record = job.Record();
   JobEnd end;
   end.time = absl::Now();
-  end.points_done = job.points_computed();
   end.samples = record.samples;
   end.work = record.work;
   if (outcome.ok()) {
@@ -38,6 +39,19 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
     end.error = RpcStatus(WithDefaultReason(outcome, "COMPUTATION_FAILED")).SerializeAsString();
   }
   return end;
+}
+
+// What the store has refused, nobody can fetch.
+absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd& end) {
+  const absl::StatusOr<int64_t> stored = CountResults(database, job.sequence);
+  if (!stored.ok()) return stored.status();
+  end.points_done = *stored;
+  if (end.state != v1::EnsembleJob::SUCCEEDED || *stored == job.points) return absl::OkStatus();
+  const absl::Status lost = absl::DataLossError(
+      absl::StrCat("of ", job.points, " computed points the store keeps ", *stored));
+  end.state = v1::EnsembleJob::FAILED;
+  end.error = RpcStatus(WithReason(lost, "STORE_FAILED")).SerializeAsString();
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -90,7 +104,6 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
   PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);
-  job_->AddComputedPoint();
   const auto told = std::make_shared<const v1::PointResult>(std::move(result));
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
@@ -100,18 +113,22 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
 }
 
 void JobJournal::Ended(const absl::Status& outcome) {
-  const JobEnd end = EndOf(*job_, outcome);
+  const JobEnd computed = EndOf(*job_, outcome);
   Failpoint("job.before_end");
-  auto state = std::make_shared<JobState>();
-  const auto change = [sequence = job_->sequence(), end, state](Database& database) {
-    const absl::StatusOr<JobState> now = EndJob(database, sequence, end);
-    if (now.ok()) *state = *now;
-    return now.status();
+  auto end = std::make_shared<JobEnd>();
+  const auto change = [record = job_->Record(), computed, end](Database& database) {
+    *end = computed;
+    const absl::Status counted = CountStoredPoints(database, record, *end);
+    if (!counted.ok()) return counted;
+    const absl::StatusOr<JobState> state = EndJob(database, record.sequence, *end);
+    if (state.ok() && *state != end->state) end->error.clear();  // it was cancelled just before
+    end->state = state.value_or(end->state);
+    return state.status();
   };
-  store_.RecordSoon(change, [job = job_, end, state, ended = on_ended_](const absl::Status& done) {
+  store_.RecordSoon(change, [job = job_, end, ended = on_ended_](const absl::Status& done) {
     if (!done.ok()) return;
     Failpoint("job.ended");
-    job->Enter(*state, end.time, *state == end.state ? end.error : "");
+    job->Enter(end->state, end->time, end->error);
     if (ended) ended(*job);
   });
   Failpoint("job.end_recorded");

@@ -3,11 +3,10 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
-#include <mutex>
 #include <string>
 
 #include "absl/time/clock.h"
+#include "server/observability/log_output.h"
 
 namespace ballpiston::server {
 namespace {
@@ -15,17 +14,15 @@ namespace {
 std::atomic<LogFormat> chosen_format = LogFormat::kText;
 std::atomic<Severity> least_severity = Severity::kInfo;
 
-// A line that standard error takes in pieces must not be mixed with another. What it does not take
-// at all (it is closed, or its disk is full) is lost: the server goes on.
-void Write(absl::string_view line) {
-  static auto* const one_at_a_time = new std::mutex;
-  std::lock_guard lock(*one_at_a_time);
-  while (!line.empty()) {
-    const ssize_t written = write(STDERR_FILENO, line.data(), line.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return;
-    line.remove_prefix(static_cast<size_t>(written));
-  }
+LogOutput& StandardError() {
+  static auto* const output = new LogOutput(STDERR_FILENO);
+  return *output;
+}
+
+std::string LossLine(int64_t lost) {
+  return LogLine(chosen_format, absl::Now(), Severity::kWarning,
+                 "lines are missing here: nobody read them",
+                 {{"lines", static_cast<double>(lost)}});
 }
 
 }  // namespace
@@ -37,7 +34,7 @@ void SetLogOptions(const LogOptions& options) {
 
 void Log(Severity severity, absl::string_view message, LogFields fields) {
   if (severity < least_severity.load(std::memory_order_relaxed)) return;
-  Write(LogLine(chosen_format, absl::Now(), severity, message, fields));
+  StandardError().Write(LogLine(chosen_format, absl::Now(), severity, message, fields), LossLine);
 }
 
 }  // namespace ballpiston::server

@@ -1,5 +1,5 @@
-// What the server tells its operator: one line each (log_line.h), on standard error, each by one
-// write(2). Thread-safe.
+// What the server tells its operator: one line each (log_line.h), on standard error. One that
+// nobody reads stops nothing (log_output.h). Thread-safe.
 //
 //   Log(Severity::kInfo, "job accepted", {{"job", name}, {"principal", caller.name}});
 //

@@ -26,6 +26,7 @@ struct JobRecord {
   std::optional<absl::Time> end_time;
   std::string error;  // serialized google.rpc.Status, empty unless FAILED
   std::string engine_version;
+  int64_t restarts = 0;           // how often another engine began anew
   std::string cancel_request_id;  // of the Cancel, or empty
   int64_t points = 0;
   int64_t points_done = 0;  // these two are up to date in ended jobs only

@@ -7,7 +7,8 @@ namespace {
 
 constexpr char kColumns[] =
     "sequence, id, principal, priority, spec, question, state, create_time, start_time, end_time,"
-    " error, engine_version, cancel_request_id, points, points_done, samples, work";
+    " error, engine_version, cancel_request_id, points, points_done, samples, work,"
+    " restarts";
 
 // QUEUED, RUNNING, CANCELLING.
 constexpr char kActiveStates[] = "1, 2, 3";
@@ -38,6 +39,7 @@ JobRecord RecordOf(const Query& query) {
   record.points_done = query.Integer(14);
   record.samples = query.Real(15);
   record.work = query.Real(16);
+  record.restarts = query.Integer(17);
   return record;
 }
 
@@ -194,7 +196,10 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }
-  return database.Prepare("UPDATE jobs SET engine_version = ?, question = ? WHERE sequence = ?")
+  return database
+      .Prepare(
+          "UPDATE jobs SET engine_version = ?, question = ?, restarts = restarts + 1"
+          " WHERE sequence = ?")
       .BindText(engine_version)
       .BindBlob(question)
       .Bind(sequence)

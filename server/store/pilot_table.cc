@@ -18,8 +18,8 @@ Query& BindPlace(Query& query, const std::string& engine_version, const PilotPla
 absl::Status InsertPilot(Database& database, const std::string& engine_version,
                          const PilotPlace& place, const Pilot& pilot) {
   Query query = database.Prepare(
-      "INSERT OR IGNORE INTO pilots (engine_version, rho, delta, epsilon, difference,"
-      " standard_error) VALUES (?, ?, ?, ?, ?, ?)");
+      "INSERT INTO pilots (engine_version, rho, delta, epsilon, difference, standard_error)"
+      " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
   return BindPlace(query, engine_version, place)
       .Bind(pilot.difference)
       .Bind(pilot.standard_error)

@@ -7,7 +7,9 @@ namespace ballpiston::server {
 absl::Status InsertBlock(Database& database, int64_t job, int64_t point, int64_t block,
                          const std::string& record) {
   return database
-      .Prepare("INSERT OR IGNORE INTO blocks (job, point, block, record) VALUES (?, ?, ?, ?)")
+      .Prepare(
+          "INSERT INTO blocks (job, point, block, record) VALUES (?, ?, ?, ?)"
+          " ON CONFLICT DO NOTHING")
       .Bind(job)
       .Bind(point)
       .Bind(block)
@@ -37,8 +39,8 @@ absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const Poin
   const absl::Status inserted =
       database
           .Prepare(
-              "INSERT OR IGNORE INTO results (job, point, samples, result, finish)"
-              " VALUES (?, ?, ?, ?, ?)")
+              "INSERT INTO results (job, point, samples, result, finish) VALUES (?, ?, ?, ?, ?)"
+              " ON CONFLICT DO NOTHING")
           .Bind(job)
           .Bind(row.point)
           .Bind(row.samples)
@@ -92,6 +94,13 @@ absl::Status ReadResults(Database& database, int64_t job, int64_t first,
       return absl::OkStatus();
     }
   }
+}
+
+absl::StatusOr<int64_t> CountResults(Database& database, int64_t job) {
+  Query query = database.Prepare("SELECT count(*) FROM results WHERE job = ?");
+  const absl::StatusOr<bool> row = query.Bind(job).Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
 }
 
 absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int64_t job) {

@@ -47,6 +47,8 @@ absl::Status ReadResultsStoredAfter(
 // The number of the job's last result; 0 if there is none.
 absl::StatusOr<int64_t> LastResultNumber(Database& database, int64_t job);
 
+absl::StatusOr<int64_t> CountResults(Database& database, int64_t job);
+
 // All finished points without their results, in grid order.
 absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int64_t job);
 

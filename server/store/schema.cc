@@ -113,6 +113,10 @@ UPDATE results SET finish = rowid;
 CREATE INDEX results_by_finish ON results (job, finish);
 )sql";
 
+constexpr char kFourthVersion[] = R"sql(
+ALTER TABLE jobs ADD COLUMN restarts INTEGER NOT NULL DEFAULT 0;
+)sql";
+
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
@@ -123,9 +127,18 @@ std::string Text(const absl::Status& status) {
   return {status.message().data(), status.message().size()};
 }
 
+// The disk is full, or fails, or the file is not this user's: nothing is said of what is in it.
+absl::Status NotUsable(const std::string& path, const absl::Status& found) {
+  return absl::UnavailableError(absl::StrCat(
+      "store ", path, " cannot be used now (", Text(found),
+      "); it was left as it is: see whether its disk works and has room, and whether the file is "
+      "this user's"));
+}
+
 absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
-  const char* what = absl::IsUnavailable(found) ? "cannot be read (" : "is damaged (";
-  return Refused(path, absl::StrCat(what, Text(found), ")"));
+  const bool is_of_its_place = absl::IsUnavailable(found) || absl::IsResourceExhausted(found);
+  if (is_of_its_place) return NotUsable(path, found);
+  return Refused(path, absl::StrCat("is damaged (", Text(found), ")"));
 }
 
 bool IsFolder(const std::string& path) {
@@ -225,7 +238,7 @@ absl::Status MakeTables(Database& database) {
   if (*version == kSchemaVersion) return absl::OkStatus();
   const absl::Status made = database.Execute(absl::StrCat(
       "BEGIN IMMEDIATE;", *version < 1 ? kTables : "", *version < 2 ? kSecondVersion : "",
-      kThirdVersion, "PRAGMA application_id = ", kApplicationId,
+      *version < 3 ? kThirdVersion : "", kFourthVersion, "PRAGMA application_id = ", kApplicationId,
       "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
   if (!made.ok()) database.Execute("ROLLBACK").IgnoreError();
   return made;
@@ -270,10 +283,9 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
   const absl::Status kind = CheckKind(path, **database, unfinished);
   if (!kind.ok()) return kind;
   const absl::Status prepared = Prepare(**database);
-  if (!prepared.ok()) {
-    return absl::PermissionDeniedError(absl::StrCat(path, ": ", prepared.message()));
-  }
-  return database;
+  if (prepared.ok()) return database;
+  if (!absl::IsPermissionDenied(prepared)) return RefusedFor(path, prepared);
+  return absl::PermissionDeniedError(absl::StrCat(path, ": ", prepared.message()));
 }
 
 }  // namespace ballpiston::server

@@ -19,12 +19,14 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 3;
+inline constexpr int64_t kSchemaVersion = 4;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints, to a store that was checked, or made if there was
-// none. A file that is damaged, of a newer version or of another program is refused with
-// FAILED_PRECONDITION and left as it is.
+// none. Whatever keeps it from being used, the file is left as it is:
+//   FAILED_PRECONDITION  damaged, of a newer version, or of another program
+//   UNAVAILABLE          its disk is full or fails, or it may not be read
+//   PERMISSION_DENIED    it may not be written
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
                                                         const std::string& vfs = std::string());
 

@@ -25,6 +25,9 @@ absl::StatusCode CodeOf(int code, int system_error) {
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return absl::StatusCode::kDataLoss;
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return absl::StatusCode::kPermissionDenied;
     case SQLITE_CONSTRAINT:
     case SQLITE_MISMATCH:
     case SQLITE_TOOBIG:
@@ -54,7 +57,7 @@ bool IsOfTheDisk(const absl::Status& status) {
   status.ForEachPayload([&](absl::string_view, const absl::Cord&) { has_payload = true; });
   if (has_payload) return false;
   return absl::IsUnavailable(status) || absl::IsResourceExhausted(status) ||
-         absl::IsDataLoss(status);
+         absl::IsPermissionDenied(status) || absl::IsDataLoss(status);
 }
 
 Query::Query(sqlite3_stmt* statement, absl::Status prepared)

@@ -1,7 +1,10 @@
 // What a server tells of itself.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <string>
 
@@ -51,6 +54,45 @@ TEST(Status, LogLinesAreJsonWhereThatIsWanted) {
   }
   EXPECT_EQ(begin, result.err.size());
   EXPECT_THAT(result.err, HasSubstr("metrics at http://127.0.0.1:"));
+}
+
+// As if whoever reads the log had stopped to.
+class FullPipe {
+ public:
+  explicit FullPipe(const std::string& path) {
+    EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
+    descriptor_ = open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    const std::string block(4096, 'x');
+    while (write(descriptor_, block.data(), block.size()) > 0) continue;
+  }
+  ~FullPipe() { close(descriptor_); }
+
+ private:
+  int descriptor_ = -1;
+};
+
+TEST(Status, ALogThatNobodyReadsStopsNothing) {
+  const TemporaryFolder home;
+  const FullPipe log(home.Path("log"));
+  const std::string address = "unix:" + home.Path("socket");
+  ProcessOptions command = ServerCommand(
+      home, {"--listen", address, "--data_dir", home.Path("data"), "--drain_seconds", "1"});
+  command.command.insert(command.command.begin(),
+                         {"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", home.Path("log")});
+  Process server(command);
+  const ProcessOptions status = {
+      {BALLPISTON_CLIENT_BINARY, "status", "--server", address}, CleanEnvironment(home), ""};
+  while (RunProgram(status).exit_code != 0) continue;  // until it has begun
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(RunProgram({{BALLPISTON_CLIENT_BINARY, "run", "equilibrium", "--rho", "0.53",
+                           "--delta", "0.2", "--collisions", "100", "--server", address},
+                          CleanEnvironment(home),
+                          ""})
+                  .exit_code,
+              0);
+  }
+  server.Signal(SIGTERM);
+  EXPECT_EQ(server.Wait().exit_code, 0);
 }
 
 TEST(Status, MetricsForOtherMachinesAreRefused) {

@@ -24,10 +24,10 @@ std::vector<std::string> Tokens() {
   v1::WatchEnsembleJobRequest request;
   request.set_name("ensembleJobs/0123456789abcdef");
   request.set_resume_token(server::ResumeTokenText({.job = "0123456789abcdef",
+                                                    .restarts = 1,
                                                     .finished = 12,
                                                     .instance = "fedcba9876543210",
-                                                    .change = 345,
-                                                    .engine_version = "7"}));
+                                                    .change = 345}));
   return {request.SerializeAsString()};
 }
 

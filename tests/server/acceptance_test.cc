@@ -536,6 +536,14 @@ TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   EXPECT_TRUE(Create(kAnn, Asking(tolerance)).ok());
 }
 
+TEST_F(LimitTest, AReplayAndAnAnswerAreGivenUnderALowerLimit) {
+  const std::string name = Answered(kAnn, Asking(Equilibrium(4, 5), kUuid));
+  Limit({.max_points_per_job = 3});
+  EXPECT_EQ(Name(kAnn, Asking(Equilibrium(4, 5), kUuid)), name);
+  EXPECT_EQ(Name(kAnn, Asking(Equilibrium(4, 5))), name);
+  EXPECT_EQ(ReasonOf(Create(kAnn, AskingAnew(Equilibrium(4, 5))).status()), "TOO_MANY_POINTS");
+}
+
 TEST_F(LimitTest, ZeroIsNoLimit) {
   Limit({.max_active_jobs = 0,
          .max_active_jobs_per_principal = 0,
@@ -608,6 +616,23 @@ TEST_F(AcceptanceRpcTest, ValidateOnlyTellsLimitsAndMakesNothing) {
     EXPECT_FALSE(job.answered_from_store());
   }
   EXPECT_EQ(Jobs(), 0);
+}
+
+TEST_F(AcceptanceRpcTest, ValidateOnlyAnswersAsOtherwise) {
+  RunningServer& server = Start({.max_active_jobs = 1});
+  const std::string answered = server.Submit(Question());
+  server.AwaitEnd(answered);
+  v1::CreateEnsembleJobRequest request = Asking(Question(), kUuid);
+  request.set_validate_only(true);
+  EnsembleJob job;
+  ASSERT_TRUE(server.Create(request, &job).ok());
+  EXPECT_EQ(job.name(), answered);
+  EXPECT_TRUE(job.answered_from_store());
+  EXPECT_EQ(Jobs(), 1);
+  // Nothing was kept of the id: it is free for another question.
+  ASSERT_TRUE(server.Create(Asking(Question(2), kUuid), &job).ok());
+  EXPECT_NE(job.name(), answered);
+  server.AwaitEnd(job.name());
 }
 
 }  // namespace

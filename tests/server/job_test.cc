@@ -105,8 +105,6 @@ TEST(Job, WithAToleranceThereIsNoFraction) {
 
 TEST(Job, APointIsDoneWhenItIsStored) {
   Job job(Record(2), nullptr);
-  job.AddComputedPoint();
-  EXPECT_EQ(job.points_computed(), 1);
   EXPECT_EQ(job.Progress().points_done(), 0);
   const uint64_t before = job.last_change();
   job.AddFinishedPoint(Point(1));
@@ -231,6 +229,15 @@ TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
   EXPECT_EQ(ended->state, EnsembleJob::SUCCEEDED);
   EXPECT_EQ(ended->points_done, 3);
   EXPECT_EQ(job_->Progress().points_done(), 3);
+}
+
+TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
+  for (const size_t point : {0, 2}) Finish(point);
+  journal_->Ended(absl::OkStatus());
+  ASSERT_TRUE(store_->Flush().ok());
+  const EnsembleJob job = job_->Message();
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
 TEST(JobName, OnlyJobsHaveJobNames) {

@@ -278,5 +278,22 @@ TEST(Restart, AJobWhoseBlocksAreDamagedFailsAndTheServerStays) {
   EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(1, 5))).state(), EnsembleJob::SUCCEEDED);
 }
 
+// Even if what it says of itself would take all memory, or none at all.
+TEST(Restart, AJobWhoseRowsDoNotFitItFailsAndTheServerStays) {
+  for (const char* damage :
+       {"UPDATE jobs SET points = -1", "UPDATE jobs SET points = 1 << 60",
+        "UPDATE jobs SET points = 1", "UPDATE results SET point = 7",
+        "UPDATE results SET point = -1", "UPDATE jobs SET points = -1, spec = x'ff'"}) {
+    TemporaryFolder folder;
+    const std::string name = LeaveUnfinished(folder);
+    Change(folder, damage);
+    RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+    const EnsembleJob job = server.AwaitEnd(name);
+    EXPECT_EQ(job.state(), EnsembleJob::FAILED) << damage;
+    EXPECT_NE(job.error().message(), "") << damage;
+    EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(1, 5))).state(), EnsembleJob::SUCCEEDED);
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston::server

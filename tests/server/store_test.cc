@@ -247,6 +247,20 @@ TEST_F(StoreTest, AStoreOfTheFirstVersionIsTakenOverWithAllThatIsInIt) {
   EXPECT_GT(Insert(*Open(), Record("new")), 7);
 }
 
+TEST_F(StoreTest, AStoreOfTheThirdVersionIsTakenOver) {
+  Insert(*Open(), Record("a"));
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE(database.ok()) << database.status();
+    ASSERT_TRUE((*database)
+                    ->Execute("ALTER TABLE jobs DROP COLUMN restarts; PRAGMA user_version = 3")
+                    .ok());
+  }
+  const auto found = Find(*Open(), "a");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->restarts, 0);
+}
+
 TEST_F(StoreTest, AStoreTakenOverKeepsPilotsAndWork) {
   MakeStoreOfVersion1(File());
   const auto store = Open();

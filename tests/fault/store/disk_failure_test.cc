@@ -279,6 +279,25 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
   while (scene.service().store().failing()) std::this_thread::yield();  // nobody asks for anything
 }
 
+absl::Status FailureToOpen(const FaultDisk& disk) {
+  const absl::Status status = Store::Open(kStorePath, {.vfs = disk.vfs()}).status();
+  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("left as it is"));
+  return status;
+}
+
+// It is not called damaged, nor is anybody told to move it away.
+TEST(DiskFailure, AStoreWhoseDiskFailsAtTheStartIsNotCalledDamaged) {
+  for (const FaultDisk::Refusal refusal : kRefusals) {
+    FaultDisk disk;
+    disk.Refuse(refusal, 0);
+    const absl::Status status = FailureToOpen(disk);
+    EXPECT_TRUE(absl::IsUnavailable(status)) << NameOf(refusal) << status;
+    EXPECT_THAT(std::string(status.message()), testing::Not(testing::HasSubstr("move it away")));
+    disk.StopRefusing();
+    EXPECT_TRUE(Store::Open(kStorePath, {.vfs = disk.vfs()}).ok());
+  }
+}
+
 // Not one more byte fits, but what the log held may be written over.
 TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   Scene scene;
