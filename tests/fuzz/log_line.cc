@@ -39,7 +39,7 @@ std::string Repeated(const std::string& text) {
 }
 
 void Check(const std::string& text) {
-  const std::string message = IsOneIn(31, text) ? Repeated(text) : text;
+  const std::string message = IsOneIn(63, text) ? Repeated(text) : text;
   RequireOneLine(Line(LogFormat::kText, message));
   const std::string json = Line(LogFormat::kJson, message);
   RequireOneLine(json);

@@ -10,7 +10,7 @@ namespace ballpiston::fuzz {
 namespace {
 
 // Every answer is evaluated: few numbers make all that there is to be wrong.
-constexpr int kMostPairs = 64;
+constexpr int kMostPairs = 16;
 
 void RequireFinite(const v1::PairAnalytics& point) {
   Require(std::isfinite(point.tau_ball_piston()) && point.tau_ball_piston() > 0, "a mean time");

@@ -27,7 +27,7 @@ void Check(const std::string& bytes) {
   v1::ListResultsResponse page;
   if (!page.ParseFromString(bytes)) return;
   RequirePrinted(page, IsOneIn(2, bytes) ? client::Format::kTable : client::Format::kCsv);
-  if (!IsOneIn(64, bytes)) return;  // slow, and nearly all of it the library's
+  if (!IsOneIn(128, bytes)) return;  // slow, and nearly all of it the library's
   RequirePrinted(page, bytes.size() % 2 == 0 ? client::Format::kJson : client::Format::kJsonl);
 }
 

@@ -15,7 +15,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-constexpr size_t kOneIn = 4;
+constexpr size_t kOneIn = 16;
 
 void RequirePointsThatMakePairs(const EnsembleSpec& spec) {
   const size_t points = PointCount(spec);

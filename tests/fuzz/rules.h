@@ -1,5 +1,5 @@
 // What has to hold of several kinds of input. All throw what Require does. What takes much longer
-// than what it judges is done for one input in four.
+// than what it judges is done for one input in sixteen.
 #ifndef BALLPISTON_TESTS_FUZZ_RULES_H_
 #define BALLPISTON_TESTS_FUZZ_RULES_H_
 
