@@ -9,6 +9,7 @@
 #include "absl/time/clock.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
+#include "grpcpp/resource_quota.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/take_snapshot.h"
 #include "server/jobs/job_name.h"
@@ -23,6 +24,8 @@ constexpr int kRpcThreads = 8;
 // How often watches are looked at; their snapshots are further apart.
 constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
+constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
+constexpr int kBlockingThreads = 32;
 // How long health may go on to say that a store takes jobs when it does not.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 
@@ -38,9 +41,13 @@ ServerOptions Completed(ServerOptions options) {
   return options;
 }
 
+void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
+  builder.AddChannelArgument(argument, static_cast<int>(time.count()));
+}
+
 void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  const auto set = [&builder](const char* argument, std::chrono::milliseconds time) {
-    builder.AddChannelArgument(argument, static_cast<int>(time.count()));
+  const auto set = [&](const char* argument, std::chrono::milliseconds time) {
+    Set(builder, argument, time);
   };
   set(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
   set(GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
@@ -51,9 +58,26 @@ void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
 }
 
-absl::Status CannotListen(const ListenAddress& address, const std::string& why) {
-  return absl::FailedPreconditionError(absl::StrCat(
-      "--listen=", address.Text(), ": cannot listen there (", why, "); choose another address"));
+void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
+  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_MS, timing.certified_age);
+  Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, timing.certified_age_grace);
+}
+
+// What clients may take before it is known who they are: streams, memory, and the threads of
+// reflection, the one service that blocks one for each stream.
+void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
+  using Option = grpc::ServerBuilder::SyncServerOption;
+  grpc::ResourceQuota quota("ballpiston");
+  if (limits.max_transfer_mib > 0) {
+    quota.Resize(static_cast<size_t>(limits.max_transfer_mib) << 20);
+  }
+  quota.SetMaxThreads(kBlockingThreads);
+  builder.SetResourceQuota(quota);
+  // Of these gRPC would start one for each core, and end the process if the quota has not as many.
+  builder.SetSyncServerOption(Option::NUM_CQS, 1);
+  builder.SetSyncServerOption(Option::MIN_POLLERS, 1);
+  builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kStreamsPerConnection);
 }
 
 }  // namespace
@@ -123,12 +147,24 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 
+void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
+  SetPings(builder, options_.connections);
+  if (!options_.security.tls_client_ca.empty()) SetAge(builder, options_.connections);
+  SetBounds(builder, options_.limits);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
+}
+
 absl::Status BallpistonServer::Listen() {
+  const absl::Status free =
+      address_.socket_path.empty() ? absl::OkStatus() : ClearSocketPath(address_);
+  if (!free.ok()) return free;
+  auto listener = SocketListener::Listen(address_, options_.socket_users);
+  if (!listener.ok()) return listener.status();
+  address_ = (*listener)->address();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  SetPings(builder, options_.connections);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
+  BoundConnections(builder);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
   builder.RegisterService(&method_);
@@ -136,48 +172,26 @@ absl::Status BallpistonServer::Listen() {
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
-  const absl::Status listening =
-      address_.socket_path.empty() ? ListenAtPort(builder) : ListenAtSocket(builder);
-  if (listening.ok()) StartHealth();
-  return listening;
-}
-
-absl::Status BallpistonServer::ListenAtPort(grpc::ServerBuilder& builder) {
-  // gRPC would let two servers share a port, in silence.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  int port = 0;
-  builder.AddListeningPort(address_.Text(), security_->Credentials(), &port);
-  grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return CannotListen(address_, WhyNotListening(address_));
-  address_.port = port;
-  return absl::OkStatus();
-}
-
-// gRPC's own listener would not say who connects.
-absl::Status BallpistonServer::ListenAtSocket(grpc::ServerBuilder& builder) {
-  const absl::Status cleared = ClearSocketPath(address_);
-  if (!cleared.ok()) return cleared;
-  auto socket = SocketListener::Listen(address_, options_.socket_users);
-  if (!socket.ok()) return socket.status();
-  std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
+  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
       builder.experimental().AddExternalConnectionAcceptor(
           grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
           security_->Credentials());
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return CannotListen(address_, "gRPC does not start");
-  socket_ = *std::move(socket);
-  socket_->Start([connections](int descriptor) {
+  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC does not start");
+  listener_ = *std::move(listener);
+  listener_->Start([connections](int descriptor) {
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
     connection.fd = descriptor;
     connections->HandleNewConnection(&connection);
   });
+  StartHealth();
   return absl::OkStatus();
 }
 
 void BallpistonServer::StartHealth() {
   health_ = std::make_unique<Health>(
-      *grpc_->GetHealthCheckService(), ServicesOfHealth(), [this] { return store_->failing(); },
-      kHealthInterval);
+      *grpc_->GetHealthCheckService(), ServicesOfHealth(),
+      [this] { return store_->failing() || store_->stalled(); }, kHealthInterval);
 }
 
 absl::Status BallpistonServer::StartMetrics() {
@@ -185,7 +199,9 @@ absl::Status BallpistonServer::StartMetrics() {
   for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
     std::vector<prometheus::MetricFamily> metrics = CallMetrics(calls_.statistics().Read());
-    for (auto& family : ServerMetrics(TakeSnapshot(context_))) {
+    ServerSnapshot now = TakeSnapshot(context_);
+    now.certificate_expiry = security_->CertificateExpiry();
+    for (auto& family : ServerMetrics(now)) {
       metrics.push_back(std::move(family));
     }
     return metrics;
@@ -203,14 +219,14 @@ std::chrono::steady_clock::duration BallpistonServer::IdleFor() {
 void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (std::exchange(shut_down_, true)) return;
   const auto deadline = std::chrono::system_clock::now() + drain;
-  draining_ = true;
   if (health_ != nullptr) health_->Drain();
+  draining_ = true;
   watches_.LookNow();
   comparisons_.AskToStop();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
-  if (socket_ != nullptr) socket_->Stop();
+  if (listener_ != nullptr) listener_->Stop();
   if (grpc_ != nullptr) grpc_->Shutdown(deadline);
   executor_.Stop();
   watches_.Stop();

@@ -32,11 +32,18 @@
 
 namespace ballpiston::server {
 
-// When a connection at whose other end nobody is any more is given up, with the streams on it.
+// When a connection is given up, with the streams on it: one at whose other end nobody is any more,
+// or one that is old.
 struct ConnectionTiming {
   std::chrono::milliseconds handshake{20'000};      // the longest
   std::chrono::milliseconds ping_interval{60'000};  // of silence before the other end is asked
   std::chrono::milliseconds ping_timeout{20'000};   // and has to have answered
+
+  // What a client's certificate once opened stays open as long as the connection. So where they are
+  // asked for, a connection takes no more calls after so long (the client makes another, and does
+  // not notice), and is closed when its calls have ended, or have had that long to.
+  std::chrono::milliseconds certified_age{3'600'000};
+  std::chrono::milliseconds certified_age_grace{300'000};
 };
 
 struct ServerOptions {
@@ -87,8 +94,7 @@ class BallpistonServer {
                    std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
 
   absl::Status Listen();
-  absl::Status ListenAtSocket(grpc::ServerBuilder& builder);
-  absl::Status ListenAtPort(grpc::ServerBuilder& builder);
+  void BoundConnections(grpc::ServerBuilder& builder) const;
   absl::Status StartMetrics();
   void StartHealth();
 
@@ -112,7 +118,7 @@ class BallpistonServer {
   MethodService method_;
   ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
-  std::unique_ptr<SocketListener> socket_;    // none: gRPC listens itself, at a port
+  std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };

@@ -19,6 +19,7 @@
 #include "absl/flags/usage_config.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/version.h"
 
 namespace {
@@ -70,6 +71,10 @@ ABSL_FLAG(int64_t, max_active_jobs, kLimits.max_active_jobs,
           "jobs of all principals that have not ended; more are refused; 0: no limit");
 ABSL_FLAG(int64_t, max_active_jobs_per_principal, kLimits.max_active_jobs_per_principal,
           "the same, of one principal");
+ABSL_FLAG(int64_t, max_active_points, kLimits.max_active_points,
+          "points of the grids of all jobs that have not ended; 0: no limit");
+ABSL_FLAG(int64_t, max_active_points_per_principal, kLimits.max_active_points_per_principal,
+          "the same, of one principal");
 ABSL_FLAG(int64_t, max_points_per_job, kLimits.max_points_per_job,
           "points of a job's grid; 0: no limit but the engine's, 100,000");
 ABSL_FLAG(double, max_samples_per_job, kLimits.max_samples_per_job,
@@ -78,7 +83,15 @@ ABSL_FLAG(int64_t, max_streams, kLimits.max_streams,
           "open watches and comparisons of all principals; 0: no limit");
 ABSL_FLAG(int64_t, max_streams_per_principal, kLimits.max_streams_per_principal,
           "the same, of one principal");
+ABSL_FLAG(int64_t, max_calls_per_principal, kLimits.max_calls_per_principal,
+          "calls in progress of one principal, watches and comparisons not counted; 0: no limit");
+ABSL_FLAG(int64_t, max_call_bytes_per_principal, kLimits.max_call_bytes_per_principal,
+          "bytes of their requests, and of answers that are not read yet; 0: no limit");
 ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
+ABSL_FLAG(int64_t, max_transfer_mib, kLimits.max_transfer_mib,
+          "memory for connections and for requests that are being received, of all clients; beyond "
+          "it such calls are refused; at least 16 and twice --max_message_bytes, to 1048576; 0: no "
+          "limit");
 ABSL_FLAG(
     bool, check, false,
     "check the store in --data_dir, page by page and row by row, print what is in it, and end: "
@@ -96,6 +109,8 @@ constexpr int kMaxWorkers = 1024;
 constexpr double kMaxSeconds = 1e6;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
+constexpr int64_t kLeastTransferMib = 16;
+constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 
 bool parsing = false;
 bool help_asked = false;
@@ -183,31 +198,54 @@ absl::Status CheckLimit(const char* flag, double value) {
   return value >= 0 ? absl::OkStatus() : OutOfRange(flag, absl::StrCat(value), "0 (none) and more");
 }
 
+// Below twice the longest message, two clients could keep each other from ever sending one.
+absl::Status CheckTransfer(const Limits& limits) {
+  const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
+  const int64_t mib = limits.max_transfer_mib;
+  if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
+  return OutOfRange("max_transfer_mib", absl::StrCat(mib),
+                    absl::StrCat("0 (none), or ", least, " to ", kMostTransferMib,
+                                 " with --max_message_bytes=", limits.max_message_bytes));
+}
+
 absl::StatusOr<Limits> LimitFlags() {
   Limits limits;
   limits.max_active_jobs = absl::GetFlag(FLAGS_max_active_jobs);
   limits.max_active_jobs_per_principal = absl::GetFlag(FLAGS_max_active_jobs_per_principal);
+  limits.max_active_points = absl::GetFlag(FLAGS_max_active_points);
+  limits.max_active_points_per_principal = absl::GetFlag(FLAGS_max_active_points_per_principal);
   limits.max_points_per_job = absl::GetFlag(FLAGS_max_points_per_job);
   limits.max_samples_per_job = absl::GetFlag(FLAGS_max_samples_per_job);
   limits.max_streams = absl::GetFlag(FLAGS_max_streams);
   limits.max_streams_per_principal = absl::GetFlag(FLAGS_max_streams_per_principal);
+  limits.max_calls_per_principal = absl::GetFlag(FLAGS_max_calls_per_principal);
+  limits.max_call_bytes_per_principal = absl::GetFlag(FLAGS_max_call_bytes_per_principal);
   limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
+  limits.max_transfer_mib = absl::GetFlag(FLAGS_max_transfer_mib);
   for (const absl::Status& status :
        {CheckLimit("max_active_jobs", static_cast<double>(limits.max_active_jobs)),
         CheckLimit("max_active_jobs_per_principal",
                    static_cast<double>(limits.max_active_jobs_per_principal)),
+        CheckLimit("max_active_points", static_cast<double>(limits.max_active_points)),
+        CheckLimit("max_active_points_per_principal",
+                   static_cast<double>(limits.max_active_points_per_principal)),
         CheckLimit("max_points_per_job", static_cast<double>(limits.max_points_per_job)),
         CheckLimit("max_samples_per_job", limits.max_samples_per_job),
         CheckLimit("max_streams", static_cast<double>(limits.max_streams)),
         CheckLimit("max_streams_per_principal",
-                   static_cast<double>(limits.max_streams_per_principal))}) {
+                   static_cast<double>(limits.max_streams_per_principal)),
+        CheckLimit("max_calls_per_principal", static_cast<double>(limits.max_calls_per_principal)),
+        CheckLimit("max_call_bytes_per_principal",
+                   static_cast<double>(limits.max_call_bytes_per_principal))}) {
     if (!status.ok()) return status;
   }
-  if (limits.max_message_bytes >= kLeastMessage && limits.max_message_bytes <= kMostMessage) {
-    return limits;
+  if (limits.max_message_bytes < kLeastMessage || limits.max_message_bytes > kMostMessage) {
+    return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
+                      absl::StrCat(kLeastMessage, " to ", kMostMessage));
   }
-  return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
-                    absl::StrCat(kLeastMessage, " to ", kMostMessage));
+  const absl::Status transfer = CheckTransfer(limits);
+  if (!transfer.ok()) return transfer;
+  return limits;
 }
 
 SecurityOptions SecurityFlags() {
@@ -215,6 +253,17 @@ SecurityOptions SecurityFlags() {
           .tls_certificate = absl::GetFlag(FLAGS_tls_certificate),
           .tls_key = absl::GetFlag(FLAGS_tls_key),
           .tls_client_ca = absl::GetFlag(FLAGS_tls_client_ca)};
+}
+
+// Each of them is done instead of everything else.
+absl::Status CheckOneMode() {
+  std::vector<std::string> given;
+  if (absl::GetFlag(FLAGS_check)) given.push_back("--check");
+  if (!absl::GetFlag(FLAGS_backup).empty()) given.push_back("--backup");
+  if (!absl::GetFlag(FLAGS_new_token).empty()) given.push_back("--new_token");
+  if (given.size() <= 1) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      absl::StrJoin(given, " and "), " exclude each other: give one of them, and do one thing"));
 }
 
 absl::StatusOr<std::optional<TokenRequest>> NewTokenFlag() {
@@ -245,6 +294,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
        {drain.status(), idle.status(), heartbeat.status(), log.status()}) {
     if (!status.ok()) return status;
   }
+  if (absl::Status status = CheckOneMode(); !status.ok()) return status;
   const auto new_token = NewTokenFlag();
   if (!new_token.ok()) return new_token.status();
   const auto limits = LimitFlags();

@@ -1,7 +1,6 @@
 #include "server/listen_address.h"
 
 #include <arpa/inet.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -76,46 +75,24 @@ absl::StatusOr<std::string> ParseHost(const std::string& text, const std::string
   return Refused(text, "the host is neither an address nor a name");
 }
 
-// A socket that could listen at the address, and the address as the system wants it.
-struct Endpoint {
-  explicit Endpoint(const ListenAddress& address) {
-    if (address.socket_path.empty()) {
-      Resolve(address);
-    } else {
-      auto* local = reinterpret_cast<sockaddr_un*>(&storage);
-      local->sun_family = AF_UNIX;
-      const size_t length = std::min(address.socket_path.size(), kMaxSocketPath);
-      std::memcpy(local->sun_path, address.socket_path.data(), length);
-      size = sizeof(sockaddr_un);
-    }
-    if (size > 0) descriptor = socket(storage.ss_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  }
-  ~Endpoint() {
-    if (descriptor >= 0) close(descriptor);
-  }
-  Endpoint(const Endpoint&) = delete;
-  Endpoint& operator=(const Endpoint&) = delete;
+absl::Status Occupied(const ListenAddress& address, absl::string_view by) {
+  return absl::FailedPreconditionError(
+      absl::StrCat("--listen=", address.Text(), ": ", by, "; choose another path"));
+}
 
-  const sockaddr* address() const { return reinterpret_cast<const sockaddr*>(&storage); }
-
-  sockaddr_storage storage{};
-  socklen_t size = 0;  // 0: the host is unknown
-  int descriptor = -1;
-
- private:
-  // The first address the host stands for.
-  void Resolve(const ListenAddress& address) {
-    addrinfo wanted{};
-    wanted.ai_socktype = SOCK_STREAM;
-    wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
-    addrinfo* found = nullptr;
-    const std::string port = absl::StrCat(address.port);
-    if (getaddrinfo(address.host.c_str(), port.c_str(), &wanted, &found) != 0) return;
-    std::memcpy(&storage, found->ai_addr, found->ai_addrlen);
-    size = found->ai_addrlen;
-    freeaddrinfo(found);
-  }
-};
+// 0, or why one cannot connect there. Does not wait for a server that is busy.
+int ErrorOfConnecting(const std::string& path) {
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (descriptor < 0) return errno;
+  sockaddr_un local{};
+  local.sun_family = AF_UNIX;
+  std::memcpy(local.sun_path, path.data(), std::min(path.size(), kMaxSocketPath));
+  const bool connected =
+      connect(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) == 0;
+  const int error = connected ? 0 : errno;
+  close(descriptor);
+  return error;
+}
 
 }  // namespace
 
@@ -150,34 +127,25 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
 }
 
 absl::Status ClearSocketPath(const ListenAddress& address) {
+  const std::string& path = address.socket_path;
   struct stat found {};
-  if (lstat(address.socket_path.c_str(), &found) != 0) return absl::OkStatus();
-  if (!S_ISSOCK(found.st_mode)) {
-    return absl::FailedPreconditionError(absl::StrCat("--listen=", address.Text(),
-                                                      ": there is a file there that is no socket; "
-                                                      "choose another path"));
+  if (lstat(path.c_str(), &found) != 0) return absl::OkStatus();
+  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "there is a file there that is no socket");
+  switch (const int error = ErrorOfConnecting(path)) {
+    case 0:
+    case EAGAIN:  // more wait there than the kernel keeps
+      return Occupied(address, "a server is listening there (stop it)");
+    case ENOENT:
+      return absl::OkStatus();
+    case ECONNREFUSED:  // nobody listens any more
+      if (unlink(path.c_str()) == 0 || errno == ENOENT) return absl::OkStatus();
+      return Occupied(address, absl::StrCat("the socket there that nobody listens on cannot be "
+                                            "taken away (",
+                                            std::strerror(errno), ")"));
+    default:
+      return Occupied(address, absl::StrCat("whether a server listens there cannot be told (",
+                                            std::strerror(error), ")"));
   }
-  const Endpoint endpoint(address);
-  if (connect(endpoint.descriptor, endpoint.address(), endpoint.size) == 0) {
-    return absl::FailedPreconditionError(absl::StrCat("--listen=", address.Text(),
-                                                      ": a server is listening there; stop it or "
-                                                      "choose another path"));
-  }
-  unlink(address.socket_path.c_str());
-  return absl::OkStatus();
-}
-
-std::string WhyNotListening(const ListenAddress& address) {
-  const Endpoint endpoint(address);
-  if (endpoint.size == 0) return "no such host";
-  const int on = 1;
-  setsockopt(endpoint.descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-  if (bind(endpoint.descriptor, endpoint.address(), endpoint.size) == 0 &&
-      listen(endpoint.descriptor, 1) == 0) {
-    if (!address.socket_path.empty()) unlink(address.socket_path.c_str());
-    return std::string();
-  }
-  return std::strerror(errno);
 }
 
 }  // namespace ballpiston::server

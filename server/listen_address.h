@@ -29,12 +29,10 @@ struct ListenAddress {
 // permitted.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
-// Takes away a socket file that no server listens on any more. FAILED_PRECONDITION if a server
-// does, or if the file is no socket.
+// Takes away a socket file that no server listens on any more, which is one that refuses
+// connections. FAILED_PRECONDITION if a server does, if that cannot be told, or if the file is no
+// socket; then the file stays.
 absl::Status ClearSocketPath(const ListenAddress& address);
-
-// Why nobody can listen there, for a message; found out by trying. Empty if it is not known.
-std::string WhyNotListening(const ListenAddress& address);
 
 }  // namespace ballpiston::server
 

@@ -15,6 +15,7 @@
 #include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/security/new_token.h"
 #include "server/store/backup.h"
@@ -108,6 +109,7 @@ std::string StoreIn(const CommandLine& line) {
 
 int Main(int argc, char** argv) {
   umask(0077);                              // store and socket are their owner's
+  signal(SIGXFSZ, SIG_IGN);                 // a limit on a file's size is told like a full disk
   setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
@@ -122,6 +124,7 @@ int Main(int argc, char** argv) {
   if (!(*server)->metrics_address().empty()) {
     LogInfo(absl::StrCat("metrics at http://", (*server)->metrics_address(), "/metrics"));
   }
+  CountFailpointsOfReadyServer();
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);

@@ -1,11 +1,13 @@
 // ballpiston cancel: stops a job; the points it finished stay. Prints the job's name and state.
 #include <memory>
+#include <string>
 
 #include "client/command/connection.h"
 #include "client/command/flags.h"
 #include "client/command/verbs.h"
 #include "client/command/violations.h"
 #include "client/library/ensemble_client.h"
+#include "client/library/request_id.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -21,7 +23,8 @@ struct Cancel {
     if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
     return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
       const EnsembleClient client(connection.channel);
-      const auto cancelled = connection.Ask([&] { return client.Cancel(*name); });
+      const std::string id = NewRequestId();  // one for both attempts
+      const auto cancelled = connection.Ask([&] { return client.Cancel(*name, id); });
       if (!cancelled.ok()) return cancelled.status();
       terminal.out << cancelled->name() << ' ' << Spelling(cancelled->state()) << '\n';
       return ExitCode::kDone;

@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
@@ -62,9 +63,10 @@ std::string Explanation(const CLI::App& app, const CLI::Error& error) {
   const bool is_flag = !left.empty() && absl::StartsWith(left[0], "-");
   if (!has_verb && left.empty()) return absl::StrCat("name a verb: ", Verbs(app));
   if (!has_verb && !is_flag)
-    return absl::StrCat("'", left[0], "' is not a verb; verbs are ", Verbs(app));
-  if (!left.empty()) return absl::StrCat("not expected: ", absl::StrJoin(left, " "));
-  return error.what();
+    return absl::StrCat(Quoted(left[0]), " is not a verb; verbs are ", Verbs(app));
+  if (!left.empty())
+    return absl::StrCat("not expected: ", Shortened(absl::StrJoin(left, " "), kLongestMessage));
+  return Shortened(error.what(), kLongestMessage);
 }
 
 std::string UsageError(const CLI::App* app, const CLI::Error& error) {

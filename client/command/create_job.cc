@@ -9,7 +9,9 @@
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "client/command/number_list.h"
+#include "client/command/violations.h"
 #include "client/library/error_text.h"
+#include "client/library/quoted.h"
 #include "client/library/request_id.h"
 
 namespace ballpiston::client {
@@ -40,6 +42,25 @@ absl::Status WithHint(const absl::Status& status) {
   return with_hint;
 }
 
+absl::Status SetPriority(const std::optional<std::string>& flag, CreateOptions& options) {
+  if (!flag) return absl::OkStatus();
+  const absl::StatusOr<int64_t> priority = ParseCount("--priority", *flag);
+  if (!priority.ok()) return priority.status();
+  using Limits = std::numeric_limits<int32_t>;
+  if (*priority < Limits::min() || *priority > Limits::max()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--priority: ", Quoted(*flag), " is not a number from -100 to 100"));
+  }
+  options.priority = static_cast<int32_t>(*priority);
+  return absl::OkStatus();
+}
+
+absl::Status CheckRequestId(const std::optional<std::string>& flag) {
+  if (!flag || IsRequestId(*flag)) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--request-id: ", Quoted(*flag), " is not a UUID like 123e4567-e89b-12d3-a456-426614174000"));
+}
+
 }  // namespace
 
 void JobFlags::AddTo(CLI::App& verb) {
@@ -47,20 +68,18 @@ void JobFlags::AddTo(CLI::App& verb) {
                 "compute, even if the same question was answered before and its answer is stored");
   verb.add_option("--priority", priority,
                   "-100 to 100, 0 if not given: among your own jobs the higher goes first");
+  verb.add_option("--request-id", request_id,
+                  "a UUID of your own: asked again with it (no answer came), the server gives the "
+                  "job that it made the first time");
 }
 
 absl::StatusOr<CreateOptions> OptionsOf(const JobFlags& flags) {
   CreateOptions options;
   options.fresh = flags.fresh;
-  if (!flags.priority) return options;
-  const absl::StatusOr<int64_t> priority = ParseCount("--priority", *flags.priority);
-  if (!priority.ok()) return priority.status();
-  using Limits = std::numeric_limits<int32_t>;
-  if (*priority < Limits::min() || *priority > Limits::max()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--priority: '", *flags.priority, "' is not a number from -100 to 100"));
-  }
-  options.priority = static_cast<int32_t>(*priority);
+  options.request_id = flags.request_id.value_or("");
+  const Violations violations(
+      {SetPriority(flags.priority, options), CheckRequestId(flags.request_id)});
+  if (absl::Status bad = violations.Lines(); !bad.ok()) return bad;
   return options;
 }
 

@@ -18,12 +18,13 @@ namespace ballpiston::client {
 struct JobFlags {
   bool fresh = false;
   std::optional<std::string> priority;
+  std::optional<std::string> request_id;
 
   void AddTo(CLI::App& verb);
 };
 
-// INVALID_ARGUMENT if the priority is no whole number; whether it is permitted is the server's to
-// say.
+// INVALID_ARGUMENT if the priority is no whole number (whether it is permitted is the server's to
+// say), or the request id no UUID.
 absl::StatusOr<CreateOptions> OptionsOf(const JobFlags& flags);
 
 // With one id for both attempts (Connection::Ask): a private server that took the job and was gone

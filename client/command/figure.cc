@@ -13,6 +13,7 @@
 #include "client/command/violations.h"
 #include "client/figure/mean_free_time_figure.h"
 #include "client/figure/speed_accuracy_figure.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 
@@ -20,7 +21,7 @@ absl::Status RefuseFlag(const char* flag, const std::optional<std::string>& text
                         const char* figure) {
   if (!text) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      absl::StrCat(flag, ": '", *text, "', but the figure ", figure, " has no such flag"));
+      absl::StrCat(flag, ": ", Quoted(*text), ", but the figure ", figure, " has no such flag"));
 }
 
 namespace {
@@ -59,7 +60,7 @@ struct Figure {
     if (name == kMeanFreeTimeFigure) return PlanMeanFreeTime(flags);
     if (name == kSpeedAccuracyFigure) return PlanSpeedAccuracy(flags);
     return absl::InvalidArgumentError(
-        absl::StrCat("figure '", name, "' is not offered by this version; it offers ",
+        absl::StrCat("figure ", Quoted(name), " is not offered by this version; it offers ",
                      kMeanFreeTimeFigure, ", ", kSpeedAccuracyFigure));
   }
 

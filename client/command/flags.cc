@@ -4,10 +4,10 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
@@ -27,11 +27,10 @@ absl::StatusOr<std::string> JobArgument::Name() const {
   constexpr absl::string_view kCollection = "ensembleJobs/";
   const absl::string_view id = absl::StripPrefix(text, kCollection);
   if (IsId(id)) return absl::StrCat(kCollection, id);
-  // Escaped: a name that is not text at all would spoil the terminal.
-  return absl::InvalidArgumentError(absl::StrCat(
-      "'", absl::CHexEscape(text),
-      "' is not a job's name: write ensembleJobs/ID, or the ID alone; an ID is 1 to 63 "
-      "of a-z, 0-9 and hyphen"));
+  return absl::InvalidArgumentError(
+      absl::StrCat(Quoted(text),
+                   " is not a job's name: write ensembleJobs/ID, or the ID alone; an ID is 1 to 63 "
+                   "of a-z, 0-9 and hyphen"));
 }
 
 }  // namespace ballpiston::client

@@ -46,7 +46,7 @@ absl::StatusOr<std::optional<v1::EnsembleJob>> FollowJob(const Connection& conne
                                                          Interrupts& interrupts,
                                                          std::ostream& err) {
   const EnsembleClient client(connection.channel);
-  const std::unique_ptr<ProgressReporter> reporter = NewProgressReporter(style, err);
+  const std::unique_ptr<ProgressReporter> reporter = NewProgressReporter(style, err, name);
   std::stop_source stop;
   absl::StatusOr<v1::EnsembleJob> job;
   {

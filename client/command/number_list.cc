@@ -12,12 +12,13 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "client/command/violations.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
 
 absl::Status Bad(absl::string_view flag, absl::string_view text, absl::string_view reason) {
-  return absl::InvalidArgumentError(absl::StrCat(flag, ": '", text, "' ", reason));
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": ", Quoted(text), " ", reason));
 }
 
 // std::from_chars takes no blanks, no plus sign and no hexadecimal, but it takes nan and inf:

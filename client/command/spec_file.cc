@@ -14,6 +14,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
@@ -47,7 +48,8 @@ absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::st
   v1::EnsembleSpec spec;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &spec);
   if (status.ok()) return spec;
-  return BadFile(name, std::string(status.message()));
+  // The parser repeats a wrong value, however long it is.
+  return BadFile(name, Shortened(std::string(status.message()), kLongestMessage));
 }
 
 }  // namespace ballpiston::client

@@ -13,6 +13,7 @@
 #include "client/command/request_size.h"
 #include "client/command/spec_file.h"
 #include "client/command/violations.h"
+#include "client/library/quoted.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -31,7 +32,7 @@ absl::Status UnknownExperiment(const std::string& text) {
   const bool later = std::find(std::begin(kLaterExperiments), std::end(kLaterExperiments), name) !=
                      std::end(kLaterExperiments);
   return absl::InvalidArgumentError(absl::StrCat(
-      "experiment '", text, later ? "' is not offered by this version" : "' is unknown",
+      "experiment ", Quoted(text), later ? " is not offered by this version" : " is unknown",
       "; it offers ", absl::StrJoin(Spellings<Spec::Experiment>(), ", ")));
 }
 
@@ -50,8 +51,8 @@ absl::Status SetExperiment(const Flag& flag, Spec& spec) {
 template <typename Enum>
 absl::StatusOr<Enum> Choice(absl::string_view name, const std::string& text) {
   if (const auto value = FromSpelling<Enum>(text)) return *value;
-  return absl::InvalidArgumentError(
-      absl::StrCat(name, ": '", text, "' is not one of ", absl::StrJoin(Spellings<Enum>(), ", ")));
+  return absl::InvalidArgumentError(absl::StrCat(name, ": ", Quoted(text), " is not one of ",
+                                                 absl::StrJoin(Spellings<Enum>(), ", ")));
 }
 
 // Runs `set` with what `parse` makes of the flag's text, if the flag was given.
@@ -81,7 +82,8 @@ absl::StatusOr<google::protobuf::Duration> ParseBudget(absl::string_view name,
   absl::StatusOr<double> seconds = ParseNumber(name, text);
   if (!seconds.ok()) return seconds.status();
   if (std::abs(*seconds) > kMaxBudget) {
-    return absl::InvalidArgumentError(absl::StrCat(name, ": '", text, "' is beyond 10,000 years"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": ", Quoted(text), " is beyond 10,000 years"));
   }
   google::protobuf::Duration budget;
   budget.set_seconds(static_cast<int64_t>(*seconds));  // both parts have the number's sign

@@ -5,6 +5,7 @@
 #include "client/command/connection.h"
 #include "client/command/verbs.h"
 #include "client/command/violations.h"
+#include "client/library/quoted.h"
 #include "client/library/server_client.h"
 #include "client/output/format.h"
 #include "client/output/status_output.h"
@@ -31,7 +32,7 @@ struct Status {
   static absl::StatusOr<Format> ShapeOf(const std::string& text) {
     if (text == "table") return Format::kTable;
     if (text == "json") return Format::kJson;
-    return absl::InvalidArgumentError("--format: '" + text + "' is not one of table, json");
+    return absl::InvalidArgumentError("--format: " + Quoted(text) + " is not one of table, json");
   }
 };
 

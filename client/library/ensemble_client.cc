@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "absl/time/clock.h"
 #include "client/library/request_id.h"
 #include "client/library/unary_call.h"
 
@@ -12,11 +13,22 @@ using Stub = v1::EnsembleService::StubInterface;
 
 constexpr int kPageSize = 1000;
 
+// gRPC looks only every 5 s whether a channel is connected again, unless somebody waits for it.
+constexpr absl::Duration kLongestConnecting = absl::Seconds(1);
+constexpr absl::Duration kLookForStop = absl::Milliseconds(50);
+
+void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& stop) {
+  const absl::Time limit = absl::Now() + kLongestConnecting;
+  while (!stop.stop_requested() && absl::Now() < limit) {
+    if (channel.WaitForConnected(absl::ToChronoTime(absl::Now() + kLookForStop))) return;
+  }
+}
+
 }  // namespace
 
 EnsembleClient::EnsembleClient(const std::shared_ptr<grpc::ChannelInterface>& channel,
                                absl::Duration timeout)
-    : stub_(v1::EnsembleService::NewStub(channel)), timeout_(timeout) {}
+    : channel_(channel), stub_(v1::EnsembleService::NewStub(channel)), timeout_(timeout) {}
 
 absl::StatusOr<v1::EnsembleJob> EnsembleClient::Create(const v1::EnsembleSpec& spec,
                                                        const CreateOptions& options) const {
@@ -54,10 +66,11 @@ absl::StatusOr<std::vector<v1::EnsembleJob>> EnsembleClient::List() const {
   return jobs;
 }
 
-absl::StatusOr<v1::EnsembleJob> EnsembleClient::Cancel(const std::string& name) const {
+absl::StatusOr<v1::EnsembleJob> EnsembleClient::Cancel(const std::string& name,
+                                                       const std::string& request_id) const {
   v1::CancelEnsembleJobRequest request;
   request.set_name(name);
-  request.set_request_id(NewRequestId());
+  request.set_request_id(request_id.empty() ? NewRequestId() : request_id);
   return CallUnary(*stub_, &Stub::CancelEnsembleJob, request, timeout_);
 }
 
@@ -96,7 +109,12 @@ absl::StatusOr<v1::EnsembleJob> EnsembleClient::Watch(const std::string& name,
                                                       const WatchCallbacks& callbacks,
                                                       const WatchOptions& options,
                                                       std::stop_token stop) const {
-  return WatchJob(*stub_, name, callbacks, options, std::move(stop));
+  WatchOptions connecting = options;
+  connecting.before_reattach = [&] {
+    if (options.before_reattach) options.before_reattach();
+    AwaitConnection(*channel_, stop);
+  };
+  return WatchJob(*stub_, name, callbacks, connecting, stop);
 }
 
 }  // namespace ballpiston::client

@@ -54,7 +54,10 @@ class EnsembleClient {
 
   absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
   absl::StatusOr<std::vector<v1::EnsembleJob>> List() const;  // all pages, newest first
-  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name) const;
+  // `request_id` as in CreateOptions: asked again with it, a job that this has cancelled is none
+  // that had ended.
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
+                                         const std::string& request_id = {}) const;
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into
@@ -71,6 +74,7 @@ class EnsembleClient {
                                         std::stop_token stop = {}) const;
 
  private:
+  std::shared_ptr<grpc::ChannelInterface> channel_;
   std::unique_ptr<v1::EnsembleService::StubInterface> stub_;
   absl::Duration timeout_;
 };

@@ -4,10 +4,15 @@
 
 #include <string>
 
+#include "absl/strings/string_view.h"
+
 namespace ballpiston::client {
 
 // A random UUID (version 4), from the system's source of randomness.
 std::string NewRequestId();
+
+// Whether it has a UUID's form: 32 hexadecimal digits, with hyphens after 8, 12, 16 and 20.
+bool IsRequestId(absl::string_view text);
 
 }  // namespace ballpiston::client
 

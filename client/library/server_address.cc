@@ -8,13 +8,14 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
 
 absl::Status BadAddress(absl::string_view address, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat(
-      "'", address, "' is not a server's address: ", reason, " (write host:port or unix:PATH)"));
+      Quoted(address), " is not a server's address: ", reason, " (write host:port or unix:PATH)"));
 }
 
 absl::StatusOr<std::string> UnixTarget(absl::string_view address, absl::string_view path) {

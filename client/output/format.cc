@@ -3,6 +3,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "client/library/quoted.h"
 
 namespace ballpiston::client {
 
@@ -12,7 +13,7 @@ absl::StatusOr<Format> ParseFormat(absl::string_view text) {
   if (text == "jsonl") return Format::kJsonl;
   if (text == "csv") return Format::kCsv;
   return absl::InvalidArgumentError(
-      absl::StrCat("--format: '", text, "' is not one of table, json, jsonl, csv"));
+      absl::StrCat("--format: ", Quoted(text), " is not one of table, json, jsonl, csv"));
 }
 
 }  // namespace ballpiston::client

@@ -13,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
+#include "client/library/quoted.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
 #include "client/output/progress_line.h"
@@ -132,7 +133,7 @@ std::string NumberOrNull(std::optional<double> x) {
 
 class JsonReporter : public ProgressReporter {
  public:
-  explicit JsonReporter(std::ostream& err) : err_(err) {}
+  JsonReporter(std::ostream& err, absl::string_view name) : err_(err), name_(name) {}
 
   void OnJob(const v1::EnsembleJob& job) override {
     const std::lock_guard lock(mutex_);
@@ -149,7 +150,7 @@ class JsonReporter : public ProgressReporter {
     ForEachNewestFirst(snapshot, [&points](const v1::PointResult& point) {
       absl::StrAppend(&points, points.empty() ? "" : ", ", Json(point));
     });
-    if (!name_.empty()) Write(points);  // else it has ended, and its name comes last
+    Write(points);
   }
 
   void OnDisconnect(const absl::Status&, absl::Duration) override {}
@@ -188,15 +189,16 @@ absl::StatusOr<ProgressStyle> ParseProgressStyle(absl::string_view text) {
   if (text == "json") return ProgressStyle::kJson;
   if (text == "none") return ProgressStyle::kNone;
   return absl::InvalidArgumentError(
-      absl::StrCat("--progress: '", text, "' is not one of auto, bar, json, none"));
+      absl::StrCat("--progress: ", Quoted(text), " is not one of auto, bar, json, none"));
 }
 
-std::unique_ptr<ProgressReporter> NewProgressReporter(ProgressStyle style, std::ostream& err) {
+std::unique_ptr<ProgressReporter> NewProgressReporter(ProgressStyle style, std::ostream& err,
+                                                      absl::string_view name) {
   switch (style) {
     case ProgressStyle::kBar:
       return std::make_unique<BarReporter>(err);
     case ProgressStyle::kJson:
-      return std::make_unique<JsonReporter>(err);
+      return std::make_unique<JsonReporter>(err, name);
     case ProgressStyle::kNone:
       break;
   }

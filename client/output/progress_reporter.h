@@ -4,7 +4,8 @@
 //         the point that changed last
 //   json  one object a line: {"job", "state", "progress", "samples_per_second", "seconds_left",
 //         "points"}, or a note's {"note"}; the points that changed since the line before,
-//         unfinished ones first, the newest of each kind first
+//         unfinished ones first, the newest of each kind first; the state of a job that had ended
+//         before is told last, and STATE_UNSPECIFIED with its points
 //   none  nothing but notes
 //
 // Thread-safe: notes come from the thread that handles Ctrl-C while the bar is being redrawn.
@@ -39,8 +40,10 @@ class ProgressReporter {
   virtual void Note(absl::string_view text) = 0;
 };
 
-// `err` has to outlive the reporter.
-std::unique_ptr<ProgressReporter> NewProgressReporter(ProgressStyle style, std::ostream& err);
+// `name` is that of the job that is watched; it may be left out where there are only notes. `err`
+// has to outlive the reporter.
+std::unique_ptr<ProgressReporter> NewProgressReporter(ProgressStyle style, std::ostream& err,
+                                                      absl::string_view name = "");
 
 }  // namespace ballpiston::client
 

@@ -5,11 +5,11 @@
 #include "absl/strings/ascii.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_name.h"
+#include "server/observability/call_observer.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr char kRequestId[] = "x-request-id";
 constexpr size_t kMaxRequestId = 64;
 
 // It goes into the log: nothing that could pass for something else there.

@@ -21,6 +21,7 @@ struct Call {
 struct CallRule {
   const char* method;
   Role least;
+  bool writes = false;  // waits for the disk
 };
 
 // Quick: for gRPC's own threads. Sends the id back in the trailing metadata, whatever the outcome.

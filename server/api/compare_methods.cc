@@ -21,7 +21,7 @@ absl::Status EndOf(const absl::Status& status, bool draining) {
 CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
                                                     const absl::StatusOr<Call>& call,
                                                     const v1::CompareMethodsRequest& request) {
-  std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service));
+  std::shared_ptr<CompareMethodsReactor> reactor(new CompareMethodsReactor(service, call));
   reactor->self_ = reactor;
   absl::Status refused = call.status();
   if (call.ok()) refused = service.watches.Add(reactor.get(), call->caller.name, service.limits);
@@ -30,14 +30,18 @@ CompareMethodsReactor* CompareMethodsReactor::Start(ServiceContext& service,
   return reactor.get();
 }
 
-CompareMethodsReactor::CompareMethodsReactor(ServiceContext& service)
-    : service_(service), active_(service.activity.Begin()) {}
+CompareMethodsReactor::CompareMethodsReactor(ServiceContext& service,
+                                             const absl::StatusOr<Call>& call)
+    : service_(service),
+      principal_(call.ok() ? call->caller.name : ""),
+      active_(service.activity.Begin()) {}
 
 absl::Status CompareMethodsReactor::Begin(const v1::CompareMethodsRequest& request) {
   const CheckedComparison checked = CheckComparison(request);
   if (!checked.violations.empty()) return InvalidRequest(checked.violations);
   const ComparisonThread::Admission admission = service_.comparisons.Begin(
-      {.spec = checked.spec,
+      {.principal = principal_,
+       .spec = checked.spec,
        .stop = stop_,
        .tell = [self = self_](const auto& made) { self->Tell(MeasurementMessage(made)); },
        .ended =
@@ -57,7 +61,8 @@ void CompareMethodsReactor::Look(std::chrono::steady_clock::time_point) {
     std::lock_guard lock(mutex_);
     if (end_) return;
   }
-  service_.executor.PostOfStream([self = shared_from_this()] { self->Cut(ShuttingDown()); });
+  service_.executor.PostOfStream(principal_,
+                                 [self = shared_from_this()] { self->Cut(ShuttingDown()); });
 }
 
 void CompareMethodsReactor::OnWriteDone(bool ok) {

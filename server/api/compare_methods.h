@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string>
 
 #include "absl/status/status.h"
 #include "ballpiston/v1/method.pb.h"
@@ -37,7 +38,7 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
   void OnDone() override;
 
  private:
-  explicit CompareMethodsReactor(ServiceContext& service);
+  CompareMethodsReactor(ServiceContext& service, const absl::StatusOr<Call>& call);
 
   absl::Status Begin(const v1::CompareMethodsRequest& request);  // what Start refuses with, if so
   void Tell(v1::MethodMeasurement message);
@@ -46,6 +47,7 @@ class CompareMethodsReactor : public grpc::ServerWriteReactor<v1::MethodMeasurem
   void Advance();                        // writes or finishes, if it is time to
 
   ServiceContext& service_;
+  const std::string principal_;         // empty: not let in
   const std::shared_ptr<void> active_;  // for Activity
   std::stop_source stop_;
   std::shared_ptr<CompareMethodsReactor> self_;

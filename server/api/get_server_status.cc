@@ -4,6 +4,7 @@
 #include "server/api/methods.h"
 #include "server/api/take_snapshot.h"
 #include "server/convert/plan.h"
+#include "server/jobs/job_message.h"
 #include "server/store/job_table.h"
 
 namespace ballpiston::server {
@@ -14,19 +15,12 @@ v1::ServerStatus::State StateOf(const ServerSnapshot& now) {
   return now.store_failing ? v1::ServerStatus::STORE_FAILING : v1::ServerStatus::SERVING;
 }
 
-void SetTime(absl::Time time, google::protobuf::Timestamp& message) {
-  const int64_t seconds = absl::ToUnixSeconds(time);
-  message.set_seconds(seconds);
-  message.set_nanos(
-      static_cast<int32_t>((time - absl::FromUnixSeconds(seconds)) / absl::Nanoseconds(1)));
-}
-
 v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
   v1::ServerStatus status;
   status.set_state(StateOf(now));
   status.set_version(now.version);
   status.set_engine_version(now.engine_version);
-  SetTime(now.start_time, *status.mutable_start_time());
+  SetTime(now.start_time, status.mutable_start_time());
   status.set_workers(now.workers);
   status.set_busy_workers(now.busy_workers);
   status.set_queued_jobs(static_cast<double>(now.queued_jobs));

@@ -1,5 +1,5 @@
 #include <limits>
-#include <vector>
+#include <utility>
 
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
@@ -14,24 +14,17 @@ constexpr char kList[] = "jobs";
 absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
     ServiceContext& service, const Call& call, const v1::ListEnsembleJobsRequest& request) {
   RequestCheck check;
-  const int size = check.PageSize(request.page_size());
-  const int64_t before =
-      check.PageStart(request.page_token(), kList, std::numeric_limits<int64_t>::max());
+  JobsQuery query;
+  query.max_jobs = check.PageSize(request.page_size());
+  query.before = check.PageStart(request.page_token(), kList, std::numeric_limits<int64_t>::max());
+  query.max_bytes = kMaxPageBytes;
   if (!check.ok()) return check.status();
-  // One more than fits: whether there is another page.
-  absl::StatusOr<std::vector<ListedJob>> jobs = service.book.List(call.caller, before, size + 1);
-  if (!jobs.ok()) return jobs.status();
+  absl::StatusOr<JobsPage> page = service.book.List(call.caller, query);
+  if (!page.ok()) return page.status();
   v1::ListEnsembleJobsResponse response;
-  size_t bytes = 0;
-  int64_t last = 0;
-  for (ListedJob& listed : *jobs) {
-    bytes += listed.job.ByteSizeLong();
-    if (response.jobs_size() == size || (response.jobs_size() > 0 && bytes > kMaxPageBytes)) {
-      response.set_next_page_token(RequestCheck::PageToken(kList, last));
-      break;
-    }
-    last = listed.sequence;
-    *response.add_jobs() = std::move(listed.job);
+  for (v1::EnsembleJob& job : page->jobs) *response.add_jobs() = std::move(job);
+  if (page->next_before) {
+    response.set_next_page_token(RequestCheck::PageToken(kList, *page->next_before));
   }
   return response;
 }

@@ -3,25 +3,37 @@
 #include <algorithm>
 
 namespace ballpiston::server {
+namespace {
 
-RpcExecutor::RpcExecutor(int threads) : calls_(threads), streams_(std::max(1, threads / 2)) {}
+int HalfOf(int threads) { return std::max(1, threads / 2); }
+
+}  // namespace
+
+// Calls that write wait for one commit together, so one principal may have all of their threads.
+RpcExecutor::RpcExecutor(int threads)
+    : reads_(threads, HalfOf(threads)),
+      writes_(threads, threads),
+      streams_(HalfOf(threads), HalfOf(threads)) {}
 
 RpcExecutor::~RpcExecutor() { Stop(); }
 
 void RpcExecutor::Stop() {
-  calls_.Stop();
+  reads_.Stop();
+  writes_.Stop();
   streams_.Stop();
 }
 
-RpcExecutor::Lane::Lane(int threads) {
+RpcExecutor::Lane::Lane(int threads, int share) : share_(share) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
 }
 
-void RpcExecutor::Lane::Post(Task task) {
+void RpcExecutor::Lane::Post(const std::string& principal, Task task) {
   std::lock_guard lock(mutex_);
   if (stopping_) return;
-  tasks_.push_back(std::move(task));
-  posted_.notify_one();
+  const auto queue = queues_.try_emplace(principal).first;
+  if (queue->second.tasks.empty()) turns_.push_back(queue);
+  queue->second.tasks.push_back(std::move(task));
+  changed_.notify_one();
 }
 
 void RpcExecutor::Lane::Stop() {
@@ -31,21 +43,45 @@ void RpcExecutor::Lane::Stop() {
     stopping_ = true;
     threads.swap(threads_);
   }
-  posted_.notify_all();
+  changed_.notify_all();
   for (std::thread& thread : threads) thread.join();
+}
+
+// The first of those that have not got their share already.
+std::list<RpcExecutor::Lane::Queues::iterator>::iterator RpcExecutor::Lane::NextTurn() {
+  return std::find_if(turns_.begin(), turns_.end(),
+                      [this](const auto& queue) { return queue->second.running < share_; });
+}
+
+RpcExecutor::Task RpcExecutor::Lane::Take(std::list<Queues::iterator>::iterator turn) {
+  Queue& queue = (*turn)->second;
+  Task task = std::move(queue.tasks.front());
+  queue.tasks.pop_front();
+  ++queue.running;
+  if (queue.tasks.empty()) {
+    turns_.erase(turn);
+  } else {
+    turns_.splice(turns_.end(), turns_, turn);
+  }
+  return task;
 }
 
 void RpcExecutor::Lane::Work() {
   std::unique_lock lock(mutex_);
   while (true) {
-    posted_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
-    if (tasks_.empty()) return;
-    Task task = std::move(tasks_.front());
-    tasks_.pop_front();
+    auto turn = turns_.end();
+    changed_.wait(lock, [&] { return (turn = NextTurn()) != turns_.end() || IsDone(); });
+    if (turn == turns_.end()) return;
+    const Queues::iterator queue = *turn;
+    Task task = Take(turn);
     lock.unlock();
     task();
     task = nullptr;  // what it holds is let go without the lock
     lock.lock();
+    // A thread that found this principal's share taken may go on.
+    if (queue->second.running-- == share_ && !queue->second.tasks.empty()) changed_.notify_one();
+    if (queue->second.running == 0 && queue->second.tasks.empty()) queues_.erase(queue);
+    if (IsDone()) changed_.notify_all();
   }
 }
 

@@ -2,17 +2,24 @@
 // are never kept waiting for the disk.
 //
 // Each kind of task has threads of its own: a thousand watches do not keep a call waiting, nor
-// calls that wait for the disk a watch. Tasks of a kind begin in the order of posting. Thread-safe.
+// calls that wait for the disk a watch, nor those that write those that read. Within a kind the
+// principals take turns, whatever the number of their tasks, and one that reads never has more than
+// half of the threads; the tasks of one principal begin in the order of posting. Thread-safe.
 #ifndef BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 #define BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <list>
+#include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "server/api/held_calls.h"
 
 namespace ballpiston::server {
 
@@ -20,12 +27,24 @@ class RpcExecutor {
  public:
   using Task = std::function<void()>;
 
-  // So many threads for calls, and half as many for streams.
+  // So many threads for calls that read, as many for those that write, and half as many for
+  // streams.
   explicit RpcExecutor(int threads);
   ~RpcExecutor();  // stops
 
-  void Post(Task task) { calls_.Post(std::move(task)); }
-  void PostOfStream(Task task) { streams_.Post(std::move(task)); }
+  void Post(const std::string& principal, Task task) { reads_.Post(principal, std::move(task)); }
+  // Of a call that waits for the disk.
+  void PostOfWrite(const std::string& principal, Task task) {
+    writes_.Post(principal, std::move(task));
+  }
+  void PostOfStream(const std::string& principal, Task task) {
+    streams_.Post(principal, std::move(task));
+  }
+
+  // What the calls that were posted hold, and what the messages of streams that wait for their
+  // readers do.
+  HeldCalls& held_calls() { return held_calls_; }
+  HeldCalls& held_messages() { return held_messages_; }
 
   // Runs what was posted, then ends the threads; later tasks are dropped.
   void Stop();
@@ -33,23 +52,38 @@ class RpcExecutor {
  private:
   class Lane {
    public:
-    explicit Lane(int threads);
+    // A principal has at most `share` of the threads.
+    Lane(int threads, int share);
     ~Lane() { Stop(); }
 
-    void Post(Task task);
+    void Post(const std::string& principal, Task task);
     void Stop();
 
    private:
-    void Work();
+    struct Queue {
+      std::deque<Task> tasks;
+      int running = 0;
+    };
+    using Queues = std::map<std::string, Queue>;
 
+    void Work();
+    bool IsDone() const { return stopping_ && turns_.empty(); }
+    std::list<Queues::iterator>::iterator NextTurn();
+    Task Take(std::list<Queues::iterator>::iterator turn);
+
+    const int share_;
     std::mutex mutex_;
-    std::condition_variable posted_;
-    std::deque<Task> tasks_;
+    std::condition_variable changed_;
+    Queues queues_;                      // of principals with tasks, waiting or running
+    std::list<Queues::iterator> turns_;  // of those with tasks that wait: the longest ago first
     bool stopping_ = false;
     std::vector<std::thread> threads_;
   };
 
-  Lane calls_;
+  HeldCalls held_calls_;
+  HeldCalls held_messages_;
+  Lane reads_;
+  Lane writes_;
   Lane streams_;
 };
 

@@ -13,7 +13,7 @@ using Unary = grpc::ServerUnaryReactor;
 Unary* EnsembleService::CreateEnsembleJob(Context* context,
                                           const v1::CreateEnsembleJobRequest* request,
                                           v1::EnsembleJob* response) {
-  return RunUnary(service_, context, {"CreateEnsembleJob", Role::kSubmit}, request, response,
+  return RunUnary(service_, context, {"CreateEnsembleJob", Role::kSubmit, true}, request, response,
                   &server::CreateEnsembleJob);
 }
 
@@ -33,21 +33,22 @@ Unary* EnsembleService::ListEnsembleJobs(Context* context,
 Unary* EnsembleService::CancelEnsembleJob(Context* context,
                                           const v1::CancelEnsembleJobRequest* request,
                                           v1::EnsembleJob* response) {
-  return RunUnary(service_, context, {"CancelEnsembleJob", Role::kSubmit}, request, response,
+  return RunUnary(service_, context, {"CancelEnsembleJob", Role::kSubmit, true}, request, response,
                   &server::CancelEnsembleJob);
 }
 
 Unary* EnsembleService::DeleteEnsembleJob(Context* context,
                                           const v1::DeleteEnsembleJobRequest* request,
                                           google::protobuf::Empty* response) {
-  return RunUnary(service_, context, {"DeleteEnsembleJob", Role::kSubmit}, request, response,
+  return RunUnary(service_, context, {"DeleteEnsembleJob", Role::kSubmit, true}, request, response,
                   &server::DeleteEnsembleJob);
 }
 
 grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* EnsembleService::WatchEnsembleJob(
     Context* context, const v1::WatchEnsembleJobRequest* request) {
-  return WatchReactor::Start(
-      service_, AdmitCall(service_, *context, {"WatchEnsembleJob", Role::kRead}), *request);
+  return WatchReactor::Start(service_, *context,
+                             AdmitCall(service_, *context, {"WatchEnsembleJob", Role::kRead}),
+                             *request);
 }
 
 Unary* EnsembleService::PlanEnsembleJob(Context* context, const v1::PlanEnsembleJobRequest* request,

@@ -41,7 +41,7 @@ void AddStore(const ServiceContext& service, ServerSnapshot& snapshot) {
   snapshot.store_commits = service.store.commits();
   snapshot.store_blocks_written = service.store.blocks_written();
   snapshot.store_pending_writes = service.store.pending_writes();
-  snapshot.store_failing = service.store.failing();
+  snapshot.store_failing = service.store.failing() || service.store.stalled();
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 #ifndef BALLPISTON_SERVER_API_UNARY_RPC_H_
 #define BALLPISTON_SERVER_API_UNARY_RPC_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <exception>
-#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -32,21 +35,72 @@ grpc::Status Answer(UnaryMethod<Request, Response> method, ServiceContext& servi
   }
 }
 
+// What is held of a call, until its answer is on its way.
+class UnaryReactor : public grpc::ServerUnaryReactor {
+ public:
+  explicit UnaryReactor(ServiceContext& service) : service_(service) {}
+
+  // RESOURCE_EXHAUSTED  TOO_MANY_CALLS
+  absl::Status Hold(const std::string& principal, size_t bytes_of_request) {
+    const auto bytes = static_cast<int64_t>(bytes_of_request);
+    const absl::Status held =
+        service_.executor.held_calls().Begin(principal, bytes, service_.limits);
+    if (held.ok()) principal_ = principal;
+    if (held.ok()) bytes_ = bytes;
+    return held;
+  }
+
+  void HoldAnswer(size_t bytes) {
+    service_.executor.held_calls().AddBytes(*principal_, static_cast<int64_t>(bytes));
+    bytes_ += static_cast<int64_t>(bytes);
+  }
+
+  // Also when the client is gone.
+  void OnDone() override {
+    if (principal_) service_.executor.held_calls().End(*principal_, bytes_);
+    delete this;
+  }
+
+ private:
+  ServiceContext& service_;
+  std::optional<std::string> principal_;
+  int64_t bytes_ = 0;
+};
+
+template <typename Request, typename Response>
+void RunAndFinish(UnaryMethod<Request, Response> method, ServiceContext& service, const Call& call,
+                  const Request& request, Response& response, UnaryReactor& reactor) {
+  const absl::Status room =
+      service.executor.held_calls().CheckRoom(call.caller.name, service.limits);
+  const grpc::Status status =
+      room.ok() ? Answer(method, service, call, request, response) : GrpcStatus(room);
+  reactor.HoldAnswer(response.ByteSizeLong());
+  reactor.Finish(status);  // it may be gone after this
+}
+
 template <typename Request, typename Response>
 grpc::ServerUnaryReactor* RunUnary(ServiceContext& service, grpc::CallbackServerContext* context,
                                    const CallRule& rule, const Request* request, Response* response,
                                    UnaryMethod<Request, Response> method) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  auto* reactor = new UnaryReactor(service);  // owns itself until gRPC is done with it
   absl::StatusOr<Call> call = AdmitCall(service, *context, rule);
-  if (!call.ok()) {
-    reactor->Finish(GrpcStatus(call.status()));
+  absl::Status admitted = call.status();
+  if (admitted.ok()) admitted = reactor->Hold(call->caller.name, request->ByteSizeLong());
+  if (!admitted.ok()) {
+    reactor->Finish(GrpcStatus(admitted));
     return reactor;
   }
+  const std::string caller = call->caller.name;
   // gRPC keeps request and response until Finish.
-  service.executor.Post([&service, request, response, reactor, method, call = *std::move(call),
-                         active = service.activity.Begin()] {
-    reactor->Finish(Answer(method, service, call, *request, *response));
-  });
+  auto run = [&service, request, response, reactor, method, call = *std::move(call),
+              active = service.activity.Begin()] {
+    RunAndFinish(method, service, call, *request, *response, *reactor);
+  };
+  if (rule.writes) {
+    service.executor.PostOfWrite(caller, std::move(run));
+  } else {
+    service.executor.Post(caller, std::move(run));
+  }
   return reactor;
 }
 

@@ -18,11 +18,17 @@ constexpr size_t kMaxPoints = 100;  // of a kind in a message
 // Of all watches together: some 50 us each, most of it gRPC's.
 constexpr int64_t kSnapshotsPerSecond = 1000;
 
+// A message is large whose specification is; so many bytes of those may be on their way to one
+// principal.
+constexpr size_t kLargeSpec = size_t{64} << 10;
+constexpr int64_t kLargeMessages = int64_t{32} << 20;
+
 }  // namespace
 
-WatchReactor* WatchReactor::Start(ServiceContext& service, const absl::StatusOr<Call>& call,
+WatchReactor* WatchReactor::Start(ServiceContext& service, grpc::CallbackServerContext& context,
+                                  const absl::StatusOr<Call>& call,
                                   const v1::WatchEnsembleJobRequest& request) {
-  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, request));
+  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, context, request));
   reactor->self_ = reactor;
   absl::Status admitted = call.status();
   if (call.ok()) {
@@ -37,16 +43,20 @@ WatchReactor* WatchReactor::Start(ServiceContext& service, const absl::StatusOr<
   return reactor.get();
 }
 
-WatchReactor::WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request)
+WatchReactor::WatchReactor(ServiceContext& service, grpc::CallbackServerContext& context,
+                           const v1::WatchEnsembleJobRequest& request)
     : service_(service),
+      context_(context),
       request_(request),
       active_(service.activity.Begin()),
-      next_heartbeat_(Clock::now() + service.timing.heartbeat) {}
+      next_heartbeat_(Clock::now() + service.timing.heartbeat),
+      next_check_(next_heartbeat_) {}
 
 // ---- reactions: on gRPC's threads ----
 
 void WatchReactor::OnWriteDone(bool ok) {
   message_.Clear();  // that of a job may be large, and the next one far away
+  LeaveRoom();
   {
     std::lock_guard lock(mutex_);
     writing_ = false;
@@ -64,6 +74,7 @@ void WatchReactor::OnCancel() {
 }
 
 void WatchReactor::OnDone() {
+  LeaveRoom();
   service_.watches.Remove(this);
   self_.reset();  // may delete this
 }
@@ -73,9 +84,10 @@ void WatchReactor::OnDone() {
 void WatchReactor::Look(Clock::time_point now) {
   {
     std::lock_guard lock(mutex_);
-    if (writing_ || ended_) return;
-    const bool has_news = watched_ != nullptr && (watched_->last_state_change() > told_state_ ||
-                                                  IsBehind() || IsSnapshotDue(now));
+    if (ended_ || (writing_ && now < next_check_)) return;
+    const bool has_news = waits_for_room_ || now >= next_check_ ||
+                          (watched_ != nullptr && (watched_->last_state_change() > told_state_ ||
+                                                   IsBehind() || IsSnapshotDue(now)));
     if (!has_news && now < next_heartbeat_ && !service_.draining) return;
   }
   Schedule();
@@ -104,7 +116,7 @@ void WatchReactor::Schedule() {
     again_ = scheduled_;
     if (std::exchange(scheduled_, true)) return;
   }
-  service_.executor.PostOfStream([self = shared_from_this()] { self->Advance(); });
+  service_.executor.PostOfStream(caller_.name, [self = shared_from_this()] { self->Advance(); });
 }
 
 void WatchReactor::Advance() {
@@ -127,11 +139,17 @@ void WatchReactor::Advance() {
 // ---- what to say ----
 
 absl::Status WatchReactor::TellWhatIsNew() {
+  bool writing = false;
   {
     std::lock_guard lock(mutex_);
-    if (writing_ || ended_) return absl::OkStatus();
-    if (cut_) return absl::CancelledError("the client is gone");
+    if (ended_) return absl::OkStatus();
+    writing = writing_;
+    if (!writing && !abandoned_.ok()) return abandoned_;
+    if (!writing && cut_) return absl::CancelledError("the client is gone");
   }
+  const absl::Status checked = CheckCaller();
+  if (writing && !checked.ok()) AbandonWrite(checked);
+  if (writing || !checked.ok()) return writing ? absl::OkStatus() : checked;
   if (service_.draining) return ShuttingDown();
   message_.Clear();
   if (id_.empty()) {
@@ -140,9 +158,56 @@ absl::Status WatchReactor::TellWhatIsNew() {
   }
   if (job_.active == nullptr) return TellOfEndedJob();
   absl::StatusOr<bool> told = TellState();
+  if (told.ok() && !*told && waits_for_room_) return absl::OkStatus();
   if (told.ok() && !*told) told = TellSnapshot();
   if (told.ok() && !*told) TellHeartbeat();
   return told.status();
+}
+
+// An administrator who is one no more may see his own jobs; a token that is now somebody else's is
+// not his.
+absl::Status WatchReactor::CheckCaller() {
+  const Clock::time_point now = Clock::now();
+  if (now < next_check_) return absl::OkStatus();
+  {
+    std::lock_guard lock(mutex_);
+    next_check_ = now + service_.timing.heartbeat;
+  }
+  absl::StatusOr<Principal> caller = service_.authenticator.Authenticate(context_);
+  if (!caller.ok()) return caller.status();
+  if (caller->name != caller_.name) return CredentialsInvalid();
+  caller_.role = caller->role;
+  const bool sees = job_.active == nullptr || caller_.MaySee(job_.active->principal());
+  return sees ? absl::OkStatus() : JobNotFound(request_.name());
+}
+
+// The reader stalls, and would hold the stream open for ever.
+void WatchReactor::AbandonWrite(const absl::Status& why) {
+  {
+    std::lock_guard lock(mutex_);
+    abandoned_ = why;
+  }
+  context_.TryCancel();  // the write ends
+}
+
+bool WatchReactor::TakeRoom(size_t bytes) {
+  const auto held = static_cast<int64_t>(bytes);
+  HeldCalls& messages = service_.executor.held_messages();
+  const bool large = bytes > kLargeSpec;
+  const bool taken = !large || messages.TryBegin(caller_.name, held, kLargeMessages);
+  std::lock_guard lock(mutex_);
+  waits_for_room_ = !taken;
+  if (large && taken) bytes_held_ = held;
+  return taken;
+}
+
+void WatchReactor::LeaveRoom() {
+  int64_t held = 0;
+  {
+    std::lock_guard lock(mutex_);
+    held = std::exchange(bytes_held_, 0);
+  }
+  if (held > 0) service_.executor.held_messages().End(caller_.name, held);
 }
 
 absl::Status WatchReactor::FindJob() {
@@ -166,9 +231,13 @@ absl::StatusOr<bool> WatchReactor::TellState() {
     absl::StatusOr<bool> told = TellFinishedPoints(job_.active->Progress());
     if (!told.ok() || *told) return told;
   }
+  if (!TakeRoom(job_.active->spec_bytes())) return false;
   Job::View view = job_.active->Now();
   // One that has ended just now may have more points to tell.
-  if (!has_ended && HasEnded(view.job.state())) return TellState();
+  if (!has_ended && HasEnded(view.job.state())) {
+    LeaveRoom();
+    return TellState();
+  }
   *message_.mutable_job() = std::move(view.job);
   {
     std::lock_guard lock(mutex_);
@@ -230,6 +299,7 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
 absl::Status WatchReactor::TellOfEndedJob() {
   const absl::StatusOr<bool> told = TellFinishedPoints(job_.progress);
   if (!told.ok() || *told) return told.status();
+  if (!TakeRoom(job_.spec_bytes)) return absl::OkStatus();
   absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
   if (!ended.ok()) return ended.status();
   *message_.mutable_job() = *std::move(ended);

@@ -5,7 +5,11 @@
 // from the job's memory or from the store, when their turn has come. Messages are made on the
 // threads for streams, never on gRPC's, and outside of the lock the workers need; watches of one
 // job share what takes that lock (jobs/job_snapshot.h). Many watches are told less often, so that
-// all of them together never take more than kSnapshotsPerSecond.
+// all of them together never take more than kSnapshotsPerSecond. A message with a large
+// specification, of which a stalled reader would keep two copies, waits until those of its
+// principal that are on their way leave room for it.
+//
+// Once in a heartbeat's time the credentials are looked up again: a watch ends when they do.
 //
 // Properties, over a watch and those that go on with its tokens, each with a test of its name:
 //   1. EachFinishedPointIsToldOnceInOrder: also over restarts, and before the terminal state.
@@ -43,7 +47,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
  public:
   // Owns itself until gRPC is done with it. A call that was not admitted ends at once.
   //   RESOURCE_EXHAUSTED  TOO_MANY_STREAMS
-  static WatchReactor* Start(ServiceContext& service, const absl::StatusOr<Call>& call,
+  static WatchReactor* Start(ServiceContext& service, grpc::CallbackServerContext& context,
+                             const absl::StatusOr<Call>& call,
                              const v1::WatchEnsembleJobRequest& request);
 
   void Look(std::chrono::steady_clock::time_point now) override;
@@ -55,13 +60,18 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
  private:
   using Clock = std::chrono::steady_clock;
 
-  WatchReactor(ServiceContext& service, const v1::WatchEnsembleJobRequest& request);
+  WatchReactor(ServiceContext& service, grpc::CallbackServerContext& context,
+               const v1::WatchEnsembleJobRequest& request);
 
   // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
   // writes and the end come from it.
   void Schedule();
   void Advance();
   absl::Status TellWhatIsNew();
+
+  // OK while the caller may still watch the job, and while it is not yet time to ask again.
+  absl::Status CheckCaller();
+  void AbandonWrite(const absl::Status& why);
 
   absl::Status FindJob();
   // Each of these is one message, or false if there is nothing of the kind to tell now.
@@ -70,6 +80,10 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress);
   void TellHeartbeat();
   absl::Status TellOfEndedJob();
+
+  // Room for a job's message with its specification, until it is written. False: not now.
+  bool TakeRoom(size_t bytes);
+  void LeaveRoom();
 
   bool IsSnapshotDue(Clock::time_point now) const;
   bool IsBehind() const;  // by a whole message of finished points
@@ -83,8 +97,9 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   void End(const absl::Status& status);
 
   ServiceContext& service_;
+  grpc::CallbackServerContext& context_;  // valid until the end is sent
   const v1::WatchEnsembleJobRequest request_;
-  Principal caller_;
+  Principal caller_;                    // its role may change
   const std::shared_ptr<void> active_;  // for Activity
   std::shared_ptr<WatchReactor> self_;
 
@@ -99,6 +114,9 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   bool again_ = false;
   bool writing_ = false;
   bool cut_ = false;  // the client is gone
+  bool waits_for_room_ = false;
+  absl::Status abandoned_;  // why the write is not waited for
+  int64_t bytes_held_ = 0;  // in TakeRoom
   bool ended_ = false;
   std::shared_ptr<Job> watched_;  // job_.active
   uint64_t told_state_ = 0;       // numbers of changes
@@ -106,6 +124,7 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   int64_t told_finished_ = 0;  // the number of a point
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
+  Clock::time_point next_check_;  // of the credentials
 };
 
 }  // namespace ballpiston::server

@@ -123,8 +123,8 @@ absl::Status JobStillActive(const std::string& name, absl::string_view state) {
 
 absl::Status ComparisonRunning() {
   return WithReason(
-      absl::ResourceExhaustedError("a comparison of methods is running; try again when it has "
-                                   "ended, in a minute or so"),
+      absl::ResourceExhaustedError("a comparison of methods of yours is running; try again when "
+                                   "it has ended, in a minute or so"),
       "COMPARISON_RUNNING");
 }
 

@@ -1,6 +1,8 @@
 #include "server/execution/comparison_thread.h"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 namespace ballpiston::server {
@@ -11,18 +13,38 @@ ComparisonThread::ComparisonThread(MethodComparer compare)
 ComparisonThread::~ComparisonThread() { Stop(); }
 
 ComparisonThread::Admission ComparisonThread::Begin(Comparison comparison) {
-  std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (stopping_) return Admission::kStopped;
-  if (running_) return Admission::kBusy;
-  running_ = std::move(comparison);
+  const std::deque<Comparison> abandoned = TakeAbandoned();
+  const bool busy = Has(comparison.principal);
+  if (!busy) waiting_.push_back(std::move(comparison));
   changed_.notify_one();
-  return Admission::kBegun;
+  lock.unlock();
+  for (const Comparison& left : abandoned) left.ended(absl::CancelledError("stopped"));
+  return busy ? Admission::kBusy : Admission::kBegun;
+}
+
+bool ComparisonThread::Has(const std::string& principal) const {
+  const auto is_its = [&](const Comparison& one) { return one.principal == principal; };
+  return (running_ && is_its(*running_)) || std::ranges::any_of(waiting_, is_its);
+}
+
+// Those that wait and were stopped: nobody wants them any more.
+std::deque<Comparison> ComparisonThread::TakeAbandoned() {
+  const auto first =
+      std::stable_partition(waiting_.begin(), waiting_.end(),
+                            [](const Comparison& one) { return !one.stop.stop_requested(); });
+  std::deque<Comparison> abandoned(std::make_move_iterator(first),
+                                   std::make_move_iterator(waiting_.end()));
+  waiting_.erase(first, waiting_.end());
+  return abandoned;
 }
 
 void ComparisonThread::AskToStop() {
   std::lock_guard lock(mutex_);
   stopping_ = true;
   if (running_) running_->stop.request_stop();
+  for (Comparison& one : waiting_) one.stop.request_stop();
   changed_.notify_one();
 }
 
@@ -42,10 +64,14 @@ void ComparisonThread::Work() {
   }
 }
 
-// A copy, because Stop reads the one in `running_`.
+// A copy, because Stop reads the one in `running_`. After a stop those that waited have their turn,
+// too: they are stopped, and end at once.
 std::optional<Comparison> ComparisonThread::AwaitComparison() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return stopping_ || running_; });
+  changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+  if (waiting_.empty()) return std::nullopt;
+  running_ = std::move(waiting_.front());
+  waiting_.pop_front();
   return running_;
 }
 

@@ -30,8 +30,21 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
   return absl::OkStatus();
 }
 
+// Requests answered with one job of which each is remembered; there may be any number of them.
+constexpr int64_t kMostRequestsOfJob = 1000;
+
+// One that is not remembered comes to the same when it is repeated: the answer is there.
+absl::StatusOr<bool> IsWorthKeeping(Database& database, const Acceptance& acceptance, int64_t job) {
+  if (acceptance.request.request_id.empty() || acceptance.replay) return false;
+  if (!acceptance.answered_from_store) return true;
+  const auto kept = CountRequests(database, job, kMostRequestsOfJob);
+  if (!kept.ok()) return kept.status();
+  return *kept < kMostRequestsOfJob;
+}
+
 absl::Status KeepRequest(Database& database, Acceptance& acceptance, int64_t job) {
-  if (acceptance.request.request_id.empty() || acceptance.replay) return absl::OkStatus();
+  const absl::StatusOr<bool> kept = IsWorthKeeping(database, acceptance, job);
+  if (!kept.ok() || !*kept) return kept.status();
   acceptance.request.job = job;
   acceptance.request.answered_from_store = acceptance.answered_from_store;
   return InsertRequest(database, acceptance.request);
@@ -84,7 +97,8 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
                        "max_samples_per_job", limits.max_samples_per_job);
 }
 
-absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance) {
+absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
+                   Acceptance& acceptance) {
   acceptance.earlier.reset();
   acceptance.replay = acceptance.answered_from_store = false;
   acceptance.refused = absl::OkStatus();
@@ -93,14 +107,23 @@ absl::Status Judge(Database& database, const Limits& limits, Acceptance& accepta
   acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
   absl::StatusOr<absl::Status> room = CheckQueue(database, limits, acceptance.record.principal);
-  if (room.ok()) acceptance.refused = *std::move(room);
-  return room.status();
+  if (!room.ok()) return room.status();
+  acceptance.refused = *std::move(room);
+  if (acceptance.refused.ok()) {
+    acceptance.refused =
+        points.Check(acceptance.record.principal, acceptance.record.points, limits);
+  }
+  return absl::OkStatus();
 }
 
-absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance) {
-  const absl::Status judged = Judge(database, limits, acceptance);
+absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
+                    Acceptance& acceptance) {
+  const JobRecord& record = acceptance.record;
+  points.Remove(record.id);  // of a transaction that was rolled back
+  const absl::Status judged = Judge(database, limits, points, acceptance);
   if (!judged.ok() || !acceptance.refused.ok()) return judged;
   if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
+  points.Add(record.id, record.principal, record.points);
   const absl::Status inserted = InsertJob(database, acceptance.record);
   return inserted.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : inserted;
 }

@@ -2,9 +2,9 @@
 //
 // A replay, the same request id with the same request, is answered with the job of the first time;
 // the same question as an earlier job's that succeeded with that one, unless a fresh answer is
-// wanted; then the limits on a job's size and on active jobs count. All of it is decided inside one
-// transaction of the store, where all writes pass in one order, so that of many equal requests at
-// once one makes a job.
+// wanted; then the limits on a job's size, on active jobs and on their points count. All of it is
+// decided inside one transaction of the store, where all writes pass in one order, so that of many
+// equal requests at once one makes a job.
 #ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 #define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 
@@ -12,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "core/experiment/ensemble_spec.h"
+#include "server/jobs/active_points.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/request_table.h"
@@ -32,9 +33,12 @@ struct Acceptance {
   absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
 };
 
-// Each sets the outcome anew; Accept then writes what it comes to. Not OK: SQLite failed.
-absl::Status Judge(Database& database, const Limits& limits, Acceptance& acceptance);
-absl::Status Accept(Database& database, const Limits& limits, Acceptance& acceptance);
+// Each sets the outcome anew; Accept then writes what it comes to, and counts the points of a new
+// job: whoever commits takes them back if that fails. Not OK: SQLite failed.
+absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
+                   Acceptance& acceptance);
+absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
+                    Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
 absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);

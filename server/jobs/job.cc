@@ -37,6 +37,13 @@ void LogState(const JobRecord& job) {
       {{"job", JobName(job.id)}, {"principal", job.principal}, {"state", state}});
 }
 
+// Empty if it cannot be read.
+v1::EnsembleSpec SpecOf(const std::string& bytes) {
+  v1::EnsembleSpec spec;
+  if (!spec.ParseFromString(bytes)) spec.Clear();
+  return spec;
+}
+
 }  // namespace
 
 Job::Job(JobRecord record, std::function<void()> on_state_change)
@@ -44,7 +51,8 @@ Job::Job(JobRecord record, std::function<void()> on_state_change)
       id_(record.id),
       principal_(record.principal),
       restarts_(record.restarts),
-      open_ended_(IsOpenEnded(JobMessage(record).spec().target())),
+      spec_(std::exchange(record.spec, {})),
+      open_ended_(IsOpenEnded(SpecOf(spec_).target())),
       on_state_change_(std::move(on_state_change)),
       record_(std::move(record)) {}
 
@@ -65,6 +73,7 @@ Job::View Job::Now() const {
   const uint64_t state_change = last_state_change_;
   lock.unlock();
   View view = {JobMessage(record), state_change};
+  *view.job.mutable_spec() = SpecOf(spec_);
   *view.job.mutable_progress() = progress;
   return view;
 }

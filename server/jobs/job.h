@@ -54,7 +54,8 @@ class Job {
   View Now() const;
   v1::EnsembleJob Message() const { return Now().job; }
   v1::JobProgress Progress() const;
-  JobRecord Record() const;
+  JobRecord Record() const;  // without the specification, which may be large
+  size_t spec_bytes() const { return spec_.size(); }
 
   // These three without a lock: a thousand watchers ask several times a second.
   uint64_t last_change() const { return last_change_; }
@@ -85,11 +86,12 @@ class Job {
   const std::string id_;
   const std::string principal_;
   const int64_t restarts_;
-  const bool open_ended_;  // how much there is to do is not known
+  const std::string spec_;  // serialized
+  const bool open_ended_;   // how much there is to do is not known
   const std::function<void()> on_state_change_;
 
   mutable std::mutex mutex_;
-  JobRecord record_;
+  JobRecord record_;      // without the specification
   double work_done_ = 0;  // in points
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;

@@ -25,6 +25,12 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
+// Of its message, an upper bound: names, times and numbers take less than what is added.
+size_t MostBytesOf(const JobRecord& record) {
+  return 512 + record.principal.size() + record.engine_version.size() + record.spec.size() +
+         record.error.size();
+}
+
 // The job, if the caller may see it.
 absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
                                                    const std::string& id) {
@@ -211,6 +217,7 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
 }
 
 std::shared_ptr<Job> JobBook::Register(JobRecord record) {
+  active_points_.Add(record.id, record.principal, record.points);
   auto job = std::make_shared<Job>(std::move(record), on_state_change_);
   std::lock_guard lock(mutex_);
   active_.emplace(job->id(), job);
@@ -231,6 +238,7 @@ void JobBook::Forget(const Job& ended) {
   ++(state == v1::EnsembleJob::SUCCEEDED ? succeeded_
      : state == v1::EnsembleJob::FAILED  ? failed_
                                          : cancelled_);
+  active_points_.Remove(ended.id());
   std::lock_guard lock(mutex_);
   active_.erase(ended.id());
 }
@@ -267,8 +275,8 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const v1::CreateEnsembleJobRequest& request,
                                                  const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
-  const absl::Status read =
-      store_.Read([&](Database& database) { return Judge(database, limits_, acceptance); });
+  const absl::Status read = store_.Read(
+      [&](Database& database) { return Judge(database, limits_, active_points_, acceptance); });
   if (!read.ok()) return StoreFailure(read);
   if (!acceptance.refused.ok()) return acceptance.refused;
   return acceptance.earlier ? EarlierJob(caller, acceptance) : JobMessage(acceptance.record);
@@ -279,11 +287,16 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
                                                 const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
   acceptance.record.id = RandomId();
-  const auto accept = [&](Database& database) { return Accept(database, limits_, acceptance); };
+  const auto accept = [&](Database& database) {
+    const absl::Status accepted = Accept(database, limits_, active_points_, acceptance);
+    Failpoint("create.in_transaction");
+    return accepted;
+  };
   // Begun before anybody else can see the job in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
     Failpoint("create.committed");
+    if (!done.ok()) active_points_.Remove(acceptance.record.id);
     if (!done.ok() || acceptance.earlier || !acceptance.refused.ok()) return;
     job = Register(acceptance.record);
     RunRequest run;
@@ -333,26 +346,33 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
   return JobMessage(*record);
 }
 
-absl::StatusOr<std::vector<ListedJob>> JobBook::List(const Principal& caller, int64_t before,
-                                                     int limit) {
+absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery& query) {
   const bool everybodys = caller.role == Role::kAdmin;
-  absl::StatusOr<std::vector<JobRecord>> records;
+  std::vector<JobRecord> records;
+  JobsPage page;
+  size_t bytes = 0;
+  const auto take = [&](JobRecord record) {
+    bytes += MostBytesOf(record);
+    const bool full = records.size() == static_cast<size_t>(query.max_jobs);
+    const bool ends = full || (!records.empty() && bytes > query.max_bytes);
+    if (ends) page.next_before = records.back().sequence;
+    if (!ends) records.push_back(std::move(record));
+    return !ends;
+  };
   const absl::Status read = store_.Read([&](Database& database) {
-    records =
-        ListJobs(database, everybodys ? std::nullopt : std::optional(caller.name), before, limit);
-    return records.status();
+    return ReadJobs(database, everybodys ? std::nullopt : std::optional(caller.name), query.before,
+                    take);
   });
   if (!read.ok()) return StoreFailure(read);
-  std::vector<ListedJob> listed;
-  for (const JobRecord& record : *records) {
+  for (const JobRecord& record : records) {
     // How far an active one has come, the store does not know.
     absl::StatusOr<v1::EnsembleJob> job =
         HasEnded(record.state) ? JobMessage(record) : Get(caller, record.id);
     if (absl::IsNotFound(job.status())) continue;  // it has ended and was deleted just now
     if (!job.ok()) return job.status();
-    listed.push_back({record.sequence, *std::move(job)});
+    page.jobs.push_back(*std::move(job));
   }
-  return listed;
+  return page;
 }
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const std::string& id,
@@ -445,7 +465,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
   absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
   if (!active.ok()) return active.status();
   if (const std::shared_ptr<Job>& job = *active) {
-    return WatchedJob{job, job->sequence(), job->restarts(), job->last_finished(), {}};
+    return WatchedJob{job, job->sequence(), job->restarts(), job->last_finished(), {}, 0};
   }
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
@@ -455,8 +475,12 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
     return last.status();
   });
   if (!read.ok()) return StoreFailure(read);
-  return WatchedJob{nullptr, record->sequence, record->restarts, *last,
-                    JobMessage(*record).progress()};
+  return WatchedJob{nullptr,
+                    record->sequence,
+                    record->restarts,
+                    *last,
+                    JobMessage(*record).progress(),
+                    record->spec.size()};
 }
 
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,

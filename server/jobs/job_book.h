@@ -25,6 +25,7 @@
 #include "server/convert/spec.h"
 #include "server/execution/worker_pool.h"
 #include "server/jobs/acceptance.h"
+#include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
 #include "server/limits.h"
 #include "server/security/principal.h"
@@ -32,9 +33,15 @@
 
 namespace ballpiston::server {
 
-struct ListedJob {
-  int64_t sequence = 0;
-  v1::EnsembleJob job;
+struct JobsQuery {
+  int64_t before = 0;  // newest first, those older than this sequence
+  int max_jobs = 1;
+  size_t max_bytes = 0;  // ends a page that has a job already
+};
+
+struct JobsPage {
+  std::vector<v1::EnsembleJob> jobs;
+  std::optional<int64_t> next_before;  // none: this is the last page
 };
 
 // What a watch needs of a job.
@@ -44,6 +51,7 @@ struct WatchedJob {
   int64_t restarts = 0;
   int64_t last_finished = 0;  // the number of its last finished point
   v1::JobProgress progress;
+  size_t spec_bytes = 0;  // of one that has ended
 };
 
 struct ResultsQuery {
@@ -98,8 +106,7 @@ class JobBook {
 
   // To all of the following a job that the caller may not see does not exist.
   absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id);
-  // Newest first, those older than `before`.
-  absl::StatusOr<std::vector<ListedJob>> List(const Principal& caller, int64_t before, int limit);
+  absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
                                          const std::string& request_id);
   absl::Status Delete(const Principal& caller, const std::string& id);
@@ -147,6 +154,7 @@ class JobBook {
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
+  ActivePoints active_points_;
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;

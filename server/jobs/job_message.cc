@@ -1,17 +1,9 @@
 #include "server/jobs/job_message.h"
 
-#include "google/protobuf/timestamp.pb.h"
 #include "server/jobs/job_name.h"
 
 namespace ballpiston::server {
 namespace {
-
-void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
-  const int64_t seconds = absl::ToUnixSeconds(time);
-  timestamp->set_seconds(seconds);
-  timestamp->set_nanos(
-      static_cast<int32_t>(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds))));
-}
 
 void SetProgress(const JobRecord& record, v1::EnsembleJob& job) {
   v1::JobProgress& progress = *job.mutable_progress();
@@ -24,6 +16,13 @@ void SetProgress(const JobRecord& record, v1::EnsembleJob& job) {
 }
 
 }  // namespace
+
+void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp) {
+  const int64_t seconds = absl::ToUnixSeconds(time);
+  timestamp->set_seconds(seconds);
+  timestamp->set_nanos(
+      static_cast<int32_t>(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds))));
+}
 
 bool IsOpenEnded(const v1::Target& target) { return target.has_tolerance() || target.has_budget(); }
 

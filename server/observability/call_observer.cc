@@ -19,8 +19,6 @@ using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 using Clock = std::chrono::steady_clock;
 
-constexpr char kRequestId[] = "x-request-id";
-
 const char* TypeName(ServerRpcInfo::Type type) {
   switch (type) {
     case ServerRpcInfo::Type::UNARY:
@@ -96,10 +94,21 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  private:
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
+  // gRPC's own services call it UNKNOWN if the client left, and INTERNAL if its request was no
+  // message, or none came, which would look like the server's fault.
+  absl::StatusCode CodeOf(const grpc::Status& status) const {
+    const auto code = static_cast<absl::StatusCode>(status.error_code());
+    if (!absl::StartsWith(path_, "/grpc.")) return code;
+    const bool unparsed = status.error_message() == "could not parse request";
+    if (code != absl::StatusCode::kUnknown && !unparsed) return code;
+    if (call_.IsCancelled()) return absl::StatusCode::kCancelled;
+    return unparsed ? absl::StatusCode::kInvalidArgument : code;
+  }
+
   void StatusOf(InterceptorBatchMethods& batch) {
     if (ended_.exchange(true)) return;
     const grpc::Status status = batch.GetSendStatus();
-    const auto code = static_cast<absl::StatusCode>(status.error_code());
+    const absl::StatusCode code = CodeOf(status);
     const double seconds = Seconds();
     counts_.Ended(code, seconds);
     const std::string principal = observer_.Ended(call_);

@@ -22,6 +22,9 @@
 
 namespace ballpiston::server {
 
+// The metadata that a call's id comes with, and goes back in.
+inline constexpr char kRequestId[] = "x-request-id";
+
 // A call that ended with anything but OK.
 struct FailedCall {
   std::string method;      // WatchEnsembleJob

@@ -12,13 +12,18 @@
 namespace ballpiston::server::failpoint_internal {
 namespace {
 
+constexpr std::string_view kReady = "ready+";
+
 struct Armed {
   std::string_view name;
+  bool when_ready = false;
   int64_t pass = 0;
 };
 
 [[noreturn]] void Refuse(const char* text) {
-  std::fprintf(stderr, "BALLPISTON_FAILPOINT=%s is not NAME:N with a failpoint's name and N >= 1\n",
+  std::fprintf(stderr,
+               "BALLPISTON_FAILPOINT=%s is not NAME:N or NAME:ready+N with a failpoint's name and "
+               "N >= 1\n",
                text);
   std::_Exit(2);
 }
@@ -28,9 +33,11 @@ Armed Parse(const char* text) {
   const std::string_view whole(text);
   const size_t colon = whole.rfind(':');
   if (colon == std::string_view::npos) Refuse(text);
-  Armed parsed{whole.substr(0, colon)};
-  const char* const end = whole.data() + whole.size();
-  const auto [rest, error] = std::from_chars(whole.data() + colon + 1, end, parsed.pass);
+  std::string_view number_text = whole.substr(colon + 1);
+  Armed parsed{whole.substr(0, colon), number_text.starts_with(kReady)};
+  if (parsed.when_ready) number_text.remove_prefix(kReady.size());
+  const char* const end = number_text.data() + number_text.size();
+  const auto [rest, error] = std::from_chars(number_text.data(), end, parsed.pass);
   const bool number = error == std::errc() && rest == end && parsed.pass >= 1;
   const bool known =
       std::find(kFailpoints.begin(), kFailpoints.end(), parsed.name) != kFailpoints.end();
@@ -44,10 +51,17 @@ const char* Text() { return std::getenv("BALLPISTON_FAILPOINT"); }
 
 const bool armed = Text() != nullptr;
 static const Armed target = armed ? Parse(Text()) : Armed();
+static std::atomic<bool> counting = !target.when_ready;
 
 void Pass(std::string_view name) {
   static std::atomic<int64_t> passes = 0;
-  if (name == target.name && ++passes == target.pass) raise(SIGKILL);
+  if (name == target.name && counting && ++passes == target.pass) raise(SIGKILL);
 }
 
 }  // namespace ballpiston::server::failpoint_internal
+
+namespace ballpiston::server {
+
+void CountFailpointsOfReadyServer() { failpoint_internal::counting = true; }
+
+}  // namespace ballpiston::server

@@ -4,9 +4,10 @@
 //
 // Armed by the environment alone, BALLPISTON_FAILPOINT=NAME:N: at the N-th pass of NAME, counted
 // from 1 over all threads, the process kills itself with SIGKILL, so that nothing is flushed and no
-// destructor runs. With the variable unset a pass costs one load and one branch. A value that names
-// no failpoint of the list, or no number from 1 on, ends the process at once with exit code 2: a
-// test that waits for a place that does not exist would wait for ever. Thread-safe.
+// destructor runs. NAME:ready+N does not count what passes while the server starts. With the
+// variable unset a pass costs one load and one branch. A value that names no failpoint of the list,
+// or no number from 1 on, ends the process at once with exit code 2: a test that waits for a place
+// that does not exist would wait for ever. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 
@@ -16,7 +17,8 @@
 namespace ballpiston::server {
 
 // Every place there is, in the order of a job's life; tests visit them all.
-inline constexpr std::array<std::string_view, 19> kFailpoints = {
+inline constexpr std::array<std::string_view, 21> kFailpoints = {
+    "create.in_transaction",  // the job's row is written, not committed
     "create.committed",       // the job's row is on disk; the run is not begun
     "create.before_answer",   // the run is begun; the client knows nothing
     "store.before_commit",    // a group of writes is in the transaction
@@ -34,6 +36,7 @@ inline constexpr std::array<std::string_view, 19> kFailpoints = {
     "delete.committed",       // the client knows nothing
     "resume.job",             // after a restart: one of the unfinished jobs goes on
     "resume.block",           // and one of its stored blocks is merged again
+    "checkpoint.page",        // the log is folded into the store: before each page
     "stop.before_flush",      // SIGTERM: the workers have stopped
     "stop.before_checkpoint"  // everything is written; the log is not yet folded into the store
 };
@@ -42,6 +45,11 @@ namespace failpoint_internal {
 extern const bool armed;
 void Pass(std::string_view name);
 }  // namespace failpoint_internal
+
+// The server is ready: from here on passes count that were to be counted from here.
+void CountFailpointsOfReadyServer();
+
+inline bool FailpointsAreArmed() { return failpoint_internal::armed; }
 
 inline void Failpoint(std::string_view name) {
   if (failpoint_internal::armed) [[unlikely]] {

@@ -13,6 +13,7 @@ namespace {
 
 std::atomic<LogFormat> chosen_format = LogFormat::kText;
 std::atomic<Severity> least_severity = Severity::kInfo;
+std::atomic<bool> silent = false;
 
 LogOutput& StandardError() {
   static auto* const output = new LogOutput(STDERR_FILENO);
@@ -30,10 +31,11 @@ std::string LossLine(int64_t lost) {
 void SetLogOptions(const LogOptions& options) {
   chosen_format = options.format;
   least_severity = options.least;
+  silent = options.silent;
 }
 
 void Log(Severity severity, absl::string_view message, LogFields fields) {
-  if (severity < least_severity.load(std::memory_order_relaxed)) return;
+  if (silent || severity < least_severity.load(std::memory_order_relaxed)) return;
   StandardError().Write(LogLine(chosen_format, absl::Now(), severity, message, fields), LossLine);
 }
 

@@ -15,6 +15,7 @@ namespace ballpiston::server {
 struct LogOptions {
   LogFormat format = LogFormat::kText;
   Severity least = Severity::kInfo;  // what is less severe is not written
+  bool silent = false;               // nothing is: for tests of what fails a thousand times
 };
 
 // From now on, for the whole process.

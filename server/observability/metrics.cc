@@ -40,6 +40,8 @@ MetricFamily Counter(std::string name, std::string help, Number value) {
   return One(std::move(name), std::move(help), MetricType::Counter, value);
 }
 
+double SinceEpoch(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
+
 MetricFamily ByReason(std::string name, std::string help,
                       const std::map<std::string, uint64_t>& counts) {
   MetricFamily family{std::move(name), std::move(help), MetricType::Counter, {}};
@@ -117,10 +119,10 @@ std::vector<MetricFamily> CallMetrics(const std::vector<MethodCounts::Totals>& c
 }
 
 std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
-  return {
+  std::vector<MetricFamily> metrics = {
       BuildInfo(server),
       Gauge("ballpiston_start_time_seconds", "When the server started, since 1970.",
-            absl::ToDoubleSeconds(server.start_time - absl::UnixEpoch())),
+            SinceEpoch(server.start_time)),
       Gauge("ballpiston_draining", "1 while the server is stopping.", server.draining),
       ActiveJobs(server),
       EndedJobs(server),
@@ -145,6 +147,12 @@ std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
       ByReason("ballpiston_limit_refusals_total", "Calls refused because a limit was reached.",
                server.limit_refusals),
   };
+  if (server.certificate_expiry) {
+    metrics.push_back(Gauge("ballpiston_certificate_expiry_timestamp_seconds",
+                            "Until when the server's certificate is valid, since 1970.",
+                            SinceEpoch(*server.certificate_expiry)));
+  }
+  return metrics;
 }
 
 }  // namespace ballpiston::server

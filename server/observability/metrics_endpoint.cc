@@ -1,69 +1,42 @@
 #include "server/observability/metrics_endpoint.h"
 
-#include <arpa/inet.h>
 #include <netdb.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <utility>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
 #include "prometheus/collectable.h"
+#include "server/listen_address.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr int kMaxPort = 65535;
 constexpr std::chrono::milliseconds kKnockInterval(5);
 
-struct LoopbackAddress {
-  std::string host;  // 127.x.y.z or ::1
-  int port = 0;
-
-  std::string Text() const {
-    const bool six = host.find(':') != std::string::npos;
-    return six ? absl::StrCat("[", host, "]:", port) : absl::StrCat(host, ":", port);
+absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
+  absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+  if (!address.ok() || !address->socket_path.empty() || !address->IsLoopback()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--metrics_listen=", text,
+        " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
+        "localhost (metrics are not encrypted; let others reach them through a proxy or a "
+        "tunnel)"));
   }
-};
-
-bool IsLoopback(const std::string& host) {
-  in_addr four;
-  if (inet_pton(AF_INET, host.c_str(), &four) == 1) return ntohl(four.s_addr) >> 24 == 127;
-  in6_addr six;
-  return inet_pton(AF_INET6, host.c_str(), &six) == 1 && IN6_IS_ADDR_LOOPBACK(&six);
+  if (address->host == "localhost") address->host = "127.0.0.1";  // the HTTP server takes no names
+  return address;
 }
 
-// Without the brackets that an IPv6 address, and nothing else, has.
-std::optional<std::string> HostIn(absl::string_view text) {
-  const bool bracketed = absl::ConsumePrefix(&text, "[") && absl::ConsumeSuffix(&text, "]");
-  const std::string host = text == "localhost" ? "127.0.0.1" : std::string(text);
-  const bool six = host.find(':') != std::string::npos;
-  return six == bracketed ? std::optional(host) : std::nullopt;
-}
-
-absl::StatusOr<LoopbackAddress> ParseLoopback(const std::string& text) {
-  const size_t colon = text.rfind(':');
-  LoopbackAddress address;
-  if (colon != std::string::npos && absl::SimpleAtoi(text.substr(colon + 1), &address.port) &&
-      address.port >= 0 && address.port <= kMaxPort) {
-    const auto host = HostIn(absl::string_view(text).substr(0, colon));
-    if (host && IsLoopback(*host)) {
-      address.host = *host;
-      return address;
-    }
-  }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "--metrics_listen=", text,
-      " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
-      "localhost (metrics are not encrypted; let others reach them through a proxy or a tunnel)"));
+std::string TextOf(const std::string& host, int port) {
+  ListenAddress address;
+  address.host = host;
+  address.port = port;
+  return address.Text();
 }
 
 // Connects and leaves again: an HTTP server that looks up every two seconds only does so now.
@@ -81,7 +54,7 @@ void Knock(const std::string& host, int port) {
   freeaddrinfo(found);
 }
 
-std::vector<std::string> HttpOptions(const LoopbackAddress& address) {
+std::vector<std::string> HttpOptions(const ListenAddress& address) {
   return {"listening_ports",    address.Text(),
           "num_threads",        absl::StrCat(kHttpThreads),
           "request_timeout_ms", absl::StrCat(kRequestTimeout.count()),
@@ -116,7 +89,7 @@ class MetricsEndpoint::Collector : public prometheus::Collectable {
 
 absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const std::string& address,
                                                                         Source source) {
-  const absl::StatusOr<LoopbackAddress> parsed = ParseLoopback(address);
+  const absl::StatusOr<ListenAddress> parsed = ParseLoopback(address);
   if (!parsed.ok()) return parsed.status();
   try {
     auto exposer = std::make_unique<prometheus::Exposer>(HttpOptions(*parsed));
@@ -137,7 +110,7 @@ MetricsEndpoint::MetricsEndpoint(std::string host, std::unique_ptr<prometheus::E
       exposer_(std::move(exposer)),
       collector_(std::move(collector)),
       port_(exposer_->GetListeningPorts().front()),
-      address_(LoopbackAddress{host_, port_}.Text()) {}
+      address_(TextOf(host_, port_)) {}
 
 MetricsEndpoint::~MetricsEndpoint() {
   Detach();

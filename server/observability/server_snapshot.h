@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "absl/time/time.h"
@@ -24,6 +25,8 @@ struct ServerSnapshot {
   uint64_t jobs_succeeded = 0;
   uint64_t jobs_failed = 0;
   uint64_t jobs_cancelled = 0;
+
+  std::optional<absl::Time> certificate_expiry;  // none without TLS
 
   int workers = 0;
   int busy_workers = 0;

@@ -3,8 +3,8 @@
 //   authorization: Bearer TOKEN    in the call's metadata; once
 //
 // A token that is shown decides, also beside a certificate. Each call is looked up anew, so a list
-// that was replaced holds from the next call on, on connections that were there before too; streams
-// that run go on. Thread-safe.
+// that was replaced holds from the next call on, on connections that were there before too; a
+// watch that runs asks again now and then. Thread-safe.
 #ifndef BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
 #define BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
 

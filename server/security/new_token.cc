@@ -18,6 +18,7 @@
 #include "absl/strings/str_split.h"
 #include "server/security/access_entry.h"
 #include "server/security/access_list.h"
+#include "server/store/folder_sync.h"
 
 namespace ballpiston::server {
 namespace {
@@ -45,6 +46,29 @@ absl::Status Failed(const NamedFile& file, const char* what) {
       absl::StrCat(file.Text(), ": cannot be ", what, ": ", std::strerror(errno)));
 }
 
+// All of it, on disk; or false, with the reason in errno.
+bool WriteAll(int descriptor, absl::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(descriptor, text.data(), text.size());
+    if (written < 0 && errno != EINTR) return false;
+    if (written > 0) text.remove_prefix(static_cast<size_t>(written));
+  }
+  return fsync(descriptor) == 0;
+}
+
+// Half a line would make the whole file one that nobody reads: what cannot be written whole (the
+// disk is full) is taken back.
+absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std::string& text) {
+  const off_t length = lseek(descriptor, 0, SEEK_END);
+  if (length < 0) return Failed(file, "written to");
+  if (WriteAll(descriptor, text)) return absl::OkStatus();
+  absl::Status failed = Failed(file, "written to");
+  if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
+  return absl::PermissionDeniedError(absl::StrCat(std::string(failed.message()),
+                                                  "; nor could its end be taken back: cut it to ",
+                                                  length, " bytes"));
+}
+
 absl::Status Append(const NamedFile& file, const std::string& line) {
   const int descriptor = open(file.path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
   if (descriptor < 0) return Failed(file, "opened");
@@ -57,11 +81,9 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   if (!list.ok()) return list.status();
   const bool unended = !text->empty() && text->back() != '\n';
   const std::string added = absl::StrCat(unended ? "\n" : "", line, "\n");
-  const ssize_t written = write(descriptor, added.data(), added.size());
-  if (written != static_cast<ssize_t>(added.size()) || fsync(descriptor) != 0) {
-    return Failed(file, "written to");
-  }
-  return absl::OkStatus();
+  const absl::Status written = WriteAllOrNothing(file, descriptor, added);
+  // The folder, too: a token that was printed is one that the file has after a power cut.
+  return written.ok() ? SyncFolder(FolderOf(file.path)) : written;
 }
 
 }  // namespace

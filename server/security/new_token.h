@@ -23,7 +23,7 @@ absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 
 // Appends the token's entry to the access file, which is made (mode 0600) if there is none, and
 // returns the token. It is on disk then. A file that is not an access file, or open to others, is
-// refused and left as it is.
+// refused and left as it is; so it is where the disk is full. Several at once take turns.
 absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
                                        absl::Time now);
 

@@ -27,21 +27,33 @@ PublishedFile::~PublishedFile() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+PublishedFile::Next::~Next() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+absl::StatusOr<PublishedFile::Next> PublishedFile::Prepare(absl::string_view content) const {
+  Next next(memfd_create("ballpiston", MFD_CLOEXEC), std::max(time(nullptr), changed_ + 1));
+  if (next.descriptor_ >= 0 && Fill(next.descriptor_, content, next.changed_)) return next;
+  return absl::InternalError(
+      absl::StrCat("no memory for the certificates in use: ", std::strerror(errno)));
+}
+
+// dup3 puts one file in the other's place in one step; with two open descriptors it has no reason
+// to fail but EINTR and, beside an open(2) of the same number, EBUSY, which pass.
+void PublishedFile::Exchange(Next next) {
+  changed_ = next.changed_;
+  if (descriptor_ < 0) {
+    descriptor_ = std::exchange(next.descriptor_, -1);
+    return;
+  }
+  while (dup3(next.descriptor_, descriptor_, O_CLOEXEC) < 0 && (errno == EINTR || errno == EBUSY)) {
+  }
+}
+
 absl::Status PublishedFile::Publish(absl::string_view content) {
-  const time_t changed = std::max(time(nullptr), changed_ + 1);
-  const int next = memfd_create("ballpiston", MFD_CLOEXEC);
-  bool done = next >= 0 && Fill(next, content, changed);
-  if (done && descriptor_ < 0) {
-    descriptor_ = next;
-  } else if (next >= 0) {
-    done = done && dup3(next, descriptor_, O_CLOEXEC) >= 0;  // the exchange, in one step
-    close(next);
-  }
-  if (!done) {
-    return absl::InternalError(
-        absl::StrCat("no memory for the certificates in use: ", std::strerror(errno)));
-  }
-  changed_ = changed;
+  absl::StatusOr<Next> next = Prepare(content);
+  if (!next.ok()) return next.status();
+  Exchange(*std::move(next));
   return absl::OkStatus();
 }
 

@@ -9,8 +9,10 @@
 #include <time.h>
 
 #include <string>
+#include <utility>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 
 namespace ballpiston::server {
@@ -22,12 +24,34 @@ class PublishedFile {
   PublishedFile(const PublishedFile&) = delete;
   PublishedFile& operator=(const PublishedFile&) = delete;
 
+  // A content that is ready to be exchanged for the one that is read, or to be given up.
+  class Next {
+   public:
+    Next(Next&& other) noexcept
+        : descriptor_(std::exchange(other.descriptor_, -1)), changed_(other.changed_) {}
+    Next& operator=(Next&& other) = delete;
+    ~Next();
+
+   private:
+    friend class PublishedFile;
+    Next(int descriptor, time_t changed) : descriptor_(descriptor), changed_(changed) {}
+
+    int descriptor_;
+    time_t changed_;
+  };
+
   // Each content's time of change is a later second than the last one's, so that a reader who
-  // compares times sees that it was exchanged. INTERNAL if the system gives no memory; then the old
-  // content stays. One thread at a time; readers are free.
+  // compares times sees that it was exchanged. INTERNAL if the system gives no memory or no
+  // descriptor. One thread at a time; readers are free.
+  absl::StatusOr<Next> Prepare(absl::string_view content) const;
+
+  // Cannot fail, so that of several files all are exchanged or none.
+  void Exchange(Next next);
+
+  // Both at once; after an error the old content stays.
   absl::Status Publish(absl::string_view content);
 
-  std::string Path() const;  // after the first Publish
+  std::string Path() const;  // after the first Exchange
 
  private:
   int descriptor_ = -1;

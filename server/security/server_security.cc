@@ -7,7 +7,9 @@
 #include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "server/observability/log.h"
 #include "server/security/other_services_check.h"
 
 namespace ballpiston::server {
@@ -104,7 +106,9 @@ absl::StatusOr<std::unique_ptr<ServerSecurity>> ServerSecurity::Create(
   if (!list.ok()) return list.status();
   auto tls = ReadTls(options);
   if (!tls.ok()) return tls.status();
-  return absl::WrapUnique(new ServerSecurity(options, *std::move(list), *std::move(tls)));
+  auto security = absl::WrapUnique(new ServerSecurity(options, *std::move(list), *std::move(tls)));
+  security->WarnOfExpiry();
+  return security;
 }
 
 ServerSecurity::ServerSecurity(const SecurityOptions& options,
@@ -133,7 +137,22 @@ absl::Status ServerSecurity::Reload() {
   }
   const absl::Status certificates = tls_ == nullptr ? absl::OkStatus() : tls_->Reload();
   if (!certificates.ok()) errors.emplace_back(certificates.message());
+  WarnOfExpiry();
   return errors.empty() ? absl::OkStatus() : Refused(absl::StrJoin(errors, "; "));
+}
+
+std::optional<absl::Time> ServerSecurity::CertificateExpiry() const {
+  if (tls_ == nullptr) return std::nullopt;
+  return tls_->expires();
+}
+
+void ServerSecurity::WarnOfExpiry() const {
+  if (tls_ == nullptr || tls_->expires() > absl::Now() + kExpiryWarning) return;
+  Log(Severity::kWarning,
+      absl::StrCat("the certificate in --tls_certificate=", options_.tls_certificate,
+                   " is valid until ",
+                   absl::FormatTime("%Y-%m-%d %H:%M UTC", tls_->expires(), absl::UTCTimeZone()),
+                   " only: get a new one, and send SIGHUP"));
 }
 
 std::string ServerSecurity::Description() const {

@@ -3,9 +3,8 @@
 //
 //   unix:PATH               the kernel says who comes: the server's own user and root, who may all
 //   loopback, no TLS        whoever is on this machine, who may all
-//   any HOST:PORT with TLS  who is on the access file's list; without an access file (loopback
-//   only)
-//                           everybody
+//   any HOST:PORT with TLS  who is on the access file's list; everybody without one, which is for
+//                           the loopback only
 //
 // Everything else is refused at the start: an address that other machines reach needs TLS and an
 // access file; tokens need TLS.
@@ -13,6 +12,7 @@
 #define BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -36,9 +36,12 @@ struct SecurityOptions {
 // INVALID_ARGUMENT tells which flags are missing, or do not go together, and why. Reads no file.
 absl::Status CheckCombination(const SecurityOptions& options, const ListenAddress& address);
 
+inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);
+
 class ServerSecurity {
  public:
-  // Reads everything. INVALID_ARGUMENT names flag, file and what is permitted.
+  // Reads everything; a certificate that ends within kExpiryWarning is warned of in the log.
+  // INVALID_ARGUMENT names flag, file and what is permitted.
   static absl::StatusOr<std::unique_ptr<ServerSecurity>> Create(const SecurityOptions& options,
                                                                 const ListenAddress& address);
 
@@ -48,15 +51,19 @@ class ServerSecurity {
   // For gRPC's port. The object has to outlive the server that uses them.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Reads the files again; of what is wrong the old stays, and is named in the error. The access
-  // file holds from the next call on, certificates for connections made a second later. One thread
-  // at a time.
+  // Reads the files again, and warns as Create does; of what is wrong the old stays, and is named
+  // in the error. The access file holds from the next call on, certificates for connections made a
+  // second later. One thread at a time.
   absl::Status Reload();
 
   // For the log: what holds now.
   std::string Description() const;
 
+  // Until when the server's certificate is valid; none without TLS. Any thread.
+  std::optional<absl::Time> CertificateExpiry() const;
+
  private:
+  void WarnOfExpiry() const;
   ServerSecurity(const SecurityOptions& options, std::shared_ptr<const AccessList> list,
                  std::unique_ptr<ServerTls> tls);
 

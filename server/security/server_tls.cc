@@ -24,12 +24,14 @@ absl::StatusOr<std::unique_ptr<ServerTls>> ServerTls::Create(TlsFiles files) {
 absl::Status ServerTls::Reload() {
   const absl::StatusOr<TlsIdentity> identity = ReadTlsIdentity(files_, absl::Now());
   if (!identity.ok()) return identity.status();
-  absl::Status published = certificate_and_key_.Publish(identity->certificate_and_key);
-  if (published.ok() && !identity->client_ca.empty()) {
-    published = client_ca_.Publish(identity->client_ca);
-  }
-  if (published.ok()) expires_ = identity->expires;
-  return published;
+  auto certificate_and_key = certificate_and_key_.Prepare(identity->certificate_and_key);
+  if (!certificate_and_key.ok()) return certificate_and_key.status();
+  auto client_ca = client_ca_.Prepare(identity->client_ca);  // empty: nobody reads it
+  if (!client_ca.ok()) return client_ca.status();
+  certificate_and_key_.Exchange(*std::move(certificate_and_key));
+  client_ca_.Exchange(*std::move(client_ca));
+  expires_ = absl::ToUnixSeconds(identity->expires);
+  return absl::OkStatus();
 }
 
 std::shared_ptr<grpc::ServerCredentials> ServerTls::Credentials() const {

@@ -7,6 +7,8 @@
 #ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 #define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 
 #include "absl/status/status.h"
@@ -27,11 +29,12 @@ class ServerTls {
   // object has to outlive the server that uses them.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Reads the files again. What is wrong with them leaves all as it was; what is right serves new
-  // connections a second later. One thread at a time.
+  // Reads the files again. What is wrong with one of them, or with the system, leaves all as they
+  // were; what is right serves new connections a second later. One thread at a time.
   absl::Status Reload();
 
-  absl::Time expires() const { return expires_; }  // the certificate
+  // The certificate in use. Any thread.
+  absl::Time expires() const { return absl::FromUnixSeconds(expires_); }
 
  private:
   explicit ServerTls(TlsFiles files) : files_(std::move(files)) {}
@@ -39,7 +42,7 @@ class ServerTls {
   const TlsFiles files_;
   PublishedFile certificate_and_key_;
   PublishedFile client_ca_;
-  absl::Time expires_;
+  std::atomic<int64_t> expires_ = 0;  // seconds since 1970, which is all that a certificate tells
 };
 
 }  // namespace ballpiston::server

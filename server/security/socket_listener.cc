@@ -1,16 +1,18 @@
 #include "server/security/socket_listener.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "absl/memory/memory.h"
 #include "absl/strings/str_cat.h"
@@ -20,46 +22,61 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int kWaiting = 1024;  // connections the kernel keeps for us
 constexpr std::chrono::seconds kLogPause(10);
 constexpr int kPauseMilliseconds = 1000;  // when descriptors or memory have run out
+constexpr uint64_t kReserved = 32;
 
-absl::Status CannotListen(const ListenAddress& address) {
-  return absl::FailedPreconditionError(absl::StrCat("--listen=", address.Text(),
-                                                    ": cannot listen there (", std::strerror(errno),
-                                                    "); choose another address"));
+// Errors of accept that are of the one connection, which has gone again.
+bool IsOfThePeer(int error) {
+  switch (error) {
+    case EMFILE:
+    case ENFILE:
+    case ENOBUFS:
+    case ENOMEM:
+    case EBADF:
+    case EINVAL:
+      return false;
+    default:
+      return true;
+  }
 }
 
-bool Bind(int descriptor, const std::string& path) {
-  sockaddr_un local{};
-  local.sun_family = AF_UNIX;
-  std::memcpy(local.sun_path, path.data(), std::min(path.size(), sizeof(local.sun_path) - 1));
-  // Linux gives the file the mode that the socket has when it is bound: never open to others.
-  return fchmod(descriptor, 0600) == 0 &&
-         bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) == 0 &&
-         listen(descriptor, kWaiting) == 0;
+// The kernel gives the lowest number that is free: all below it are in use.
+bool IsInReserve(int descriptor) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return false;
+  return static_cast<uint64_t>(descriptor) >= limit.rlim_cur - ReservedDescriptors(limit.rlim_cur);
+}
+
+// Answers are whole messages: nothing is gained by waiting for more. Fails for a Unix socket.
+void SendAtOnce(int descriptor) {
+  const int on = 1;
+  setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 }
 
 }  // namespace
 
+uint64_t ReservedDescriptors(uint64_t limit) { return std::min(kReserved, limit / 4); }
+
 absl::StatusOr<std::unique_ptr<SocketListener>> SocketListener::Listen(const ListenAddress& address,
                                                                        std::set<uid_t> permitted) {
+  absl::StatusOr<BoundSockets> sockets = BoundSockets::Bind(address);
+  if (!sockets.ok()) return sockets.status();
   const int stop = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  const int listening = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (stop < 0 || listening < 0 || !Bind(listening, address.socket_path)) {
-    const absl::Status status = CannotListen(address);
-    for (const int descriptor : {stop, listening}) {
-      if (descriptor >= 0) close(descriptor);
-    }
-    return status;
+  if (stop < 0) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "--listen=", address.Text(), ": cannot listen there (", std::strerror(errno), ")"));
   }
+  ListenAddress chosen = address;
+  chosen.port = sockets->port();
   return absl::WrapUnique(
-      new SocketListener(address.socket_path, listening, stop, std::move(permitted)));
+      new SocketListener(std::move(chosen), *std::move(sockets), stop, std::move(permitted)));
 }
 
-SocketListener::SocketListener(std::string path, int listening, int stop, std::set<uid_t> permitted)
-    : path_(std::move(path)),
-      listening_(listening),
+SocketListener::SocketListener(ListenAddress address, BoundSockets sockets, int stop,
+                               std::set<uid_t> permitted)
+    : address_(std::move(address)),
+      sockets_(std::move(sockets)),
       stop_(stop),
       permitted_(std::move(permitted)) {}
 
@@ -73,65 +90,74 @@ void SocketListener::Start(Receive receive) {
 }
 
 void SocketListener::Stop() {
-  if (listening_ < 0) return;
   const uint64_t one = 1;
   // Cannot fail: the event counts to 2^64 - 2 before it would block.
   [[maybe_unused]] const ssize_t written = write(stop_, &one, sizeof(one));
   if (thread_.joinable()) thread_.join();
-  close(std::exchange(listening_, -1));
-  unlink(path_.c_str());
+  sockets_.Close();
 }
 
 void SocketListener::Run(const Receive& receive) {
-  pollfd events[] = {{listening_, POLLIN, 0}, {stop_, POLLIN, 0}};
+  std::vector<pollfd> events = {{stop_, POLLIN, 0}};
+  for (const int listening : sockets_.descriptors()) events.push_back({listening, POLLIN, 0});
   while (true) {
-    const bool waits_to_log = refused_ > 0;
+    const bool waits_to_log = strangers_.count > 0 || over_reserve_.count > 0;
     const int timeout = waits_to_log ? static_cast<int>(1000 * kLogPause.count()) : -1;
-    if (poll(events, 2, timeout) < 0 && errno != EINTR) PauseAfter(errno);
-    if (events[1].revents != 0) break;
-    if (events[0].revents != 0) AcceptOne(receive);
-    if (waits_to_log) LogRefused();
+    if (poll(events.data(), events.size(), timeout) < 0 && errno != EINTR) PauseAfter(errno);
+    if (events[0].revents != 0) break;
+    for (size_t i = 1; i < events.size(); ++i) {
+      if (events[i].revents != 0) AcceptOne(events[i].fd, receive);
+    }
+    if (waits_to_log) LogClosed();
   }
-  last_logged_.reset();
-  LogRefused();
+  strangers_.last_logged.reset();
+  over_reserve_.last_logged.reset();
+  LogClosed();
 }
 
-void SocketListener::AcceptOne(const Receive& receive) {
-  const int descriptor = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+void SocketListener::AcceptOne(int listening, const Receive& receive) {
+  const int descriptor = accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (descriptor < 0) {
-    // The peer has gone again, or another reason to look anew.
-    const bool passing = errno == EAGAIN || errno == EINTR || errno == ECONNABORTED;
-    if (!passing) PauseAfter(errno);
+    if (!IsOfThePeer(errno)) PauseAfter(errno);
     return;
   }
-  const std::optional<uid_t> peer = PeerUser(descriptor);
-  if (MayConnect(peer, permitted_)) return receive(descriptor);
-  Refuse(descriptor, peer);
-}
-
-void SocketListener::Refuse(int descriptor, std::optional<uid_t> peer) {
+  const bool is_local = !address_.socket_path.empty();
+  const std::optional<uid_t> peer = is_local ? PeerUser(descriptor) : std::nullopt;
+  const bool is_stranger = is_local && !MayConnect(peer, permitted_);
+  if (!is_stranger && !IsInReserve(descriptor)) {
+    SendAtOnce(descriptor);
+    return receive(descriptor);
+  }
   close(descriptor);
-  ++refused_;
-  last_refused_ = peer;
-  LogRefused();
+  ++(is_stranger ? strangers_ : over_reserve_).count;
+  if (is_stranger) last_stranger_ = peer;
+  LogClosed();
 }
 
 // Out of descriptors, say: the connection stays with the kernel and is looked at again.
 void SocketListener::PauseAfter(int error) {
-  LogError(absl::StrCat("unix:", path_, ": cannot accept a connection: ", std::strerror(error)));
+  if (failures_.Take(std::chrono::steady_clock::now())) {
+    LogError(absl::StrCat(address_.Text(), ": cannot accept a connection: ", std::strerror(error)));
+  }
   pollfd stop{stop_, POLLIN, 0};
   poll(&stop, 1, kPauseMilliseconds);
 }
 
-void SocketListener::LogRefused() {
+void SocketListener::LogClosed() {
+  LogClosed(strangers_, absl::StrCat("of other users closed, the last of user ",
+                                     last_stranger_ ? absl::StrCat(*last_stranger_) : "unknown"));
+  LogClosed(over_reserve_,
+            "closed: the process has nearly as many descriptors as it may (RLIMIT_NOFILE, the "
+            "unit's LimitNOFILE)");
+}
+
+void SocketListener::LogClosed(Closed& closed, const std::string& why) {
   const auto now = std::chrono::steady_clock::now();
-  if (refused_ == 0 || (last_logged_ && now - *last_logged_ < kLogPause)) return;
-  LogError(absl::StrCat("unix:", path_, ": ", refused_,
-                        refused_ == 1 ? " connection" : " connections",
-                        " of other users closed, the last of user ",
-                        last_refused_ ? absl::StrCat(*last_refused_) : "unknown"));
-  refused_ = 0;
-  last_logged_ = now;
+  if (closed.count == 0 || (closed.last_logged && now - *closed.last_logged < kLogPause)) return;
+  LogError(absl::StrCat(address_.Text(), ": ", closed.count,
+                        closed.count == 1 ? " connection " : " connections ", why));
+  closed.count = 0;
+  closed.last_logged = now;
 }
 
 }  // namespace ballpiston::server

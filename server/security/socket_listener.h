@@ -1,8 +1,12 @@
-// Accepts connections at a Unix socket, asks the kernel whose they are, and hands on those of
-// permitted users. Others are closed before a byte of theirs is read, and logged: the first at
-// once, then their number at most every ten seconds.
+// Accepts connections at an address and hands them on.
 //
-// The socket's file has mode 0600 from the moment it exists.
+// At a Unix socket it asks the kernel whose they are: those of other than permitted users are
+// closed before a byte of theirs is read. At either kind of address a connection is closed that
+// would leave the process fewer than ReservedDescriptors(), which the store, the certificates and
+// the metrics need: whoever opens connections must not keep results from the disk. Both are logged:
+// the first at once, then their number at most every ten seconds.
+//
+// gRPC's own listener would not say who connects, and gives up for good at the first EMFILE.
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 #define BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 
@@ -19,6 +23,8 @@
 
 #include "absl/status/statusor.h"
 #include "server/listen_address.h"
+#include "server/observability/line_budget.h"
+#include "server/security/bound_sockets.h"
 
 namespace ballpiston::server {
 
@@ -27,34 +33,48 @@ class SocketListener {
   // Takes over the descriptor, which does not block.
   using Receive = std::function<void(int descriptor)>;
 
-  // Connections wait until Start. FAILED_PRECONDITION if one cannot listen there.
+  // Connections wait until Start. `permitted` are the users whom a Unix socket lets in. Errors as
+  // BoundSockets::Bind's.
   static absl::StatusOr<std::unique_ptr<SocketListener>> Listen(const ListenAddress& address,
                                                                 std::set<uid_t> permitted);
   ~SocketListener();
 
+  // With the port that was chosen, if any was free to be.
+  const ListenAddress& address() const { return address_; }
+
   void Start(Receive receive);  // which is called on a thread of this object
 
-  // No connection comes after it returned; the socket's file is gone. Any number of times.
+  // No connection comes after it returned; a Unix socket's file is gone. Any number of times.
   void Stop();
 
  private:
-  SocketListener(std::string path, int listening, int stop, std::set<uid_t> permitted);
+  // Connections that were closed for one reason.
+  struct Closed {
+    int64_t count = 0;  // since the last line in the log
+    std::optional<std::chrono::steady_clock::time_point> last_logged;
+  };
+
+  SocketListener(ListenAddress address, BoundSockets sockets, int stop, std::set<uid_t> permitted);
 
   void Run(const Receive& receive);
-  void AcceptOne(const Receive& receive);
-  void Refuse(int descriptor, std::optional<uid_t> peer);
+  void AcceptOne(int listening, const Receive& receive);
   void PauseAfter(int error);
-  void LogRefused();
+  void LogClosed();
+  void LogClosed(Closed& closed, const std::string& why);
 
-  const std::string path_;
-  int listening_;
+  const ListenAddress address_;
+  BoundSockets sockets_;
   int stop_;  // an event: readable when it is time to stop
   const std::set<uid_t> permitted_;
-  int64_t refused_ = 0;  // since the last line in the log
-  std::optional<uid_t> last_refused_;
-  std::optional<std::chrono::steady_clock::time_point> last_logged_;
+  Closed strangers_;
+  std::optional<uid_t> last_stranger_;
+  Closed over_reserve_;
+  LineBudget failures_{1, std::chrono::seconds(10)};
   std::thread thread_;
 };
+
+// Descriptors of the process that no connection may take, of `limit` in all.
+uint64_t ReservedDescriptors(uint64_t limit);
 
 }  // namespace ballpiston::server
 

@@ -15,6 +15,7 @@
 #include "server/store/folder_sync.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
+#include "server/store/unused_log.h"
 
 namespace ballpiston::server {
 namespace {
@@ -92,6 +93,7 @@ absl::Status MoveTo(const std::string& path, const std::string& target) {
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target) {
   struct stat found {};
   if (lstat(target.c_str(), &found) == 0) return TargetExists(target);
+  const UnusedLog log(store);
   const auto source = OpenStoreToRead(store);
   if (!source.ok()) return source.status();
   const TemporaryFile copy(target);

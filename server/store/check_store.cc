@@ -1,5 +1,7 @@
 #include "server/store/check_store.h"
 
+#include <sys/stat.h>
+
 #include <optional>
 #include <utility>
 
@@ -12,19 +14,22 @@
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
+#include "server/store/unused_log.h"
 
 namespace ballpiston::server {
 namespace {
 
 using v1::EnsembleJob;
 
-std::string Text(const absl::Status& status) {
-  return {status.message().data(), status.message().size()};
-}
-
 constexpr int64_t kFirstVersionWithRequests = 3;
 
 bool Ended(int64_t state) { return state >= EnsembleJob::SUCCEEDED; }
+
+// What has not been written back yet lies in the log.
+int64_t LogBytes(const std::string& store) {
+  struct stat found {};
+  return stat((store + "-wal").c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
+}
 
 // Runs the checks one after the other, and collects what they find.
 class StoreCheck {
@@ -39,7 +44,8 @@ class StoreCheck {
           &StoreCheck::CheckRows, &StoreCheck::CheckResults, &StoreCheck::CheckBlocks}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
-      if (!status.ok()) Found(Text(status));  // so damaged that this part cannot be read
+      // So damaged that this part cannot be read.
+      if (!status.ok()) Found(std::string(status.message()));
     }
     return std::move(summary_);
   }
@@ -101,7 +107,7 @@ class StoreCheck {
       return Found(absl::StrCat(job, " has no such state: ", state));
     }
     const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(row.Bytes(2));
-    if (!spec.ok()) Found(absl::StrCat(job, ": ", Text(spec.status())));
+    if (!spec.ok()) Found(absl::StrCat(job, ": ", spec.status().message()));
     if (!google::rpc::Status().ParseFromString(row.Bytes(3))) {
       Found(absl::StrCat(job, ": its error cannot be read"));
     }
@@ -166,9 +172,9 @@ class StoreCheck {
     return ForEach("SELECT job, point, result FROM results", [this](const Query& row) {
       const absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.Bytes(2));
       if (result.ok() && result->index() == row.Integer(1)) return;
-      Found(absl::StrCat(
-          "the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
-          result.ok() ? absl::StrCat("is of point ", result->index()) : Text(result.status())));
+      Found(absl::StrCat("the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
+                         result.ok() ? absl::StrCat("is of point ", result->index())
+                                     : std::string(result.status().message())));
     });
   }
 
@@ -177,7 +183,7 @@ class StoreCheck {
       const auto block = BlockResultFromBytes(row.Bytes(3));
       if (block.ok()) return;
       Found(absl::StrCat("block ", row.Integer(2), " of job ", row.Integer(0), ", point ",
-                         row.Integer(1), ": ", Text(block.status())));
+                         row.Integer(1), ": ", block.status().message()));
     });
   }
 
@@ -188,9 +194,13 @@ class StoreCheck {
 }  // namespace
 
 absl::StatusOr<StoreSummary> CheckStore(const std::string& path, const std::string& vfs) {
+  std::optional<UnusedLog> log;
+  if (vfs.empty()) log.emplace(path);
   const auto database = OpenStoreToRead(path, vfs);
   if (!database.ok()) return database.status();
-  return StoreCheck(**database).Run();
+  absl::StatusOr<StoreSummary> summary = StoreCheck(**database).Run();
+  if (summary.ok() && log) summary->bytes += LogBytes(path);
+  return summary;
 }
 
 std::string SummaryText(const StoreSummary& summary) {

@@ -18,7 +18,7 @@ inline constexpr size_t kMaxProblems = 100;
 
 struct StoreSummary {
   int64_t version = 0;
-  int64_t bytes = 0;
+  int64_t bytes = 0;                    // on disk, the log included
   std::map<std::string, int64_t> jobs;  // by state
   int64_t results = 0;
   int64_t blocks = 0;

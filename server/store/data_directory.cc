@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -17,6 +19,9 @@
 
 namespace ballpiston::server {
 namespace {
+
+constexpr char kLockFile[] = "lock";
+constexpr char kClientsLog[] = "server.log";  // where a client that starts a server has it write
 
 absl::Status NotWritable(const std::string& path, int error) {
   return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
@@ -43,6 +48,25 @@ absl::Status MakeDirectories(const std::string& path) {
   return NotWritable(path, errno);
 }
 
+// Whether a server has been in the folder, or nobody: what else is in it may be there for others to
+// reach. A lock that is no regular file is another program's (/var/lock is a link).
+bool IsAServers(const std::string& path) {
+  bool has_others = false;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename();
+    const bool is_file = entry.symlink_status(error).type() == std::filesystem::file_type::regular;
+    if (is_file && (name == kLockFile || name == kStoreFile)) return true;
+    has_others |= !is_file || name != kClientsLog;
+  }
+  return !has_others && !error;
+}
+
+absl::Status OpenToOthers(const std::string& path, mode_t mode, const std::string& why) {
+  return absl::PermissionDeniedError(
+      absl::StrFormat("data folder %s is open to others (mode %04o%s", path, mode & 07777, why));
+}
+
 // Jobs, results and the socket are nobody else's.
 absl::Status CloseToOthers(const std::string& path) {
   struct stat found {};
@@ -51,10 +75,20 @@ absl::Status CloseToOthers(const std::string& path) {
   if ((found.st_mode & kForOthers) == 0) return absl::OkStatus();
   const bool is_ours = found.st_uid == geteuid() && (found.st_mode & S_ISVTX) == 0;
   if (!is_ours) {
-    return absl::PermissionDeniedError(absl::StrFormat(
-        "data folder %s is open to others (mode %04o, user %d) and not this server's own to close; "
-        "choose another one with --data_dir",
-        path, found.st_mode & 07777, found.st_uid));
+    return OpenToOthers(
+        path, found.st_mode,
+        absl::StrFormat(", user %d) and not this server's own to close; choose another one with "
+                        "--data_dir",
+                        found.st_uid));
+  }
+  if (!IsAServers(path)) {
+    return OpenToOthers(
+        path, found.st_mode,
+        absl::StrCat(") and holds other files than a server's; name a folder of the server's own "
+                     "with --data_dir, such as ",
+                     path,
+                     "/ballpiston, or close this one with chmod 700 if nobody else needs "
+                     "what is in it"));
   }
   if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
   LogInfo(absl::StrFormat("data folder %s was open to others (mode %04o): it is 0700 now", path,
@@ -78,7 +112,7 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   if (access(path.c_str(), W_OK | X_OK) != 0) return NotWritable(path, errno);
   const absl::Status closed = CloseToOthers(path);
   if (!closed.ok()) return closed;
-  const std::string lock_path = path + "/lock";
+  const std::string lock_path = absl::StrCat(path, "/", kLockFile);
   const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock < 0) return NotWritable(path, errno);
   if (flock(lock, LOCK_EX | LOCK_NB) == 0) return DataDirectory(path, lock);

@@ -1,8 +1,9 @@
 // The folder a server keeps its state in, held by one server at a time.
 //
-// Made, readable by its owner only, if it does not exist; one of ours that others may enter is
-// closed to them, and that is logged. A lock on the file `lock` in it, held as long as this object
-// lives (and released by the kernel when the process dies), keeps a second server out.
+// Made, readable by its owner only, if it does not exist. One of our user's that others may enter
+// is closed to them if it is empty or has been a server's, and that is logged. A lock on the file
+// `lock` in it, held as long as this object lives (and released by the kernel when the process
+// dies), keeps a second server out.
 #ifndef BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 #define BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 
@@ -19,7 +20,8 @@ class DataDirectory {
  public:
   //   FAILED_PRECONDITION  another server uses it
   //   PERMISSION_DENIED    it cannot be made or written to; or others may enter it, and it is not
-  //                        ours to close: another user's, or one that all users share, like /tmp
+  //                        ours to close: another user's, one that all users share, like /tmp,
+  //                        or one with files in it that are not a server's
   static absl::StatusOr<DataDirectory> Open(const std::string& path);
 
   // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston.

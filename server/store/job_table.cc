@@ -130,15 +130,18 @@ absl::StatusOr<int64_t> CountJobs(Database& database) {
   return database.Integer("SELECT count(*) FROM jobs");
 }
 
-absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
-                                                const std::optional<std::string>& principal,
-                                                int64_t before, int limit) {
+absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
+                      int64_t before, const std::function<bool(JobRecord job)>& on_job) {
   Query query = database.Prepare(
-      SelectWhere(principal ? "principal = ? AND sequence < ? ORDER BY sequence DESC LIMIT ?"
-                            : "sequence < ? ORDER BY sequence DESC LIMIT ?"));
+      SelectWhere(principal ? "principal = ? AND sequence < ? ORDER BY sequence DESC"
+                            : "sequence < ? ORDER BY sequence DESC"));
   if (principal) query.BindText(*principal);
-  query.Bind(before).Bind(int64_t{limit});
-  return AllRows(query);
+  query.Bind(before);
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row || !on_job(RecordOf(query))) return absl::OkStatus();
+  }
 }
 
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database) {

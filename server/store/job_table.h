@@ -6,6 +6,7 @@
 #define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +37,10 @@ absl::StatusOr<int64_t> CountActiveJobs(Database& database,
 // All there are.
 absl::StatusOr<int64_t> CountJobs(Database& database);
 
-// The principal's, or everybody's; newest first, those with a smaller sequence than `before`.
-absl::StatusOr<std::vector<JobRecord>> ListJobs(Database& database,
-                                                const std::optional<std::string>& principal,
-                                                int64_t before, int limit);
+// The principal's, or everybody's; newest first, those with a smaller sequence than `before`; ends
+// when `on_job` returns false.
+absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
+                      int64_t before, const std::function<bool(JobRecord job)>& on_job);
 
 // Neither SUCCEEDED nor FAILED nor CANCELLED; oldest first.
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);

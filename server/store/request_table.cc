@@ -31,4 +31,12 @@ absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
                        .answered_from_store = query.Integer(2) != 0};
 }
 
+absl::StatusOr<int64_t> CountRequests(Database& database, int64_t job, int64_t most) {
+  Query query =
+      database.Prepare("SELECT count(*) FROM (SELECT 1 FROM requests WHERE job = ? LIMIT ?)");
+  const absl::StatusOr<bool> row = query.Bind(job).Bind(most).Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
+}
+
 }  // namespace ballpiston::server

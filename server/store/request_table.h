@@ -27,6 +27,9 @@ absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
                                                          const std::string& principal,
                                                          const std::string& request_id);
 
+// How many came to this job; no more than `most` are counted.
+absl::StatusOr<int64_t> CountRequests(Database& database, int64_t job, int64_t most);
+
 }  // namespace ballpiston::server
 
 #endif  // BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_

@@ -1,9 +1,10 @@
 // The tables of the store, and the checks before a file is taken for one.
 //
-//   jobs     one row a job; `sequence` is its age and the key of the other two
-//   blocks   (job, point, block) -> storage BlockRecord, of unfinished points of active jobs
-//   results  (job, point) -> PointResult, of finished points
-//   pilots   what pilot runs found of the limit's error, by place and engine
+//   jobs      one row a job; `sequence` is its age and the key of the next three
+//   requests  (principal, request id) -> the job that was its answer
+//   blocks    (job, point, block) -> storage BlockRecord, of unfinished points of active jobs
+//   results   (job, point) -> PointResult, of finished points
+//   pilots    what pilot runs found of the limit's error, by place and engine
 //
 // `application_id` tells a store from another program's database, `user_version` is the version of
 // these tables.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -46,6 +47,21 @@ absl::Status Failure(sqlite3* connection) {
   const int code = sqlite3_extended_errcode(connection);
   return {CodeOf(code, sqlite3_system_errno(connection)),
           absl::StrCat("store: ", sqlite3_errmsg(connection))};
+}
+
+// In WAL mode the file itself is written to by checkpoints alone. There is one such connection in a
+// server, and its file has the same methods whenever it is opened.
+void PassFailpointAtCheckpoints(sqlite3* connection) {
+  sqlite3_file* file = nullptr;
+  sqlite3_file_control(connection, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  if (file == nullptr || file->pMethods == nullptr) return;
+  static sqlite3_io_methods methods = *file->pMethods;
+  static const auto write = file->pMethods->xWrite;
+  methods.xWrite = [](sqlite3_file* to, const void* bytes, int count, sqlite3_int64 offset) {
+    Failpoint("checkpoint.page");
+    return write(to, bytes, count, offset);
+  };
+  file->pMethods = &methods;
 }
 
 const char* VfsName(const std::string& vfs) { return vfs.empty() ? nullptr : vfs.c_str(); }
@@ -143,6 +159,7 @@ absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path
   if (code != SQLITE_OK) return Failure(connection);
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, kBusyMilliseconds);
+  if (mode == Mode::kReadWrite && FailpointsAreArmed()) PassFailpointAtCheckpoints(connection);
   return database;
 }
 

@@ -18,6 +18,10 @@ namespace {
 // Of records, on a full disk. More than one: what does not fit leaves some room for requests.
 constexpr size_t kSmallestGroup = 32;
 
+absl::Status Stalled() {
+  return absl::UnavailableError("store: the disk does not answer; the request was not taken");
+}
+
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
 
 std::string Text(const absl::Status& status) {
@@ -46,7 +50,9 @@ Store::~Store() { Close(); }
 // ---- posting ----
 
 absl::Status Store::Commit(Change change, Done done) {
-  return Await(std::move(change), std::move(done), false);
+  if (!stalled()) return Await(std::move(change), std::move(done), false);
+  if (done) done(Stalled());
+  return Stalled();
 }
 
 absl::Status Store::Flush() {
@@ -177,6 +183,11 @@ bool Store::failing() const {
   return failing_;
 }
 
+bool Store::stalled() const {
+  std::lock_guard lock(mutex_);
+  return batch_begin_ && Clock::now() - *batch_begin_ > options_.stall;
+}
+
 int64_t Store::commits() const {
   std::lock_guard lock(mutex_);
   return commits_;
@@ -238,6 +249,7 @@ Store::Batch Store::TakePending(bool retry) {
   requests_ = 0;
   ordered_ = 0;
   in_batch_ = batch.writes.size();
+  batch_begin_ = Clock::now();
   return batch;
 }
 
@@ -364,6 +376,7 @@ void Store::Settle(Batch batch, const absl::Status& status) {
 void Store::Requeue(Writes again, size_t freed) {
   std::lock_guard lock(mutex_);
   in_batch_ = 0;
+  batch_begin_.reset();
   bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
   for (const Write& write : again) {

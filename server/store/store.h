@@ -21,6 +21,8 @@
 //     records are written in ever smaller groups; requests, which may free room, are tried alone,
 //     before records that were posted earlier. They succeed as long as the log has room for them,
 //     which it has not when the file, too, has no room to take back what is in the log.
+// When the disk neither works nor fails (`stalled`): requests are refused until it answers; those
+// that came before it hung wait.
 // A write that cannot succeed whatever the disk does (a broken constraint, too big) is refused
 // alone, and the others of its group are written.
 #ifndef BALLPISTON_SERVER_STORE_STORE_H_
@@ -60,6 +62,7 @@ class Store {
   struct Options {
     std::chrono::milliseconds delay{100};
     std::chrono::milliseconds retry{1000};  // after a failure of the disk
+    std::chrono::milliseconds stall{5000};  // a commit that takes longer: the disk hangs
     size_t max_pending = 10'000;            // AwaitRoom waits above it,
     size_t max_pending_bytes = 64 << 20;    // and above this
     std::string vfs = {};                   // of SQLite; empty: the operating system's
@@ -69,7 +72,8 @@ class Store {
   static absl::StatusOr<std::unique_ptr<Store>> Open(const std::string& path, Options options);
   ~Store();  // closes
 
-  // Returns when it is on disk; `done`, if any, was called before.
+  // Returns when it is on disk; `done`, if any, was called before. UNAVAILABLE, at once: the disk
+  // hangs; the change was not run.
   absl::Status Commit(Change change, Done done = nullptr);
 
   void Record(Change change, Done done = nullptr);
@@ -96,6 +100,9 @@ class Store {
 
   // The disk failed when something was last written, and has not worked since.
   bool failing() const;
+
+  // A commit has been in progress for longer than Options::stall: the disk hangs.
+  bool stalled() const;
 
   // AwaitRoom waits no longer, and a disk that fails is not tried again: for a shutdown.
   void StopWaiting();
@@ -168,10 +175,11 @@ class Store {
   std::condition_variable written_;
   Writes pending_;
   size_t in_batch_ = 0;
-  size_t bytes_ = 0;     // of pending_ and of the batch
-  size_t urgent_ = 0;    // among pending_; requests are
-  size_t requests_ = 0;  // among pending_
-  size_t ordered_ = 0;   // among pending_
+  std::optional<Clock::time_point> batch_begin_;  // of one that is being written
+  size_t bytes_ = 0;                              // of pending_ and of the batch
+  size_t urgent_ = 0;                             // among pending_; requests are
+  size_t requests_ = 0;                           // among pending_
+  size_t ordered_ = 0;                            // among pending_
   bool failing_ = false;
   std::string failure_;  // the last one that was told
   Clock::time_point retry_time_;

@@ -104,6 +104,8 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                                                {"run", "first-hit", "--priority", "1e10"},
                                                {"submit", "first-hit", "--priority", "0.5"},
                                                {"submit", "brownian"},
+                                               {"submit", "first-hit", "--request-id", "42"},
+                                               {"run", "first-hit", "--request-id", ""},
                                                {"watch"},
                                                {"watch", "a", "b"},
                                                {"result", ""},
@@ -208,7 +210,7 @@ constexpr int kAttempts = 4;
 
 TEST_F(CommandLineTest, APrivateServerThatIsJustLeavingIsAskedAgainWithTheSameId) {
   const PrivateHome home(server_.Address());
-  server_.ensemble.unavailable_creates = kAttempts;
+  server_.ensemble.unavailable_attempts = kAttempts;
   server_.Start();
   const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -218,16 +220,26 @@ TEST_F(CommandLineTest, APrivateServerThatIsJustLeavingIsAskedAgainWithTheSameId
   EXPECT_EQ(asked.front().request_id(), asked.back().request_id());
 }
 
+// Another id would be that of a second cancel, of a job that has ended by then.
+TEST_F(CommandLineTest, ACancelIsAskedAgainWithTheSameId) {
+  const PrivateHome home(server_.Address());
+  server_.ensemble.unavailable_attempts = kAttempts;
+  server_.Start();
+  const Outcome outcome = Ballpiston({"cancel", "abc"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().cancel), kAttempts + 1);
+}
+
 TEST_F(CommandLineTest, APrivateServerIsAskedAgainOnce) {
   const PrivateHome home(server_.Address());
-  server_.ensemble.unavailable_creates = 100;
+  server_.ensemble.unavailable_attempts = 100;
   server_.Start();
   EXPECT_EQ(Ballpiston({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), 2 * kAttempts);
 }
 
 TEST_F(CommandLineTest, ANamedServerIsNotAskedAgain) {
-  server_.ensemble.unavailable_creates = kAttempts;
+  server_.ensemble.unavailable_attempts = kAttempts;
   server_.Start();
   EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kAttempts);
@@ -314,6 +326,19 @@ TEST_F(CommandLineTest, AnUnknownJobExitsWithFive) {
     EXPECT_EQ(outcome.code, 5) << verb;
     EXPECT_EQ(outcome.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
   }
+}
+
+TEST_F(CommandLineTest, ARequestIdOfOnesOwnIsPassedOn) {
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  server_.Start();
+  for (const char* verb : {"submit", "run"}) {
+    const Outcome outcome = WithServer({verb, "first-hit", "--request-id", id});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(server_.ensemble.Asked().create.back().request_id(), id);
+  }
+  const Outcome wrong = WithServer({"submit", "first-hit", "--request-id", "42"});
+  EXPECT_EQ(wrong.err.rfind("ballpiston: --request-id: '42' is not a UUID like 1", 0), 0u)
+      << wrong.err;
 }
 
 TEST_F(CommandLineTest, CancelPrintsTheStateAndRefusalExitsWithFour) {

@@ -33,7 +33,7 @@ TEST(RequestId, IsARandomUuid) {
 TEST(EnsembleClient, CreateIsRepeatedWithTheSameRequestId) {
   FakeServer server;
   server.ensemble.jobs = {Named("ensembleJobs/a")};
-  server.ensemble.unavailable_creates = 2;
+  server.ensemble.unavailable_attempts = 2;
   server.Start();
   v1::EnsembleSpec spec;
   spec.set_seed(7);
@@ -123,6 +123,19 @@ TEST(EnsembleClient, CancelCarriesARequestId) {
   ASSERT_EQ(server.ensemble.Asked().cancel.size(), 1u);
   EXPECT_EQ(server.ensemble.Asked().cancel[0].name(), "ensembleJobs/a");
   EXPECT_FALSE(server.ensemble.Asked().cancel[0].request_id().empty());
+}
+
+TEST(EnsembleClient, ACancelThatIsAskedAgainCarriesTheSameId) {
+  FakeServer server;
+  server.Start();
+  const EnsembleClient client(server.Channel());
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  ASSERT_TRUE(client.Cancel("ensembleJobs/a", id).ok());
+  client.Cancel("ensembleJobs/a", id).status().IgnoreError();
+  const auto asked = server.ensemble.Asked().cancel;
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_EQ(asked[0].request_id(), id);
+  EXPECT_EQ(asked[1].request_id(), id);
 }
 
 // The words are gRPC's own; a server takes 4 MiB if nobody tells it otherwise.

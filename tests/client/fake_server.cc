@@ -15,7 +15,7 @@ grpc::Status FakeEnsembleService::CreateEnsembleJob(grpc::ServerContext*,
                                                     v1::EnsembleJob* job) {
   const std::lock_guard lock(mutex_);
   asked_.create.push_back(*request);
-  if (unavailable_creates-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   if (!create_end.ok()) return create_end;
   *job = jobs.at(0);
   job->set_answered_from_store(answers_from_store);
@@ -57,8 +57,9 @@ grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
                                                     v1::EnsembleJob* job) {
   const std::lock_guard lock(mutex_);
   asked_.cancel.push_back(*request);
+  if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   *job = JobIn(v1::EnsembleJob::CANCELLED);
-  if (asked_.cancel.size() == 1) return grpc::Status::OK;
+  if (request->request_id() == asked_.cancel.front().request_id()) return grpc::Status::OK;
   return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
 }
 

@@ -32,7 +32,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_creates = 0;  // so many attempts fail first
+  int unavailable_attempts = 0;  // so many attempts to create or cancel a job fail first
   grpc::Status create_end;
   bool answers_from_store = false;  // says Create of what it answers
   int page_size = 2;                // whatever was asked for

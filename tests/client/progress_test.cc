@@ -173,8 +173,6 @@ TEST(ProgressBar, ShowsThePointThatFinishedLast) {
 TEST(ProgressJson, TellsUnfinishedAndFinishedPointsNewestFirst) {
   std::ostringstream err;
   const auto reporter = NewProgressReporter(ProgressStyle::kJson, err);
-  reporter->OnSnapshot(WithFinishedPoints(1));
-  EXPECT_EQ(err.str(), "");  // of a job that has ended: its name is not known yet
   v1::EnsembleJob job;
   job.set_name("ensembleJobs/abc");
   reporter->OnJob(job);
@@ -183,6 +181,16 @@ TEST(ProgressJson, TellsUnfinishedAndFinishedPointsNewestFirst) {
   EXPECT_LT(text.find("21.63"), text.find("66.5"));
   EXPECT_LT(text.find("66.5"), text.find("55.5"));
   EXPECT_NE(text.find("55.5"), std::string::npos);
+}
+
+// The server tells its points first, and its state last.
+TEST(ProgressJson, TellsThePointsOfAJobThatHasEnded) {
+  std::ostringstream err;
+  const auto reporter = NewProgressReporter(ProgressStyle::kJson, err, "ensembleJobs/abc");
+  reporter->OnSnapshot(WithFinishedPoints(0));
+  EXPECT_EQ(err.str().rfind(R"({"job": "ensembleJobs/abc", "state": "STATE_UNSPECIFIED", )", 0),
+            0u);
+  EXPECT_THAT(err.str(), HasSubstr("66.5"));
 }
 
 TEST(ProgressJson, NotesAreObjectsToo) {

@@ -213,6 +213,19 @@ TEST(SpecFile, NamesTheUnknownField) {
   EXPECT_THAT(std::string(spec.status().message()), HasSubstr("sed"));
 }
 
+// The parser's words would repeat it whole.
+TEST(SpecFile, AWrongValueIsToldShortened) {
+  const std::string name = "HEAD" + std::string(300'000, 'X') + "TAIL";
+  const auto spec = ParseSpec("s.json", R"({"experiment": ")" + name + "\"}");
+  const std::string message(spec.status().message());
+  EXPECT_LT(message.size(), 1'100u);
+  EXPECT_THAT(message, HasSubstr("HEAD"));
+  EXPECT_THAT(message, HasSubstr("XTAIL"));
+  SpecFlags flags;
+  flags.experiment = name;
+  EXPECT_LT(SpecOf(flags).status().message().size(), 500u);
+}
+
 TEST(SpecFile, AFileThatCannotBeReadIsNamed) {
   const auto absent = ReadSpecFile("/no/such/file.json");
   EXPECT_EQ(absent.status().code(), absl::StatusCode::kInvalidArgument);

@@ -57,6 +57,18 @@ TEST(StoreCommands, WhatIsNoStoreIsToldWithExitCode2) {
   }
 }
 
+TEST(StoreCommands, OneIsDoneAtATime) {
+  const TemporaryFolder home;
+  const std::string access = home.Path("access");
+  const ProcessResult result =
+      RunProgram(ServerCommand(home, {"--data_dir", home.Path("data"), "--check", "--backup=x",
+                                      "--access_file", access, "--new_token=a:submit"}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new_token exclude each other"));
+  EXPECT_EQ(result.out, "");
+  EXPECT_FALSE(std::filesystem::exists(access));
+}
+
 TEST(Limits, AreFlagsAndNameThemselves) {
   const TemporaryFolder home;
   const std::string address = "unix:" + home.Path("socket");

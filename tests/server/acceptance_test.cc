@@ -150,9 +150,12 @@ class AcceptanceTest : public testing::Test {
   }
 
   size_t Jobs() {
-    const auto jobs = book_->List({"", Role::kAdmin}, std::numeric_limits<int64_t>::max(), 1000);
-    EXPECT_TRUE(jobs.ok()) << jobs.status();
-    return jobs.ok() ? jobs->size() : 0;
+    const auto page =
+        book_->List({"", Role::kAdmin}, {.before = std::numeric_limits<int64_t>::max(),
+                                         .max_jobs = 1000,
+                                         .max_bytes = std::numeric_limits<size_t>::max()});
+    EXPECT_TRUE(page.ok()) << page.status();
+    return page.ok() ? page->jobs.size() : 0;
   }
 
   Limits limits_;
@@ -536,6 +539,89 @@ TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   EXPECT_TRUE(Create(kAnn, Asking(tolerance)).ok());
 }
 
+TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
+  Limit({.max_active_points = 20, .max_active_points_per_principal = 6});
+  const auto held = [](int points, const char* request_id = "") {
+    v1::EnsembleSpec spec = Equilibrium(points, 5);
+    spec.set_seed(kHeldSeed);
+    return AskingAnew(spec, request_id);
+  };
+  const std::string first = Name(kAnn, held(4, kUuid));
+  const auto expect_full = [&] {
+    ExpectRefused(Create(kAnn, held(3)).status(), "TOO_MANY_ACTIVE_POINTS",
+                  "max_active_points_per_principal", "6");
+  };
+  expect_full();
+  Name(kBob, held(6));
+  Name({"eve", Role::kSubmit}, held(6));
+  ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)).status(), "TOO_MANY_ACTIVE_POINTS",
+                "max_active_points", "20");
+  EXPECT_EQ(Name(kAnn, held(4, kUuid)), first);  // a replay
+  StartAgain();
+  expect_full();
+  ASSERT_TRUE(book_->Cancel(kAnn, IdOf(first), "").ok());
+  AwaitEnd(first);
+  EXPECT_TRUE(Create(kAnn, held(3)).ok());
+}
+
+// What is not made takes no room.
+TEST_F(LimitTest, PointsOfAJobThatIsNotKeptDoNotCount) {
+  Limit({.max_active_points = 4, .max_active_points_per_principal = 0});
+  const std::string answered = Answered(kAnn, Asking(Equilibrium(3, 5)));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(Name(kAnn, Asking(Equilibrium(3, 5))), answered);
+    EXPECT_EQ(ReasonOf(Create(kAnn, Asking(Equilibrium(5, 5))).status()), "TOO_MANY_ACTIVE_POINTS");
+  }
+  AwaitEnd(Name(kAnn, AskingAnew(Equilibrium(4, 5))));
+}
+
+TEST(ActivePointsTest, AJobCountsOnce) {
+  ActivePoints points;
+  for (int i = 0; i < 3; ++i) points.Add("a", "ann", 4);
+  const Limits limits = {.max_active_points = 5};
+  EXPECT_TRUE(points.Check("ann", 1, limits).ok());
+  EXPECT_FALSE(points.Check("bob", 2, limits).ok());
+  for (int i = 0; i < 2; ++i) points.Remove("a");
+  EXPECT_TRUE(points.Check("ann", 5, limits).ok());
+  EXPECT_FALSE(points.Check("ann", 6, limits).ok());
+}
+
+// Of the requests that one job answers a thousand are remembered; the answer is the same.
+TEST_F(AcceptanceTest, RequestsThatOneJobAnswersAreNotRememberedWithoutEnd) {
+  const std::string name = Answered(kAnn, Asking(Question()));
+  const auto requests = [&] {
+    int64_t found = 0;
+    EXPECT_TRUE(store_
+                    ->Read([&](Database& database) {
+                      const auto count = CountRequests(database, 1, 1'000'000);
+                      found = count.value_or(-1);
+                      return count.status();
+                    })
+                    .ok());
+    return found;
+  };
+  ASSERT_TRUE(store_
+                  ->Commit([](Database& database) {
+                    absl::Status inserted;
+                    for (int i = 0; i < 999 && inserted.ok(); ++i) {
+                      inserted = InsertRequest(database, {kAnn.name, std::to_string(i), "", 1});
+                    }
+                    return inserted;
+                  })
+                  .ok());
+  EXPECT_EQ(requests(), 999);
+  for (int i = 0; i < 3; ++i) {
+    const std::string id = "123e4567-e89b-12d3-a456-42661417400" + std::to_string(i);
+    for (int repeated = 0; repeated < 2; ++repeated) {
+      const auto again = Create(kAnn, Asking(Question(), id.c_str()));
+      ASSERT_TRUE(again.ok()) << again.status();
+      EXPECT_EQ(again->name(), name);
+      EXPECT_TRUE(again->answered_from_store());
+    }
+  }
+  EXPECT_EQ(requests(), 1000);
+}
+
 TEST_F(LimitTest, AReplayAndAnAnswerAreGivenUnderALowerLimit) {
   const std::string name = Answered(kAnn, Asking(Equilibrium(4, 5), kUuid));
   Limit({.max_points_per_job = 3});
@@ -547,6 +633,8 @@ TEST_F(LimitTest, AReplayAndAnAnswerAreGivenUnderALowerLimit) {
 TEST_F(LimitTest, ZeroIsNoLimit) {
   Limit({.max_active_jobs = 0,
          .max_active_jobs_per_principal = 0,
+         .max_active_points = 0,
+         .max_active_points_per_principal = 0,
          .max_points_per_job = 0,
          .max_samples_per_job = 0});
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(Create(kAnn, AskingAnew(Equilibrium(50, 1000))).ok());

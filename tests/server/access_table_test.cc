@@ -169,6 +169,149 @@ TEST_F(AccessTable, AListHoldsOnesOwnJobsAndAnAdminsAll) {
   EXPECT_FALSE(listed(kBob));
 }
 
+// ---- what another principal was given: tokens and request ids ----
+
+class ForeignTokens : public AccessTable {
+ protected:
+  static constexpr char kId[] = "123e4567-e89b-12d3-a456-426614174000";
+
+  static void Show(grpc::ClientContext& context, const char* token) {
+    context.AddMetadata("authorization", std::string("Bearer ") + token);
+  }
+
+  v1::EnsembleJob Create(const char* token, const v1::CreateEnsembleJobRequest& request) {
+    grpc::ClientContext context;
+    Show(context, token);
+    v1::EnsembleJob job;
+    const grpc::Status status = stub_->CreateEnsembleJob(&context, request, &job);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return job;
+  }
+
+  static v1::CreateEnsembleJobRequest Asking(int points, uint64_t seed, const char* id = "") {
+    v1::CreateEnsembleJobRequest request;
+    *request.mutable_spec() = Equilibrium(points, 2);
+    request.mutable_spec()->set_seed(seed);
+    request.set_request_id(id);
+    return request;
+  }
+
+  // All that is told, and how it ends.
+  std::vector<v1::WatchEnsembleJobResponse> Watch(const char* token, const std::string& name,
+                                                  const std::string& resume, std::string* end) {
+    grpc::ClientContext context;
+    Show(context, token);
+    v1::WatchEnsembleJobRequest request;
+    request.set_name(name);
+    request.set_resume_token(resume);
+    const auto reader = stub_->WatchEnsembleJob(&context, request);
+    std::vector<v1::WatchEnsembleJobResponse> told;
+    v1::WatchEnsembleJobResponse message;
+    while (reader->Read(&message)) told.push_back(message);
+    *end = TextOf(reader->Finish());
+    return told;
+  }
+
+  std::string EndedJob(const char* token, int points, uint64_t seed) {
+    const std::string name = Create(token, Asking(points, seed)).name();
+    std::string end;
+    Watch(token, name, "", &end);
+    EXPECT_EQ(end, "OK");
+    return name;
+  }
+
+  v1::ListEnsembleJobsResponse List(const char* token, const std::string& page) {
+    grpc::ClientContext context;
+    Show(context, token);
+    v1::ListEnsembleJobsRequest request;
+    request.set_page_size(1);
+    request.set_page_token(page);
+    v1::ListEnsembleJobsResponse response;
+    const grpc::Status status = stub_->ListEnsembleJobs(&context, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+
+  std::string Results(const char* token, const std::string& job, const std::string& page,
+                      v1::ListResultsResponse* response) {
+    grpc::ClientContext context;
+    Show(context, token);
+    v1::ListResultsRequest request;
+    request.set_parent(job);
+    request.set_page_size(1);
+    request.set_page_token(page);
+    return TextOf(stub_->ListResults(&context, request, response));
+  }
+};
+
+TEST_F(ForeignTokens, APageOfAnothersListIsAPageOfOnesOwn) {
+  const std::string bobs = EndedJob(kBob, 1, 1);
+  for (uint64_t seed = 1; seed < 3; ++seed) EndedJob(kAlice, 1, seed);
+  const std::string page = List(kAlice, "").next_page_token();
+  ASSERT_FALSE(page.empty());
+  const v1::ListEnsembleJobsResponse seen = List(kBob, page);
+  ASSERT_EQ(seen.jobs_size(), 1);
+  EXPECT_EQ(seen.jobs(0).name(), bobs);
+  EXPECT_EQ(seen.next_page_token(), "");
+}
+
+TEST_F(ForeignTokens, APageOfAnothersResultsIsNone) {
+  const std::string alices = EndedJob(kAlice, 2, 1), bobs = EndedJob(kBob, 2, 1);
+  v1::ListResultsResponse page, seen;
+  ASSERT_EQ(Results(kAlice, alices, "", &page), "OK");
+  ASSERT_FALSE(page.next_page_token().empty());
+  EXPECT_EQ(Results(kBob, alices, page.next_page_token(), &seen), "JOB_NOT_FOUND");
+  EXPECT_EQ(Results(kBob, bobs, page.next_page_token(), &seen), "INVALID_REQUEST");
+  EXPECT_EQ(seen.points_size(), 0);
+  EXPECT_EQ(Results(kOps, alices, page.next_page_token(), &seen), "OK");
+  EXPECT_EQ(seen.points(0).index(), 1);
+}
+
+TEST_F(ForeignTokens, AnothersResumeTokenIsAsGoodAsNone) {
+  const std::string alices = EndedJob(kAlice, 3, 1), bobs = EndedJob(kBob, 3, 1);
+  std::string end;
+  const std::string resume = Watch(kAlice, alices, "", &end).back().resume_token();
+  EXPECT_TRUE(Watch(kBob, alices, resume, &end).empty());
+  EXPECT_EQ(end, "JOB_NOT_FOUND");
+  const auto told = Watch(kBob, bobs, resume, &end);
+  EXPECT_EQ(end, "OK");
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told[0].snapshot().finished_points_size(), 3);
+  EXPECT_EQ(told.back().job().name(), bobs);
+}
+
+TEST_F(ForeignTokens, AnothersRequestIdMakesAJobOfOnesOwn) {
+  const std::string alices = Create(kAlice, Asking(1, 1, kId)).name();
+  const v1::EnsembleJob same = Create(kBob, Asking(1, 1, kId));
+  EXPECT_NE(same.name(), alices);
+  EXPECT_EQ(same.principal(), "bob");
+  EXPECT_FALSE(same.answered_from_store());
+  // And an administrator, who may see both, makes a third, of another question.
+  const v1::EnsembleJob third = Create(kOps, Asking(1, 2, kId));
+  EXPECT_NE(third.name(), alices);
+  EXPECT_EQ(third.principal(), "ops");
+}
+
+TEST_F(ForeignTokens, AnothersCancellationCannotBeRepeated) {
+  v1::CreateEnsembleJobRequest endless = Asking(1, 1);
+  endless.mutable_spec()->mutable_target()->set_collisions(1'000'000'000);
+  const std::string alices = Create(kAlice, endless).name();
+  const auto cancel = [&](const char* token) {
+    grpc::ClientContext context;
+    Show(context, token);
+    v1::CancelEnsembleJobRequest request;
+    request.set_name(alices);
+    request.set_request_id(kId);
+    v1::EnsembleJob job;
+    const std::string outcome = TextOf(stub_->CancelEnsembleJob(&context, request, &job));
+    return outcome + " " + job.name();
+  };
+  EXPECT_EQ(cancel(kBob), "JOB_NOT_FOUND ");
+  EXPECT_EQ(cancel(kAlice), "OK " + alices);
+  EXPECT_EQ(cancel(kBob), "JOB_NOT_FOUND ");
+  EXPECT_EQ(cancel(kAlice), "OK " + alices);  // a replay
+}
+
 TEST_F(AccessTable, HeadersThatAreNotOneBearerTokenAreInvalid) {
   const MethodDescriptor& list = *DescriptorPool::generated_pool()->FindMethodByName(
       "ballpiston.v1.EnsembleService.ListEnsembleJobs");

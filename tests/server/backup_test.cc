@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -220,6 +221,37 @@ TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
   }
   done = true;
   client.join();
+}
+
+std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(BackupTest, NothingIsLeftBesideAStoreThatNobodyHasOpen) {
+  MakeStore();
+  const std::vector<std::string> before = NamesIn(folder_.path());
+  const std::string file = Contents(Store());
+  ASSERT_TRUE(CheckStore(Store()).ok());
+  EXPECT_EQ(NamesIn(folder_.path()), before);
+  TemporaryFolder elsewhere;
+  ASSERT_TRUE(BackupStore(Store(), elsewhere.File("copy")).ok());
+  EXPECT_EQ(NamesIn(folder_.path()), before);
+  EXPECT_EQ(Contents(Store()), file);
+}
+
+TEST_F(BackupTest, TheBytesAreThoseOfTheLogToo) {
+  RunningServer server(Options(folder_.path(), FakeExperiments()));
+  server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+  const auto log = std::filesystem::file_size(Store() + "-wal");
+  ASSERT_GT(log, 0u);
+  const auto summary = CheckStore(Store());
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_EQ(static_cast<uintmax_t>(summary->bytes), std::filesystem::file_size(Store()) + log);
 }
 
 // Neither the file nor its log, which a checkpoint would write back.

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -45,6 +46,43 @@ TEST_F(DataFolder, OneOfOursThatIsOpenIsClosedAndThatIsLogged) {
     EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("is 0700 now"));
     EXPECT_EQ(Mode(), 0700u);
   }
+}
+
+TEST_F(DataFolder, OneThatHasBeenAServersIsClosedWhateverElseIsInIt) {
+  for (const char* name : {"lock", "store.sqlite3"}) {
+    Make(0755);
+    std::ofstream(path_ + "/" + name);
+    std::ofstream(path_ + "/notes.txt");
+    EXPECT_TRUE(DataDirectory::Open(path_).ok()) << name;
+    EXPECT_EQ(Mode(), 0700u) << name;
+    std::filesystem::remove_all(path_);
+  }
+}
+
+// A client that starts a server has made its log before.
+TEST_F(DataFolder, OneWithNothingButAClientsLogIsClosed) {
+  Make(0755);
+  std::ofstream(path_ + "/server.log");
+  EXPECT_TRUE(DataDirectory::Open(path_).ok());
+  EXPECT_EQ(Mode(), 0700u);
+}
+
+// Somebody else may be reading them.
+TEST_F(DataFolder, OneWithFilesThatAreNoServersIsRefusedAndLeftAlone) {
+  Make(0755);
+  std::ofstream(path_ + "/thesis.tex");
+  std::filesystem::create_symlink("/run/lock", path_ + "/lock");  // as in /var
+  const auto directory = DataDirectory::Open(path_);
+  EXPECT_TRUE(absl::IsPermissionDenied(directory.status()));
+  EXPECT_THAT(std::string(directory.status().message()), HasSubstr("mode 0755"));
+  EXPECT_THAT(std::string(directory.status().message()), HasSubstr(path_ + "/ballpiston"));
+  EXPECT_EQ(Mode(), 0755u);
+}
+
+TEST_F(DataFolder, OneWithOtherFilesThatIsClosedAlreadyIsTaken) {
+  Make(0700);
+  std::ofstream(path_ + "/thesis.tex");
+  EXPECT_TRUE(DataDirectory::Open(path_).ok());
 }
 
 TEST_F(DataFolder, OneThatIsClosedStaysAsItIsWithoutAWord) {

@@ -28,12 +28,15 @@ void Connection::Send(const std::string& bytes) {
   EXPECT_EQ(sent, static_cast<ssize_t>(bytes.size()));
 }
 
+std::string Connection::ReadSome() {
+  char buffer[4096];
+  const ssize_t n = recv(descriptor_, buffer, sizeof(buffer), 0);
+  return n > 0 ? std::string(buffer, static_cast<size_t>(n)) : "";
+}
+
 std::string Connection::ReadToTheEnd() {
   std::string all;
-  char buffer[4096];
-  for (ssize_t n; (n = recv(descriptor_, buffer, sizeof(buffer), 0)) > 0;) {
-    all.append(buffer, static_cast<size_t>(n));
-  }
+  for (std::string some = ReadSome(); !some.empty(); some = ReadSome()) all += some;
   return all;
 }
 

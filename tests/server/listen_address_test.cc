@@ -1,5 +1,9 @@
 #include "server/listen_address.h"
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <fstream>
 
 #include "gmock/gmock.h"
@@ -79,6 +83,22 @@ TEST(ListenAddress, AFileThatIsNoSocketStays) {
   const auto address = ParseListenAddress("unix:" + folder.File("precious"));
   EXPECT_TRUE(absl::IsFailedPrecondition(ClearSocketPath(*address)));
   EXPECT_TRUE(std::filesystem::exists(folder.File("precious")));
+}
+
+// Only one that nobody listens on may go; this one is of a kind that cannot be asked.
+TEST(ListenAddress, ASocketThatCannotBeAskedStays) {
+  TemporaryFolder folder;
+  const std::string path = folder.File("datagrams");
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_un local{};
+  local.sun_family = AF_UNIX;
+  path.copy(local.sun_path, sizeof(local.sun_path) - 1);
+  ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)), 0);
+  const absl::Status status = ClearSocketPath(*ParseListenAddress("unix:" + path));
+  EXPECT_TRUE(absl::IsFailedPrecondition(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be told"));
+  EXPECT_TRUE(std::filesystem::exists(path));
+  close(descriptor);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "server/observability/metrics.h"
+
 #include <future>
 #include <map>
 #include <optional>
@@ -6,6 +8,7 @@
 #include <thread>
 
 #include "gmock/gmock.h"
+#include "grpcpp/generic/generic_stub.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
@@ -70,6 +73,60 @@ class MetricsTest : public testing::Test {
   Gate gate_;
   std::optional<RunningServer> server_;
 };
+
+TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
+  const auto names = [](const ServerSnapshot& server) {
+    std::map<std::string, double> values;
+    for (const auto& family : ServerMetrics(server)) {
+      if (!family.metric.empty()) values[family.name] = family.metric[0].gauge.value;
+    }
+    return values;
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  ServerSnapshot server;
+  EXPECT_EQ(names(server).count(kExpiry), 0u);
+  server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
+  EXPECT_EQ(names(server)[kExpiry], 2e9);
+}
+
+TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
+  testing::internal::CaptureStderr();
+  RunningServer& server = Start();
+  {
+    grpc::ClientContext context;
+    grpc::CompletionQueue queue;
+    const auto await = [&queue] {
+      void* tag = nullptr;
+      bool ok = false;
+      return queue.Next(&tag, &ok) && ok;
+    };
+    grpc::GenericStub stub(server.channel());
+    const auto call = stub.PrepareCall(&context, "/grpc.health.v1.Health/Watch", &queue);
+    call->StartCall(nullptr);
+    ASSERT_TRUE(await());
+    const grpc::Slice whole_server(std::string("\x0a\0", 2));
+    call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
+    ASSERT_TRUE(await());
+    grpc::ByteBuffer state;
+    call->Read(&state, nullptr);
+    ASSERT_TRUE(await());
+    context.TryCancel();
+    grpc::Status status;
+    call->Finish(&status, nullptr);
+    await();
+  }
+  const auto ended_as = [this](const std::string& code) {
+    const auto metrics = Metrics();
+    const auto found = metrics.find(
+        "grpc_server_handled_total{grpc_service=\"grpc.health.v1.Health\",grpc_method=\"Watch\","
+        "grpc_type=\"server_stream\",grpc_code=\"" +
+        code + "\"}");
+    return found == metrics.end() ? 0 : found->second;
+  };
+  while (ended_as("CANCELLED") + ended_as("UNKNOWN") == 0) std::this_thread::yield();
+  EXPECT_EQ(ended_as("CANCELLED"), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
 
 TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
   Start();
@@ -185,6 +242,15 @@ TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
     EXPECT_THAT(std::string(server.status().message()),
                 HasSubstr("--metrics_listen=" + std::string(address)));
   }
+}
+
+// The HTTP server takes no names.
+TEST_F(MetricsTest, LocalhostIsAnAddress) {
+  ServerOptions options;
+  options.data_dir = folder_.File("data");
+  options.metrics_listen = "localhost:0";
+  RunningServer server(options);
+  EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
 }
 
 TEST_F(MetricsTest, AnAddressInUseIsRefused) {

@@ -1,7 +1,10 @@
 #include "server/security/new_token.h"
 
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -94,6 +97,38 @@ TEST_F(NewToken, AFileThatIsOpenToOthersOrMalformedStaysAsItIs) {
   EXPECT_THAT(std::string(IssueToken(file_, request, kNow).status().message()),
               HasSubstr("line 1"));
   EXPECT_EQ(Text(), "nonsense\n");
+}
+
+// No file may grow beyond `bytes`, as on a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*const handler_)(int) = signal(SIGXFSZ, SIG_IGN);
+  rlimit before_{};
+};
+
+TEST_F(NewToken, WithoutRoomForItsWholeLineTheFileStaysAsItIs) {
+  while (!std::filesystem::exists(file_.path) || Text().size() < 900) Issue("alice:submit");
+  const std::string before = Text();
+  {
+    const FullDisk disk(before.size() + 20);
+    const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kNow);
+    EXPECT_THAT(std::string(token.status().message()), HasSubstr("File too large"));
+  }
+  EXPECT_EQ(Text(), before);
+  Issue("bob:submit");
 }
 
 TEST_F(NewToken, WhereNoFileCanBeMadeThereIsNone) {

@@ -3,14 +3,17 @@
 #include <atomic>
 #include <future>
 #include <stop_token>
+#include <string>
+#include <vector>
 
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr int kThreads = 4;  // for calls
+constexpr int kThreads = 4;  // for calls that read
 
 class RpcExecutorTest : public testing::Test {
  protected:
@@ -25,32 +28,69 @@ class RpcExecutorTest : public testing::Test {
 };
 
 TEST_F(RpcExecutorTest, StreamsDoNotKeepCallsWaiting) {
-  for (int i = 0; i < 10 * kThreads; ++i) executor_.PostOfStream(Stuck());
+  for (int i = 0; i < 10 * kThreads; ++i) executor_.PostOfStream("ann", Stuck());
   gate_.AwaitWaiting(kThreads / 2);
   std::promise<void> answered;
-  executor_.Post([&] { answered.set_value(); });
+  executor_.Post("ann", [&] { answered.set_value(); });
   answered.get_future().get();
 }
 
 TEST_F(RpcExecutorTest, NorCallsStreams) {
-  for (int i = 0; i < 10 * kThreads; ++i) executor_.Post(Stuck());
+  for (const char* principal : {"ann", "bob"}) {
+    for (int i = 0; i < 10 * kThreads; ++i) executor_.Post(principal, Stuck());
+  }
   gate_.AwaitWaiting(kThreads);
   std::promise<void> told;
-  executor_.PostOfStream([&] { told.set_value(); });
+  executor_.PostOfStream("ann", [&] { told.set_value(); });
   told.get_future().get();
+}
+
+// A disk that hangs holds up all calls that write.
+TEST_F(RpcExecutorTest, NorCallsThatWriteThoseThatRead) {
+  for (int i = 0; i < 10 * kThreads; ++i) executor_.PostOfWrite("ann", Stuck());
+  gate_.AwaitWaiting(kThreads);
+  std::promise<void> answered;
+  executor_.Post("ann", [&] { answered.set_value(); });
+  answered.get_future().get();
+}
+
+TEST_F(RpcExecutorTest, NobodyReadsWithAllOfTheThreads) {
+  for (int i = 0; i < 10 * kThreads; ++i) executor_.Post("ann", Stuck());
+  gate_.AwaitWaiting(kThreads / 2);
+  std::promise<void> answered;
+  executor_.Post("bob", [&] { answered.set_value(); });
+  answered.get_future().get();
+}
+
+TEST_F(RpcExecutorTest, PrincipalsTakeTurnsAndEachKeepsItsOrder) {
+  RpcExecutor executor(1);
+  std::vector<std::string> begun;
+  executor.Post("ann", Stuck());
+  gate_.AwaitWaiting(1);
+  for (int i = 0; i < 5; ++i) {
+    executor.Post("ann", [&begun, i] { begun.push_back("ann" + std::to_string(i)); });
+  }
+  for (const char* principal : {"bob", "eve", "bob"}) {
+    executor.Post(principal, [&begun, principal] { begun.push_back(principal); });
+  }
+  gate_.Open();
+  executor.Stop();
+  EXPECT_THAT(begun,
+              testing::ElementsAre("ann0", "bob", "eve", "ann1", "bob", "ann2", "ann3", "ann4"));
 }
 
 TEST_F(RpcExecutorTest, WhatWasPostedIsRunBeforeTheStop) {
   std::atomic<int> run = 0;
-  for (int i = 0; i < 100; ++i) {
-    executor_.Post([&] { ++run; });
-    executor_.PostOfStream([&] { ++run; });
-  }
+  const auto post_three = [&] {
+    executor_.Post("ann", [&] { ++run; });
+    executor_.PostOfWrite("ann", [&] { ++run; });
+    executor_.PostOfStream("ann", [&] { ++run; });
+  };
+  for (int i = 0; i < 100; ++i) post_three();
   executor_.Stop();
-  EXPECT_EQ(run, 200);
-  executor_.Post([&] { ++run; });
-  executor_.PostOfStream([&] { ++run; });
-  EXPECT_EQ(run, 200);
+  EXPECT_EQ(run, 300);
+  post_three();
+  EXPECT_EQ(run, 300);
 }
 
 }  // namespace

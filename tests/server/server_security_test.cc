@@ -2,18 +2,23 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
 #include "server/security/published_file.h"
+#include "server/security/server_tls.h"
 #include "server/security/tls_files.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/running_server.h"
@@ -194,6 +199,41 @@ TEST(PublishedFile, EachContentHasALaterSecond) {
   }
 }
 
+// What is in the files in memory of this process.
+std::string Published() {
+  std::string all;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string file = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (file.find("/memfd:ballpiston") == 0) all += Content(entry.path().string());
+  }
+  return all;
+}
+
+// The certificate must not be exchanged without the authority that belongs to it.
+TEST(ServerTls, WhenThereIsRoomForOneFileOnlyBothStayOld) {
+  const LaboratoryFiles files(true);
+  const SecurityOptions& options = files.options();
+  const auto tls = ServerTls::Create({{"tls_certificate", options.tls_certificate},
+                                      {"tls_key", options.tls_key},
+                                      {"tls_client_ca", options.tls_client_ca}});
+  ASSERT_TRUE(tls.ok()) << tls.status();
+  const KeyAndCertificate next = files.authority().Issue("server-2");
+  files.WriteCertificate(next);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const int free = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(free);
+  const rlimit one_more{static_cast<rlim_t>(free) + 1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &one_more);
+  const absl::Status reloaded = (*tls)->Reload();
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_TRUE(absl::IsInternal(reloaded)) << reloaded;
+  EXPECT_THAT(Published(), Not(HasSubstr(next.certificate)));
+  ASSERT_TRUE((*tls)->Reload().ok());
+  EXPECT_THAT(Published(), HasSubstr(next.certificate));
+}
+
 class SecureServer : public ::testing::Test {
  protected:
   explicit SecureServer(bool mutual = false) : files_(mutual) {}
@@ -271,6 +311,23 @@ TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
   while (ServedCommonName(server_->address()) != "good") {
   }
   EXPECT_TRUE(List(Channel(), kAlice).ok());
+}
+
+// Of 24 hours, as these are, and then of a year.
+TEST_F(SecureServer, ACertificateThatEndsSoonIsWarnedOf) {
+  const auto reload = [this] {
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(server_->Reload().ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(reload(), HasSubstr("is valid until 2"));
+  const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
+  EXPECT_NEAR(static_cast<double>(absl::ToUnixSeconds(*server_->security().CertificateExpiry())),
+              static_cast<double>(day), 600);
+  files_.WriteCertificate(
+      files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
+  EXPECT_THAT(reload(), Not(HasSubstr("is valid until")));
+  EXPECT_GT(*server_->security().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
 }
 
 class MutualServer : public SecureServer {

@@ -1,6 +1,8 @@
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
@@ -17,6 +19,8 @@ namespace {
 // What stands behind the API, without gRPC: so a test says itself who calls.
 class ServerStatusTest : public testing::Test {
  protected:
+  explicit ServerStatusTest(const Store::Options& options = {})
+      : store_(*Store::Open(folder_.File("store.sqlite3"), options)) {}
   ~ServerStatusTest() override { gate_.Open(); }
 
   void Submit(const std::string& principal, int points = 1) {
@@ -38,7 +42,7 @@ class ServerStatusTest : public testing::Test {
   Gate gate_;
   const Limits limits_ = {.max_active_jobs = 7, .max_samples_per_job = 0};
   Authenticator authenticator_;
-  std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store.sqlite3"), {});
+  std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
   JobBook book_{
       *store_, limits_, 2,
@@ -134,6 +138,27 @@ TEST(ServerStatus, IsServedToWhoeverIsLetIn) {
   EXPECT_EQ(status.samples_computed(), 10 * kFakeSamplesPerBlock);
   EXPECT_EQ(status.limits().max_active_jobs(), Limits().max_active_jobs);
   EXPECT_EQ(status.principals_size(), 0);
+}
+
+class HangingDiskStatusTest : public ServerStatusTest {
+ protected:
+  HangingDiskStatusTest() : ServerStatusTest({.stall = std::chrono::milliseconds(1)}) {}
+};
+
+TEST_F(HangingDiskStatusTest, ADiskThatHangsIsAStoreThatFails) {
+  std::thread hanging([this] {
+    store_
+        ->Commit([this](Database&) {
+          gate_.Pass(std::stop_token());
+          return absl::OkStatus();
+        })
+        .IgnoreError();
+  });
+  gate_.AwaitWaiting(1);
+  while (!store_->stalled()) std::this_thread::yield();
+  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
+  gate_.Open();
+  hanging.join();
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "server/security/socket_listener.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -122,6 +124,18 @@ TEST_F(Socket, ItsFileIsItsOwnersFromTheStartAndGoneAtTheEnd) {
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
+TEST_F(Socket, AFileOfAnotherServerAtThePathStays) {
+  const auto address = *ParseListenAddress("unix:" + path_);
+  auto first = SocketListener::Listen(address, {});
+  unlink(path_.c_str());
+  auto second = SocketListener::Listen(address, OwnUserAndRoot());
+  ASSERT_TRUE(second.ok()) << second.status();
+  (*first)->Stop();
+  EXPECT_GE(Connect(path_), 0);
+  (*second)->Stop();
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
 TEST_F(Socket, ConnectionsThatComeBeforeTheStartWait) {
   auto listener = SocketListener::Listen(*ParseListenAddress("unix:" + path_), OwnUserAndRoot());
   const int early = Connect(path_);
@@ -150,6 +164,65 @@ TEST_F(Socket, AProcessOfAnotherUserIsClosed) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+// By hand: whether a connection to the host's port is accepted.
+bool Reaches(int family, const char* host, int port) {
+  sockaddr_storage storage{};
+  storage.ss_family = static_cast<sa_family_t>(family);
+  auto* four = reinterpret_cast<sockaddr_in*>(&storage);
+  auto* six = reinterpret_cast<sockaddr_in6*>(&storage);
+  four->sin_port = htons(static_cast<uint16_t>(port));
+  inet_pton(family, host,
+            family == AF_INET ? static_cast<void*>(&four->sin_addr)
+                              : static_cast<void*>(&six->sin6_addr));
+  const int descriptor = socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const socklen_t size = family == AF_INET ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
+  const bool reached = connect(descriptor, reinterpret_cast<sockaddr*>(&storage), size) == 0;
+  close(descriptor);
+  return reached;
+}
+
+bool HasIpv6() { return SocketListener::Listen(*ParseListenAddress("[::1]:0"), {}).ok(); }
+
+TEST(Port, OneThatIsFreeIsChosenForEveryAddressOfAName) {
+  auto listener = SocketListener::Listen(*ParseListenAddress("localhost:0"), {});
+  ASSERT_TRUE(listener.ok()) << listener.status();
+  const int port = (*listener)->address().port;
+  EXPECT_GT(port, 0);
+  EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port) || Reaches(AF_INET6, "::1", port));
+  (*listener)->Stop();
+  EXPECT_FALSE(Reaches(AF_INET, "127.0.0.1", port));
+}
+
+TEST(Port, EveryAddressMeansThoseOfEitherKind) {
+  for (const char* every : {"0.0.0.0:0", "[::]:0"}) {
+    auto listener = SocketListener::Listen(*ParseListenAddress(every), {});
+    ASSERT_TRUE(listener.ok()) << listener.status();
+    const int port = (*listener)->address().port;
+    EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port)) << every;
+    if (HasIpv6()) {
+      EXPECT_TRUE(Reaches(AF_INET6, "::1", port)) << every;
+    }
+  }
+}
+
+TEST(Port, OneInUseIsRefusedWhoeverAsksSecond) {
+  for (const char* first : {"127.0.0.1:0", "0.0.0.0:0"}) {
+    auto listener = SocketListener::Listen(*ParseListenAddress(first), {});
+    ASSERT_TRUE(listener.ok()) << listener.status();
+    for (const char* host : {"127.0.0.1:", "0.0.0.0:", "localhost:"}) {
+      const auto second = SocketListener::Listen(
+          *ParseListenAddress(host + std::to_string((*listener)->address().port)), {});
+      EXPECT_TRUE(absl::IsFailedPrecondition(second.status())) << first << " " << host;
+      EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+    }
+  }
+}
+
+TEST(Port, AHostThatIsNotOfThisMachineIsRefused) {
+  const auto listener = SocketListener::Listen(*ParseListenAddress("192.0.2.1:0"), {});
+  EXPECT_THAT(std::string(listener.status().message()), HasSubstr("--listen=192.0.2.1:0"));
 }
 
 class SocketServer : public ::testing::Test {

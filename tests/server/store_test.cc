@@ -9,6 +9,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "server/store/pilot_table.h"
 #include "server/store/request_table.h"
 #include "server/store/schema.h"
+#include "tests/server/fake_experiments.h"
 #include "tests/server/first_store_version.h"
 #include "tests/server/temporary_folder.h"
 
@@ -587,6 +589,54 @@ TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
   }
   EXPECT_EQ(attempts, 4);
   EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+}
+
+// A disk that hangs is one commit that does not end.
+TEST_F(StoreTest, WhileACommitHangsReadsGoOnAndRequestsAreRefused) {
+  const auto store = *Store::Open(folder_.File("store"), {.stall = std::chrono::milliseconds(1)});
+  Gate gate;
+  std::thread hanging([&] {
+    EXPECT_TRUE(store
+                    ->Commit([&](Database&) {
+                      gate.Pass(std::stop_token());
+                      return absl::OkStatus();
+                    })
+                    .ok());
+  });
+  gate.AwaitWaiting(1);
+  while (!store->stalled()) std::this_thread::yield();
+  EXPECT_FALSE(store->failing());
+  bool run = false;
+  const auto change = [&](Database&) {
+    run = true;
+    return absl::OkStatus();
+  };
+  bool told = false;
+  const absl::Status refused =
+      store->Commit(change, [&](const absl::Status& done) { told = !done.ok(); });
+  EXPECT_TRUE(absl::IsUnavailable(refused)) << refused;
+  EXPECT_TRUE(told);
+  EXPECT_FALSE(run);
+  EXPECT_TRUE(store->Read([](Database& database) { return CountJobs(database).status(); }).ok());
+  gate.Open();
+  hanging.join();
+  while (!store->Commit(change).ok()) {  // until the store's thread has seen the end of it
+  }
+  EXPECT_TRUE(run);
+}
+
+TEST_F(StoreTest, JobsAreReadOneByOneAndNoMoreThanAreWanted) {
+  const auto store = *Store::Open(folder_.File("store"), {});
+  for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
+  std::vector<std::string> read;
+  const auto take = [&](const JobRecord& job) {
+    read.push_back(job.id);
+    return read.size() < 2;
+  };
+  ASSERT_TRUE(
+      store->Read([&](Database& database) { return ReadJobs(database, std::nullopt, 1000, take); })
+          .ok());
+  EXPECT_THAT(read, testing::ElementsAre("d", "c"));
 }
 
 TEST_F(StoreTest, AfterClosingWritesFail) {

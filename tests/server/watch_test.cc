@@ -460,6 +460,25 @@ TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {
   EXPECT_EQ(DetailsOf(status).reason, "SHUTTING_DOWN");
 }
 
+// More than may be on their way at once: who waits has its turn when those before it have read.
+TEST_F(WatchTest, ReadersOfALargeJobAreToldInTurn) {
+  RunningServer& server = Start(0);
+  v1::EnsembleSpec large = Equilibrium(0, 1);
+  for (int i = 0; i < 90'000; ++i) large.mutable_grid()->add_delta(0.1 + 1e-7 * i);
+  const std::string name = server.Submit(large);
+  std::vector<std::unique_ptr<Stream>> readers;  // 43 MB
+  for (int i = 0; i < 60; ++i) readers.push_back(std::make_unique<Stream>(server, name));
+  std::vector<std::thread> threads;
+  for (const auto& reader : readers) {
+    threads.emplace_back([&reader] {
+      const auto first = reader->Next();
+      ASSERT_TRUE(first);
+      EXPECT_EQ(first->job().spec().grid().delta_size(), 90'000);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
 TEST_F(WatchTest, AReaderThatHasStalledDoesNotHoldUpAStop) {
   RunningServer& server = Start(std::numeric_limits<uint64_t>::max());
   v1::EnsembleSpec large = Equilibrium(0, 1);

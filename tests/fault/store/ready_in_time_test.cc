@@ -88,10 +88,13 @@ double SecondsUntilReady(const std::string& path) {
                nullptr);
   EXPECT_TRUE(book.Resume().ok());
   const double resumed = SecondsSince(start);
-  EXPECT_TRUE(book.List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 50).ok());
+  EXPECT_TRUE(book.List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),
+                                           .max_jobs = 50,
+                                           .max_bytes = std::numeric_limits<size_t>::max()})
+                  .ok());
   const double ready = SecondsSince(start);
-  std::cout << "opened after " << opened << " s, resumed after " << resumed << " s, listed after "
-            << ready << " s\n";
+  std::cout << testing::UnitTest::GetInstance()->current_test_info()->name() << ": opened after "
+            << opened << " s, resumed after " << resumed << " s, listed after " << ready << " s\n";
   return ready;
 }
 

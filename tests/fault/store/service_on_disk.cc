@@ -117,11 +117,11 @@ absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Get(const std::string& id) {
 }
 
 std::vector<v1::EnsembleJob> ServiceOnDisk::List() {
-  std::vector<v1::EnsembleJob> jobs;
-  const auto listed = book_->List(LocalPrincipal(), std::numeric_limits<int64_t>::max(), 1000);
-  if (!listed.ok()) return jobs;
-  for (const ListedJob& row : *listed) jobs.push_back(row.job);
-  return jobs;
+  const auto listed =
+      book_->List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),
+                                     .max_jobs = 1000,
+                                     .max_bytes = std::numeric_limits<size_t>::max()});
+  return listed.ok() ? listed->jobs : std::vector<v1::EnsembleJob>();
 }
 
 void ServiceOnDisk::OnStateChange() {

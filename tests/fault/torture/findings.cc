@@ -9,16 +9,21 @@ namespace {
 
 constexpr size_t kReported = 20;
 
-std::vector<std::string>& Rows() {
-  static auto* const rows = new std::vector<std::string>;
+struct Row {
+  std::string section, what, value;
+};
+
+std::vector<Row>& Rows() {
+  static auto* const rows = new std::vector<Row>;
   return *rows;
 }
 
 void AddRow(const std::string& section, const std::string& what, const std::string& value) {
-  char row[200];
-  std::snprintf(row, sizeof(row), "| %-22s | %-46s | %24s |", section.c_str(), what.c_str(),
-                value.c_str());
-  Rows().emplace_back(row);
+  Rows().push_back({section, what, value});
+}
+
+void PrintRow(const std::string& section, const std::string& what, const std::string& value) {
+  std::printf("| %-21s | %-52s | %19s |\n", section.c_str(), what.c_str(), value.c_str());
 }
 
 }  // namespace
@@ -26,7 +31,7 @@ void AddRow(const std::string& section, const std::string& what, const std::stri
 Findings::~Findings() {
   for (const auto& [what, count] : counts_) AddRow(section_, what, absl::StrCat(count));
   for (const auto& [what, value] : notes_) AddRow(section_, what, value);
-  AddRow(section_, "promises broken", absl::StrCat(wrong_.size()));
+  if (judged_) AddRow(section_, "promises broken", absl::StrCat(wrong_.size()));
 }
 
 void Findings::Count(const std::string& what, int64_t by) {
@@ -52,6 +57,7 @@ int64_t Findings::count(const std::string& what) const {
 
 std::string Findings::Report() const {
   const std::lock_guard lock(mutex_);
+  judged_ = true;
   std::string text;
   for (size_t i = 0; i < wrong_.size() && i < kReported; ++i)
     absl::StrAppend(&text, wrong_[i], "\n");
@@ -62,7 +68,13 @@ std::string Findings::Report() const {
 void PrintTable() {
   if (Rows().empty()) return;
   std::printf("\n");
-  for (const std::string& row : Rows()) std::printf("%s\n", row.c_str());
+  PrintRow("test", "what", "counted or measured");
+  PrintRow(std::string(21, '-'), std::string(52, '-'), std::string(19, '-'));
+  std::string section;  // named in its first row
+  for (const Row& row : Rows()) {
+    PrintRow(row.section == section ? "" : row.section, row.what, row.value);
+    section = row.section;
+  }
 }
 
 }  // namespace ballpiston::torture

@@ -30,6 +30,7 @@ class Findings {
   std::map<std::string, int64_t> counts_;
   std::map<std::string, std::string> notes_;
   std::vector<std::string> wrong_;
+  mutable bool judged_ = false;  // somebody asked whether anything was wrong
 };
 
 // Of all that has ended.

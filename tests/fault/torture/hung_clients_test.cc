@@ -24,7 +24,7 @@
 namespace ballpiston::torture {
 namespace {
 
-constexpr double kDrainSeconds = 2;
+constexpr double kDrainSeconds = 1;
 constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";  // of every HTTP/2 connection
 
 // A connection that says this and no more.

@@ -1,5 +1,6 @@
-// Clients that hang: a process that opens watches, reads the first message of each, and then stops
-// (SIGSTOP), so that nothing of what the server sends is read any more.
+// Clients that hang: a process that opens watches and then stops (SIGSTOP), so that nothing of what
+// the server sends is read any more, neither by the watches nor from the sockets. Every other one
+// has not even read its first message, which is as large as the job.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 
@@ -22,8 +23,14 @@ class HungReaders {
   HungReaders(const HungReaders&) = delete;
   HungReaders& operator=(const HungReaders&) = delete;
 
+  // Wakes them: each reads until it is told of at least `last` finished points. Returns how many of
+  // them find nothing that was said when there were more than `first` and fewer than `last`: to
+  // these a message was waiting to be sent all the while, and no other was made.
+  int WakeAndCountSilent(int first, int last);
+
  private:
   pid_t pid_ = 0;
+  int socket_ = -1;  // to the process's standard input and output
 };
 
 }  // namespace ballpiston::torture

@@ -27,7 +27,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kMostHealthSeconds = 0.05;
 constexpr size_t kConnections = 10;
-constexpr int kFullQueue = 2'000;  // unless the server refuses before
 
 // A watch without a thread of its own.
 class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse> {
@@ -84,15 +83,15 @@ double HealthP99(grpc::GenericStub& stub, int checks) {
   return seconds[static_cast<size_t>(0.99 * static_cast<double>(seconds.size() - 1))];
 }
 
-// Returns how many jobs the server took, of at most so many.
-int FillQueue(const client::EnsembleClient& client, int most) {
+// Creates jobs until the server refuses; returns how many it took.
+int FillQueue(const client::EnsembleClient& client) {
   std::atomic<int> asked = 0, taken = 0;
   std::vector<std::thread> threads;
   for (int i = 0; i < 16; ++i) {
     threads.emplace_back([&] {
-      while (asked++ < most) {
+      while (true) {
         v1::EnsembleSpec spec = Endless();
-        spec.set_seed(static_cast<uint64_t>(1'000 + asked));
+        spec.set_seed(static_cast<uint64_t>(1'000 + asked++));
         const auto job = client.Create(spec);
         if (!job.ok()) {
           EXPECT_TRUE(absl::IsResourceExhausted(job.status())) << job.status();
@@ -108,7 +107,10 @@ int FillQueue(const client::EnsembleClient& client, int most) {
 
 class LiveWatchers : public testing::Test {
  protected:
-  LiveWatchers() {
+  LiveWatchers()
+      : queue_(Size(100, 1000)),
+        server_({.workers = 2,
+                 .flags = {absl::StrFormat("--max_active_jobs_per_principal=%d", queue_)}}) {
     server_.Start();
     for (size_t i = 0; i < kConnections; ++i) {
       stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
@@ -144,6 +146,7 @@ class LiveWatchers : public testing::Test {
     return p99;
   }
 
+  const int queue_;  // its length
   Findings findings_{"live watchers"};
   ServerProcess server_;
   std::vector<std::unique_ptr<v1::EnsembleService::Stub>> stubs_;
@@ -158,9 +161,10 @@ TEST_F(LiveWatchers, AllHearTheEndAndHealthAnswersWithAFullQueue) {
   Health("one job");
   Attach(Size(100, 1000), job->name());
   AwaitHeard(3);
-  findings_.Count("watchers", static_cast<int64_t>(watchers_.size()));
+  findings_.Count("watchers at once", static_cast<int64_t>(watchers_.size()));
   Health("one job, all watching");
-  findings_.Count("jobs in the queue", FillQueue(client, Size(100, kFullQueue)));
+  EXPECT_EQ(FillQueue(client), queue_ - 1);
+  findings_.Count("jobs in the full queue", queue_);
   const double p99 = Health("a full queue, all watching");
   ASSERT_TRUE(client.Cancel(job->name()).ok());
   CheckEnds();

@@ -92,7 +92,7 @@ std::vector<EnsembleSpec> Questions() {
 EnsembleSpec ManyPoints(int points, int64_t samples) {
   EnsembleSpec spec =
       Question(EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME, EnsembleSpec::BILLIARD, {0.2});
-  for (int i = 0; i < points; ++i) spec.mutable_grid()->add_epsilon(0.05 + 0.4 * i / points);
+  for (int i = 0; i < points; ++i) spec.mutable_grid()->add_epsilon(0.25 + 0.01 * i / points);
   return WithSamples(std::move(spec), samples);
 }
 

@@ -15,7 +15,7 @@ namespace ballpiston::torture {
 // with a tolerance; between 0.02 s and 1 s of one core each.
 std::vector<v1::EnsembleSpec> Questions();
 
-// Many points, some seconds of one core in all.
+// Many points, each of much the same cost.
 v1::EnsembleSpec ManyPoints(int points, int64_t samples);
 
 // Never ends by itself; saturates the workers with blocks of some 50 ms.

@@ -1,5 +1,6 @@
 // One watch of a job, cut at random and taken up again with the last token, as one story:
-//   1. each attachment begins with the job;
+//   1. each attachment begins with the job, or, if that has ended, with finished points left to
+//   tell;
 //   2. the job's state never goes back, but for one that runs, which a restart may find queued;
 //   3. each finished point is told once over the whole chain, and all are, before the end;
 //   4. points done and samples never go back within one life of the server;
@@ -34,7 +35,8 @@ class WatchChain {
   void CheckFinishedPoints(v1::EnsembleService::StubInterface& stub);
 
  private:
-  void Hear(const v1::WatchEnsembleJobResponse& message, bool first);
+  void CheckThatItHasEnded(v1::EnsembleService::StubInterface& stub);
+  void Hear(const v1::WatchEnsembleJobResponse& message);
   void HearJob(const v1::EnsembleJob& job);
   void HearProgress(const v1::JobProgress& progress);
   void CheckEnd(const absl::Status& end, bool cut);
@@ -44,7 +46,8 @@ class WatchChain {
   Findings& findings_;
   v1::WatchEnsembleJobRequest request_;
   int life_of_stream_ = 0;
-  int told_life_ = -1;  // that of progress_
+  bool of_ended_job_ = false;  // as the stream's first message says
+  int told_life_ = -1;         // that of progress_
   v1::JobProgress progress_;
   int state_life_ = -1;
   v1::EnsembleJob::State state_ = v1::EnsembleJob::QUEUED;

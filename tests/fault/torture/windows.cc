@@ -1,6 +1,8 @@
 #include "tests/fault/torture/windows.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -25,17 +27,35 @@ Reading Read(const ServerProcess& server, const client::EnsembleClient& client,
   return {now->progress().samples(), server.ProcessorSeconds(), Clock::now()};
 }
 
-double Sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
+// Of a normal law: its deviation in median deviations, and a median's error in a mean's.
+constexpr double kDeviations = 1.4826, kMedianError = 1.2533;
+
+constexpr size_t kGroups = 10;
+
+double Sum(const std::vector<double>& values, size_t begin, size_t end) {
+  const auto first = values.begin();
+  return std::accumulate(first + static_cast<std::ptrdiff_t>(begin),
+                         first + static_cast<std::ptrdiff_t>(end), 0.0);
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  const size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
 }  // namespace
 
 Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
-                    const std::string& job, std::chrono::milliseconds length) {
+                    const std::string& job, std::chrono::milliseconds length,
+                    double least_samples) {
   const Reading start = Read(server, client, job);
-  std::this_thread::sleep_for(length);
-  const Reading end = Read(server, client, job);
+  Reading end;
+  do {
+    std::this_thread::sleep_for(length);
+    end = Read(server, client, job);
+  } while (end.samples - start.samples < least_samples);
   return {end.samples - start.samples, end.processor_seconds - start.processor_seconds,
           std::chrono::duration<double>(end.at - start.at).count()};
 }
@@ -45,16 +65,24 @@ void PairedRatio::Add(double first, double second) {
   second_.push_back(second);
 }
 
-double PairedRatio::ratio() const { return Sum(first_) / Sum(second_); }
+double PairedRatio::ratio() const { return Median(Ratios()); }
 
 double PairedRatio::StandardError() const {
-  const auto n = static_cast<double>(first_.size());
-  double squares = 0;
-  for (size_t i = 0; i < first_.size(); ++i) {
-    const double residual = first_[i] - ratio() * second_[i];
-    squares += residual * residual;
+  std::vector<double> distances = Ratios();
+  const double middle = Median(distances);
+  for (double& distance : distances) distance = std::abs(distance - middle);
+  const auto n = static_cast<double>(distances.size());
+  return n < 2 ? INFINITY : kMedianError * kDeviations * Median(distances) / std::sqrt(n);
+}
+
+std::vector<double> PairedRatio::Ratios() const {
+  const size_t groups = std::min(kGroups, first_.size());
+  std::vector<double> ratios;
+  for (size_t i = 0; i < groups; ++i) {
+    const size_t begin = i * first_.size() / groups, end = (i + 1) * first_.size() / groups;
+    ratios.push_back(Sum(first_, begin, end) / Sum(second_, begin, end));
   }
-  return n < 2 ? INFINITY : std::sqrt(n / (n - 1) * squares) / Sum(second_);
+  return ratios;
 }
 
 std::string PairedRatio::Text() const {

@@ -21,19 +21,25 @@ struct Window {
   double Cost() const { return seconds / samples; }
 };
 
-// What the server spends, all of its threads, and what a job of its gets done meanwhile.
+// What the server spends, all of its threads, and what a job of its gets done meanwhile: for so
+// long, and on until it is as much as `least_samples`, for the machine may be busy.
 Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
-                    const std::string& job, std::chrono::milliseconds length);
+                    const std::string& job, std::chrono::milliseconds length,
+                    double least_samples = 1);
 
-// Sum of the first over sum of the second.
+// First over second. The pairs are added up in ten groups, because a window begins and ends within
+// blocks that are only counted whole; the ratio is the groups' median, because something else may
+// have disturbed some of them.
 class PairedRatio {
  public:
   void Add(double first, double second);
   double ratio() const;
-  double StandardError() const;  // by linearization, of independent pairs
+  double StandardError() const;  // from the groups' median deviation
   std::string Text() const;      // (ratio - 1) in percent, with its error
 
  private:
+  std::vector<double> Ratios() const;
+
   std::vector<double> first_, second_;
 };
 

@@ -1,0 +1,50 @@
+// Sockets that listen at an address: a Unix socket, or one for each address that a HOST stands for,
+// all at one port. Connections wait with the kernel until somebody accepts them.
+//
+// The file of a Unix socket has mode 0600 from the moment it exists, and is taken away at the end
+// if it is still the one that was made here: another server may have put its own there meanwhile.
+// No other process can share the port.
+#ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
+#define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/listen_address.h"
+
+namespace ballpiston::server {
+
+class BoundSockets {
+ public:
+  // FAILED_PRECONDITION if one cannot listen there, because the address is in use, say. Of the
+  // addresses that a name stands for, those this machine does not have are left out.
+  static absl::StatusOr<BoundSockets> Bind(const ListenAddress& address);
+
+  BoundSockets(BoundSockets&& other) noexcept;
+  BoundSockets& operator=(BoundSockets&& other) = delete;
+  ~BoundSockets() { Close(); }
+
+  const std::vector<int>& descriptors() const { return descriptors_; }  // which do not block
+  int port() const { return port_; }                                    // 0: a Unix socket
+
+  void Close();  // any number of times
+
+ private:
+  BoundSockets() = default;
+
+  absl::Status BindPath(const ListenAddress& address);
+  absl::Status BindHost(const ListenAddress& address);
+
+  std::vector<int> descriptors_;
+  int port_ = 0;
+  std::string path_;  // of the file made here; empty: none
+  dev_t device_ = 0;
+  ino_t inode_ = 0;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_

@@ -1,0 +1,25 @@
+#include "server/store/unused_log.h"
+
+#include <utility>
+
+#include "server/store/sqlite.h"
+
+namespace ballpiston::server {
+namespace {
+
+bool HasLog(const std::string& store) {
+  return Database::Exists(store + "-wal") || Database::Exists(store + "-shm");
+}
+
+}  // namespace
+
+UnusedLog::UnusedLog(std::string store) : store_(std::move(store)), was_there_(HasLog(store_)) {}
+
+UnusedLog::~UnusedLog() {
+  if (was_there_ || !HasLog(store_)) return;
+  const auto database = Database::Open(store_, Database::Mode::kReadWrite);
+  // Having read, it is a user of the log; the last one takes it away when it closes.
+  if (database.ok()) (*database)->Integer("PRAGMA user_version").status().IgnoreError();
+}
+
+}  // namespace ballpiston::server
