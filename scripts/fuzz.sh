@@ -12,10 +12,11 @@ shift
 readonly RUNS=${FUZZ_RUNS:-100000} SEED=${FUZZ_SEED:-1}
 readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
 # Longer ones only repeat what shorter ones show.
-declare -A max_len=([stored_block]=4096 [log_line]=160 [number_list]=80 [server_address]=160)
-readonly MAX_LEN=600
+declare -A max_len=([stored_block]=3000 [log_line]=64 [access_list]=320 [number_list]=80
+                    [server_address]=160)
+readonly MAX_LEN=300
 # Stacks of allocations and freed memory that is kept for long cost more time than all else.
-export ASAN_OPTIONS=malloc_context_size=2:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
+export ASAN_OPTIONS=malloc_context_size=0:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
 export UBSAN_OPTIONS=print_stacktrace=1
 
 targets=("$@")

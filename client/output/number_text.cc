@@ -18,10 +18,13 @@ constexpr double kLargest = 1e7;
 // Digits before rounding may carry (0.0996 -> 0.100): harmless, one digit more than needed.
 int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); }
 
+std::string Significant(double x) { return absl::StrFormat("%.6g", x); }
+
 std::string Fixed(double x, int decimals) { return absl::StrFormat("%.*f", decimals, x); }
 
 std::string Scientific(double x, int last_digit) {
   if (x == 0) return "0";
+  if (!std::isfinite(x)) return Significant(x);  // it has no exponent
   return absl::StrFormat("%.*e", std::max(0, DecimalExponent(x) - last_digit), x);
 }
 
@@ -29,8 +32,6 @@ std::string Scientific(double x, int last_digit) {
 std::string RoundedAt(double x, int last_digit, bool scientific) {
   return scientific ? Scientific(x, last_digit) : Fixed(x, std::max(0, -last_digit));
 }
-
-std::string Significant(double x) { return absl::StrFormat("%.6g", x); }
 
 }  // namespace
 

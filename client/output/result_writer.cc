@@ -108,28 +108,32 @@ class TableWriter : public ResultWriter {
     models_.insert(Spelling(point.model()));
     parameters_.Include(point.parameters());
     reasons_.Add(point.parameters(), point.model(), point.reason());
-    points_.push_back(point);
-    points_.back().clear_histograms();
-    points_.back().clear_curves();
+    points_.push_back({point.parameters(), Spelling(point.model()), ExactText(point.samples()),
+                       ResultRows(point)});
   }
 
   void End() override {
     FindExtraColumns();
     out_ << Heading() << '\n';
     TextTable table(Columns());
-    for (const v1::PointResult& point : points_) AddRows(point, table);
+    for (const Point& point : points_) AddRows(point, table);
     if (!points_.empty()) table.Print(out_);
     reasons_.Print(out_);
   }
 
  private:
+  struct Point {
+    v1::PointParameters parameters;
+    std::string model, samples;
+    std::vector<ResultRow> rows;
+  };
+
   bool HasSeveralModels() const { return models_.size() > 1; }
 
   void FindExtraColumns() {
     for (const ExtraColumn& column : kExtraColumns) {
-      const bool present = std::any_of(points_.begin(), points_.end(), [&](const auto& point) {
-        const std::vector<ResultRow> rows = ResultRows(point);
-        return std::any_of(rows.begin(), rows.end(),
+      const bool present = std::any_of(points_.begin(), points_.end(), [&](const Point& point) {
+        return std::any_of(point.rows.begin(), point.rows.end(),
                            [&](const ResultRow& row) { return (row.*column.value).has_value(); });
       });
       if (present) extra_columns_.push_back(column);
@@ -157,16 +161,17 @@ class TableWriter : public ResultWriter {
     return columns;
   }
 
-  std::vector<std::string> PointCells(const v1::PointResult& point) const {
-    std::vector<std::string> cells = parameters_.Cells(point.parameters());
-    if (HasSeveralModels()) cells.push_back(Spelling(point.model()));
-    cells.push_back(ExactText(point.samples()));
+  std::vector<std::string> PointCells(const Point& point) const {
+    std::vector<std::string> cells = parameters_.Cells(point.parameters);
+    if (HasSeveralModels()) cells.push_back(point.model);
+    cells.push_back(point.samples);
     return cells;
   }
 
-  void AddRows(const v1::PointResult& point, TextTable& table) const {
-    for (const ResultRow& row : ResultRows(point)) {
-      std::vector<std::string> cells = PointCells(point);
+  void AddRows(const Point& point, TextTable& table) const {
+    const std::vector<std::string> point_cells = PointCells(point);
+    for (const ResultRow& row : point.rows) {
+      std::vector<std::string> cells = point_cells;
       const MeasuredText text = Measured(row.value, row.standard_error, row.exact);
       const std::string z = row.z_score ? absl::StrFormat("%+.2f", *row.z_score) : "";
       cells.insert(cells.end(), {row.name, text.value, text.error, text.exact, z});
@@ -177,7 +182,7 @@ class TableWriter : public ResultWriter {
 
   std::ostream& out_;
   v1::EnsembleJob job_;
-  std::vector<v1::PointResult> points_;
+  std::vector<Point> points_;
   std::set<std::string> models_;
   ParametersShown parameters_;
   ModelReasons reasons_;

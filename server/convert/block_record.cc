@@ -1,5 +1,7 @@
 #include "server/convert/block_record.h"
 
+#include <algorithm>
+
 #include "absl/status/status.h"
 #include "ballpiston/v1/storage.pb.h"
 #include "server/convert/deterministic_bytes.h"
@@ -43,6 +45,20 @@ Histogram HistogramOf(const v1::HistogramRecord& record) {
   return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
 }
 
+// As many in all bins together at the most: a sum of what is damaged may wrap.
+bool HoldsAtMost(uint64_t samples, const Histogram& histogram) {
+  for (const uint64_t count : histogram.counts) {
+    if (count > samples) return false;
+    samples -= count;
+  }
+  return true;
+}
+
+bool CountsNoSampleTwice(const BlockResult& result) {
+  return std::all_of(result.histograms.begin(), result.histograms.end(),
+                     [&](const Histogram& h) { return HoldsAtMost(result.samples, h); });
+}
+
 }  // namespace
 
 std::string BlockRecordBytes(const BlockResult& result) {
@@ -76,7 +92,8 @@ absl::Status CheckBlock(const PointExperiment& experiment, uint64_t block,
   const BlockPlan& plan = experiment.plan();
   if (block >= plan.Blocks()) return absl::DataLossError("a stored block lies beyond the last");
   const bool possible = result.samples <= plan.SamplesIn(block) &&
-                        result.health.max_energy_error >= 0;  // not NaN either
+                        result.health.max_energy_error >= 0 &&  // not NaN either
+                        CountsNoSampleTwice(result);
   if (possible && result.HasShapeOf(experiment.EmptyResult())) return absl::OkStatus();
   return absl::DataLossError("a stored block is not one of its experiment");
 }

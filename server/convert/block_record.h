@@ -19,7 +19,7 @@ std::string BlockRecordBytes(const BlockResult& result);
 absl::StatusOr<BlockResult> BlockResultFromBytes(const std::string& bytes);  // DATA_LOSS
 
 // DATA_LOSS unless the block is one of the plan's, with no more samples than planned, an error of
-// the energy, and the accumulators that merging relies on.
+// the energy, the accumulators that merging relies on, and no sample twice in a histogram.
 absl::Status CheckBlock(const PointExperiment& experiment, uint64_t block,
                         const BlockResult& result);
 

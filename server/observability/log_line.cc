@@ -27,29 +27,63 @@ bool IsHarmless(uint32_t c) {
   return !control && !separator && !direction;
 }
 
-// As JSON writes a character that it cannot, or need not, hold as it is.
-std::string Escape(uint32_t c) {
-  if (c == '\n') return "\\n";
-  if (c < 0x10000) return absl::StrFormat("\\u%04x", c);
-  const uint32_t rest = c - 0x10000;
-  return absl::StrFormat("\\u%04x\\u%04x", 0xD800 + (rest >> 10), 0xDC00 + (rest & 0x3FF));
+void AppendUnit(uint32_t unit, std::string& text) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  text += {'\\',
+           'u',
+           kDigits[unit >> 12],
+           kDigits[unit >> 8 & 0xF],
+           kDigits[unit >> 4 & 0xF],
+           kDigits[unit & 0xF]};
 }
 
-// `quoted`: quotes and backslashes are escaped as well. JSON has ASCII only.
+// As JSON writes a character that it cannot, or need not, hold as it is.
+void AppendEscape(uint32_t c, std::string& text) {
+  if (c == '\n') {
+    text += "\\n";
+  } else if (c < 0x10000) {
+    AppendUnit(c, text);
+  } else {
+    AppendUnit(0xD800 + ((c - 0x10000) >> 10), text);
+    AppendUnit(0xDC00 + ((c - 0x10000) & 0x3FF), text);
+  }
+}
+
+// How much of its beginning stands in either form as it is: all of nearly every text.
+size_t PlainLength(absl::string_view text, bool quoted) {
+  const auto is_plain = [quoted](char c) {
+    return c >= ' ' && c <= '~' && !(quoted && (c == '"' || c == '\\'));
+  };
+  return static_cast<size_t>(std::find_if_not(text.begin(), text.end(), is_plain) - text.begin());
+}
+
+// Takes the first character off the text.
+void AppendFirst(absl::string_view& text, bool ascii, bool quoted, std::string& escaped) {
+  const Utf8Character c = TakeUtf8(text);
+  if (quoted && (c.code == '"' || c.code == '\\')) {
+    escaped += {'\\', static_cast<char>(c.code)};
+  } else if (!IsHarmless(c.code) || (ascii && c.code >= 0x80)) {
+    AppendEscape(c.code, escaped);
+  } else {
+    escaped.append(c.bytes.data(), c.bytes.size());
+  }
+}
+
+// `quoted`: quotes and backslashes are escaped as well. JSON has ASCII only. Beyond the limit the
+// text is cut, between two characters.
 std::string Escaped(absl::string_view text, bool ascii, bool quoted, size_t limit) {
   std::string escaped;
   while (!text.empty()) {
-    const Utf8Character c = TakeUtf8(text);
-    std::string next;
-    if (quoted && (c.code == '"' || c.code == '\\')) {
-      next = {'\\', static_cast<char>(c.code)};
-    } else if (!IsHarmless(c.code) || (ascii && c.code >= 0x80)) {
-      next = Escape(c.code);
-    } else {
-      next = std::string(c.bytes);
-    }
-    if (escaped.size() + next.size() > limit) return absl::StrCat(escaped, kCut);
-    escaped += next;
+    const size_t plain =
+        std::min(PlainLength(text.substr(0, limit), quoted), limit - escaped.size());
+    escaped.append(text.data(), plain);
+    text.remove_prefix(plain);
+    if (text.empty()) break;
+    const size_t whole = escaped.size();
+    AppendFirst(text, ascii, quoted, escaped);
+    if (escaped.size() <= limit) continue;
+    escaped.resize(whole);
+    return absl::StrCat(escaped, kCut);
   }
   return escaped;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace ballpiston::client {
 namespace {
@@ -47,6 +48,15 @@ TEST(Measured, VeryLargeAndVerySmallNumbersHaveExponents) {
 TEST(Measured, TheExactValueStandsInTheSamePlaces) {
   EXPECT_EQ(Measured(21.63214, 0.1234, 21.62257).exact, "21.62");
   EXPECT_EQ(Measured(21.63214, 0.1234).exact, "");
+}
+
+// The limit may be beyond all numbers where the estimate is small.
+TEST(Measured, WhatIsNotFiniteHasNoDigits) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(Measured(1e-8, 1e-12, infinity).exact, "inf");
+  EXPECT_EQ(Measured(1e-8, 1e-12, -infinity).exact, "-inf");
+  EXPECT_EQ(Measured(1e-8, 1e-12, std::nan("")).exact, "nan");
+  EXPECT_EQ(Measured(0.5, 0.25, infinity).exact, "inf");
 }
 
 TEST(Measured, WithoutAnErrorSixDigits) {

@@ -29,7 +29,7 @@ void CheckCalls(const server::AccessList& list, const std::string& text) {
       Require(server::CheckPrincipalName(caller->name).ok(), "who comes in has a name");
     } else {
       Require(absl::IsUnauthenticated(caller.status()), "who is refused is told so");
-      RequireSendable(caller.status());
+      RequireSendable(caller.status(), text);
     }
   }
 }

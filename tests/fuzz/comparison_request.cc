@@ -27,7 +27,7 @@ void Check(const std::string& bytes) {
   const server::CheckedComparison checked = server::CheckComparison(request);
   if (checked.violations.empty()) return RequireRunnable(checked.spec);
   RequireNamed(checked.violations, "");
-  RequireSendable(server::InvalidRequest(checked.violations));
+  RequireSendable(server::InvalidRequest(checked.violations), bytes);
 }
 
 const Registration registration({.name = "comparison_request",

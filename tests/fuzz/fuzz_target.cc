@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "google/protobuf/text_format.h"
+#include "tests/fuzz/mutation.h"
 
 namespace ballpiston::fuzz {
 namespace {
@@ -44,6 +46,10 @@ const std::vector<FuzzTarget>& Targets() { return MutableTargets(); }
 
 void Require(bool is_so, const char* what) {
   if (!is_so) throw std::logic_error(what);
+}
+
+bool IsOneIn(size_t n, const std::string& input) {
+  return Dice(std::hash<std::string>()(input)).OneIn(n);
 }
 
 std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder) {

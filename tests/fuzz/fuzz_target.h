@@ -12,6 +12,7 @@
 #ifndef BALLPISTON_TESTS_FUZZ_FUZZ_TARGET_H_
 #define BALLPISTON_TESTS_FUZZ_FUZZ_TARGET_H_
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ const std::vector<FuzzTarget>& Targets();
 
 // Throws std::logic_error unless it is so.
 void Require(bool is_so, const char* what);
+
+// Whether this input is one of the one in n that a slow check is made of: the same ones every time.
+bool IsOneIn(size_t n, const std::string& input);
 
 // Inputs to begin with: the files of FOLDER/NAME, those called *.textproto as the bytes of the
 // message that they spell, and what the target makes itself. Throws if a file cannot be read.

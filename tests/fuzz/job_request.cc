@@ -17,12 +17,12 @@ void Check(const std::string& bytes) {
   const std::string request_id = check.RequestId(request.request_id());
   if (!check.ok()) {
     RequireNamed(check.violations(), "");
-    return RequireSendable(check.status());
+    return RequireSendable(check.status(), bytes);
   }
   Require(!id.empty() && server::JobIdOf(server::JobName(id)) == id, "a job has an id");
-  RequireSendable(server::JobNotFound(request.name()));
-  RequireSendable(server::JobAlreadyEnded(request.name(), "SUCCEEDED"));
-  RequireSendable(server::RequestIdReused(request_id));
+  RequireSendable(server::JobNotFound(request.name()), bytes);
+  RequireSendable(server::JobAlreadyEnded(request.name(), "SUCCEEDED"), bytes);
+  RequireSendable(server::RequestIdReused(request_id), bytes);
 }
 
 const Registration registration({.name = "job_request",

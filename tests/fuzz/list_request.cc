@@ -14,11 +14,12 @@ namespace {
 
 using server::RequestCheck;
 
-void CheckPage(const v1::ListResultsRequest& request, const std::string& list, int64_t first) {
+void CheckPage(const v1::ListResultsRequest& request, const std::string& bytes,
+               const std::string& list, int64_t first) {
   RequestCheck check;
   const int size = check.PageSize(request.page_size());
   const int64_t start = check.PageStart(request.page_token(), list, first);
-  if (!check.ok()) return RequireSendable(check.status());
+  if (!check.ok()) return RequireSendable(check.status(), bytes);
   Require(size >= 1 && size <= 1000, "a page has a size");
   Require(start >= 0, "a page has a start");
   Require(RequestCheck().PageStart(RequestCheck::PageToken(list, start), list, first) == start,
@@ -32,13 +33,13 @@ void Check(const std::string& bytes) {
   v1::ListResultsRequest request;
   if (!request.ParseFromString(bytes)) return;
   if (request.parent().empty()) {  // the other list: it has none
-    return CheckPage(request, "jobs", std::numeric_limits<int64_t>::max());
+    return CheckPage(request, bytes, "jobs", std::numeric_limits<int64_t>::max());
   }
   RequestCheck check;
   const std::string id = check.JobId("parent", request.parent());
-  if (!check.ok()) return RequireSendable(check.status());
+  if (!check.ok()) return RequireSendable(check.status(), bytes);
   Require(server::JobName(id) == request.parent(), "a name is its job's");
-  CheckPage(request, absl::StrCat("results:", id), 0);
+  CheckPage(request, bytes, absl::StrCat("results:", id), 0);
 }
 
 const Registration registration({.name = "list_request",

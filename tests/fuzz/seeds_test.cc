@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <exception>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include "tests/fuzz/mutation.h"
 
 namespace ballpiston::fuzz {
+
+// Its name, of which CTest makes the test's, instead of its bytes.
+void PrintTo(const FuzzTarget& target, std::ostream* out) { *out << target.name; }
+
 namespace {
 
 constexpr char kSeeds[] = BALLPISTON_FUZZ_SEEDS_DIR;

@@ -56,12 +56,16 @@ void RequireMerged(const PointExperiment& experiment, const BlockResult& block) 
           "what was merged can be told");
 }
 
+void RequireStored(const BlockResult& block) {
+  const std::string stored = server::BlockRecordBytes(block);
+  const absl::StatusOr<BlockResult> again = server::BlockResultFromBytes(stored);
+  Require(again.ok() && server::BlockRecordBytes(*again) == stored, "stored bytes come back");
+}
+
 void Check(const std::string& bytes) {
   const absl::StatusOr<BlockResult> block = server::BlockResultFromBytes(bytes);
   if (!block.ok()) return Require(absl::IsDataLoss(block.status()), "damage is DATA_LOSS");
-  const std::string stored = server::BlockRecordBytes(*block);
-  const absl::StatusOr<BlockResult> again = server::BlockResultFromBytes(stored);
-  Require(again.ok() && server::BlockRecordBytes(*again) == stored, "stored bytes come back");
+  if (IsOneIn(4, bytes)) RequireStored(*block);
   for (const auto& experiment : Known()) {
     const absl::Status fits = server::CheckBlock(*experiment, 0, *block);
     Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");

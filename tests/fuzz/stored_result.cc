@@ -9,12 +9,12 @@ namespace ballpiston::fuzz {
 namespace {
 
 // As ReadShortfall does.
-void CheckShortfall(const v1::PointResult& result) {
+void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
   constexpr double kTolerance = 0.01;
   const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
   const Estimate reached = server::FirstEstimateOf(result);
   if (MeetsTolerance(reached, kTolerance)) return;
-  RequireSendable(server::ToleranceNotReached(spec, 0, reached));
+  RequireSendable(server::ToleranceNotReached(spec, 0, reached), bytes);
 }
 
 void Check(const std::string& bytes) {
@@ -23,7 +23,7 @@ void Check(const std::string& bytes) {
   const std::string stored = server::PointResultBytes(*result);
   const absl::StatusOr<v1::PointResult> again = server::PointResultFromBytes(stored);
   Require(again.ok() && server::PointResultBytes(*again) == stored, "stored bytes come back");
-  CheckShortfall(*result);
+  CheckShortfall(*result, bytes);
   server::ClearDetails(*result);
   Require(result->histograms().empty() && result->curves().empty(), "details are left out");
   Require(server::PointResultBytes(*result).size() <= stored.size(), "nothing is added");

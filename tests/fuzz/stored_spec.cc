@@ -12,7 +12,7 @@ void Check(const std::string& bytes) {
   const std::string stored = server::SpecBytes(*spec);
   const absl::StatusOr<v1::EnsembleSpec> again = server::SpecFromBytes(stored);
   Require(again.ok() && server::SpecBytes(*again) == stored, "stored bytes come back");
-  RequireJudged(*spec);
+  RequireJudged(*spec, bytes);
 }
 
 const Registration registration({.name = "stored_spec",

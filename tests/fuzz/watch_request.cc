@@ -13,7 +13,7 @@ void Check(const std::string& bytes) {
   if (!request.ParseFromString(bytes)) return;
   server::RequestCheck check;
   check.JobId("name", request.name());
-  if (!check.ok()) RequireSendable(check.status());
+  if (!check.ok()) RequireSendable(check.status(), bytes);
   const auto token = server::ParseResumeToken(request.resume_token());
   if (!token) return;
   Require(token->finished >= 0, "a number of points");

@@ -59,6 +59,23 @@ TEST(BlockRecord, WhatItsExperimentCannotHaveWrittenIsDataLoss) {
   EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, no_error)));
 }
 
+TEST(BlockRecord, ABlockThatCountsASampleTwiceIsDataLoss) {
+  const EnsembleSpec spec = {.experiment = Experiment::kMarkovProperty,
+                             .grid = {.rho = {0.53}, .delta = {0.1}},
+                             .target = {.collisions = 1000}};
+  const auto experiment = PointExperiment::Create(spec, 0);
+  BlockResult block = experiment->EmptyResult();
+  block.samples = 3;
+  block.histograms[0].counts[0] = 1;
+  block.histograms[0].counts[1] = 2;
+  block.histograms[1].counts[0] = 3;
+  EXPECT_TRUE(CheckBlock(*experiment, 0, block).ok());
+  block.histograms[1].counts[1] = 1;
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, block)));
+  block.histograms[1].counts[1] = std::numeric_limits<uint64_t>::max();  // the sum is 2
+  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, block)));
+}
+
 v1::EnsembleSpec FirstHit() {
   v1::EnsembleSpec message;
   message.set_experiment(v1::EnsembleSpec::FIRST_HIT);

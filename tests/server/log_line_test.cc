@@ -111,6 +111,16 @@ TEST(LogLine, BytesThatAreNoTextBecomeReplacementCharacters) {
   EXPECT_EQ(TextIn(Parsed(Json("\xC0\x80")), "message"), "\xEF\xBF\xBD\xEF\xBF\xBD");
 }
 
+TEST(LogLine, ALongMessageIsCutBetweenTwoCharacters) {
+  const auto message = [](const std::string& text) {
+    return TextIn(Parsed(Json(text)), "message");
+  };
+  EXPECT_EQ(message(std::string(1500, 'x')), std::string(1500, 'x'));
+  EXPECT_EQ(message(std::string(1501, 'x')), std::string(1500, 'x') + "...");
+  EXPECT_EQ(message(std::string(1499, 'x') + "\"y"), std::string(1499, 'x') + "...");
+  EXPECT_EQ(message(std::string(1498, 'x') + "\"y"), std::string(1498, 'x') + "\"...");
+}
+
 TEST(LogLine, TwelveLongFieldsStillFitIntoALine) {
   const std::string text(1000, '"');
   EXPECT_LE(Json(text, {{"a", text},
