@@ -30,7 +30,7 @@ stability: build/release/.configured ## Show where methods fail and which do; wr
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out core/README.md
 
-torture: build/release/.configured ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (20 minutes)
+torture: build/release/.configured ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
 	@BALLPISTON_TORTURE=1 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 build/release/bin/torture_test --gtest_brief=1
