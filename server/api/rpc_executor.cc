@@ -13,7 +13,7 @@ int HalfOf(int threads) { return std::max(1, threads / 2); }
 RpcExecutor::RpcExecutor(int threads)
     : reads_(threads, HalfOf(threads)),
       writes_(threads, threads),
-      streams_(HalfOf(threads), HalfOf(threads)) {}
+      streams_(HalfOf(threads), HalfOf(HalfOf(threads))) {}
 
 RpcExecutor::~RpcExecutor() { Stop(); }
 

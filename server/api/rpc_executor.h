@@ -3,8 +3,9 @@
 //
 // Each kind of task has threads of its own: a thousand watches do not keep a call waiting, nor
 // calls that wait for the disk a watch, nor those that write those that read. Within a kind the
-// principals take turns, whatever the number of their tasks, and one that reads never has more than
-// half of the threads; the tasks of one principal begin in the order of posting. Thread-safe.
+// principals take turns, whatever the number of their tasks, and one never has more than half of
+// the threads, except of those that write; the tasks of one principal begin in the order of
+// posting. Thread-safe.
 #ifndef BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 #define BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 

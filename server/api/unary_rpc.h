@@ -85,6 +85,10 @@ grpc::ServerUnaryReactor* RunUnary(ServiceContext& service, grpc::CallbackServer
   auto* reactor = new UnaryReactor(service);  // owns itself until gRPC is done with it
   absl::StatusOr<Call> call = AdmitCall(service, *context, rule);
   absl::Status admitted = call.status();
+  // Told here, for all who would tell it may be waiting for the disk themselves.
+  if (admitted.ok() && rule.writes && service.store.stalled()) {
+    admitted = StoreFailure(absl::UnavailableError("store: the disk does not answer"));
+  }
   if (admitted.ok()) admitted = reactor->Hold(call->caller.name, request->ByteSizeLong());
   if (!admitted.ok()) {
     reactor->Finish(GrpcStatus(admitted));

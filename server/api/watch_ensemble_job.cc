@@ -23,6 +23,9 @@ constexpr int64_t kSnapshotsPerSecond = 1000;
 constexpr size_t kLargeSpec = size_t{64} << 10;
 constexpr int64_t kLargeMessages = int64_t{32} << 20;
 
+// So often a message that finds no room is tried again.
+constexpr std::chrono::milliseconds kBetweenTries(200);
+
 }  // namespace
 
 WatchReactor* WatchReactor::Start(ServiceContext& service, grpc::CallbackServerContext& context,
@@ -85,12 +88,17 @@ void WatchReactor::Look(Clock::time_point now) {
   {
     std::lock_guard lock(mutex_);
     if (ended_ || (writing_ && now < next_check_)) return;
-    const bool has_news = waits_for_room_ || now >= next_check_ ||
-                          (watched_ != nullptr && (watched_->last_state_change() > told_state_ ||
-                                                   IsBehind() || IsSnapshotDue(now)));
+    const bool may_have_room = waits_for_room_ && now >= next_try_;
+    const bool has_news = may_have_room || now >= next_check_ || HasNews(now);
     if (!has_news && now < next_heartbeat_ && !service_.draining) return;
   }
   Schedule();
+}
+
+bool WatchReactor::HasNews(Clock::time_point now) const {
+  if (watched_ == nullptr) return false;
+  const bool has_state = watched_->last_state_change() > told_state_ && !waits_for_room_;
+  return has_state || (told_state_ > 0 && (IsBehind() || IsSnapshotDue(now)));
 }
 
 // Requires the lock, or to be called by Advance, which alone changes what is told.
@@ -158,7 +166,7 @@ absl::Status WatchReactor::TellWhatIsNew() {
   }
   if (job_.active == nullptr) return TellOfEndedJob();
   absl::StatusOr<bool> told = TellState();
-  if (told.ok() && !*told && waits_for_room_) return absl::OkStatus();
+  if (told_state_ == 0) return told.status();  // the job comes first
   if (told.ok() && !*told) told = TellSnapshot();
   if (told.ok() && !*told) TellHeartbeat();
   return told.status();
@@ -191,12 +199,15 @@ void WatchReactor::AbandonWrite(const absl::Status& why) {
 }
 
 bool WatchReactor::TakeRoom(size_t bytes) {
+  const Clock::time_point now = Clock::now();
+  if (waits_for_room_ && now < next_try_) return false;
   const auto held = static_cast<int64_t>(bytes);
   HeldCalls& messages = service_.executor.held_messages();
   const bool large = bytes > kLargeSpec;
   const bool taken = !large || messages.TryBegin(caller_.name, held, kLargeMessages);
   std::lock_guard lock(mutex_);
   waits_for_room_ = !taken;
+  next_try_ = now + kBetweenTries;
   if (large && taken) bytes_held_ = held;
   return taken;
 }
@@ -297,9 +308,15 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
 }
 
 absl::Status WatchReactor::TellOfEndedJob() {
-  const absl::StatusOr<bool> told = TellFinishedPoints(job_.progress);
-  if (!told.ok() || *told) return told.status();
-  if (!TakeRoom(job_.spec_bytes)) return absl::OkStatus();
+  if (!told_all_points_) {
+    const absl::StatusOr<bool> told = TellFinishedPoints(job_.progress);
+    if (!told.ok() || *told) return told.status();
+    told_all_points_ = true;
+  }
+  if (!TakeRoom(job_.spec_bytes)) {
+    TellHeartbeat();
+    return absl::OkStatus();
+  }
   absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
   if (!ended.ok()) return ended.status();
   *message_.mutable_job() = *std::move(ended);

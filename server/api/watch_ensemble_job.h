@@ -85,6 +85,7 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   bool TakeRoom(size_t bytes);
   void LeaveRoom();
 
+  bool HasNews(Clock::time_point now) const;
   bool IsSnapshotDue(Clock::time_point now) const;
   bool IsBehind() const;  // by a whole message of finished points
   Clock::duration SnapshotInterval() const;
@@ -108,6 +109,7 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   WatchedJob job_;
   v1::WatchEnsembleJobResponse message_;
   std::string told_progress_;
+  bool told_all_points_ = false;  // of a job that had ended before
 
   std::mutex mutex_;  // never held while gRPC is called
   bool scheduled_ = false;
@@ -121,7 +123,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   std::shared_ptr<Job> watched_;  // job_.active
   uint64_t told_state_ = 0;       // numbers of changes
   uint64_t told_ = 0;
-  int64_t told_finished_ = 0;  // the number of a point
+  int64_t told_finished_ = 0;   // the number of a point
+  Clock::time_point next_try_;  // to find room
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
   Clock::time_point next_check_;  // of the credentials

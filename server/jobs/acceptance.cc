@@ -124,8 +124,10 @@ absl::Status Accept(Database& database, const Limits& limits, ActivePoints& poin
   if (!judged.ok() || !acceptance.refused.ok()) return judged;
   if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
   points.Add(record.id, record.principal, record.points);
-  const absl::Status inserted = InsertJob(database, acceptance.record);
-  return inserted.ok() ? KeepRequest(database, acceptance, acceptance.record.sequence) : inserted;
+  absl::Status made = InsertJob(database, acceptance.record);
+  if (made.ok()) made = KeepRequest(database, acceptance, acceptance.record.sequence);
+  if (!made.ok()) points.Remove(record.id);
+  return made;
 }
 
 }  // namespace ballpiston::server

@@ -53,9 +53,10 @@ absl::Status MakeDirectories(const std::string& path) {
 bool IsAServers(const std::string& path) {
   bool has_others = false;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
-    const std::string name = entry.path().filename();
-    const bool is_file = entry.symlink_status(error).type() == std::filesystem::file_type::regular;
+  std::filesystem::directory_iterator entry(path, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename();
+    const bool is_file = entry->symlink_status(error).type() == std::filesystem::file_type::regular;
     if (is_file && (name == kLockFile || name == kStoreFile)) return true;
     has_others |= !is_file || name != kClientsLog;
   }

@@ -185,7 +185,7 @@ bool Store::failing() const {
 
 bool Store::stalled() const {
   std::lock_guard lock(mutex_);
-  return batch_begin_ && Clock::now() - *batch_begin_ > options_.stall;
+  return group_begin_ && Clock::now() - *group_begin_ > options_.stall;
 }
 
 int64_t Store::commits() const {
@@ -249,7 +249,6 @@ Store::Batch Store::TakePending(bool retry) {
   requests_ = 0;
   ordered_ = 0;
   in_batch_ = batch.writes.size();
-  batch_begin_ = Clock::now();
   return batch;
 }
 
@@ -347,6 +346,10 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
 
 // After a failure even an empty group writes something: that the disk works is seen by writing.
 absl::Status Store::BeginGroup() {
+  {
+    std::lock_guard lock(mutex_);
+    group_begin_ = Clock::now();
+  }
   const absl::Status begun = writer_->Execute("BEGIN IMMEDIATE");
   if (!begun.ok() || !failing()) return begun;
   return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
@@ -376,7 +379,7 @@ void Store::Settle(Batch batch, const absl::Status& status) {
 void Store::Requeue(Writes again, size_t freed) {
   std::lock_guard lock(mutex_);
   in_batch_ = 0;
-  batch_begin_.reset();
+  group_begin_.reset();
   bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
   for (const Write& write : again) {

@@ -175,7 +175,7 @@ class Store {
   std::condition_variable written_;
   Writes pending_;
   size_t in_batch_ = 0;
-  std::optional<Clock::time_point> batch_begin_;  // of one that is being written
+  std::optional<Clock::time_point> group_begin_;  // of one that is being written
   size_t bytes_ = 0;                              // of pending_ and of the batch
   size_t urgent_ = 0;                             // among pending_; requests are
   size_t requests_ = 0;                           // among pending_

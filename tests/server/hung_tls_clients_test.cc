@@ -132,7 +132,7 @@ class OldConnections : public TlsClients {
  protected:
   OldConnections()
       : TlsClients(true, {.certified_age = std::chrono::milliseconds(200),
-                          .certified_age_grace = std::chrono::milliseconds(100)}) {}
+                          .certified_age_grace = std::chrono::milliseconds(1000)}) {}
 };
 
 // The connection is exchanged again and again while the job is held; whoever watches sees

