@@ -30,6 +30,20 @@ absl::Status BadFile(absl::string_view name, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", reason));
 }
 
+// The parser takes -0 for an integer, which has no sign, but keeps that of -0.0: a specification
+// that is printed and read again is to be the same.
+void DropSignsOfZeros(v1::EnsembleSpec& spec) {
+  if (spec.target().has_tolerance()) {
+    spec.mutable_target()->set_tolerance(spec.target().tolerance() + 0.0);
+  }
+  if (!spec.has_grid()) return;
+  v1::Grid& grid = *spec.mutable_grid();
+  for (auto* list : {grid.mutable_rho(), grid.mutable_delta(), grid.mutable_epsilon(),
+                     grid.mutable_exponent()}) {
+    for (double& number : *list) number += 0.0;
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path) {
@@ -47,7 +61,10 @@ absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::st
   }
   v1::EnsembleSpec spec;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &spec);
-  if (status.ok()) return spec;
+  if (status.ok()) {
+    DropSignsOfZeros(spec);
+    return spec;
+  }
   // The parser repeats a wrong value, however long it is.
   return BadFile(name, Shortened(std::string(status.message()), kLongestMessage));
 }

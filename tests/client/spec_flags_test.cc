@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "absl/strings/str_cat.h"
 #include "client/command/spec_file.h"
 
 namespace ballpiston::client {
@@ -195,6 +197,21 @@ TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
   ASSERT_TRUE(spec.ok()) << spec.status();
   EXPECT_EQ(spec->target().samples(), 100);
   EXPECT_EQ(spec->seed(), 7u);
+}
+
+TEST(SpecFile, ZeroHasNoSignHoweverItIsWritten) {
+  for (const char* zero : {"-0", "-0.0", "-.0", "-0e5", "0"}) {
+    const auto spec =
+        ParseSpec("s.json", absl::StrCat(R"({"grid": {"epsilon": [0.1, )", zero,
+                                         R"(]}, "target": {"tolerance": )", zero, "}}"));
+    ASSERT_TRUE(spec.ok()) << spec.status();
+    EXPECT_EQ(spec->grid().epsilon(0), 0.1);
+    for (const double number : {spec->grid().epsilon(1), spec->target().tolerance()}) {
+      EXPECT_EQ(number, 0);
+      EXPECT_FALSE(std::signbit(number)) << zero;
+    }
+  }
+  EXPECT_FALSE(ParseSpec("s.json", "{}")->has_grid());
 }
 
 TEST(SpecFile, RefusesWhatIsNotASpecification) {
