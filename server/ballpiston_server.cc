@@ -46,12 +46,9 @@ void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::millis
 }
 
 void SetPings(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
-  const auto set = [&](const char* argument, std::chrono::milliseconds time) {
-    Set(builder, argument, time);
-  };
-  set(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
-  set(GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
-  set(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, timing.ping_timeout);
+  Set(builder, GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, timing.handshake);
+  Set(builder, GRPC_ARG_KEEPALIVE_TIME_MS, timing.ping_interval);
+  Set(builder, GRPC_ARG_KEEPALIVE_TIMEOUT_MS, timing.ping_timeout);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // no limit
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kMinPingIntervalMs);

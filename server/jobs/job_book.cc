@@ -456,8 +456,7 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller
   if (!record.ok()) return record.status();
   if (HasEnded(record->state)) return nullptr;
   // Committed a moment ago: it is in the book when the store has gone on to the next commit.
-  const absl::Status settled =
-      store_.stalled() ? absl::UnavailableError("store: the disk does not answer") : store_.Flush();
+  const absl::Status settled = store_.Flush();
   if (!settled.ok()) return StoreFailure(settled);
   return ActiveOrNull(caller, id);
 }

@@ -50,9 +50,7 @@ Store::~Store() { Close(); }
 // ---- posting ----
 
 absl::Status Store::Commit(Change change, Done done) {
-  if (!stalled()) return Await(std::move(change), std::move(done), false);
-  if (done) done(Stalled());
-  return Stalled();
+  return Await(std::move(change), std::move(done), false);
 }
 
 absl::Status Store::Flush() {
@@ -60,6 +58,10 @@ absl::Status Store::Flush() {
 }
 
 absl::Status Store::Await(Change change, Done done, bool ordered) {
+  if (stalled()) {
+    if (done) done(Stalled());
+    return Stalled();
+  }
   // Shared: the store's thread may still be leaving set_value when this one returns.
   auto committed = std::make_shared<std::promise<absl::Status>>();
   std::future<absl::Status> result = committed->get_future();
