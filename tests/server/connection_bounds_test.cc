@@ -1,6 +1,5 @@
 // What clients may take before it is known who they are: descriptors, streams, threads.
 #include <fcntl.h>
-#include <grpcpp/generic/generic_stub.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -21,6 +20,7 @@
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
 #include "tests/server/temporary_folder.h"
+#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -209,46 +209,6 @@ TEST(ConnectionBounds, RequestsThatNeverEndAreEndedWhenMemoryIsUsedUp) {
   }
 }
 
-// A bidirectional stream that says nothing.
-class SilentStream {
- public:
-  SilentStream(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
-      : stub_(channel) {
-    context_.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
-    call_ = stub_.PrepareCall(&context_, method, &queue_);
-    call_->StartCall(this);
-    Next();
-  }
-  ~SilentStream() {
-    context_.TryCancel();
-    Finish();
-    queue_.Shutdown();
-    Next();
-  }
-  SilentStream(const SilentStream&) = delete;
-  SilentStream& operator=(const SilentStream&) = delete;
-
-  grpc::Status Finish() {
-    if (!finished_) call_->Finish(&status_, this);
-    if (!std::exchange(finished_, true)) Next();
-    return status_;
-  }
-
- private:
-  void Next() {
-    void* tag = nullptr;
-    bool ok = false;
-    queue_.Next(&tag, &ok);
-  }
-
-  grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  grpc::GenericStub stub_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-  grpc::Status status_;
-  bool finished_ = false;
-};
-
 size_t Threads() {
   const std::filesystem::directory_iterator all("/proc/self/task");
   return static_cast<size_t>(std::distance(begin(all), end(all)));
@@ -260,9 +220,9 @@ TEST(ConnectionBounds, ReflectionTakesSoManyThreadsAndOtherCallsGoOn) {
   const std::string list_services("\x3a\x00", 2);
   ASSERT_TRUE(CallByName(server.channel(), kReflection, list_services, {}).ok());
   const size_t before = Threads();
-  std::vector<std::unique_ptr<SilentStream>> streams;
+  std::vector<std::unique_ptr<UnreadCall>> streams;
   for (int i = 0; i < 60; ++i) {
-    streams.push_back(std::make_unique<SilentStream>(server.channel(), kReflection));
+    streams.push_back(std::make_unique<UnreadCall>(server.channel(), kReflection));
   }
   // The last is refused, in a moment; it would be open as long as the client likes.
   EXPECT_EQ(streams.back()->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);

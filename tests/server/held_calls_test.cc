@@ -7,11 +7,11 @@
 
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
-#include "grpcpp/generic/generic_stub.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/running_server.h"
 #include "tests/server/temporary_folder.h"
+#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -65,46 +65,6 @@ TEST(HeldCalls, AMessageWaitsUntilThereIsRoom) {
   EXPECT_FALSE(messages.TryBegin("ann", 1, 10));
 }
 
-// A call whose answer is on its way and is not read.
-class UnreadCall {
- public:
-  UnreadCall(RunningServer& server, const std::string& method,
-             const google::protobuf::Message& request)
-      : stub_(server.channel()) {
-    call_ = stub_.PrepareCall(&context_, method, &queue_);
-    call_->StartCall(nullptr);
-    Await();
-    const grpc::Slice bytes(request.SerializeAsString());
-    call_->WriteLast(grpc::ByteBuffer(&bytes, 1), grpc::WriteOptions(), nullptr);
-    Await();
-    call_->ReadInitialMetadata(nullptr);  // comes with the answer
-    Await();
-  }
-  ~UnreadCall() {
-    context_.TryCancel();
-    call_->Finish(&status_, nullptr);
-    Await();
-    queue_.Shutdown();
-    void* tag = nullptr;
-    bool ok = false;
-    while (queue_.Next(&tag, &ok)) {
-    }
-  }
-
- private:
-  void Await() {
-    void* tag = nullptr;
-    bool ok = false;
-    EXPECT_TRUE(queue_.Next(&tag, &ok));
-  }
-
-  grpc::GenericStub stub_;
-  grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  grpc::Status status_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-};
-
 class UnreadAnswers : public testing::Test {
  protected:
   ~UnreadAnswers() override { gate_.Open(); }
@@ -132,8 +92,11 @@ class UnreadAnswers : public testing::Test {
   std::unique_ptr<UnreadCall> Unread() {
     v1::GetEnsembleJobRequest request;
     request.set_name(name_);
-    return std::make_unique<UnreadCall>(*server_, "/ballpiston.v1.EnsembleService/GetEnsembleJob",
-                                        request);
+    auto call = std::make_unique<UnreadCall>(server_->channel(),
+                                             "/ballpiston.v1.EnsembleService/GetEnsembleJob");
+    call->Send(request.SerializeAsString());
+    call->AwaitAnswer();
+    return call;
   }
 
   void ExpectRefusedUntilLetGo(const std::string& flag) {

@@ -1,5 +1,4 @@
 // A server behind TLS stops in time, whatever its clients do, and old connections are exchanged.
-#include <grpcpp/generic/generic_stub.h>
 #include <openssl/bio.h>
 #include <openssl/ssl.h>
 
@@ -14,6 +13,7 @@
 #include "tests/server/http_get.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
+#include "tests/server/unread_call.h"
 
 namespace ballpiston::server {
 namespace {
@@ -37,44 +37,6 @@ class SilentTlsConnection {
  private:
   const std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context_;
   const std::unique_ptr<BIO, void (*)(BIO*)> connection_;
-};
-
-// A call whose answers nobody reads.
-class UnreadCall {
- public:
-  UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-             const std::string& request)
-      : stub_(channel) {
-    context_.AddMetadata("authorization", std::string("Bearer ") + kAlice);
-    call_ = stub_.PrepareCall(&context_, method, &queue_);
-    call_->StartCall(this);
-    Await();
-    const grpc::Slice bytes(request);
-    call_->WriteLast(grpc::ByteBuffer(&bytes, 1), {}, this);
-    Await();
-  }
-  ~UnreadCall() {
-    context_.TryCancel();
-    grpc::Status status;
-    call_->Finish(&status, this);
-    Await();
-    queue_.Shutdown();
-    Await();
-  }
-  UnreadCall(const UnreadCall&) = delete;
-  UnreadCall& operator=(const UnreadCall&) = delete;
-
- private:
-  void Await() {
-    void* tag = nullptr;
-    bool ok = false;
-    queue_.Next(&tag, &ok);
-  }
-
-  grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
-  grpc::GenericStub stub_;
-  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
 };
 
 class TlsClients : public testing::Test {
@@ -120,8 +82,10 @@ TEST_F(TlsClients, ThatHangDoNotKeepTheServerFromStopping) {
   Connection half_a_handshake(server_->address());
   half_a_handshake.Send("\x16\x03\x01");
   const SilentTlsConnection silent(server_->address());
-  const UnreadCall watch(channel_, kWatch, request.SerializeAsString());
-  const UnreadCall health(channel_, "/grpc.health.v1.Health/Watch", std::string("\x0a\0", 2));
+  UnreadCall watch(channel_, kWatch, kAlice);
+  watch.Send(request.SerializeAsString());
+  UnreadCall health(channel_, "/grpc.health.v1.Health/Watch", kAlice);
+  health.Send(std::string("\x0a\0", 2));
   auto stopped =
       std::async(std::launch::async, [this] { server_->Shutdown(std::chrono::milliseconds(300)); });
   // The limit tells a stop from none; a busy machine may take long to start a thread.
