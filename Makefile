@@ -38,7 +38,7 @@ torture: build/release/.configured ## Cut the power, kill the server a thousand 
 asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 	@ctest --preset asan -j$(TEST_JOBS)
 
-# gRPC is not instrumented: what it does on its own is not judged (tests/sanitizer).
+# gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: build-tsan ## Run the fast tests under the thread sanitizer
 	@ctest --preset tsan -j$(TEST_JOBS)
 

@@ -15,6 +15,7 @@
 
 #include "absl/flags/flag.h"
 #include "absl/flags/parse.h"
+#include "absl/flags/reflection.h"
 #include "absl/flags/usage.h"
 #include "absl/flags/usage_config.h"
 #include "absl/strings/match.h"
@@ -156,7 +157,8 @@ std::vector<char*> ParseFlags(int argc, char** argv) {
   return positional;
 }
 
-absl::Status OutOfRange(const char* flag, const std::string& value, const std::string& permitted) {
+absl::Status OutOfRange(absl::string_view flag, const std::string& value,
+                        const std::string& permitted) {
   return absl::InvalidArgumentError(
       absl::StrCat("--", flag, "=", value, " is out of range; permitted: ", permitted));
 }
@@ -194,7 +196,7 @@ absl::StatusOr<LogOptions> ParseLogOptions() {
 }
 
 // A number from 0, which is no limit.
-absl::Status CheckLimit(const char* flag, double value) {
+absl::Status CheckLimit(absl::string_view flag, double value) {
   return value >= 0 ? absl::OkStatus() : OutOfRange(flag, absl::StrCat(value), "0 (none) and more");
 }
 
@@ -210,35 +212,25 @@ absl::Status CheckTransfer(const Limits& limits) {
 
 absl::StatusOr<Limits> LimitFlags() {
   Limits limits;
-  limits.max_active_jobs = absl::GetFlag(FLAGS_max_active_jobs);
-  limits.max_active_jobs_per_principal = absl::GetFlag(FLAGS_max_active_jobs_per_principal);
-  limits.max_active_points = absl::GetFlag(FLAGS_max_active_points);
-  limits.max_active_points_per_principal = absl::GetFlag(FLAGS_max_active_points_per_principal);
-  limits.max_points_per_job = absl::GetFlag(FLAGS_max_points_per_job);
-  limits.max_samples_per_job = absl::GetFlag(FLAGS_max_samples_per_job);
-  limits.max_streams = absl::GetFlag(FLAGS_max_streams);
-  limits.max_streams_per_principal = absl::GetFlag(FLAGS_max_streams_per_principal);
-  limits.max_calls_per_principal = absl::GetFlag(FLAGS_max_calls_per_principal);
-  limits.max_call_bytes_per_principal = absl::GetFlag(FLAGS_max_call_bytes_per_principal);
+  absl::Status valid;
+  const auto read = [&valid](const auto& flag, auto& limit) {
+    limit = absl::GetFlag(flag);
+    const auto name = absl::GetFlagReflectionHandle(flag).Name();
+    if (valid.ok()) valid = CheckLimit(name, static_cast<double>(limit));
+  };
+  read(FLAGS_max_active_jobs, limits.max_active_jobs);
+  read(FLAGS_max_active_jobs_per_principal, limits.max_active_jobs_per_principal);
+  read(FLAGS_max_active_points, limits.max_active_points);
+  read(FLAGS_max_active_points_per_principal, limits.max_active_points_per_principal);
+  read(FLAGS_max_points_per_job, limits.max_points_per_job);
+  read(FLAGS_max_samples_per_job, limits.max_samples_per_job);
+  read(FLAGS_max_streams, limits.max_streams);
+  read(FLAGS_max_streams_per_principal, limits.max_streams_per_principal);
+  read(FLAGS_max_calls_per_principal, limits.max_calls_per_principal);
+  read(FLAGS_max_call_bytes_per_principal, limits.max_call_bytes_per_principal);
+  if (!valid.ok()) return valid;
   limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
   limits.max_transfer_mib = absl::GetFlag(FLAGS_max_transfer_mib);
-  for (const absl::Status& status :
-       {CheckLimit("max_active_jobs", static_cast<double>(limits.max_active_jobs)),
-        CheckLimit("max_active_jobs_per_principal",
-                   static_cast<double>(limits.max_active_jobs_per_principal)),
-        CheckLimit("max_active_points", static_cast<double>(limits.max_active_points)),
-        CheckLimit("max_active_points_per_principal",
-                   static_cast<double>(limits.max_active_points_per_principal)),
-        CheckLimit("max_points_per_job", static_cast<double>(limits.max_points_per_job)),
-        CheckLimit("max_samples_per_job", limits.max_samples_per_job),
-        CheckLimit("max_streams", static_cast<double>(limits.max_streams)),
-        CheckLimit("max_streams_per_principal",
-                   static_cast<double>(limits.max_streams_per_principal)),
-        CheckLimit("max_calls_per_principal", static_cast<double>(limits.max_calls_per_principal)),
-        CheckLimit("max_call_bytes_per_principal",
-                   static_cast<double>(limits.max_call_bytes_per_principal))}) {
-    if (!status.ok()) return status;
-  }
   if (limits.max_message_bytes < kLeastMessage || limits.max_message_bytes > kMostMessage) {
     return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
                       absl::StrCat(kLeastMessage, " to ", kMostMessage));

@@ -22,7 +22,7 @@ const char* HintOf(const std::string& reason) {
   if (reason == "TOO_MANY_POINTS") return "Split the grid between several jobs.";
   if (reason == "TOO_MANY_SAMPLES") return "Ask for fewer a point, or split the grid.";
   if (reason == "QUEUE_FULL") return "Try again when some of them have ended.";
-  if (reason == "TOO_MANY_JOBS") {
+  if (reason == "TOO_MANY_JOBS" || reason == "TOO_MANY_ACTIVE_POINTS") {
     return "Wait until some of them have ended, or cancel some: ballpiston list, ballpiston cancel "
            "JOB";
   }

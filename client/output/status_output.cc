@@ -30,6 +30,8 @@ std::string CountText(double count) {
 
 std::string LimitText(double limit) { return limit == 0 ? "no limit" : CountText(limit); }
 
+std::string ByteLimitText(double limit) { return limit == 0 ? "no limit" : BytesText(limit); }
+
 // 490 million a second.
 std::string SpeedText(double seconds) {
   if (seconds <= 0) return "?";
@@ -76,14 +78,16 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
   TextTable table({{"limit", kLeft}, {"all"}, {"a principal"}});
   table.AddRow({"active jobs", LimitText(limits.max_active_jobs()),
                 LimitText(limits.max_active_jobs_per_principal())});
+  table.AddRow({"their points", LimitText(limits.max_active_points()),
+                LimitText(limits.max_active_points_per_principal())});
   table.AddRow(
       {"streams", LimitText(limits.max_streams()), LimitText(limits.max_streams_per_principal())});
+  table.AddRow({"calls", "no limit", LimitText(limits.max_calls_per_principal())});
+  table.AddRow({"their bytes", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
   TextTable requests({{"limit", kLeft}, {"a job"}});
   requests.AddRow({"points", LimitText(limits.max_points_per_job())});
   requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
-  requests.AddRow({"message", limits.max_message_bytes() == 0
-                                  ? "no limit"
-                                  : BytesText(limits.max_message_bytes())});
+  requests.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
   out << '\n';
   table.Print(out);
   out << '\n';

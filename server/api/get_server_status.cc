@@ -43,6 +43,12 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
   message.set_max_streams(static_cast<double>(limits.max_streams));
   message.set_max_streams_per_principal(static_cast<double>(limits.max_streams_per_principal));
   message.set_max_message_bytes(static_cast<double>(limits.max_message_bytes));
+  message.set_max_active_points(static_cast<double>(limits.max_active_points));
+  message.set_max_active_points_per_principal(
+      static_cast<double>(limits.max_active_points_per_principal));
+  message.set_max_calls_per_principal(static_cast<double>(limits.max_calls_per_principal));
+  message.set_max_call_bytes_per_principal(
+      static_cast<double>(limits.max_call_bytes_per_principal));
   return message;
 }
 

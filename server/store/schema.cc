@@ -198,16 +198,17 @@ bool WasInterruptedAtFirstPage(const std::string& path, const Database& database
   return bytes.ok() && *bytes <= kFirstPageBytes && Database::Exists(path + "-journal", vfs);
 }
 
-// A connection that only reads still makes an (empty) log and its index, if there are none.
-class LogRemoval {
+// A connection that only reads still makes an (empty) log and its index, if there are none. They go
+// with a file that is refused, which nobody else has open then.
+class LogOfRefused {
  public:
-  LogRemoval(const std::string& path, const std::string& vfs) {
+  LogOfRefused(const std::string& path, const std::string& vfs) {
     if (!vfs.empty()) return;
     for (const char* suffix : {"-wal", "-shm"}) {
       if (access((path + suffix).c_str(), F_OK) != 0) added_.push_back(path + suffix);
     }
   }
-  ~LogRemoval() {
+  ~LogOfRefused() {
     for (const std::string& file : added_) {
       struct stat found {};
       const bool is_log = file.ends_with("-wal");
@@ -216,20 +217,28 @@ class LogRemoval {
     }
   }
 
+  void Keep() { added_.clear(); }
+
  private:
   std::vector<std::string> added_;
 };
 
 // Through a connection that cannot write.
-absl::Status CheckFile(const std::string& path, const std::string& vfs) {
-  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
-  if (!Database::Exists(path, vfs)) return absl::OkStatus();
-  const LogRemoval removal(path, vfs);
+absl::Status CheckFileToRead(const std::string& path, const std::string& vfs) {
   const auto database = Database::Open(path, Database::Mode::kReadOnly, vfs);
   if (!database.ok()) return RefusedFor(path, database.status());
   if (WasInterruptedAtFirstPage(path, **database, vfs)) return absl::OkStatus();
   const absl::Status log = CheckLog(path, **database, vfs);
   return log.ok() ? CheckContents(path, **database) : log;
+}
+
+absl::Status CheckFile(const std::string& path, const std::string& vfs) {
+  if (IsFolder(path)) return Refused(path, "is a folder, not a file");
+  if (!Database::Exists(path, vfs)) return absl::OkStatus();
+  LogOfRefused log(path, vfs);
+  const absl::Status checked = CheckFileToRead(path, vfs);
+  if (checked.ok()) log.Keep();
+  return checked;
 }
 
 absl::Status MakeTables(Database& database) {

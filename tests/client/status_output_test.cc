@@ -22,7 +22,9 @@ v1::ServerStatus Busy() {
          processor_seconds: 5400 rates { wall_hit: 2e-9 jump: 8e-9 }
          limits { max_active_jobs: 10000 max_active_jobs_per_principal: 1000
                   max_points_per_job: 100000 max_samples_per_job: 1e15 max_streams: 4096
-                  max_streams_per_principal: 2048 max_message_bytes: 4194304 }
+                  max_streams_per_principal: 2048 max_message_bytes: 4194304
+                  max_active_points: 20000000 max_active_points_per_principal: 5000000
+                  max_calls_per_principal: 1024 max_call_bytes_per_principal: 134217728 }
          principal: "alice" role: "submit"
          principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 })",
       &status));
@@ -52,9 +54,12 @@ store     68 KiB
 principal  queued  running  streams
 alice           3        1        4
 
-limit          all  a principal
-active jobs  10000         1000
-streams       4096         2048
+limit              all  a principal
+active jobs      10000         1000
+their points     2e+07      5000000
+streams           4096         2048
+calls         no limit         1024
+their bytes   no limit      128 MiB
 
 limit      a job
 points    100000
@@ -67,7 +72,7 @@ TEST(StatusOutput, ALimitOfZeroIsNone) {
   v1::ServerStatus status = Busy();
   status.mutable_limits()->Clear();
   const std::string table = Printed(status);
-  EXPECT_THAT(table, HasSubstr("active jobs  no limit     no limit\n"));
+  EXPECT_THAT(table, HasSubstr("active jobs   no limit     no limit\n"));
   EXPECT_THAT(table, HasSubstr("message  no limit\n"));
 }
 

@@ -55,6 +55,7 @@ const std::vector<Rule>& Rules() {
        true},
       {"tests/oracle/", {"core/", "tests/oracle/", "Eigen/", "absl/", "hwy/"}, true},
       {"tests/benchmark/", {"core/", "server/execution/", "hwy/", "benchmark/"}, true},
+      {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
       {"tests/client/",
        {"client/", "tests/client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/",
         "CLI/", "gtest/", "gmock/"},

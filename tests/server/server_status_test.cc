@@ -6,8 +6,12 @@
 
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/server.h"
+#include "grpcpp/server_builder.h"
 #include "gtest/gtest.h"
 #include "server/api/methods.h"
+#include "server/api/services.h"
 #include "server/convert/spec.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/running_server.h"
@@ -140,25 +144,54 @@ TEST(ServerStatus, IsServedToWhoeverIsLetIn) {
   EXPECT_EQ(status.principals_size(), 0);
 }
 
-class HangingDiskStatusTest : public ServerStatusTest {
+class HangingDiskTest : public ServerStatusTest {
  protected:
-  HangingDiskStatusTest() : ServerStatusTest({.stall = std::chrono::milliseconds(1)}) {}
+  HangingDiskTest() : ServerStatusTest({.stall = std::chrono::milliseconds(1)}) {
+    gate_.AwaitWaiting(1);
+    while (!store_->stalled()) std::this_thread::yield();
+  }
+  ~HangingDiskTest() override {
+    gate_.Open();
+    hanging_.join();
+  }
+
+ private:
+  void Hang() {
+    const auto hang = [this](Database&) {
+      gate_.Pass(std::stop_token());
+      return absl::OkStatus();
+    };
+    store_->Commit(hang).IgnoreError();
+  }
+
+  std::thread hanging_{[this] { Hang(); }};
 };
 
-TEST_F(HangingDiskStatusTest, ADiskThatHangsIsAStoreThatFails) {
-  std::thread hanging([this] {
-    store_
-        ->Commit([this](Database&) {
-          gate_.Pass(std::stop_token());
-          return absl::OkStatus();
-        })
-        .IgnoreError();
-  });
-  gate_.AwaitWaiting(1);
-  while (!store_->stalled()) std::this_thread::yield();
+TEST_F(HangingDiskTest, IsAStoreThatFails) {
   EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
-  gate_.Open();
-  hanging.join();
+}
+
+// One thread runs the calls: any that waited would be the last.
+TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndOthersAnswered) {
+  EnsembleService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = grpc::ServerBuilder()
+                          .RegisterService(&service)
+                          .AddListeningPort(address, grpc::InsecureServerCredentials())
+                          .BuildAndStart();
+  const auto stub = v1::EnsembleService::NewStub(
+      grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+  for (int i = 0; i < 20; ++i) {
+    grpc::ClientContext create, list;
+    v1::CreateEnsembleJobRequest request;
+    *request.mutable_spec() = Equilibrium(1, 1);
+    v1::EnsembleJob job;
+    const grpc::Status refused = stub->CreateEnsembleJob(&create, request, &job);
+    EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE) << refused.error_message();
+    EXPECT_EQ(DetailsOf(refused).reason, "STORE_FAILED");
+    v1::ListEnsembleJobsResponse jobs;
+    EXPECT_TRUE(stub->ListEnsembleJobs(&list, {}, &jobs).ok());
+  }
 }
 
 }  // namespace

@@ -1,0 +1,125 @@
+// Tells the thread sanitizer of the order that gRPC keeps between threads.
+//
+// gRPC's library and Abseil's are not instrumented, so what orders their threads is not seen. This
+// library comes before them in the order in which symbols are looked up, and stands between:
+//   - a lock of theirs orders what was done before it was let go and what is done when it is had;
+//   - what was done before a call was handed to gRPC (a write, an end) comes before the reaction.
+// Nothing else is ordered: what a reaction and a thread of the server's own do to the same variable
+// races as before (seeded_race.cc). The names are those of Debian's gRPC 1.51 and Abseil 20220623;
+// under others the sanitizer reports what these keep it from.
+#include <dlfcn.h>
+#include <sanitizer/tsan_interface.h>
+
+#include "absl/time/time.h"
+#include "grpc/grpc.h"
+
+#define MUTEX "_ZN4absl7debian35Mutex"
+#define CONDITION "_ZN4absl7debian37CondVar"
+#define SCHEDULE_ON_DONE "_ZN4grpc8internal18ServerCallbackCall14ScheduleOnDoneEb"
+#define RUN_REACTION \
+  "_ZN4grpc8internal22CallbackWithSuccessTag9StaticRunEP29grpc_completion_queue_functori"
+
+namespace {
+
+// Whom this library stands before.
+template <typename Function>
+Function* Next(Function*, const char* symbol) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, symbol));
+}
+
+}  // namespace
+
+extern "C" {
+
+// ---- absl::Mutex and absl::CondVar ----
+
+void MutexLock(void* mutex) __asm__(MUTEX "4LockEv");
+void MutexLock(void* mutex) {
+  static const auto lock = Next(MutexLock, MUTEX "4LockEv");
+  lock(mutex);
+  __tsan_acquire(mutex);
+}
+
+bool MutexTryLock(void* mutex) __asm__(MUTEX "7TryLockEv");
+bool MutexTryLock(void* mutex) {
+  static const auto try_lock = Next(MutexTryLock, MUTEX "7TryLockEv");
+  const bool locked = try_lock(mutex);
+  if (locked) __tsan_acquire(mutex);
+  return locked;
+}
+
+void MutexUnlock(void* mutex) __asm__(MUTEX "6UnlockEv");
+void MutexUnlock(void* mutex) {
+  static const auto unlock = Next(MutexUnlock, MUTEX "6UnlockEv");
+  __tsan_release(mutex);
+  unlock(mutex);
+}
+
+void Wait(void* condition, void* mutex) __asm__(CONDITION "4WaitEPNS0_5MutexE");
+void Wait(void* condition, void* mutex) {
+  static const auto wait = Next(Wait, CONDITION "4WaitEPNS0_5MutexE");
+  __tsan_release(mutex);
+  wait(condition, mutex);
+  __tsan_acquire(mutex);
+}
+
+bool WaitFor(void* condition, void* mutex,
+             absl::Duration timeout) __asm__(CONDITION
+                                             "15WaitWithTimeoutEPNS0_5MutexENS0_8DurationE");
+bool WaitFor(void* condition, void* mutex, absl::Duration timeout) {
+  static const auto wait = Next(WaitFor, CONDITION "15WaitWithTimeoutEPNS0_5MutexENS0_8DurationE");
+  __tsan_release(mutex);
+  const bool timed_out = wait(condition, mutex, timeout);
+  __tsan_acquire(mutex);
+  return timed_out;
+}
+
+bool WaitUntil(void* condition, void* mutex,
+               absl::Time deadline) __asm__(CONDITION "16WaitWithDeadlineEPNS0_5MutexENS0_4TimeE");
+bool WaitUntil(void* condition, void* mutex, absl::Time deadline) {
+  static const auto wait = Next(WaitUntil, CONDITION "16WaitWithDeadlineEPNS0_5MutexENS0_4TimeE");
+  __tsan_release(mutex);
+  const bool timed_out = wait(condition, mutex, deadline);
+  __tsan_acquire(mutex);
+  return timed_out;
+}
+
+// ---- calls and their reactions ----
+
+using Functor = grpc_completion_queue_functor;
+
+// grpc::internal::CallbackWithSuccessTag::StaticRun: what gRPC begins a reaction with.
+void RunReaction(Functor* tag, int ok) __asm__(RUN_REACTION);
+
+static void RunReactionAfterHandover(Functor* tag, int ok) {
+  __tsan_acquire(tag);
+  RunReaction(tag, ok);
+}
+
+// Other tags than a reaction's are no functors, and begin with something else.
+static void ObserveReaction(void* tag) {
+  auto* functor = static_cast<Functor*>(tag);
+  if (functor->functor_run == RunReaction) functor->functor_run = RunReactionAfterHandover;
+}
+
+grpc_call_error grpc_call_start_batch(grpc_call* call, const grpc_op* ops, size_t count, void* tag,
+                                      void* reserved) {
+  static const auto start = Next(grpc_call_start_batch, "grpc_call_start_batch");
+  if (tag != nullptr) {
+    ObserveReaction(tag);
+    __tsan_release(tag);
+  }
+  return start(call, ops, count, tag, reserved);
+}
+
+// grpc::internal::ServerCallbackCall::ScheduleOnDone, asked for by whoever counts the outstanding
+// reactions down to none: which gRPC's library may be. The count is behind the table of virtual
+// functions and another one. A call's last reaction runs here, not on a further thread.
+void ScheduleOnDone(void* call, bool here) __asm__(SCHEDULE_ON_DONE);
+void ScheduleOnDone(void* call, bool) {
+  static const auto schedule = Next(ScheduleOnDone, SCHEDULE_ON_DONE);
+  __tsan_acquire(static_cast<char*>(call) + sizeof(void*) + sizeof(int));
+  schedule(call, true);
+}
+
+}  // extern "C"
