@@ -199,7 +199,7 @@ bool WasInterruptedAtFirstPage(const std::string& path, const Database& database
 }
 
 // A connection that only reads still makes an (empty) log and its index, if there are none. They go
-// with a file that is refused, which nobody else has open then.
+// with a file that is refused, unless somebody has written to the log meanwhile.
 class LogOfRefused {
  public:
   LogOfRefused(const std::string& path, const std::string& vfs) {
@@ -209,10 +209,10 @@ class LogOfRefused {
     }
   }
   ~LogOfRefused() {
-    for (const std::string& file : added_) {
+    for (const std::string& file : added_) {  // the log first
       struct stat found {};
       const bool is_log = file.ends_with("-wal");
-      if (is_log && (stat(file.c_str(), &found) != 0 || found.st_size > 0)) continue;
+      if (is_log && stat(file.c_str(), &found) == 0 && found.st_size > 0) return;
       unlink(file.c_str());
     }
   }

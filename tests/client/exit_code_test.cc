@@ -37,7 +37,8 @@ TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
   }
   for (const char* reason :
-       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_STREAMS", "STORE_FULL", "COMPARISON_RUNNING"}) {
+       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_STREAMS",
+        "TOO_MANY_CALLS", "STORE_FULL", "COMPARISON_RUNNING"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }

@@ -4,9 +4,12 @@
 // library comes before them in the order in which symbols are looked up, and stands between:
 //   - a lock of theirs orders what was done before it was let go and what is done when it is had;
 //   - what was done before a call was handed to gRPC (a write, an end) comes before the reaction.
-// Nothing else is ordered: what a reaction and a thread of the server's own do to the same variable
-// races as before (seeded_race.cc). The names are those of Debian's gRPC 1.51 and Abseil 20220623;
-// under others the sanitizer reports what these keep it from.
+// What a reaction and a thread of the server's own do to the same variable races as before
+// (seeded_race.cc). Two threads that both call gRPC may be ordered by its locks by chance, as by
+// any lock: a race between them is seen in some runs only. Not stood in for, because nothing here
+// uses it: readers' locks, conditions of absl::Mutex, reactions of the client's callback API.
+//
+// The names and the layout are those of Debian's gRPC 1.51 and Abseil 20220623.
 #include <dlfcn.h>
 #include <sanitizer/tsan_interface.h>
 
@@ -114,12 +117,12 @@ grpc_call_error grpc_call_start_batch(grpc_call* call, const grpc_op* ops, size_
 
 // grpc::internal::ServerCallbackCall::ScheduleOnDone, asked for by whoever counts the outstanding
 // reactions down to none: which gRPC's library may be. The count is behind the table of virtual
-// functions and another one. A call's last reaction runs here, not on a further thread.
+// functions and another one.
 void ScheduleOnDone(void* call, bool here) __asm__(SCHEDULE_ON_DONE);
-void ScheduleOnDone(void* call, bool) {
+void ScheduleOnDone(void* call, bool here) {
   static const auto schedule = Next(ScheduleOnDone, SCHEDULE_ON_DONE);
   __tsan_acquire(static_cast<char*>(call) + sizeof(void*) + sizeof(int));
-  schedule(call, true);
+  schedule(call, here);
 }
 
 }  // extern "C"

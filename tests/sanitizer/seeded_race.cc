@@ -1,6 +1,6 @@
 // A race on purpose: what gRPC's own thread does in a reaction, and a worker, count in the same
 // variable. gRPC is not instrumented, and whatever keeps the thread sanitizer from reporting gRPC's
-// own doings (grpc_handover.cc, tsan_suppressions.txt) must not keep it from reporting this.
+// own doings (grpc_handover.cc) must not keep it from reporting this.
 //
 //   seeded_race             has to be reported
 //   seeded_race --mended    the same with a lock: nothing may be

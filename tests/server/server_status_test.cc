@@ -44,7 +44,12 @@ class ServerStatusTest : public testing::Test {
 
   TemporaryFolder folder_;
   Gate gate_;
-  const Limits limits_ = {.max_active_jobs = 7, .max_samples_per_job = 0};
+  const Limits limits_ = {.max_active_jobs = 7,
+                          .max_active_points = 71,
+                          .max_active_points_per_principal = 72,
+                          .max_samples_per_job = 0,
+                          .max_calls_per_principal = 73,
+                          .max_call_bytes_per_principal = 1000};
   Authenticator authenticator_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
@@ -93,6 +98,10 @@ TEST_F(ServerStatusTest, TellsWhatIsQueuedAndComputed) {
   EXPECT_GT(status.rates().jump(), 0);
   EXPECT_EQ(status.limits().max_active_jobs(), 7);
   EXPECT_EQ(status.limits().max_samples_per_job(), 0);
+  EXPECT_EQ(status.limits().max_active_points(), 71);
+  EXPECT_EQ(status.limits().max_active_points_per_principal(), 72);
+  EXPECT_EQ(status.limits().max_calls_per_principal(), 73);
+  EXPECT_EQ(status.limits().max_call_bytes_per_principal(), 1000);
   EXPECT_EQ(status.engine_version(), EngineVersion());
 }
 
@@ -183,6 +192,9 @@ TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndOthersAnswered) {
       grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   for (int i = 0; i < 20; ++i) {
     grpc::ClientContext create, list;
+    const auto deadline = std::chrono::system_clock::now() + std::chrono::seconds(20);
+    create.set_deadline(deadline);
+    list.set_deadline(deadline);
     v1::CreateEnsembleJobRequest request;
     *request.mutable_spec() = Equilibrium(1, 1);
     v1::EnsembleJob job;

@@ -117,7 +117,7 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   const client::EnsembleClient client(server.Connect());
   const auto job = client.Create(question);
   ASSERT_TRUE(job.ok()) << job.status();
-  const std::chrono::milliseconds length(Size(300, 250));
+  const std::chrono::milliseconds length(300);
   engine.Run(length);  // both warm
   ServerWindow(server, client, job->name(), length);
   const double least = kBlocksInWindow * engine.SamplesOfBlock();

@@ -29,7 +29,7 @@ class StalledReaders : public testing::Test {
   StalledReaders() : server_({.workers = 2}) {
     server_.Start();
     client_.emplace(server_.Connect());
-    const auto job = client_->Create(ManyPoints(kPoints, Size(5'000, 10'000)));
+    const auto job = client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)));
     if (!job.ok()) throw std::runtime_error(job.status().ToString());
     name_ = job->name();
     AwaitFinished(kFinishedBefore);

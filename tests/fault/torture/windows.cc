@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "absl/strings/str_format.h"
+#include "client/library/job_watch.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -24,6 +25,7 @@ Reading Read(const ServerProcess& server, const client::EnsembleClient& client,
              const std::string& job) {
   const auto now = client.Get(job);
   if (!now.ok()) throw std::runtime_error(now.status().ToString());
+  if (client::HasEnded(now->state())) throw std::runtime_error("the job is too short to measure");
   return {now->progress().samples(), server.ProcessorSeconds(), Clock::now()};
 }
 
