@@ -1,19 +1,11 @@
 // What the service costs above the engine that it runs.
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <signal.h>
 
 #include <chrono>
-#include <map>
-#include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
-#include <vector>
 
-#include "core/experiment/point_experiment.h"
-#include "core/method_comparison/processor_time.h"
-#include "server/convert/spec.h"
+#include "tests/fault/torture/bare_engine.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/server_process.h"
@@ -23,68 +15,9 @@
 namespace ballpiston::torture {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kMostOverhead = 0.02;
 // Enough in a window that the one which is cut short at its end does not matter.
 constexpr double kBlocksInWindow = 10;
-
-// The point's blocks, computed by so many threads and merged in order, and nothing else.
-class BareEngine {
- public:
-  BareEngine(const v1::EnsembleSpec& message, int workers)
-      : experiment_(PointExperiment::Create(server::CheckSpec(message).spec, 0)),
-        workers_(workers) {}
-
-  Window Run(std::chrono::milliseconds length) {
-    window_ = {};
-    const auto start = Clock::now();
-    std::vector<std::thread> threads;
-    for (int i = 0; i < workers_; ++i) threads.emplace_back([&] { Work(start + length); });
-    for (std::thread& thread : threads) thread.join();
-    window_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    return window_;
-  }
-
-  double SamplesOfBlock() const {
-    return static_cast<double>(merged_.samples) / static_cast<double>(merged_blocks_);
-  }
-
- private:
-  void Work(Clock::time_point end) {
-    const double start = ThreadSeconds();
-    do {
-      const uint64_t block = Next();
-      Merge(block, *experiment_->RunBlock(block, {}));
-    } while (Clock::now() < end);
-    const std::lock_guard lock(mutex_);
-    window_.processor_seconds += ThreadSeconds() - start;
-  }
-
-  uint64_t Next() {
-    const std::lock_guard lock(mutex_);
-    return next_++;
-  }
-
-  void Merge(uint64_t block, BlockResult result) {
-    const std::lock_guard lock(mutex_);
-    window_.samples += static_cast<double>(result.samples);
-    early_.emplace(block, std::move(result));
-    while (!early_.empty() && early_.begin()->first == merged_blocks_) {
-      merged_.Merge(early_.begin()->second);
-      early_.erase(early_.begin());
-      ++merged_blocks_;
-    }
-  }
-
-  const std::unique_ptr<const PointExperiment> experiment_;
-  const int workers_;
-  std::mutex mutex_;
-  uint64_t next_ = 0, merged_blocks_ = 0;
-  std::map<uint64_t, BlockResult> early_;
-  BlockResult merged_;
-  Window window_;
-};
 
 // Whatever this thread begins meanwhile, programs and threads, runs on so many cores: neighbours
 // slow one core more than another.
@@ -124,9 +57,7 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   PairedRatio processor, wall;
   for (int i = 0; i < Size(4, 400); ++i) {
     const Window with = ServerWindow(server, client, job->name(), length, least);
-    server.Signal(SIGSTOP);
-    const Window bare = engine.Run(length);
-    server.Signal(SIGCONT);
+    const Window bare = engine.RunInsteadOf(server, length);
     processor.Add(with.ProcessorCost(), bare.ProcessorCost());
     wall.Add(with.Cost(), bare.Cost());
     findings.Count("pairs of windows");

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "absl/strings/str_format.h"
+#include "tests/fault/torture/bare_engine.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
@@ -23,10 +24,11 @@ constexpr double kMostLoss = 0.01;
 // readers leave unread of specifications, 32 MiB, would keep the last from their first message.
 constexpr int kPoints = 40'000;
 constexpr int kFinishedBefore = 600;
+constexpr int kWorkers = 2;
 
 class StalledReaders : public testing::Test {
  protected:
-  StalledReaders() : server_({.workers = 2}) {
+  StalledReaders() : server_({.workers = kWorkers}) {
     server_.Start();
     client_.emplace(server_.Connect());
     const auto job = client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)));
@@ -41,14 +43,28 @@ class StalledReaders : public testing::Test {
     while (Finished() < points) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
-  Window Look() const { return ServerWindow(server_, *client_, name_, length_); }
+  void Pause() const { std::this_thread::sleep_for(pause_); }
+
+  // What a sample costs, as a multiple of what it costs the bare engine meanwhile: so the machine,
+  // which may be slower now than a minute ago, cancels out.
+  struct Costs {
+    double processor = 0, time = 0;
+  };
+  Costs Look() {
+    Window server, bare;
+    for (int i = 0; i < windows_; ++i) {
+      server += ServerWindow(server_, *client_, name_, length_);
+      bare += engine_.RunInsteadOf(server_, length_);
+    }
+    return {server.ProcessorCost() / bare.ProcessorCost(), server.Cost() / bare.Cost()};
+  }
 
   // With readers that have stalled. Shows that they have.
-  Window LookWithStalled() {
+  Costs LookWithStalled() {
     HungReaders hung(readers_, server_.address(), name_);
-    Look();  // the time to stall
+    Pause();  // the time to stall
     const int first = Finished();
-    const Window stalled = Look();
+    const Costs stalled = Look();
     most_mib_ = std::max(most_mib_, (server_.ResidentMiB() - mib_without_) / readers_);
     const int last = Finished();
     // A message made at either of the two moments may have either number.
@@ -61,18 +77,20 @@ class StalledReaders : public testing::Test {
 
   // Now the one first, now the other, lest the question's becoming dearer look like a loss.
   void Round(bool stalled_first) {
-    Window stalled;
+    Costs stalled;
     if (stalled_first) stalled = LookWithStalled();
-    Look();  // the time to recover
-    const Window quiet = Look();
+    Pause();  // the time to recover
+    const Costs quiet = Look();
     if (!stalled_first) stalled = LookWithStalled();
-    processor_.Add(stalled.ProcessorCost(), quiet.ProcessorCost());
-    time_.Add(stalled.Cost(), quiet.Cost());
+    processor_.Add(stalled.processor, quiet.processor);
+    time_.Add(stalled.time, quiet.time);
   }
 
   const int readers_ = Size(10, 100);
-  const std::chrono::milliseconds length_{Size(400, 2000)};
+  const int windows_ = Size(2, 15);
+  const std::chrono::milliseconds length_{300}, pause_{Size(400, 2000)};
   Findings findings_{"stalled readers"};
+  BareEngine engine_{Endless(), kWorkers};
   ServerProcess server_;
   std::optional<client::EnsembleClient> client_;
   std::string name_;
@@ -83,7 +101,7 @@ class StalledReaders : public testing::Test {
 
 TEST_F(StalledReaders, CostBoundedMemoryAndNoEngineTime) {
   mib_without_ = server_.ResidentMiB();
-  const int rounds = Size(2, 30);
+  const int rounds = Size(2, 20);
   for (int i = 0; i < rounds; ++i) Round(i % 2 == 1);
   findings_.Count("readers at once", readers_);
   findings_.Note("most memory of one, MiB", absl::StrFormat("%.2f", most_mib_));

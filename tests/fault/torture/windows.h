@@ -19,6 +19,13 @@ struct Window {
 
   double ProcessorCost() const { return processor_seconds / samples; }
   double Cost() const { return seconds / samples; }
+
+  Window& operator+=(const Window& other) {
+    samples += other.samples;
+    processor_seconds += other.processor_seconds;
+    seconds += other.seconds;
+    return *this;
+  }
 };
 
 // What the server spends, all of its threads, and what a job of its gets done meanwhile: for so
