@@ -54,13 +54,13 @@ class BackupTest : public testing::Test {
     Gate gate;
     RunningServer server(Options(
         folder_.path(), FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
-          if (point == 2 && block == 3) gate.Pass(stop);
+          if (point == 2 && block >= 3) gate.Pass(stop);
         })));
     finished_ = server.Submit(Equilibrium(2, 3));
     EXPECT_EQ(server.AwaitEnd(finished_).state(), EnsembleJob::SUCCEEDED);
     results_ = server.ResultBytes(finished_);
     unfinished_ = server.Submit(Equilibrium(3, 6));
-    gate.AwaitWaiting(1);
+    gate.AwaitWaiting(2);  // both workers: all before is done
   }
 
   void Execute(const std::string& sql) {
@@ -259,6 +259,7 @@ TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
   MakeStore();
   RunningServer server(Options(folder_.path(), FakeExperiments()));
   server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+  server.AwaitEnd(unfinished_);  // nothing is left to write
   const std::string file = Contents(Store());
   const std::string log = Contents(Store() + "-wal");
   ASSERT_FALSE(log.empty());

@@ -18,7 +18,7 @@ grpc::ByteBuffer Buffer(const std::string& bytes) {
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                         const std::string& bytes, const std::vector<std::string>& authorization) {
   grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(20));
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(10));
   for (const std::string& value : authorization) context.AddMetadata("authorization", value);
   grpc::CompletionQueue queue;
   grpc::GenericStub stub(channel);

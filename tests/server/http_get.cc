@@ -41,10 +41,15 @@ std::string Connection::ReadToTheEnd() {
 }
 
 std::string HttpGet(const std::string& address, const std::string& path) {
-  Connection connection(address);
-  connection.Send("GET " + path + " HTTP/1.1\r\nHost: " + address +
-                  "\r\nConnection: close\r\n\r\n");
-  return connection.ReadToTheEnd();
+  const std::string request =
+      "GET " + path + " HTTP/1.1\r\nHost: " + address + "\r\nConnection: close\r\n\r\n";
+  std::string answer;
+  do {
+    Connection connection(address);
+    connection.Send(request);
+    answer = connection.ReadToTheEnd();
+  } while (answer.empty() || answer.starts_with("HTTP/1.1 408"));
+  return answer;
 }
 
 }  // namespace ballpiston::server

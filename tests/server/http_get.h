@@ -22,7 +22,8 @@ class Connection {
   int descriptor_;
 };
 
-// The whole answer to GET `path`, headers included.
+// The whole answer to GET `path`, headers included. Asks again if the server has given up waiting
+// for the request, which on a busy machine may be sent late.
 std::string HttpGet(const std::string& address, const std::string& path);
 
 }  // namespace ballpiston::server

@@ -36,6 +36,7 @@ ErrorDetails DetailsOf(const grpc::Status& status) {
 }
 
 RunningServer::RunningServer(ServerOptions options) {
+  options.store.stall = kNeverStalls;
   auto server = BallpistonServer::Start(std::move(options));
   EXPECT_TRUE(server.ok()) << server.status();
   server_ = *std::move(server);

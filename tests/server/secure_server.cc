@@ -9,6 +9,7 @@
 #include "grpcpp/create_channel.h"
 #include "server/security/access_entry.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/running_server.h"
 
 namespace ballpiston::server {
 namespace {
@@ -54,6 +55,7 @@ ServerOptions SecureOptions(const SecurityOptions& security, const std::string& 
   options.listen = "127.0.0.1:0";
   options.security = security;
   options.factory = FakeExperiments();
+  options.store.stall = kNeverStalls;
   return options;
 }
 

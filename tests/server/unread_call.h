@@ -24,7 +24,7 @@ class UnreadCall {
   void Send(const std::string& request);
   // Until the first answer is on its way.
   void AwaitAnswer();
-  // Until the server has ended it, 60 s after its beginning at the latest.
+  // Until the server has ended it, 10 min after its beginning at the latest.
   grpc::Status Finish();
 
  private:

@@ -138,7 +138,8 @@ class Chain {
     EXPECT_GE(progress.samples(), progress_.samples());
     // The store does not know what was begun of points that a cancelled job leaves unfinished.
     if (!HasEnded(state_)) {
-      EXPECT_GE(progress.fraction(), progress_.fraction());
+      // Shares of points are added up as blocks come, which rounds.
+      EXPECT_GE(progress.fraction(), progress_.fraction() - 1e-12);
     }
     progress_ = progress;
   }
@@ -334,6 +335,7 @@ TEST_F(WatchTest, AnotherJobsTokenAndNonsenseAreAsGoodAsNone) {
   const std::string other = server.Submit(Equilibrium(3, 1));
   Chain chain;
   chain.WatchToTheEnd(server, other);
+  server.AwaitEnd(name);
   std::string text;
   ASSERT_TRUE(absl::WebSafeBase64Unescape(chain.token(), &text));
   std::vector<std::string> tokens = {chain.token(), "nonsense", "%", std::string(10'000, 'A')};
@@ -376,6 +378,7 @@ TEST_F(WatchTest, AQuietJobHasAHeartbeat) {
 TEST_F(WatchTest, WithATokenOnlyWhatIsNewIsTold) {
   RunningServer& server = Start(7, std::chrono::milliseconds(20));
   const std::string name = server.Submit(Equilibrium(1, 100));
+  gate_.AwaitWaiting(2);  // seven blocks are done, and no more will be
   std::string token;
   {
     Stream stream(server, name);
@@ -488,7 +491,8 @@ TEST_F(WatchTest, AReaderThatHasStalledDoesNotHoldUpAStop) {
   for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<Stream>(server, name));
   const auto start = std::chrono::steady_clock::now();
   server.server().Shutdown(std::chrono::milliseconds(500));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  // The limit tells a stop from none; a busy machine may take long to write the rest.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
 
 // ---- limits ----
