@@ -178,7 +178,8 @@ TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   starter.join();
 }
 
-// The other server was on its way out: the program is started again, and is the one that answers.
+// The other server was on its way out: the program is started again, and lives until the test's
+// folder goes.
 TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
   FakeServer second;
   FolderInUse in_use(home_);
@@ -186,7 +187,7 @@ TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
                            .socket = second.Address().substr(5),
                            .program = Program("cd " + home_.string() +
                                               "; if [ -e once ]; then touch twice;"
-                                              " while [ -e once ]; do sleep 0.01; done; fi;"
+                                              " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
                                               " touch once; exit 1")};
   std::thread starter([&] {
     Await(home_ / "once");
