@@ -43,9 +43,9 @@ struct Connection {
   // Starts the private server again if it is gone; with a named server nothing to do.
   absl::Status Revive() const;
 
-  // What `call`, a verb's first one, answers. A private server may be leaving, idle, just as the
-  // client arrives: then it is started again and asked once more. So `call` has to be one that may
-  // be repeated.
+  // What `call` answers. A private server may be leaving, idle, just as the client arrives, or be
+  // killed: then it is started again and asked once more. So `call` has to be one that may be
+  // repeated.
   template <typename Call>
   auto Ask(const Call& call) const -> decltype(call());
 

@@ -25,6 +25,25 @@ void NoteUnfinished(const v1::EnsembleJob& job, std::ostream& err) {
       << " points are finished\n";
 }
 
+// Each page may be asked for again, of a server that was started again: what came before it has
+// been printed already, and is not asked for twice.
+absl::Status PrintPoints(const Connection& connection, const EnsembleClient& client,
+                         const std::string& name, Format format, ResultWriter& writer,
+                         std::ostream& err) {
+  std::string token;
+  do {
+    const auto page =
+        connection.Ask([&] { return client.ResultsPage(name, ViewFor(format), token); });
+    if (!page.ok()) return page.status();
+    for (const v1::PointResult& point : page->points()) {
+      writer.Add(point);
+      WarnOfEscapes(point, err);
+    }
+    token = page->next_page_token();
+  } while (!token.empty());
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
@@ -35,11 +54,7 @@ absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::st
   job->set_answered_from_store(answered_from_store);
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
   writer->Begin(*job);
-  const absl::Status status =
-      client.ForEachResult(name, ViewFor(format), [&](const v1::PointResult& point) {
-        writer->Add(point);
-        WarnOfEscapes(point, terminal.err);
-      });
+  const absl::Status status = PrintPoints(connection, client, name, format, *writer, terminal.err);
   if (!status.ok()) return status;
   writer->End();
   terminal.out.flush();

@@ -80,19 +80,27 @@ absl::Status EnsembleClient::Delete(const std::string& name) const {
   return CallUnary(*stub_, &Stub::DeleteEnsembleJob, request, timeout_).status();
 }
 
-absl::Status EnsembleClient::ForEachResult(
+absl::StatusOr<v1::ListResultsResponse> EnsembleClient::ResultsPage(
     const std::string& name, v1::ListResultsRequest::View view,
-    const std::function<void(const v1::PointResult&)>& visit) const {
+    const std::string& page_token) const {
   v1::ListResultsRequest request;
   request.set_parent(name);
   request.set_page_size(kPageSize);
+  request.set_page_token(page_token);
   request.set_view(view);
+  return CallUnary(*stub_, &Stub::ListResults, request, timeout_);
+}
+
+absl::Status EnsembleClient::ForEachResult(
+    const std::string& name, v1::ListResultsRequest::View view,
+    const std::function<void(const v1::PointResult&)>& visit) const {
+  std::string token;
   do {
-    auto page = CallUnary(*stub_, &Stub::ListResults, request, timeout_);
+    const auto page = ResultsPage(name, view, token);
     if (!page.ok()) return page.status();
     for (const v1::PointResult& point : page->points()) visit(point);
-    request.set_page_token(page->next_page_token());
-  } while (!request.page_token().empty());
+    token = page->next_page_token();
+  } while (!token.empty());
   return absl::OkStatus();
 }
 

@@ -61,7 +61,10 @@ class EnsembleClient {
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into
-  // memory.
+  // memory. A page's token is empty, or the page before names it.
+  absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
+                                                      v1::ListResultsRequest::View view,
+                                                      const std::string& page_token) const;
   absl::Status ForEachResult(const std::string& name, v1::ListResultsRequest::View view,
                              const std::function<void(const v1::PointResult&)>& visit) const;
   absl::StatusOr<std::vector<v1::PointResult>> Results(

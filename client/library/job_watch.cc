@@ -1,22 +1,19 @@
 #include "client/library/job_watch.h"
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include "absl/random/random.h"
 #include "absl/strings/str_cat.h"
 #include "client/library/error_text.h"
+#include "client/library/reattach_pace.h"
 
 namespace ballpiston::client {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-absl::Duration Since(Clock::time_point start) { return absl::FromChrono(Clock::now() - start); }
 
 // False if `stop` cut it short.
 bool Pause(absl::Duration length, const std::stop_token& stop) {
@@ -66,8 +63,7 @@ class Watch {
 
   void Handle(const v1::WatchEnsembleJobResponse& message) {
     if (ended_) return;  // the terminal state was the last word
-    heard_ = Clock::now();
-    backoff_ = options_.initial_backoff;
+    pace_.Heard(Clock::now());
     if (!message.resume_token().empty()) request_.set_resume_token(message.resume_token());
     if (message.has_job()) HandleJob(message.job());
     if (message.has_snapshot() && callbacks_.on_snapshot)
@@ -81,23 +77,16 @@ class Watch {
   }
 
   absl::Status WaitToReattach(const absl::Status& why) {
-    const absl::Duration pause = NextPause();
-    if (Since(heard_) + pause > options_.give_up_after) {
+    const std::optional<absl::Duration> pause = pace_.NextPause(Clock::now());
+    if (!pause) {
       return absl::UnavailableError(absl::StrCat("gave up watching after ",
                                                  absl::FormatDuration(options_.give_up_after),
                                                  " without the server: ", why.message()));
     }
-    if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, pause);
-    if (!Pause(pause, stop_)) return Stopped();
+    if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, *pause);
+    if (!Pause(*pause, stop_)) return Stopped();
     if (options_.before_reattach) options_.before_reattach();
     return absl::OkStatus();
-  }
-
-  // Up to a quarter longer, so that the watchers of a server that died do not return as one.
-  absl::Duration NextPause() {
-    const absl::Duration pause = backoff_ * absl::Uniform(random_, 1.0, 1.25);
-    backoff_ = std::min(2 * backoff_, options_.max_backoff);
-    return pause;
   }
 
   v1::EnsembleService::StubInterface& stub_;
@@ -106,9 +95,7 @@ class Watch {
   const std::stop_token stop_;
   v1::WatchEnsembleJobRequest request_;
   std::optional<v1::EnsembleJob> ended_;
-  Clock::time_point heard_ = Clock::now();
-  absl::Duration backoff_ = options_.initial_backoff;
-  absl::InsecureBitGen random_;
+  ReattachPace pace_{options_, Clock::now()};
 };
 
 }  // namespace

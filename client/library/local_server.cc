@@ -1,6 +1,8 @@
 #include "client/library/local_server.h"
 
+#include <fcntl.h>
 #include <pwd.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,8 +35,12 @@ constexpr absl::Duration kStartTimeout = absl::Seconds(60);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
 constexpr uintmax_t kMaxLogBytes = 1 << 20;
 
-// How long to look for another client's server after the own one exited, before the next attempt.
-// A server that is just going idle holds the folder's lock without answering: hence attempts.
+// A server locks this file in its folder as long as it lives.
+constexpr char kLockFile[] = "lock";
+
+// How long to look for another client's server after the own one exited, before the next attempt:
+// so long where no other server lives, and as long as it lives where one does. One that is just
+// going idle does not answer any more: hence attempts.
 constexpr absl::Duration kAttemptPauses[] = {absl::Milliseconds(300), absl::Seconds(1),
                                              absl::Seconds(3)};
 
@@ -129,6 +135,15 @@ bool AnswersWithin(grpc::Channel& channel, absl::Duration time) {
   return channel.WaitForConnected(absl::ToChronoTime(absl::Now() + time));
 }
 
+// Whether a server lives there, answering or not.
+bool IsInUse(const std::string& folder) {
+  const int file = open((folder + "/" + kLockFile).c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool locked = flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file);
+  return locked;
+}
+
 class Starter {
  public:
   Starter(const LocalServer& server, grpc::Channel& channel) : server_(server), channel_(channel) {}
@@ -136,8 +151,9 @@ class Starter {
   absl::Status Start() {
     for (const absl::Duration pause : kAttemptPauses) {
       if (absl::Status started = StartProgram(); !started.ok()) return started;
-      if (AnswersWhileAlive() || AnswersWithin(channel_, pause)) return absl::OkStatus();
+      if (AnswersWhileAlive()) return absl::OkStatus();
       if (!exit_status_) return Failure("does not answer");
+      if (AnswersWithin(channel_, pause) || OtherAnswersWhileAlive()) return absl::OkStatus();
     }
     return Failure(absl::StrCat("ended at once with exit status ", *exit_status_));
   }
@@ -176,6 +192,14 @@ class Starter {
     return false;
   }
 
+  // Another client's. Not in each attempt as long again.
+  bool OtherAnswersWhileAlive() {
+    while (absl::Now() < others_deadline_ && IsInUse(server_.folder)) {
+      if (AnswersWithin(channel_, kPoll)) return true;
+    }
+    return false;
+  }
+
   // The last line that was written since the program was started.
   std::string LastLine() const {
     std::ifstream log(server_.Log());
@@ -194,6 +218,7 @@ class Starter {
 
   const LocalServer& server_;
   grpc::Channel& channel_;
+  const absl::Time others_deadline_ = absl::Now() + kStartTimeout;
   uintmax_t log_start_ = 0;
   pid_t pid_ = 0;
   std::optional<int> exit_status_;

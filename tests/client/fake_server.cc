@@ -98,6 +98,9 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
                                               v1::ListResultsResponse* page) {
   const std::lock_guard lock(mutex_);
   asked_.results.push_back(*request);
+  if (!request->page_token().empty() && unavailable_later_pages-- > 0) {
+    return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  }
   const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
   const size_t to = std::min(from + static_cast<size_t>(page_size), points.size());
   for (size_t i = from; i < to; ++i) *page->add_points() = points[i];

@@ -36,6 +36,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   grpc::Status create_end;
   bool answers_from_store = false;  // says Create of what it answers
   int page_size = 2;                // whatever was asked for
+  int unavailable_later_pages = 0;  // so many attempts to list results after the first page fail
 
   // What was asked so far.
   struct Requests {

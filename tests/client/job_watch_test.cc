@@ -24,7 +24,7 @@ WatchOptions Quick() {
   WatchOptions options;
   options.initial_backoff = absl::Milliseconds(1);
   options.max_backoff = absl::Milliseconds(4);
-  options.give_up_after = absl::Seconds(20);
+  options.give_up_after = absl::Minutes(10);
   return options;
 }
 
@@ -141,6 +141,8 @@ TEST(JobWatch, AServerThatIsNotThereIsWaitedFor) {
   EXPECT_GE(disconnects, 3);
 }
 
+// How many attempts fit into the time is the machine's affair: that there are more, if it is long
+// enough, other tests show.
 TEST(JobWatch, GivesUpAfterTheConfiguredTime) {
   FakeServer server;
   server.ensemble.watches = {{{}, kUnavailable}};
@@ -152,18 +154,29 @@ TEST(JobWatch, GivesUpAfterTheConfiguredTime) {
   EXPECT_EQ(job.status().code(), absl::StatusCode::kUnavailable);
   EXPECT_THAT(std::string(job.status().message()),
               HasSubstr("gave up watching after 50ms without the server: connection reset"));
-  EXPECT_GT(server.ensemble.Asked().watch.size(), 1u);
 }
 
-// Each attempt fails, but each brings news: the server is not gone.
-TEST(JobWatch, TheTimeToGiveUpStartsAgainWithEveryMessage) {
+TEST(JobWatch, AnUnavailableServerIsAskedAgain) {
+  FakeServer server;
+  server.ensemble.watches.assign(3, {{}, kUnavailable});
+  server.ensemble.watches.push_back(
+      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK});
+  server.Start();
+  Watcher watcher;
+  EXPECT_TRUE(watcher.Watch(server, Quick()).ok());
+  EXPECT_EQ(watcher.disconnects, 3);
+  EXPECT_EQ(server.ensemble.Asked().watch.size(), 4u);
+}
+
+// Each attempt fails, but each brings news: the server is not gone. The time to give up starts
+// again together with the pauses (reattach_pace_test.cc).
+TEST(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   FakeServer server;
   server.ensemble.watches.assign(100, {{SnapshotMessage(1, "t")}, kUnavailable});
   server.ensemble.watches.push_back(
       {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK});
   server.Start();
-  WatchOptions options = Quick();
-  options.give_up_after = absl::Seconds(5);
+  const WatchOptions options = Quick();
   std::vector<absl::Duration> pauses;
   WatchCallbacks callbacks;
   callbacks.on_disconnect = [&](const absl::Status&, absl::Duration pause) {

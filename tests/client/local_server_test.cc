@@ -1,9 +1,13 @@
 #include "client/library/local_server.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -131,17 +135,65 @@ TEST_F(LocalServerTest, OneThatIsNotInstalledIsNamed) {
   EXPECT_THAT(std::string(channel.status().message()), HasSubstr("cannot start no-such-server"));
 }
 
-// As when another client's server holds the folder: the own program exits, the other one comes up.
+// The folder as another client's server holds it.
+class FolderInUse {
+ public:
+  explicit FolderInUse(const fs::path& folder)
+      : lock_(open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    EXPECT_EQ(flock(lock_, LOCK_EX | LOCK_NB), 0);
+  }
+  ~FolderInUse() { Leave(); }
+  FolderInUse(const FolderInUse&) = delete;
+  FolderInUse& operator=(const FolderInUse&) = delete;
+
+  void Leave() {
+    if (lock_ >= 0) close(lock_);
+    lock_ = -1;
+  }
+
+ private:
+  int lock_;
+};
+
+void Await(const fs::path& file) {
+  while (!fs::exists(file)) std::this_thread::yield();
+}
+
+// The own program exits, because the other server holds the folder; that one comes up a second
+// later, which is more than the first pause. There is nothing to be started meanwhile.
 TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   FakeServer other;
-  // The other server listens only once the program has been started and has exited.
-  const fs::path gate = home_ / "gate";
+  const FolderInUse in_use(home_);
   const LocalServer server{.folder = home_.string(),
                            .socket = other.Address().substr(5),
-                           .program = Program("touch " + gate.string() + "; exit 1")};
+                           .program = Program("cd " + home_.string() +
+                                              "; [ -e once ] && touch twice; touch once; exit 1")};
   std::thread starter([&] {
-    while (!fs::exists(gate)) std::this_thread::yield();
+    Await(home_ / "once");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
     other.Start();
+  });
+  EXPECT_TRUE(ConnectToLocalServer(server).ok());
+  EXPECT_FALSE(fs::exists(home_ / "twice"));
+  starter.join();
+}
+
+// The other server was on its way out: the program is started again, and lives until the test's
+// folder goes.
+TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
+  FakeServer second;
+  FolderInUse in_use(home_);
+  const LocalServer server{.folder = home_.string(),
+                           .socket = second.Address().substr(5),
+                           .program = Program("cd " + home_.string() +
+                                              "; if [ -e once ]; then touch twice;"
+                                              " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
+                                              " touch once; exit 1")};
+  std::thread starter([&] {
+    Await(home_ / "once");
+    in_use.Leave();
+    Await(home_ / "twice");
+    second.Start();
   });
   EXPECT_TRUE(ConnectToLocalServer(server).ok());
   starter.join();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -16,13 +17,30 @@ using ::testing::HasSubstr;
 
 constexpr char kHint[] = "Press Ctrl-C again within 5 s to cancel the job.";
 
+constexpr std::chrono::seconds kWindow(5);
+
+// Where the machine was so busy that an attempt did not come to its end in the window, which says
+// nothing, there is another.
+constexpr int kAttempts = 20;
+
+class Stopwatch {
+ public:
+  bool InWindow() const { return Clock::now() - start_ < kWindow; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+};
+
 class InterruptTest : public ::testing::Test {
  protected:
+  InterruptTest() { StartRun(); }
+
   // A run that takes years; when this returns the job has been accepted and is being watched.
-  InterruptTest()
-      : run_(server_.StartClient({"run", "equilibrium", "--rho", "0.53", "--delta", "0.05",
-                                  "--collisions", "1000000000000", "--model", "billiard",
-                                  "--progress", "json", "--format", "csv"})) {
+  void StartRun() {
+    run_ = server_.StartClient({"run", "equilibrium", "--rho", "0.53", "--delta", "0.05",
+                                "--collisions", "1000000000000", "--model", "billiard", "--fresh",
+                                "--progress", "json", "--format", "csv"});
     job_ = At(ParseJson(run_->WaitForErrLine([](const std::string&) { return true; })), "job")
                .string_value();
   }
@@ -51,10 +69,20 @@ TEST_F(InterruptTest, WithoutASecondPressTheClientLetsGoAndTheJobGoesOn) {
   EXPECT_EQ(State(), "RUNNING");
 }
 
+// The client's window begins after the first press was sent: a second one that was sent in this
+// test's window is in the client's.
 TEST_F(InterruptTest, ASecondPressCancels) {
-  run_->Signal(SIGINT);
-  ASSERT_TRUE(run_->WaitForErr(kHint));
-  run_->Signal(SIGINT);
+  bool in_window = false;
+  for (int i = 0; i < kAttempts && !in_window; ++i) {
+    if (i > 0) StartRun();
+    const Stopwatch since_first;
+    run_->Signal(SIGINT);
+    ASSERT_TRUE(run_->WaitForErr(kHint));
+    run_->Signal(SIGINT);
+    in_window = since_first.InWindow();
+    run_->Wait();
+  }
+  ASSERT_TRUE(in_window);
   const ProcessResult result = run_->Wait();
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_THAT(result.err, HasSubstr("cancelled " + job_));
@@ -64,12 +92,19 @@ TEST_F(InterruptTest, ASecondPressCancels) {
 
 // Ended by another client while this one waits for the second press.
 TEST_F(InterruptTest, AJobThatEndsMeanwhileIsShown) {
-  run_->Signal(SIGINT);
-  ASSERT_TRUE(run_->WaitForErr(kHint));
-  EXPECT_EQ(server_.Client({"cancel", job_}).exit_code, 0);
-  const ProcessResult result = run_->Wait();
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.out, HasSubstr("rho,delta,"));
+  for (int i = 0; i < kAttempts; ++i) {
+    if (i > 0) StartRun();
+    const Stopwatch since_first;
+    run_->Signal(SIGINT);
+    ASSERT_TRUE(run_->WaitForErr(kHint));
+    EXPECT_EQ(server_.Client({"cancel", job_}).exit_code, 0);
+    const ProcessResult result = run_->Wait();
+    if (result.exit_code == 130 && !since_first.InWindow()) continue;
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.out, HasSubstr("rho,delta,"));
+    return;
+  }
+  FAIL() << "the client never saw the end in its window";
 }
 
 }  // namespace

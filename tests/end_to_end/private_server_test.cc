@@ -1,8 +1,12 @@
 // The server that nobody has to start.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,6 +71,16 @@ TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   EXPECT_TRUE(fs::exists(State("server.log")));
   EXPECT_EQ(fs::status(State("")).permissions(), fs::perms::owner_all);
   EXPECT_EQ(Servers().size(), 1u);
+}
+
+// By this a client tells that a server is on its way, or on its way out.
+TEST_F(PrivateServerTest, AServerHoldsItsFoldersLock) {
+  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+  const int lock = open(State("lock").c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_GE(lock, 0);
+  EXPECT_NE(flock(lock, LOCK_SH | LOCK_NB), 0);
+  EXPECT_EQ(errno, EWOULDBLOCK);
+  close(lock);
 }
 
 TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {

@@ -1,9 +1,12 @@
 #include "tests/stability/pair_methods.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <ctime>
 #include <limits>
 #include <mutex>
 #include <thread>
@@ -12,6 +15,7 @@
 #include "core/billiard/orbits.h"
 #include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
+#include "core/method_comparison/processor_time.h"
 #include "tests/oracle/textbook_flow.h"
 #include "tests/stability/event_methods.h"
 #include "tests/stability/fixed_step_events.h"
@@ -23,25 +27,43 @@ namespace {
 using oracle::TextbookFlow;
 using oracle::TextbookRule;
 
-// With a batch of orbits, for each collision of theirs. An orbit that goes on for longer has lost
-// its piston: if it was aimed at it, a batch takes milliseconds.
-constexpr std::chrono::seconds kPatience(10);
+// With a batch of orbits, in seconds of processor time for each collision of theirs. An orbit that
+// goes on for longer has lost its piston: if it was aimed at it, a batch takes milliseconds.
+constexpr double kPatience = 10;
 
-// Ends orbits that would never end. Nothing depends on it as long as no collision is missed.
+// Ends orbits, of the thread that made it, that would never end. By that thread's processor time:
+// what else the machine has to do does not count. Nothing depends on it as long as no collision is
+// missed.
 class Watchdog {
  public:
-  explicit Watchdog(std::chrono::seconds patience)
-      : thread_([this, patience](const std::stop_token& done) {
-          std::unique_lock lock(mutex_);
-          std::condition_variable_any().wait_for(lock, done, patience, [] { return false; });
-          if (!done.stop_requested()) orbits_.request_stop();
-        }) {}
+  explicit Watchdog(double patience) : deadline_(ThreadSeconds() + patience) {
+    pthread_getcpuclockid(pthread_self(), &clock_);
+    thread_ = std::jthread([this](const std::stop_token& done) { Watch(done); });
+  }
 
   std::stop_token token() const { return orbits_.get_token(); }
 
  private:
+  void Watch(const std::stop_token& done) {
+    constexpr std::chrono::milliseconds kBetweenLooks(100);
+    std::unique_lock lock(mutex_);
+    while (!done.stop_requested() && SecondsSpent() < deadline_) {
+      woken_.wait_for(lock, done, kBetweenLooks, [] { return false; });
+    }
+    if (!done.stop_requested()) orbits_.request_stop();
+  }
+
+  double SecondsSpent() const {
+    timespec time = {};
+    clock_gettime(clock_, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+
+  const double deadline_;
+  clockid_t clock_ = CLOCK_THREAD_CPUTIME_ID;
   std::stop_source orbits_;
   std::mutex mutex_;
+  std::condition_variable_any woken_;
   std::jthread thread_;
 };
 
@@ -49,7 +71,7 @@ template <Engine engine, typename Real>
 Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> starts,
                      uint64_t collisions) {
   CollisionWatch watch(geometry, std::numeric_limits<Real>::epsilon(), starts, collisions);
-  const Watchdog watchdog(kPatience * collisions);
+  const Watchdog watchdog(kPatience * static_cast<double>(collisions));
   RunOrbits(engine, geometry, starts.size(), watch, watchdog.token());
   return watch.Finish();
 }
