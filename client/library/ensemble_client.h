@@ -61,7 +61,8 @@ class EnsembleClient {
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into
-  // memory. A page's token is empty, or the page before names it.
+  // memory. `page_token`: empty for the first page, else
+  // next_page_token of the page before.
   absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
                                                       v1::ListResultsRequest::View view,
                                                       const std::string& page_token) const;

@@ -33,14 +33,20 @@ constexpr char kIdleSeconds[] = "60";
 constexpr absl::Duration kAnswerTimeout = absl::Seconds(10);
 constexpr absl::Duration kStartTimeout = absl::Seconds(60);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
+
+// For another client's server that holds the folder and does not answer yet, in all attempts
+// together. Longer would be a long silence where it listens elsewhere.
+constexpr absl::Duration kOthersStartTimeout = absl::Seconds(15);
+// To look takes the lock for a moment, if nobody has it: not too often.
+constexpr absl::Duration kOthersPoll = absl::Milliseconds(200);
+
 constexpr uintmax_t kMaxLogBytes = 1 << 20;
 
-// A server locks this file in its folder as long as it lives.
+// A server locks this file in its folder as long as it lives (server/store/data_directory.h).
 constexpr char kLockFile[] = "lock";
 
-// How long to look for another client's server after the own one exited, before the next attempt:
-// so long where no other server lives, and as long as it lives where one does. One that is just
-// going idle does not answer any more: hence attempts.
+// How long to look for another client's server after the own one exited, before the next attempt.
+// One that is just going idle does not answer any more: hence attempts.
 constexpr absl::Duration kAttemptPauses[] = {absl::Milliseconds(300), absl::Seconds(1),
                                              absl::Seconds(3)};
 
@@ -192,10 +198,10 @@ class Starter {
     return false;
   }
 
-  // Another client's. Not in each attempt as long again.
+  // Another client's, while it holds the folder.
   bool OtherAnswersWhileAlive() {
     while (absl::Now() < others_deadline_ && IsInUse(server_.folder)) {
-      if (AnswersWithin(channel_, kPoll)) return true;
+      if (AnswersWithin(channel_, kOthersPoll)) return true;
     }
     return false;
   }
@@ -218,7 +224,7 @@ class Starter {
 
   const LocalServer& server_;
   grpc::Channel& channel_;
-  const absl::Time others_deadline_ = absl::Now() + kStartTimeout;
+  const absl::Time others_deadline_ = absl::Now() + kOthersStartTimeout;
   uintmax_t log_start_ = 0;
   pid_t pid_ = 0;
   std::optional<int> exit_status_;

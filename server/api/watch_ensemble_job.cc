@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "absl/container/flat_hash_set.h"
 #include "server/api/request_check.h"
 #include "server/api/resume_token.h"
 #include "server/convert/errors.h"
@@ -26,17 +25,6 @@ constexpr int64_t kLargeMessages = int64_t{32} << 20;
 
 // So often a message that finds no room is tried again.
 constexpr std::chrono::milliseconds kBetweenTries(200);
-
-// Of a point that was finished after the others were looked at, only its end is told.
-void LeaveOutFinished(v1::StatisticsSnapshot& snapshot) {
-  absl::flat_hash_set<int32_t> finished;
-  for (const v1::PointResult& point : snapshot.finished_points()) finished.insert(point.index());
-  auto& points = *snapshot.mutable_points();
-  points.erase(std::remove_if(
-                   points.begin(), points.end(),
-                   [&](const v1::PointResult& point) { return finished.contains(point.index()); }),
-               points.end());
-}
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/functional/function_ref.h"
+#include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
 
 namespace ballpiston::server {
@@ -27,6 +28,10 @@ struct JobSnapshot {
                               // or a smaller one
   std::vector<Point> points;  // newest first
 };
+
+// Of a message about a job: a point that was finished after the unfinished ones were looked at is
+// among the finished ones only.
+void LeaveOutFinished(v1::StatisticsSnapshot& message);
 
 class SharedSnapshot {
  public:

@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -20,8 +22,19 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr char kLockFile[] = "lock";
+constexpr char kLockFile[] = "lock";  // clients look at it, too (client/library/local_server.cc)
 constexpr char kClientsLog[] = "server.log";  // where a client that starts a server has it write
+
+// A client that looks whether a server lives here has the lock for a moment: hence attempts.
+// Returns errno.
+int Lock(int file) {
+  constexpr int kAttempts = 5;
+  for (int attempt = 1; flock(file, LOCK_EX | LOCK_NB) != 0; ++attempt) {
+    if (errno != EWOULDBLOCK || attempt == kAttempts) return errno;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return 0;
+}
 
 absl::Status NotWritable(const std::string& path, int error) {
   return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
@@ -116,8 +129,8 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   const std::string lock_path = absl::StrCat(path, "/", kLockFile);
   const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock < 0) return NotWritable(path, errno);
-  if (flock(lock, LOCK_EX | LOCK_NB) == 0) return DataDirectory(path, lock);
-  const int error = errno;
+  const int error = Lock(lock);
+  if (error == 0) return DataDirectory(path, lock);
   close(lock);
   if (error != EWOULDBLOCK) return NotWritable(path, error);
   return absl::FailedPreconditionError(

@@ -3,7 +3,7 @@
 // Made, readable by its owner only, if it does not exist. One of our user's that others may enter
 // is closed to them if it is empty or has been a server's, and that is logged. A lock on the file
 // `lock` in it, held as long as this object lives (and released by the kernel when the process
-// dies), keeps a second server out.
+// dies), keeps a second server out, and tells clients that a server lives here.
 #ifndef BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 #define BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -155,8 +156,11 @@ class FolderInUse {
   int lock_;
 };
 
-void Await(const fs::path& file) {
-  while (!fs::exists(file)) std::this_thread::yield();
+// Not longer than a client that gives up.
+void Await(const fs::path& file, const std::stop_token& stop) {
+  while (!fs::exists(file) && !stop.stop_requested()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 // The own program exits, because the other server holds the folder; that one comes up a second
@@ -168,12 +172,13 @@ TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
                            .socket = other.Address().substr(5),
                            .program = Program("cd " + home_.string() +
                                               "; [ -e once ] && touch twice; touch once; exit 1")};
-  std::thread starter([&] {
-    Await(home_ / "once");
+  std::jthread starter([&](const std::stop_token& stop) {
+    Await(home_ / "once", stop);
     std::this_thread::sleep_for(std::chrono::seconds(1));
     other.Start();
   });
-  EXPECT_TRUE(ConnectToLocalServer(server).ok());
+  EXPECT_EQ(ConnectToLocalServer(server).status(), absl::OkStatus());
+  starter.request_stop();
   EXPECT_FALSE(fs::exists(home_ / "twice"));
   starter.join();
 }
@@ -189,13 +194,14 @@ TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
                                               "; if [ -e once ]; then touch twice;"
                                               " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
                                               " touch once; exit 1")};
-  std::thread starter([&] {
-    Await(home_ / "once");
+  std::jthread starter([&](const std::stop_token& stop) {
+    Await(home_ / "once", stop);
     in_use.Leave();
-    Await(home_ / "twice");
+    Await(home_ / "twice", stop);
     second.Start();
   });
-  EXPECT_TRUE(ConnectToLocalServer(server).ok());
+  EXPECT_EQ(ConnectToLocalServer(server).status(), absl::OkStatus());
+  starter.request_stop();
   starter.join();
 }
 

@@ -25,7 +25,7 @@ constexpr int kAttempts = 20;
 
 class Stopwatch {
  public:
-  bool InWindow() const { return Clock::now() - start_ < kWindow; }
+  bool Within(std::chrono::milliseconds time) const { return Clock::now() - start_ < time; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -79,10 +79,10 @@ TEST_F(InterruptTest, ASecondPressCancels) {
     run_->Signal(SIGINT);
     ASSERT_TRUE(run_->WaitForErr(kHint));
     run_->Signal(SIGINT);
-    in_window = since_first.InWindow();
+    in_window = since_first.Within(kWindow);
     run_->Wait();
   }
-  ASSERT_TRUE(in_window);
+  ASSERT_TRUE(in_window) << "the machine was not quick enough in " << kAttempts << " attempts";
   const ProcessResult result = run_->Wait();
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_THAT(result.err, HasSubstr("cancelled " + job_));
@@ -98,13 +98,14 @@ TEST_F(InterruptTest, AJobThatEndsMeanwhileIsShown) {
     run_->Signal(SIGINT);
     ASSERT_TRUE(run_->WaitForErr(kHint));
     EXPECT_EQ(server_.Client({"cancel", job_}).exit_code, 0);
+    const bool in_time = since_first.Within(kWindow / 2);  // the rest is for the client to see it
     const ProcessResult result = run_->Wait();
-    if (result.exit_code == 130 && !since_first.InWindow()) continue;
+    if (!in_time) continue;
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.out, HasSubstr("rho,delta,"));
     return;
   }
-  FAIL() << "the client never saw the end in its window";
+  FAIL() << "the machine was not quick enough in " << kAttempts << " attempts";
 }
 
 }  // namespace

@@ -15,12 +15,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
+constexpr char kIdle[] = "workers   0 of 2 busy\n";
+
 // A worker that has handed in its last block, so that the job has ended, is busy for a moment more.
 ProcessResult StatusOfIdle(const TestServer& server) {
   ProcessResult table;
-  do {
+  for (int attempt = 0; attempt < 100; ++attempt) {
     table = server.Client({"status"});
-  } while (table.exit_code == 0 && table.out.find("workers   0 of 2 busy\n") == std::string::npos);
+    if (table.exit_code != 0 || table.out.find(kIdle) != std::string::npos) break;
+  }
   return table;
 }
 
@@ -34,6 +37,7 @@ TEST(Status, TellsWhatWasAskedAndComputed) {
   const ProcessResult table = StatusOfIdle(server);
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("state     serving\n"));
+  EXPECT_THAT(table.out, HasSubstr(kIdle));
   EXPECT_THAT(table.out, HasSubstr("0 queued, 0 running, 1 in the store\n"));
   EXPECT_THAT(table.out, HasSubstr("wall hits/s"));
   EXPECT_EQ(table.err, "");

@@ -43,13 +43,14 @@ std::string Connection::ReadToTheEnd() {
 std::string HttpGet(const std::string& address, const std::string& path) {
   const std::string request =
       "GET " + path + " HTTP/1.1\r\nHost: " + address + "\r\nConnection: close\r\n\r\n";
-  std::string answer;
-  do {
+  for (int attempt = 0; attempt < 20; ++attempt) {
     Connection connection(address);
     connection.Send(request);
-    answer = connection.ReadToTheEnd();
-  } while (answer.empty() || answer.starts_with("HTTP/1.1 408"));
-  return answer;
+    const std::string answer = connection.ReadToTheEnd();
+    if (!answer.empty() && !answer.starts_with("HTTP/1.1 408")) return answer;
+  }
+  ADD_FAILURE() << address << " does not answer GET " << path;
+  return "";
 }
 
 }  // namespace ballpiston::server

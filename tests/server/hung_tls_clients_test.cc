@@ -63,6 +63,8 @@ class TlsClients : public testing::Test {
     grpc::Status status;
     do {  // on a busy machine a connection may grow too old meanwhile
       grpc::ClientContext context;
+      context.set_wait_for_ready(true);  // so that only such a call is repeated
+      context.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(2));
       if (files_.options().tls_client_ca.empty()) {
         context.AddMetadata("authorization", std::string("Bearer ") + kAlice);
       }

@@ -240,6 +240,17 @@ TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
+TEST(LeaveOutFinished, OfAPointInBothListsOnlyTheEndIsTold) {
+  v1::StatisticsSnapshot message;
+  for (const int index : {4, 2, 7}) message.add_points()->set_index(index);
+  for (const int index : {1, 2}) message.add_finished_points()->set_index(index);
+  LeaveOutFinished(message);
+  ASSERT_EQ(message.points_size(), 2);
+  EXPECT_EQ(message.points(0).index(), 4);
+  EXPECT_EQ(message.points(1).index(), 7);
+  EXPECT_EQ(message.finished_points_size(), 2);
+}
+
 TEST(JobName, OnlyJobsHaveJobNames) {
   EXPECT_EQ(JobIdOf("ensembleJobs/0a-9"), "0a-9");
   const std::string too_long(64, 'a');

@@ -126,6 +126,7 @@ TEST_F(StalledReaders, CostBoundedMemoryAndNoEngineTime) {
   findings_.Note("time a sample, with over without", time_.Text());
   EXPECT_EQ(findings_.count("of which were told nothing meanwhile"),
             findings_.count("readers stalled"));
+  EXPECT_GE(findings_.count("points that finished meanwhile"), kFinishedMeanwhile * rounds);
   EXPECT_LE(most_mib_, kMostMiBEach);
   if (HoldsToTimes()) {
     EXPECT_LT(processor_.ratio() - 1, kMostLoss + 2 * processor_.StandardError());
