@@ -182,6 +182,7 @@ absl::Status BallpistonServer::Listen() {
     connections->HandleNewConnection(&connection);
   });
   StartHealth();
+  directory_.TellAddress(address());
   return absl::OkStatus();
 }
 

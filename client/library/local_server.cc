@@ -35,15 +35,17 @@ constexpr absl::Duration kStartTimeout = absl::Seconds(60);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
 
 // For another client's server that holds the folder and does not answer yet, in all attempts
-// together. Longer would be a long silence where it listens elsewhere.
-constexpr absl::Duration kOthersStartTimeout = absl::Seconds(15);
+// together.
+constexpr absl::Duration kOthersStartTimeout = absl::Seconds(60);
 // To look takes the lock for a moment, if nobody has it: not too often.
 constexpr absl::Duration kOthersPoll = absl::Milliseconds(200);
 
 constexpr uintmax_t kMaxLogBytes = 1 << 20;
 
-// A server locks this file in its folder as long as it lives (server/store/data_directory.h).
+// A server locks the one file in its folder as long as it lives, and tells in the other one where
+// it listens (server/store/data_directory.h).
 constexpr char kLockFile[] = "lock";
+constexpr char kAddressFile[] = "server.address";
 
 // How long to look for another client's server after the own one exited, before the next attempt.
 // One that is just going idle does not answer any more: hence attempts.
@@ -150,6 +152,14 @@ bool IsInUse(const std::string& folder) {
   return locked;
 }
 
+// Whether the server that lives there is one that clients start, and not somebody's with an address
+// of its own.
+bool ListensOrWill(const LocalServer& server) {
+  std::string address;
+  std::getline(std::ifstream(server.folder + "/" + kAddressFile), address);
+  return address.empty() || address == server.Address();
+}
+
 class Starter {
  public:
   Starter(const LocalServer& server, grpc::Channel& channel) : server_(server), channel_(channel) {}
@@ -200,7 +210,7 @@ class Starter {
 
   // Another client's, while it holds the folder.
   bool OtherAnswersWhileAlive() {
-    while (absl::Now() < others_deadline_ && IsInUse(server_.folder)) {
+    while (absl::Now() < others_deadline_ && IsInUse(server_.folder) && ListensOrWill(server_)) {
       if (AnswersWithin(channel_, kOthersPoll)) return true;
     }
     return false;

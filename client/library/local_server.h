@@ -6,8 +6,8 @@
 // server stops by itself when it has had nothing to do for a minute.
 //
 // Two clients that start at once may start two servers; the data folder's lock lets one of them
-// live, and both clients end up with that one: they wait for it while it holds the lock, for
-// 15 s at most.
+// live, and both clients end up with that one: they wait for it while it holds the lock, for a
+// minute at most, unless it listens elsewhere.
 #ifndef BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_
 #define BALLPISTON_CLIENT_LIBRARY_LOCAL_SERVER_H_
 

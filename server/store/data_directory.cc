@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -22,7 +24,8 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr char kLockFile[] = "lock";  // clients look at it, too (client/library/local_server.cc)
+constexpr char kLockFile[] = "lock";  // clients look at both, too (client/library/local_server.cc)
+constexpr char kAddressFile[] = "server.address";
 constexpr char kClientsLog[] = "server.log";  // where a client that starts a server has it write
 
 // A client that looks whether a server lives here has the lock for a moment: hence attempts.
@@ -40,6 +43,17 @@ absl::Status NotWritable(const std::string& path, int error) {
   return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
                                                   " is not writable: ", std::strerror(error),
                                                   "; choose another one with --data_dir"));
+}
+
+std::string AddressFile(const std::string& path) { return absl::StrCat(path, "/", kAddressFile); }
+
+absl::Status InUse(const std::string& path) {
+  std::string address;
+  std::getline(std::ifstream(AddressFile(path)), address);
+  const std::string where = address.empty() ? "" : absl::StrCat(", which listens on ", address);
+  return absl::FailedPreconditionError(absl::StrCat(
+      "data folder ", path, " is in use by another ballpistond", where,
+      "; let clients ask that one (--server), stop it, or choose another folder with --data_dir"));
 }
 
 bool IsDirectory(const std::string& path) {
@@ -130,13 +144,12 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   const int lock = open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (lock < 0) return NotWritable(path, errno);
   const int error = Lock(lock);
-  if (error == 0) return DataDirectory(path, lock);
+  if (error == 0) {
+    unlink(AddressFile(path).c_str());  // of one that was killed
+    return DataDirectory(path, lock);
+  }
   close(lock);
-  if (error != EWOULDBLOCK) return NotWritable(path, error);
-  return absl::FailedPreconditionError(
-      absl::StrCat("data folder ", path,
-                   " is in use by another ballpistond; stop that one or "
-                   "choose another folder with --data_dir"));
+  return error == EWOULDBLOCK ? InUse(path) : NotWritable(path, error);
 }
 
 DataDirectory::DataDirectory(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
@@ -151,7 +164,13 @@ DataDirectory& DataDirectory::operator=(DataDirectory&& other) noexcept {
 }
 
 DataDirectory::~DataDirectory() {
-  if (lock_ >= 0) close(lock_);
+  if (lock_ < 0) return;
+  unlink(AddressFile(path_).c_str());
+  close(lock_);
+}
+
+void DataDirectory::TellAddress(const std::string& address) const {
+  std::ofstream(AddressFile(path_)) << address << "\n";
 }
 
 }  // namespace ballpiston::server

@@ -15,6 +15,8 @@
 #include <string>
 #include <thread>
 
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/library/server_address.h"
 #include "tests/client/fake_server.h"
 
@@ -181,6 +183,18 @@ TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   starter.request_stop();
   EXPECT_FALSE(fs::exists(home_ / "twice"));
   starter.join();
+}
+
+// Nobody waits a minute for it.
+TEST_F(LocalServerTest, OneThatListensElsewhereIsNotWaitedFor) {
+  const FolderInUse in_use(home_);
+  std::ofstream(home_ / "server.address") << "127.0.0.1:50051\n";
+  const LocalServer server{
+      .folder = home_.string(), .socket = home_ / "socket", .program = Program("echo why; exit 2")};
+  const auto start = absl::Now();
+  EXPECT_THAT(std::string(ConnectToLocalServer(server).status().message()),
+              HasSubstr("exit status 2: why"));
+  EXPECT_LT(absl::Now() - start, absl::Seconds(50));  // some four are needed
 }
 
 // The other server was on its way out: the program is started again, and lives until the test's

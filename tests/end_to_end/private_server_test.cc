@@ -73,14 +73,17 @@ TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   EXPECT_EQ(Servers().size(), 1u);
 }
 
-// By this a client tells that a server is on its way, or on its way out.
-TEST_F(PrivateServerTest, AServerHoldsItsFoldersLock) {
+// By these a client tells that a server is on its way, or on its way out.
+TEST_F(PrivateServerTest, AServerHoldsItsFoldersLockAndTellsItsAddress) {
   ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
   const int lock = open(State("lock").c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(lock, 0);
   EXPECT_NE(flock(lock, LOCK_SH | LOCK_NB), 0);
   EXPECT_EQ(errno, EWOULDBLOCK);
   close(lock);
+  std::string address;
+  std::getline(std::ifstream(State("server.address")), address);
+  EXPECT_EQ(address, "unix:" + State("server.socket"));
 }
 
 TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {

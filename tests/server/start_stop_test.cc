@@ -1,5 +1,6 @@
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <thread>
@@ -49,8 +50,14 @@ TEST(StartStop, APortInUseIsRefused) {
 
 TEST(StartStop, ADataFolderInUseIsRefused) {
   TemporaryFolder folder;
-  RunningServer server(Options(folder.path()));
-  EXPECT_THAT(FailureOf(Options(folder.path(), "127.0.0.1:0")), HasSubstr("in use by another"));
+  {
+    RunningServer server(Options(folder.path()));
+    EXPECT_THAT(FailureOf(Options(folder.path(), "127.0.0.1:0")),
+                HasSubstr("in use by another ballpistond, which listens on " +
+                          server.server().address() + ";"));
+    EXPECT_TRUE(std::filesystem::exists(folder.File("server.address")));  // still that one's
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.File("server.address")));
 }
 
 TEST(StartStop, ASocketThatAnotherServerListensOnIsRefused) {
