@@ -145,7 +145,7 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   if (lock < 0) return NotWritable(path, errno);
   const int error = Lock(lock);
   if (error == 0) {
-    unlink(AddressFile(path).c_str());  // of one that was killed
+    unlink(AddressFile(path).c_str());  // left by one that is gone
     return DataDirectory(path, lock);
   }
   close(lock);
