@@ -91,25 +91,16 @@ absl::StatusOr<v1::ListResultsResponse> EnsembleClient::ResultsPage(
   return CallUnary(*stub_, &Stub::ListResults, request, timeout_);
 }
 
-absl::Status EnsembleClient::ForEachResult(
-    const std::string& name, v1::ListResultsRequest::View view,
-    const std::function<void(const v1::PointResult&)>& visit) const {
+absl::StatusOr<std::vector<v1::PointResult>> EnsembleClient::Results(
+    const std::string& name, v1::ListResultsRequest::View view) const {
+  std::vector<v1::PointResult> points;
   std::string token;
   do {
     const auto page = ResultsPage(name, view, token);
     if (!page.ok()) return page.status();
-    for (const v1::PointResult& point : page->points()) visit(point);
+    points.insert(points.end(), page->points().begin(), page->points().end());
     token = page->next_page_token();
   } while (!token.empty());
-  return absl::OkStatus();
-}
-
-absl::StatusOr<std::vector<v1::PointResult>> EnsembleClient::Results(
-    const std::string& name, v1::ListResultsRequest::View view) const {
-  std::vector<v1::PointResult> points;
-  absl::Status status = ForEachResult(
-      name, view, [&points](const v1::PointResult& point) { points.push_back(point); });
-  if (!status.ok()) return status;
   return points;
 }
 

@@ -14,7 +14,6 @@
 #include <grpcpp/grpcpp.h>
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -61,13 +60,11 @@ class EnsembleClient {
   absl::Status Delete(const std::string& name) const;
 
   // The finished points in grid order, page by page, so that a large result need not fit into
-  // memory. `page_token`: empty for the first page, else
-  // next_page_token of the page before.
+  // memory. `page_token`: empty for the first page, else next_page_token of the page before.
   absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
                                                       v1::ListResultsRequest::View view,
                                                       const std::string& page_token) const;
-  absl::Status ForEachResult(const std::string& name, v1::ListResultsRequest::View view,
-                             const std::function<void(const v1::PointResult&)>& visit) const;
+  // All pages.
   absl::StatusOr<std::vector<v1::PointResult>> Results(
       const std::string& name,
       v1::ListResultsRequest::View view = v1::ListResultsRequest::FULL) const;

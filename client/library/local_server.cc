@@ -34,10 +34,8 @@ constexpr absl::Duration kAnswerTimeout = absl::Seconds(10);
 constexpr absl::Duration kStartTimeout = absl::Seconds(60);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
 
-// For another client's server that holds the folder and does not answer yet, in all attempts
-// together.
-constexpr absl::Duration kOthersStartTimeout = absl::Seconds(60);
-// To look takes the lock for a moment, if nobody has it: not too often.
+// While another client's server holds the folder and does not answer yet. To look takes the lock
+// for a moment if nobody has it: not too often.
 constexpr absl::Duration kOthersPoll = absl::Milliseconds(200);
 
 constexpr uintmax_t kMaxLogBytes = 1 << 20;
@@ -234,7 +232,7 @@ class Starter {
 
   const LocalServer& server_;
   grpc::Channel& channel_;
-  const absl::Time others_deadline_ = absl::Now() + kOthersStartTimeout;
+  const absl::Time others_deadline_ = absl::Now() + kStartTimeout;  // for all attempts
   uintmax_t log_start_ = 0;
   pid_t pid_ = 0;
   std::optional<int> exit_status_;
