@@ -1,51 +1,60 @@
 # The front door. On a fresh Debian 12 each of these does its own set-up first.
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
-TEST_JOBS ?= 2
+TEST_JOBS ?= $(shell nproc)
+# ci-: the same presets with warnings as errors.
+PRESETS_PREFIX ?=
+
+TEST_PACKAGES := libgtest-dev libgmock-dev
+PROGRAMS := ballpiston ballpistond
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart ladder bench stability torture asan tsan fuzz format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability torture asan tsan fuzz nightly format check-format tidy setup clean help
 
-build: build-release ## Build everything, optimised, in build/release (the default)
+build: build/release/.programs ## Build the programs, optimised, in build/release/bin (the default)
+	@cmake --build build/release --target $(PROGRAMS)
 
-test: build-release ## Build, then run all tests
-	@ctest --preset release -j$(TEST_JOBS)
+test: test-release test-asan ## Build, then run all tests: the fast ones under the address sanitizer (10 minutes)
 
-demo: build/release/.configured ## Run the paper's sweep with a real server and client (1 minute)
-	@cmake --build build/release --target ballpiston ballpistond
+demo: build ## Run the paper's sweep with a real server and client (1 minute)
 	@scripts/demo.sh build/release/bin
 
-chart: build/release/.configured ## Chart speed against accuracy for every method, on this machine (1 minute)
-	@cmake --build build/release --target ballpiston ballpistond
+chart: build ## Chart speed against accuracy for every method, on this machine (1 minute)
 	@scripts/chart.sh build/release/bin
 
-ladder: build/release/.configured ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
-	@cmake --build build/release --target ballpiston ballpistond
+ladder: build ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
-bench: build-release ## Build, then run the benchmarks on one core
+bench: setup ## Build, then run the benchmarks on one core
+	@scripts/setup.sh libbenchmark-dev $(TEST_PACKAGES)
+	@cmake --preset release -DBALLPISTON_TESTS=ON -DBALLPISTON_BENCHMARKS=ON >/dev/null
+	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.configured ## Show where methods fail and which do; write the tables of core/README.md (10 minutes)
+stability: build/release/.programs ## Show where methods fail and which do (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out core/README.md
 
-torture: build/release/.configured ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
+torture: build/release/.tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
-	@BALLPISTON_TORTURE=1 build/release/bin/store_fault_test --gtest_brief=1
-	@BALLPISTON_TORTURE=1 build/release/bin/torture_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/store_fault_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/torture_test --gtest_brief=1
 
-asan: build-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
-	@ctest --preset asan -j$(TEST_JOBS)
+asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
-tsan: build-tsan ## Run the fast tests under the thread sanitizer
-	@ctest --preset tsan -j$(TEST_JOBS)
+tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS a target
+fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_SECONDS a target
 	@scripts/setup.sh clang libclang-rt-14-dev
-	@$(MAKE) build-fuzz
+	@$(MAKE) build/fuzz/.tests
+	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
+
+nightly: ## What takes hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
+	@status=0; for task in tsan tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
+	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
+	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 
 format: ## Format all C++ and proto files
 	@scripts/format.sh
@@ -53,9 +62,11 @@ format: ## Format all C++ and proto files
 check-format: ## Say which lines are not formatted
 	@scripts/format.sh --check
 
-tidy: build-release ## Run clang-tidy over the project's sources
-	@scripts/setup.sh clang-tidy
-	@run-clang-tidy -quiet -p build/release '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
+tidy: ## Compile every file alone with Clang, warnings as errors, and run clang-tidy over all
+	@scripts/setup.sh clang clang-tidy libbenchmark-dev
+	@$(MAKE) build/single/.tests
+	@cmake --build --preset single
+	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
 
 clean: ## Remove everything that was built, and the output of demo and chart
 	@rm -rf build demo chart
@@ -66,13 +77,24 @@ help: ## Show this list
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
 
-# `make build-PRESET` builds a preset of CMakePresets.json.
-PRESETS := release asan tsan fuzz
-.PHONY: $(PRESETS:%=build-%)
-$(PRESETS:%=build-%): build-%: build/%/.configured
-	@cmake --build --preset $*
+.PHONY: test-release test-asan test-tsan
+test-release: build/release/.tests
+	@cmake --build build/release --target slow_tests
+	@ctest --preset release -j$(TEST_JOBS)
 
-$(PRESETS:%=build/%/.configured): build/%/.configured: CMakePresets.json | setup
-	@mkdir -p build/$*
-	@cmake --preset $* >build/$*/configure.log 2>&1 || { cat build/$*/configure.log; exit 1; }
-	@touch $@
+test-asan test-tsan: test-%: build/%/.tests
+	@cmake --build build/$* --target fast_tests
+	@ctest --preset $* -j$(TEST_JOBS)
+
+# build/PRESET/.programs: configured, perhaps without the tests; build/PRESET/.tests: with them.
+configure = mkdir -p $(@D); cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \
+  || { cat $(@D)/configure.log; exit 1; }
+
+build/%/.programs: CMakePresets.json | setup
+	@$(call configure,-DBALLPISTON_TESTS=OFF)
+	@rm -f build/$*/.tests; touch $@
+
+build/%/.tests: CMakePresets.json | setup
+	@scripts/setup.sh $(TEST_PACKAGES)
+	@$(call configure,-DBALLPISTON_TESTS=ON)
+	@touch build/$*/.programs $@

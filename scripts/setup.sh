@@ -1,22 +1,40 @@
 #!/bin/bash
-# Installs the Debian packages that the build, the tests and the demo need: only those that are
-# missing, so that a second run changes nothing and needs no network.
+# Installs the Debian packages that the programs and the demo need: only those that are missing, so
+# that a second run changes nothing and needs no network.
 #
 #   scripts/setup.sh [FURTHER_PACKAGE...]
 #
 # With SKIP_SETUP=1 in the environment it does nothing: for those who bring the libraries themselves.
 set -euo pipefail
 
+readonly LEAST_CMAKE=3.25
 readonly PACKAGES=(
-  g++ cmake ninja-build                                        # the build
+  g++ cmake ninja-build ccache                                 # the build
   libgrpc++-dev libprotobuf-dev                                # the service
   protobuf-compiler protobuf-compiler-grpc
   libabsl-dev libeigen3-dev libhwy-dev librandom123-dev        # the core
   libboost-dev                                                 # its numbers of more than 64 bits
   libsqlite3-dev libssl-dev                                    # the store, the door
   prometheus-cpp-dev                                           # metrics
-  libcli11-dev gnuplot-nox                                     # the client, its figures
-  libgtest-dev libgmock-dev libbenchmark-dev)                  # tests and benchmarks
+  libcli11-dev gnuplot-nox)                                    # the client, its figures
+
+# The CMake that is there or, without one, that would be installed; empty if neither is known.
+cmake_version() {
+  if command -v cmake >/dev/null; then
+    cmake --version | awk 'NR == 1 {print $3}'
+  elif command -v apt-cache >/dev/null; then
+    apt-cache policy cmake | awk '/Candidate:/ && $2 != "(none)" {sub(/-[^-]*$/, "", $2); print $2}'
+  fi
+}
+
+require_cmake() {
+  local version
+  version=$(cmake_version)
+  [[ -n $version && $(printf '%s\n' "$LEAST_CMAKE" "$version" | sort -V | head -1) != "$LEAST_CMAKE" ]] ||
+    return 0
+  echo "setup: CMake $version is too old; permitted: $LEAST_CMAKE (Debian 12) or newer" >&2
+  exit 1
+}
 
 missing_of() {
   local installed
@@ -37,6 +55,7 @@ apt_get() {
   exit 1
 }
 
+require_cmake
 [[ ${SKIP_SETUP:-0} != 1 ]] || exit 0
 if ! command -v dpkg-query >/dev/null; then
   echo "setup: not a Debian system; these packages, or what holds the same, must be there:" \
@@ -56,4 +75,5 @@ echo "setup: installing ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 apt_get update
+require_cmake
 apt_get install -y --no-install-recommends "${missing[@]}"

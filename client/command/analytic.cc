@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston analytic: the closed forms at every pair of (rho, delta).
 #include <memory>
 #include <optional>

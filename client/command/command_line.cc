@@ -1,5 +1,6 @@
 #include "client/command/command_line.h"
 
+#include <CLI/CLI.hpp>
 #include <google/protobuf/stubs/logging.h>
 
 #include <optional>

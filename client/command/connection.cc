@@ -1,5 +1,6 @@
 #include "client/command/connection.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 
 #include "absl/status/status.h"

@@ -9,7 +9,6 @@
 
 #include <grpcpp/grpcpp.h>
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,6 +18,10 @@
 #include "client/command/exit_code.h"
 #include "client/library/channel_security.h"
 #include "client/library/local_server.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ballpiston::client {
 

@@ -1,5 +1,6 @@
 #include "client/command/create_job.h"
 
+#include <CLI/CLI.hpp>
 #include <limits>
 #include <utility>
 

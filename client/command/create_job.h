@@ -3,7 +3,6 @@
 #ifndef BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
 #define BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -11,6 +10,10 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "client/command/connection.h"
 #include "client/library/ensemble_client.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ballpiston::client {
 

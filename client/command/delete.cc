@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston delete: deletes an ended job with its results. Prints nothing.
 #include <memory>
 

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston figure NAME --out DIR: measures what a figure shows, writes data and a gnuplot script,
 // and draws it. Prints the files' names.
 #include <memory>

@@ -1,5 +1,6 @@
 #include "client/command/flags.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "absl/status/status.h"
@@ -22,6 +23,19 @@ bool IsId(absl::string_view text) {
 }
 
 }  // namespace
+
+void FormatFlag::AddTo(CLI::App& verb) {
+  verb.add_option("--format", text, "table | json | jsonl | csv; table if not given");
+}
+
+void ProgressFlag::AddTo(CLI::App& verb) {
+  verb.add_option("--progress", text,
+                  "auto | bar | json | none, on standard error; auto: a bar on a terminal");
+}
+
+void JobArgument::AddTo(CLI::App& verb) {
+  verb.add_option("JOB", text, "ensembleJobs/ID")->required();
+}
 
 absl::StatusOr<std::string> JobArgument::Name() const {
   constexpr absl::string_view kCollection = "ensembleJobs/";

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston list: prints the server's jobs, the newest first.
 #include <memory>
 

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston plan: what each model of the ladder would cost for a question, how well it would
 // answer, and which one would be taken. Runs nothing.
 #include <memory>

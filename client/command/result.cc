@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston result: prints a job's finished points.
 #include <memory>
 

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston run: submit, watch, and print the result.
 #include <memory>
 

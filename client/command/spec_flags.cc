@@ -1,5 +1,6 @@
 #include "client/command/spec_flags.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -6,12 +6,15 @@
 #ifndef BALLPISTON_CLIENT_COMMAND_SPEC_FLAGS_H_
 #define BALLPISTON_CLIENT_COMMAND_SPEC_FLAGS_H_
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/spec.pb.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ballpiston::client {
 

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston status: what the server is doing and what it permits. Starts none.
 #include <memory>
 

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston submit: hands a job to the server and prints its name, alone, on standard output; on
 // standard error, if the answer was there already.
 #include <memory>

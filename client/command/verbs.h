@@ -3,13 +3,16 @@
 #ifndef BALLPISTON_CLIENT_COMMAND_VERBS_H_
 #define BALLPISTON_CLIENT_COMMAND_VERBS_H_
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <ostream>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "client/command/exit_code.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ballpiston::client {
 

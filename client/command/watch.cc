@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 // ballpiston watch: shows a job's progress until it ends.
 #include <memory>
 

@@ -22,7 +22,7 @@ using Measurements = std::vector<MethodMeasurement>;
 
 // Right of what takes the most work, as factors: the deltas stand there.
 constexpr double kFloorEnd = 2.2;
-constexpr double kLabelAt = 3;
+constexpr double kDeltaLabelAt = 3;
 constexpr double kRoomForDeltas = 150;
 
 // From dark to light as delta falls; viridis, whose luminance tells them apart too. Its other half
@@ -188,7 +188,7 @@ plot $$walkers using "x":"y" with lines lw 1.5 lc rgb "#999999", \
        ("δ = ".strcol("text")) with labels left font ",12" tc rgb shade(i)
 )gnuplot";
 
-constexpr char kLegend[] = R"gnuplot(
+constexpr char kRelaxationLegend[] = R"gnuplot(
 # ---- the legend of d ----
 unset label
 set lmargin screen 0.51
@@ -268,7 +268,7 @@ std::string RelaxationPanelScript(const Measurements& measurements) {
                             {"$WALKERS", ChanceOfWalkers(measurements, floors.front())},
                             {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
                             {"$CROSSINGS", Crossings(floors)},
-                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kLabelAt, shown)},
+                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kDeltaLabelAt, shown)},
                             {"$FEWEST", absl::StrCat(kFewestOrbits)},
                             {"$DELTAS", DeltasOf(floors)},
                             {"$SHADES", ShadesOf(floors)},
@@ -281,7 +281,7 @@ std::string RelaxationPanelScript(const Measurements& measurements) {
 std::string RelaxationLegendScript(const Measurements& measurements) {
   const std::vector<LimitFloor> floors = FloorsOf(measurements);
   if (floors.empty()) return "";
-  return absl::StrReplaceAll(kLegend, Substitutions{{"$TABLE", Table(floors)}});
+  return absl::StrReplaceAll(kRelaxationLegend, Substitutions{{"$TABLE", Table(floors)}});
 }
 
 }  // namespace ballpiston::client

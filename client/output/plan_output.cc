@@ -92,7 +92,7 @@ std::string Heading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobRespo
 }
 
 // In full as long as that can be read at a glance; 4.1e+08 then.
-std::string CountText(double count) {
+std::string SampleCountText(double count) {
   constexpr double kReadable = 1e7;
   return count < kReadable ? absl::StrFormat("%.0f", count) : absl::StrFormat("%.1e", count);
 }
@@ -104,7 +104,7 @@ std::string RelativeError(double error) {
 const Cells kCostTitles = {"samples", "work", "stat. error", "model error"};
 
 Cells CostCells(const v1::ModelPlan& model) {
-  return {model.has_samples() ? CountText(model.samples()) : "",
+  return {model.has_samples() ? SampleCountText(model.samples()) : "",
           model.has_work() ? DurationText(model.work()) : "",
           model.has_statistical_error() ? RelativeError(model.statistical_error()) : "",
           model.has_model_error() ? RelativeError(model.model_error()) : ""};

@@ -62,7 +62,7 @@ google::rpc::BadRequest AsManyAsFit(const std::vector<FieldViolation>& violation
   return fitting;
 }
 
-std::string Message(const std::vector<FieldViolation>& violations) {
+std::string ViolationsText(const std::vector<FieldViolation>& violations) {
   const FieldViolation& first = violations.front();
   const std::string others =
       violations.size() == 1 ? "" : absl::StrCat(" (and ", violations.size() - 1, " more)");
@@ -70,7 +70,7 @@ std::string Message(const std::vector<FieldViolation>& violations) {
 }
 
 absl::Status Invalid(const std::string& reason, const std::vector<FieldViolation>& violations) {
-  absl::Status status = absl::InvalidArgumentError(Message(violations));
+  absl::Status status = absl::InvalidArgumentError(ViolationsText(violations));
   const google::rpc::BadRequest fitting = AsManyAsFit(violations);
   const size_t left_out = violations.size() - static_cast<size_t>(fitting.field_violations_size());
   google::rpc::ErrorInfo info = Info(reason);

@@ -11,9 +11,7 @@
 namespace ballpiston::server {
 namespace {
 
-using Message = v1::MethodMeasurement;
-
-class Violations {
+class ViolationList {
  public:
   void Add(const std::string& field, const absl::Status& status) {
     if (!status.ok()) list_.push_back({field, std::string(status.message())});
@@ -41,7 +39,7 @@ absl::Status ValidateCountOfDeltas(size_t count) {
       absl::StrCat(count, " values; permitted: at most ", kMaxRelaxationDeltas));
 }
 
-void CheckRelaxationDeltas(const MethodComparisonSpec& spec, Violations& violations) {
+void CheckRelaxationDeltas(const MethodComparisonSpec& spec, ViolationList& violations) {
   const absl::Status count = ValidateCountOfDeltas(spec.relaxation_deltas.size());
   violations.Add("relaxation_delta", count);
   if (!count.ok()) return;  // no word on each of thousands
@@ -52,7 +50,7 @@ void CheckRelaxationDeltas(const MethodComparisonSpec& spec, Violations& violati
 }
 
 std::vector<FieldViolation> Check(const MethodComparisonSpec& spec) {
-  Violations violations;
+  ViolationList violations;
   violations.Add("rho", ValidateRho(spec.rho));
   violations.Add("delta", ValidateDelta(spec.rho, spec.delta));
   CheckRelaxationDeltas(spec, violations);
@@ -107,44 +105,44 @@ v1::MethodMeasurement MeasurementMessage(const MethodMeasurement& measurement) {
   return message;
 }
 
-Message::Method MethodMessage(Method method) {
+v1::MethodMeasurement::Method MethodMessage(Method method) {
   switch (method) {
     case Method::kFixedStep:
-      return Message::FIXED_STEP;
+      return v1::MethodMeasurement::FIXED_STEP;
     case Method::kReferenceSingle:
-      return Message::BILLIARD_REFERENCE_SINGLE;
+      return v1::MethodMeasurement::BILLIARD_REFERENCE_SINGLE;
     case Method::kReference:
-      return Message::BILLIARD_REFERENCE;
+      return v1::MethodMeasurement::BILLIARD_REFERENCE;
     case Method::kReferenceLongDouble:
-      return Message::BILLIARD_REFERENCE_LONG_DOUBLE;
+      return v1::MethodMeasurement::BILLIARD_REFERENCE_LONG_DOUBLE;
     case Method::kReferenceQuadruple:
-      return Message::BILLIARD_REFERENCE_QUADRUPLE;
+      return v1::MethodMeasurement::BILLIARD_REFERENCE_QUADRUPLE;
     case Method::kLanes:
-      return Message::BILLIARD;
+      return v1::MethodMeasurement::BILLIARD;
     case Method::kLanesSingle:
-      return Message::BILLIARD_SINGLE;
+      return v1::MethodMeasurement::BILLIARD_SINGLE;
     case Method::kClosedForm:
-      return Message::CLOSED_FORM;
+      return v1::MethodMeasurement::CLOSED_FORM;
     case Method::kMarkov:
-      return Message::MARKOV;
+      return v1::MethodMeasurement::MARKOV;
     case Method::kSpectrum:
-      return Message::SPECTRUM;
+      return v1::MethodMeasurement::SPECTRUM;
   }
-  return Message::METHOD_UNSPECIFIED;
+  return v1::MethodMeasurement::METHOD_UNSPECIFIED;
 }
 
-Message::Quantity QuantityMessage(Quantity quantity) {
+v1::MethodMeasurement::Quantity QuantityMessage(Quantity quantity) {
   switch (quantity) {
     case Quantity::kMeanFreeTime:
-      return Message::MEAN_FREE_TIME;
+      return v1::MethodMeasurement::MEAN_FREE_TIME;
     case Quantity::kIngoingLaw:
-      return Message::INGOING_LAW;
+      return v1::MethodMeasurement::INGOING_LAW;
     case Quantity::kTrajectory:
-      return Message::TRAJECTORY;
+      return v1::MethodMeasurement::TRAJECTORY;
     case Quantity::kRelaxationTime:
-      return Message::RELAXATION_TIME;
+      return v1::MethodMeasurement::RELAXATION_TIME;
   }
-  return Message::QUANTITY_UNSPECIFIED;
+  return v1::MethodMeasurement::QUANTITY_UNSPECIFIED;
 }
 
 }  // namespace ballpiston::server

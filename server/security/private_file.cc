@@ -13,33 +13,29 @@
 namespace ballpiston::server {
 namespace {
 
-absl::Status Refused(const NamedFile& file, const std::string& why) {
-  return absl::InvalidArgumentError(absl::StrCat(file.Text(), ": ", why));
-}
-
 absl::StatusOr<std::string> ReadAll(const NamedFile& file, int descriptor) {
   std::string text;
   char buffer[1 << 14];
   while (text.size() <= kMaxSecurityFile) {
     const ssize_t size = read(descriptor, buffer, sizeof(buffer));
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0) return Refused(file, absl::StrCat("cannot be read: ", std::strerror(errno)));
+    if (size < 0) return Unusable(file, absl::StrCat("cannot be read: ", std::strerror(errno)));
     if (size == 0) return text;
     text.append(buffer, static_cast<size_t>(size));
   }
-  return Refused(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
+  return Unusable(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
 }
 
 // What is opened is what is checked: nobody can exchange the file in between.
 absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) {
   const int descriptor = open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
-    return Refused(file, absl::StrCat("cannot be opened: ", std::strerror(errno)));
+    return Unusable(file, absl::StrCat("cannot be opened: ", std::strerror(errno)));
   }
   const absl::Cleanup closed = [descriptor] { close(descriptor); };
   struct stat status {};
   if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-    return Refused(file, "is not a regular file");
+    return Unusable(file, "is not a regular file");
   }
   const absl::Status kept =
       is_private ? CheckKeptPrivate(file, status, geteuid()) : absl::OkStatus();
@@ -48,6 +44,10 @@ absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) 
 }
 
 }  // namespace
+
+absl::Status Unusable(const NamedFile& file, absl::string_view why) {
+  return absl::InvalidArgumentError(absl::StrCat(file.Text(), ": ", why));
+}
 
 absl::StatusOr<std::string> ReadPublicFile(const NamedFile& file) {
   return ReadChecked(file, false);
@@ -59,13 +59,13 @@ absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file) {
 
 absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, uid_t user) {
   if (status.st_uid != user && status.st_uid != 0) {
-    return Refused(file, absl::StrFormat("belongs to user %d; permitted: this server's user (%d) "
+    return Unusable(file, absl::StrFormat("belongs to user %d; permitted: this server's user (%d) "
                                          "or root",
                                          status.st_uid, user));
   }
   constexpr mode_t kForOthers = S_IWGRP | S_IXGRP | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
-  return Refused(file, absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
+  return Unusable(file, absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
                                        "most (chmod 600 it)",
                                        status.st_mode & 07777));
 }

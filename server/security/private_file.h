@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 
 namespace ballpiston::server {
 
@@ -19,6 +20,9 @@ struct NamedFile {
 
   std::string Text() const { return "--" + flag + "=" + path; }  // for messages
 };
+
+// INVALID_ARGUMENT that names the flag and the file.
+absl::Status Unusable(const NamedFile& file, absl::string_view why);
 
 // More than any list of credentials or chain of certificates.
 inline constexpr size_t kMaxSecurityFile = size_t{1} << 20;

@@ -28,10 +28,6 @@ using Certificate = std::unique_ptr<X509, Freed<X509_free>>;
 using Key = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;
 using Context = std::unique_ptr<SSL_CTX, Freed<SSL_CTX_free>>;
 
-absl::Status Refused(const NamedFile& file, absl::string_view why) {
-  return absl::InvalidArgumentError(absl::StrCat(file.Text(), ": ", std::string(why)));
-}
-
 // OpenSSL's last word, which never quotes a file; its queue is empty afterwards.
 std::string WhyNot() {
   const char* reason = ERR_reason_error_string(ERR_peek_last_error());
@@ -66,7 +62,7 @@ absl::Status CheckDates(const NamedFile& file, const X509& certificate, absl::Ti
   const absl::Time from = TimeOf(X509_get0_notBefore(&certificate));
   const absl::Time until = TimeOf(X509_get0_notAfter(&certificate));
   if (from <= now && now < until) return absl::OkStatus();
-  return Refused(file, absl::StrCat("the certificate is valid from ", absl::FormatTime(from),
+  return Unusable(file, absl::StrCat("the certificate is valid from ", absl::FormatTime(from),
                                     " to ", absl::FormatTime(until), " only"));
 }
 
@@ -74,12 +70,12 @@ absl::Status CheckDates(const NamedFile& file, const X509& certificate, absl::Ti
 absl::Status TryOut(const TlsFiles& files, X509* certificate, EVP_PKEY* key) {
   const Context context(SSL_CTX_new(TLS_server_method()));
   if (SSL_CTX_use_certificate(context.get(), certificate) != 1) {
-    return Refused(files.certificate, absl::StrCat("the certificate is not usable: ", WhyNot()));
+    return Unusable(files.certificate, absl::StrCat("the certificate is not usable: ", WhyNot()));
   }
   if (SSL_CTX_use_PrivateKey(context.get(), key) != 1 ||
       SSL_CTX_check_private_key(context.get()) != 1) {
     ERR_clear_error();
-    return Refused(files.key,
+    return Unusable(files.key,
                    absl::StrCat("is not the key of the certificate in ", files.certificate.Text()));
   }
   return absl::OkStatus();
@@ -109,7 +105,7 @@ absl::StatusOr<std::string> ReadClientCa(const NamedFile& file) {
   const absl::StatusOr<std::string> pem = ReadPublicFile(file);
   if (!pem.ok()) return pem.status();
   const std::vector<Certificate> authorities = Certificates(*pem);
-  if (authorities.empty()) return Refused(file, "has no certificate (PEM is wanted)");
+  if (authorities.empty()) return Unusable(file, "has no certificate (PEM is wanted)");
   return Pem(authorities);
 }
 
@@ -120,7 +116,7 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files, absl::Time no
   if (!chain.ok()) return chain.status();
   const std::vector<Certificate> certificates = Certificates(*chain);
   if (certificates.empty()) {
-    return Refused(files.certificate, "has no certificate (PEM is wanted)");
+    return Unusable(files.certificate, "has no certificate (PEM is wanted)");
   }
   const absl::Status dates = CheckDates(files.certificate, *certificates.front(), now);
   if (!dates.ok()) return dates;
@@ -129,7 +125,7 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files, absl::Time no
   const Key key(PEM_read_bio_PrivateKey(Reading(*key_text).get(), nullptr, &NoPassphrase, nullptr));
   if (key == nullptr) {
     ERR_clear_error();
-    return Refused(files.key, "has no private key that can be read without a passphrase (PEM)");
+    return Unusable(files.key, "has no private key that can be read without a passphrase (PEM)");
   }
   const absl::Status usable = TryOut(files, certificates.front().get(), key.get());
   if (!usable.ok()) return usable;

@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -211,18 +212,18 @@ class BadInputTest : public ::testing::Test {
   }
 
   void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(server_.folder().Path(name)) << text;
+    std::ofstream(server_.folder().File(name)) << text;
   }
 
   std::string Replaced(const std::string& text) const {
-    return absl::StrReplaceAll(text, {{"FOLDER", server_.folder().path().string()}});
+    return absl::StrReplaceAll(text, {{"FOLDER", server_.folder().path()}});
   }
 
   ProcessResult Run(const std::string& command) const {
     std::vector<std::string> words = absl::StrSplit(Replaced(command), ' ', absl::SkipEmpty());
     // TestServer adds its own address.
     if (command.find("--server") == std::string::npos) return server_.Client(words);
-    words.insert(words.begin(), BALLPISTON_CLIENT_BINARY);
+    words.insert(words.begin(), ClientProgram());
     return RunProgram(
         {.command = words, .environment = CleanEnvironment(server_.folder()), .input = ""});
   }
@@ -231,7 +232,7 @@ class BadInputTest : public ::testing::Test {
   void Print(const BadInput& input, const ProcessResult& result) const {
     const std::string line =
         absl::StrReplaceAll(absl::StripSuffix(result.err, "\n"),
-                            {{server_.folder().path().string(), "DIR"}, {"\n", "<br>"}});
+                            {{server_.folder().path(), "DIR"}, {"\n", "<br>"}});
     std::printf("| `ballpiston %s` | %d | %s |\n",
                 absl::CHexEscape(absl::StrReplaceAll(input.command, {{"FOLDER", "DIR"}})).c_str(),
                 result.exit_code, line.c_str());

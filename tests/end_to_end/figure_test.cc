@@ -15,6 +15,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -28,7 +29,7 @@ std::string Contents(const std::string& path) {
 }
 
 ProcessOptions Figure(const TestServer& server, const std::string& folder) {
-  return {.command = {BALLPISTON_CLIENT_BINARY, "figure", "mean-free-time", "--out", folder,
+  return {.command = {ClientProgram(), "figure", "mean-free-time", "--out", folder,
                       "--samples", "200", "--delta", "0.2,0.1", "--server", server.Address()},
           .environment = CleanEnvironment(server.folder()),
           .input = ""};
@@ -50,7 +51,7 @@ TEST(Figure, LeavesDataScriptAndPicture) {
     GTEST_SKIP() << "gnuplot is not installed";
   }
   const TestServer server;
-  const std::string folder = server.folder().Path("out/figure");  // made, parents too
+  const std::string folder = server.folder().File("out/figure");  // made, parents too
   const ProcessResult result = RunProgram(Figure(server, folder));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const std::string csv = Contents(folder + "/mean-free-time.csv");
@@ -72,7 +73,7 @@ TEST(Figure, SpeedIsChartedAgainstAccuracy) {
     GTEST_SKIP() << "gnuplot is not installed";
   }
   const TestServer server;
-  const std::string folder = server.folder().Path("figure");
+  const std::string folder = server.folder().File("figure");
   const ProcessResult result = server.Client(
       {"figure", "speed-accuracy", "--out", folder, "--seconds", "0.02", "--progress", "json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -91,7 +92,7 @@ TEST(Figure, SpeedIsChartedAgainstAccuracy) {
 
 TEST(Figure, CtrlCEndsAComparisonOnTheServerToo) {
   const TestServer server;
-  const std::string folder = server.folder().Path("figure");
+  const std::string folder = server.folder().File("figure");
   const auto client = server.StartClient(
       {"figure", "speed-accuracy", "--out", folder, "--seconds", "60", "--progress", "json"});
   ASSERT_TRUE(client->WaitForErr("MEAN_FREE_TIME"));
@@ -106,7 +107,7 @@ TEST(Figure, CtrlCEndsAComparisonOnTheServerToo) {
 
 TEST(Figure, WithoutGnuplotLeavesDataAndScript) {
   const TestServer server;
-  const std::string folder = server.folder().Path("figure");
+  const std::string folder = server.folder().File("figure");
   ProcessOptions options = Figure(server, folder);
   options.environment["PATH"] = "/nonexistent";
   const ProcessResult result = RunProgram(options);

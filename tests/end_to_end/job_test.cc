@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -96,9 +97,9 @@ TEST(Run, TakesASpecificationFromAFileOrStandardInput) {
   const TestServer server;
   const std::string spec = R"({"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53],
                               "delta": [0.2]}, "target": {"collisions": 1000}, "seed": 5})";
-  std::ofstream(server.folder().Path("spec.json")) << spec;
+  std::ofstream(server.folder().File("spec.json")) << spec;
   const ProcessResult file =
-      server.Client({"run", "--spec", server.folder().Path("spec.json"), "--format", "json"});
+      server.Client({"run", "--spec", server.folder().File("spec.json"), "--format", "json"});
   const ProcessResult stdin_ = server.Client({"run", "--spec", "-", "--format", "json"}, spec);
   const ProcessResult flags =
       server.Client({"run", "equilibrium", "--rho", "0.53", "--delta", "0.2", "--collisions",
@@ -174,7 +175,7 @@ TEST(Result, AReaderThatGoesAwayIsNoError) {
   const std::string job = server.Submit(
       {"equilibrium", "--rho", "0.53", "--delta", "0.01:0.2:2000", "--collisions", "1"});
   ASSERT_EQ(server.Client({"watch", job}).exit_code, 0);
-  const std::string command = std::string(BALLPISTON_CLIENT_BINARY) + " result " + job +
+  const std::string command = ClientProgram() + " result " + job +
                               " --server " + server.Address() +
                               " --format csv; echo \"exit $?\" >&2";
   const ProcessResult piped =
@@ -189,7 +190,7 @@ TEST(Result, AFullDiskIsAnError) {
   const TestServer server;
   const ProcessResult full =
       RunProgram({.command = {"bash", "-c",
-                              std::string(BALLPISTON_CLIENT_BINARY) + " list --server " +
+                              ClientProgram() + " list --server " +
                                   server.Address() + " > /dev/full"},
                   .environment = CleanEnvironment(server.folder()),
                   .input = ""});

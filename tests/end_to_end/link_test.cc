@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "absl/strings/match.h"
-#include "tests/end_to_end/process.h"
+#include "tests/support/process.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -42,16 +43,16 @@ std::vector<std::string> ForeignSymbols(const std::string& binary) {
 }
 
 TEST(ClientBinary, DefinesNothingOfCoreOrServer) {
-  EXPECT_THAT(ForeignSymbols(BALLPISTON_CLIENT_BINARY), ::testing::IsEmpty());
-  EXPECT_GT(ForeignSymbols(BALLPISTON_SERVER_BINARY).size(), 100u);  // the check can fail
+  EXPECT_THAT(ForeignSymbols(ClientProgram()), ::testing::IsEmpty());
+  EXPECT_GT(ForeignSymbols(ServerProgram()).size(), 100u);  // the check can fail
 }
 
 TEST(ClientBinary, NeedsNoLibraryOfTheServers) {
-  const std::string needed = Output({"readelf", "--dynamic", BALLPISTON_CLIENT_BINARY});
+  const std::string needed = Output({"readelf", "--dynamic", ClientProgram()});
   EXPECT_THAT(needed, HasSubstr("libgrpc++"));
   EXPECT_THAT(needed, Not(HasSubstr("sqlite")));
   EXPECT_THAT(needed, Not(HasSubstr("libballpiston")));
-  EXPECT_THAT(Output({"readelf", "--dynamic", BALLPISTON_SERVER_BINARY}), HasSubstr("sqlite"));
+  EXPECT_THAT(Output({"readelf", "--dynamic", ServerProgram()}), HasSubstr("sqlite"));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -32,11 +33,11 @@ class PrivateServerTest : public ::testing::Test {
   }
 
   ProcessOptions Client(std::vector<std::string> words) const {
-    words.insert(words.begin(), BALLPISTON_CLIENT_BINARY);
+    words.insert(words.begin(), ClientProgram());
     return {.command = std::move(words), .environment = CleanEnvironment(home_), .input = ""};
   }
   std::string State(const std::string& name) const {
-    return home_.Path(".local/state/ballpiston/" + name);
+    return home_.File(".local/state/ballpiston/" + name);
   }
 
   int CountInLog(const std::string& text) const {
@@ -54,7 +55,7 @@ class PrivateServerTest : public ::testing::Test {
       const std::string line((std::istreambuf_iterator<char>(file)),
                              std::istreambuf_iterator<char>());
       const bool is_server = line.find("ballpistond") != std::string::npos;
-      if (is_server && line.find(home_.path().string()) != std::string::npos) {
+      if (is_server && line.find(home_.path()) != std::string::npos) {
         pids.push_back(std::atoi(entry.path().filename().c_str()));
       }
     }
@@ -143,8 +144,8 @@ TEST_F(PrivateServerTest, AServerThatCannotStartIsExplained) {
 
 TEST_F(PrivateServerTest, ALongHomeIsNoObstacle) {
   ProcessOptions options = Client(kRun);
-  options.environment["HOME"] = home_.Path(std::string(120, 'x'));
-  options.environment["TMPDIR"] = home_.path().string();
+  options.environment["HOME"] = home_.File(std::string(120, 'x'));
+  options.environment["TMPDIR"] = home_.path();
   const ProcessResult result = RunProgram(options);
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }

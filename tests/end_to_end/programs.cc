@@ -1,4 +1,5 @@
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
@@ -9,18 +10,8 @@
 
 namespace ballpiston {
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "ballpiston_XXXXXX").string();
-  path_ = mkdtemp(pattern.data());
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home) {
-  return {{"HOME", home.path().string()}, {"XDG_STATE_HOME", ""},
+  return {{"HOME", home.path()}, {"XDG_STATE_HOME", ""},
           {"BALLPISTON_SERVER", ""},      {"BALLPISTON_CA", ""},
           {"BALLPISTON_CERT", ""},        {"BALLPISTON_KEY", ""},
           {"BALLPISTON_TLS", ""},         {"BALLPISTON_TOKEN", ""},
@@ -28,7 +19,7 @@ std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home)
 }
 
 ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {
-  flags.insert(flags.begin(), BALLPISTON_SERVER_BINARY);
+  flags.insert(flags.begin(), ServerProgram());
   return {.command = std::move(flags), .environment = CleanEnvironment(home), .input = ""};
 }
 
@@ -52,7 +43,7 @@ ProcessResult TestServer::Stop() {
 }
 
 ProcessOptions TestServer::ClientOptions(std::vector<std::string> words) const {
-  words.insert(words.begin(), BALLPISTON_CLIENT_BINARY);
+  words.insert(words.begin(), ClientProgram());
   words.insert(words.end(), {"--server", Address()});
   return {.command = std::move(words), .environment = CleanEnvironment(folder_), .input = ""};
 }

@@ -4,29 +4,14 @@
 
 #include <google/protobuf/struct.pb.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "tests/end_to_end/process.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston {
-
-// Removed with all it holds.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string Path(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // A home of its own, so that nothing of the user's is touched, and no server from outside.
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home);
@@ -39,8 +24,8 @@ class TestServer {
   void KillHard();
   ProcessResult Stop();  // SIGTERM
 
-  std::string Address() const { return "unix:" + folder_.Path("socket"); }
-  std::string DataDir() const { return folder_.Path("data"); }
+  std::string Address() const { return "unix:" + folder_.File("socket"); }
+  std::string DataDir() const { return folder_.File("data"); }
   const TemporaryFolder& folder() const { return folder_; }
 
   // `ballpiston WORDS... --server ADDRESS`

@@ -14,6 +14,7 @@
 
 #include "tests/credentials/test_authority.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -36,16 +37,16 @@ class Security : public ::testing::Test {
   }
 
   std::string Write(const std::string& name, const std::string& text) {
-    std::ofstream(home_.Path(name)) << text;
-    chmod(home_.Path(name).c_str(), 0600);
-    return home_.Path(name);
+    std::ofstream(home_.File(name)) << text;
+    chmod(home_.File(name).c_str(), 0600);
+    return home_.File(name);
   }
   void WriteCertificate(const KeyAndCertificate& made) {
     Write("server.pem", made.certificate);
     Write("server.key", made.key);
   }
   std::string Read(const std::string& name) const {
-    std::ifstream in(home_.Path(name));
+    std::ifstream in(home_.File(name));
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
@@ -54,7 +55,7 @@ class Security : public ::testing::Test {
   // A new token, which is also in the file `token_NAME`.
   std::string NewToken(const std::string& name, const std::string& request) {
     const ProcessResult made =
-        Server({"--access_file", home_.Path("access"), "--new_token", request});
+        Server({"--access_file", home_.File("access"), "--new_token", request});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     EXPECT_EQ(made.err, "");
     Write("token_" + name, made.out);
@@ -62,12 +63,12 @@ class Security : public ::testing::Test {
   }
 
   Words TlsFlags() const {
-    return {"--tls_certificate",      home_.Path("server.pem"), "--tls_key",
-            home_.Path("server.key"), "--access_file",          home_.Path("access")};
+    return {"--tls_certificate",      home_.File("server.pem"), "--tls_key",
+            home_.File("server.key"), "--access_file",          home_.File("access")};
   }
 
   void Start(const Words& more) {
-    Words flags = {"--listen", "127.0.0.1:0", "--data_dir", home_.Path("data")};
+    Words flags = {"--listen", "127.0.0.1:0", "--data_dir", home_.File("data")};
     Append(flags, more);
     server_ = std::make_unique<Process>(ServerCommand(home_, flags));
     const std::string line = server_->WaitForErrLine(
@@ -78,7 +79,7 @@ class Security : public ::testing::Test {
 
   ProcessResult Client(const Words& words, std::map<std::string, std::string> environment = {}) {
     ProcessOptions options{
-        .command = {BALLPISTON_CLIENT_BINARY}, .environment = CleanEnvironment(home_), .input = ""};
+        .command = {ClientProgram()}, .environment = CleanEnvironment(home_), .input = ""};
     for (const auto& [name, value] : environment) options.environment[name] = value;
     Append(options.command, words);
     Append(options.command, {"--server", address_});
@@ -87,7 +88,7 @@ class Security : public ::testing::Test {
     return result;
   }
   Words Known(const std::string& name) const {
-    return {"--ca", home_.Path("ca.pem"), "--token-file", home_.Path("token_" + name)};
+    return {"--ca", home_.File("ca.pem"), "--token-file", home_.File("token_" + name)};
   }
   ProcessResult List(const Words& flags, std::map<std::string, std::string> environment = {}) {
     Words words = {"list"};
@@ -133,8 +134,8 @@ TEST_F(Security, ATokenRunsAJobThatAnotherTokenDoesNotFind) {
 TEST_F(Security, TheEnvironmentServesAsWellAsFlags) {
   const std::string token = NewToken("alice", "alice:read");
   Start(TlsFlags());
-  const std::string ca = home_.Path("ca.pem");
-  EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN_FILE", home_.Path("token_alice")}})
+  const std::string ca = home_.File("ca.pem");
+  EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN_FILE", home_.File("token_alice")}})
                 .exit_code,
             0);
   EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN", token}}).exit_code, 0);
@@ -157,23 +158,23 @@ TEST_F(Security, WhatFailsSaysWhatToTry) {
     EXPECT_THAT(result.err, HasSubstr(text));
   };
   expect({}, 3, "if that server wants TLS: --ca FILE");
-  expect({"--ca", home_.Path("other.pem")}, 3, "name the right one with --ca FILE");
+  expect({"--ca", home_.File("other.pem")}, 3, "name the right one with --ca FILE");
   expect({"--tls"}, 3, "that this system knows");
-  expect({"--ca", home_.Path("ca.pem")}, 6, "CREDENTIALS_MISSING");
+  expect({"--ca", home_.File("ca.pem")}, 6, "CREDENTIALS_MISSING");
   expect(Known("wrong"), 6, "CREDENTIALS_INVALID");
-  expect({"--token-file", home_.Path("token_alice")}, 2, "others can read");
-  expect({"--cert", home_.Path("server.pem")}, 2, "together");
-  chmod(home_.Path("token_alice").c_str(), 0644);
+  expect({"--token-file", home_.File("token_alice")}, 2, "others can read");
+  expect({"--cert", home_.File("server.pem")}, 2, "together");
+  chmod(home_.File("token_alice").c_str(), 0644);
   expect(Known("alice"), 6, "chmod 600");
   WriteCertificate(authority_.IssueForHost("elsewhere.example.org"));
   server_.reset();
   Start(TlsFlags());
-  expect({"--ca", home_.Path("ca.pem")}, 3, "is for another host");
+  expect({"--ca", home_.File("ca.pem")}, 3, "is for another host");
 }
 
 TEST_F(Security, TlsToAServerWithoutItSaysSo) {
   Start({});
-  const ProcessResult result = List({"--ca", home_.Path("ca.pem")});
+  const ProcessResult result = List({"--ca", home_.File("ca.pem")});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("does not speak TLS"));
   EXPECT_EQ(List({}).exit_code, 0);
@@ -183,9 +184,9 @@ TEST_F(Security, AClientsCertificateIsAskedForAndTaken) {
   Write("access", "certificate Ada alice read\n");
   const KeyAndCertificate own = authority_.Issue("Ada");
   Words flags = TlsFlags();
-  Append(flags, {"--tls_client_ca", home_.Path("ca.pem")});
+  Append(flags, {"--tls_client_ca", home_.File("ca.pem")});
   Start(flags);
-  const Words ca = {"--ca", home_.Path("ca.pem")};
+  const Words ca = {"--ca", home_.File("ca.pem")};
   Words known = ca;
   Append(known, {"--cert", Write("ada.pem", own.certificate), "--key", Write("ada.key", own.key)});
   const ProcessResult listed = List(known);
@@ -213,7 +214,7 @@ TEST_F(Security, HangupReadsTheFilesAgainAndKeepsTheOldOnesIfTheyAreWrong) {
 
 TEST_F(Security, UnsafeCombinationsEndWithTwoAndOneLine) {
   NewToken("alice", "alice:read");
-  const Words data = {"--data_dir", home_.Path("data")};
+  const Words data = {"--data_dir", home_.File("data")};
   const auto expect = [&](Words flags, const std::string& text) {
     Append(flags, data);
     const ProcessResult result = Server(flags);
@@ -222,12 +223,12 @@ TEST_F(Security, UnsafeCombinationsEndWithTwoAndOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   expect({"--listen", "0.0.0.0:0"}, "missing: --tls_certificate and --tls_key and --access_file");
-  expect({"--listen", "127.0.0.1:0", "--access_file", home_.Path("access")}, "readable for others");
+  expect({"--listen", "127.0.0.1:0", "--access_file", home_.File("access")}, "readable for others");
   Words over_socket = TlsFlags();
-  Append(over_socket, {"--listen", "unix:" + home_.Path("s")});
+  Append(over_socket, {"--listen", "unix:" + home_.File("s")});
   expect(over_socket, "over a Unix socket");
   expect({"--new_token", "alice:read"}, "--access_file is missing");
-  chmod(home_.Path("server.key").c_str(), 0644);
+  chmod(home_.File("server.key").c_str(), 0644);
   Words open_key = TlsFlags();
   Append(open_key, {"--listen", "127.0.0.1:0"});
   expect(open_key, "is open to others");
@@ -254,11 +255,11 @@ TEST_F(Security, NoTokenIsInTheLogTheStoreOrWhatAClientSays) {
   Write("access", "token " + tokens[1] + " bob submit\n");
   server_->Signal(SIGHUP);
   ASSERT_TRUE(server_->WaitForErr("not read again"));
-  EXPECT_EQ(List({"--token-file", home_.Path("token_gone")}).exit_code, 2);
+  EXPECT_EQ(List({"--token-file", home_.File("token_gone")}).exit_code, 2);
   server_->Signal(SIGTERM);
   const ProcessResult ended = server_->Wait();
   std::string all = said_ + ended.out + ended.err + access;
-  for (const auto& entry : std::filesystem::directory_iterator(home_.Path("data"))) {
+  for (const auto& entry : std::filesystem::directory_iterator(home_.File("data"))) {
     if (entry.is_regular_file()) all += Read("data/" + entry.path().filename().string());
   }
   EXPECT_GT(all.size(), 1000u);

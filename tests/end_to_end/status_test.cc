@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -52,7 +53,7 @@ TEST(Status, TellsWhatWasAskedAndComputed) {
 TEST(Status, LogLinesAreJsonWhereThatIsWanted) {
   const TemporaryFolder home;
   Process server(ServerCommand(
-      home, {"--listen", "unix:" + home.Path("socket"), "--data_dir", home.Path("data"),
+      home, {"--listen", "unix:" + home.File("socket"), "--data_dir", home.File("data"),
              "--log_format", "json", "--metrics_listen", "127.0.0.1:0"}));
   ASSERT_TRUE(server.WaitForErr("listening on"));
   server.Signal(SIGTERM);
@@ -85,18 +86,18 @@ class FullPipe {
 
 TEST(Status, ALogThatNobodyReadsStopsNothing) {
   const TemporaryFolder home;
-  const FullPipe log(home.Path("log"));
-  const std::string address = "unix:" + home.Path("socket");
+  const FullPipe log(home.File("log"));
+  const std::string address = "unix:" + home.File("socket");
   ProcessOptions command = ServerCommand(
-      home, {"--listen", address, "--data_dir", home.Path("data"), "--drain_seconds", "1"});
+      home, {"--listen", address, "--data_dir", home.File("data"), "--drain_seconds", "1"});
   command.command.insert(command.command.begin(),
-                         {"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", home.Path("log")});
+                         {"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", home.File("log")});
   Process server(command);
   const ProcessOptions status = {
-      {BALLPISTON_CLIENT_BINARY, "status", "--server", address}, CleanEnvironment(home), ""};
+      {ClientProgram(), "status", "--server", address}, CleanEnvironment(home), ""};
   while (RunProgram(status).exit_code != 0) continue;  // until it has begun
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(RunProgram({{BALLPISTON_CLIENT_BINARY, "run", "equilibrium", "--rho", "0.53",
+    EXPECT_EQ(RunProgram({{ClientProgram(), "run", "equilibrium", "--rho", "0.53",
                            "--delta", "0.2", "--collisions", "100", "--server", address},
                           CleanEnvironment(home),
                           ""})
@@ -110,7 +111,7 @@ TEST(Status, ALogThatNobodyReadsStopsNothing) {
 TEST(Status, MetricsForOtherMachinesAreRefused) {
   const TemporaryFolder home;
   const ProcessResult result = RunProgram(
-      ServerCommand(home, {"--data_dir", home.Path("data"), "--metrics_listen", "0.0.0.0:9090"}));
+      ServerCommand(home, {"--data_dir", home.File("data"), "--metrics_listen", "0.0.0.0:9090"}));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--metrics_listen=0.0.0.0:9090 is not a loopback address"));
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/end_to_end/programs.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -27,7 +28,7 @@ TEST(StoreCommands, AStoreIsCheckedCopiedAndRestored) {
   TestServer server;
   const ProcessResult before = server.Client(kQuestion);
   ASSERT_EQ(before.exit_code, 0) << before.err;
-  const std::string backup = server.folder().Path("backup");
+  const std::string backup = server.folder().File("backup");
   const ProcessResult checked = Server(server, {"--check"});  // while it runs
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
   EXPECT_THAT(checked.out, HasSubstr("1"));
@@ -59,9 +60,9 @@ TEST(StoreCommands, WhatIsNoStoreIsToldWithExitCode2) {
 
 TEST(StoreCommands, OneIsDoneAtATime) {
   const TemporaryFolder home;
-  const std::string access = home.Path("access");
+  const std::string access = home.File("access");
   const ProcessResult result =
-      RunProgram(ServerCommand(home, {"--data_dir", home.Path("data"), "--check", "--backup=x",
+      RunProgram(ServerCommand(home, {"--data_dir", home.File("data"), "--check", "--backup=x",
                                       "--access_file", access, "--new_token=a:submit"}));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new_token exclude each other"));
@@ -71,13 +72,13 @@ TEST(StoreCommands, OneIsDoneAtATime) {
 
 TEST(Limits, AreFlagsAndNameThemselves) {
   const TemporaryFolder home;
-  const std::string address = "unix:" + home.Path("socket");
-  Process server(ServerCommand(home, {"--listen", address, "--data_dir", home.Path("data"),
+  const std::string address = "unix:" + home.File("socket");
+  Process server(ServerCommand(home, {"--listen", address, "--data_dir", home.File("data"),
                                       "--max_points_per_job=2", "--max_message_bytes=2048"}));
   ASSERT_TRUE(server.WaitForErr("listening on"));
   const auto ask = [&](const std::string& deltas) {
     ProcessOptions options;
-    options.command = {BALLPISTON_CLIENT_BINARY,
+    options.command = {ClientProgram(),
                        "submit",
                        "equilibrium",
                        "--rho",
@@ -101,7 +102,7 @@ TEST(Limits, AreNotNegative) {
   for (const std::string flag : {"--max_active_jobs=-1", "--max_samples_per_job=-2",
                                  "--max_message_bytes=0", "--max_streams=-1"}) {
     const ProcessResult result =
-        RunProgram(ServerCommand(home, {"--data_dir", home.Path("data"), flag}));
+        RunProgram(ServerCommand(home, {"--data_dir", home.File("data"), flag}));
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr(flag + " is out of range"));
   }

@@ -13,6 +13,7 @@
 #include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/mutation.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston::fuzz {
 
@@ -21,7 +22,7 @@ void PrintTo(const FuzzTarget& target, std::ostream* out) { *out << target.name;
 
 namespace {
 
-constexpr char kSeeds[] = BALLPISTON_FUZZ_SEEDS_DIR;
+const std::string kSeeds = SourcePath("tests/fuzz/seeds");
 constexpr int kChangedInputs = 3000;
 constexpr size_t kLongestInput = 1 << 14;
 

@@ -10,6 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/layout/include_rules.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -27,7 +28,7 @@ std::string ReadFile(const std::filesystem::path& path) {
 
 // Text by path, of all C++ files of the house.
 std::map<std::string, std::string> SourceFiles() {
-  const std::filesystem::path root = BALLPISTON_SOURCE_DIR;
+  const std::filesystem::path root = SourcePath("");
   std::map<std::string, std::string> files;
   for (const char* folder : {"core", "server", "client", "tests"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
@@ -41,7 +42,7 @@ std::map<std::string, std::string> SourceFiles() {
 
 // Every target that `program` is linked with, through however many others. Written by CMake.
 std::set<std::string> LinkedInto(const std::string& program) {
-  std::ifstream file(std::string(BALLPISTON_LINKS_DIR) + "/" + program + ".txt");
+  std::ifstream file(BuildPath("tests/layout/links/" + program + ".txt"));
   return {std::istream_iterator<std::string>(file), {}};
 }
 
@@ -68,7 +69,7 @@ TEST(Layout, TheWholeHouseIsRead) {
 TEST(Layout, EveryTopFolderHasItsMap) {
   for (const char* folder : {"core", "proto", "server", "client", "tests"}) {
     EXPECT_TRUE(
-        std::filesystem::exists(std::string(BALLPISTON_SOURCE_DIR) + "/" + folder + "/README.md"))
+        std::filesystem::exists(SourcePath(folder) + "/README.md"))
         << folder;
   }
 }

@@ -6,8 +6,8 @@
 #include "gtest/gtest.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/running_server.h"
-#include "tests/server/temporary_folder.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {

@@ -9,7 +9,7 @@
 #include "grpcpp/create_channel.h"
 #include "server/security/access_entry.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/running_server.h"
+#include "tests/support/running_server.h"
 
 namespace ballpiston::server {
 namespace {

@@ -9,7 +9,7 @@
 #include "grpcpp/channel.h"
 #include "server/ballpiston_server.h"
 #include "tests/credentials/test_authority.h"
-#include "tests/server/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 

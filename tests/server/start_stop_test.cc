@@ -10,8 +10,8 @@
 #include "grpcpp/generic/generic_stub.h"
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/running_server.h"
-#include "tests/server/temporary_folder.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/statistical/run_point.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 using Row = std::map<std::string, double>;
 
 std::vector<Row> ReferenceRows() {
-  std::ifstream file(std::string(BALLPISTON_TEST_DATA_DIR) + "/first_hit.csv");
+  std::ifstream file(SourcePath("tests/data/first_hit.csv"));
   std::string line, cell;
   std::getline(file, line);
   std::vector<std::string> columns;

@@ -11,6 +11,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "gtest/gtest.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -29,7 +30,7 @@ double ErrorOf(double value, long double reference) {
 }  // namespace
 
 ReferenceTable::ReferenceTable(const std::string& file) {
-  std::ifstream in(std::string(BALLPISTON_TEST_DATA_DIR) + "/" + file);
+  std::ifstream in(SourcePath("tests/data/" + file));
   EXPECT_TRUE(in.good()) << "no reference data: " << file;
   std::string line;
   if (std::getline(in, line)) columns_ = Fields(line);

@@ -20,7 +20,7 @@
 #include "tests/fault/store/acknowledged.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/service_on_disk.h"
-#include "tests/server/first_store_version.h"
+#include "tests/server/store/first_store_version.h"
 
 namespace ballpiston::server {
 namespace {

@@ -17,7 +17,7 @@
 #include "server/store/store.h"
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {

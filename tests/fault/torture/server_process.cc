@@ -1,4 +1,5 @@
 #include "tests/fault/torture/server_process.h"
+#include "tests/support/paths.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -79,7 +80,7 @@ ServerProcess::~ServerProcess() {
 
 void ServerProcess::Spawn(const std::string& failpoint) {
   std::vector<std::string> command = {
-      "/proc/self/exe", kMortal,     BALLPISTON_SERVER_BINARY,
+      "/proc/self/exe", kMortal,     ServerProgram(),
       "--listen",       address(),   "--data_dir",
       data_dir(),       "--workers", std::to_string(set_up_.workers)};
   command.insert(command.end(), set_up_.flags.begin(), set_up_.flags.end());

@@ -1,0 +1,126 @@
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kPaperRho = 0.529561127988977;
+
+class AnalyticServiceTest : public testing::Test {
+ protected:
+  AnalyticServiceTest() {
+    ServerOptions options;
+    options.data_dir = folder_.path();
+    server_.emplace(options);
+    request_.add_rho(kPaperRho);
+    request_.add_delta(0.2);
+  }
+
+  grpc::Status Evaluate() {
+    grpc::ClientContext context;
+    return server_->analytic().EvaluatePairs(&context, request_, &response_);
+  }
+
+  TemporaryFolder folder_;
+  std::optional<RunningServer> server_;
+  v1::EvaluatePairsRequest request_;
+  v1::EvaluatePairsResponse response_;
+};
+
+TEST_F(AnalyticServiceTest, EveryPairHasItsPointRhoOutermost) {
+  request_.add_rho(0.55);
+  request_.add_delta(0.1);
+  ASSERT_TRUE(Evaluate().ok());
+  ASSERT_EQ(response_.points_size(), 4);
+  EXPECT_EQ(response_.points(1).rho(), kPaperRho);
+  EXPECT_EQ(response_.points(1).delta(), 0.1);
+  EXPECT_EQ(response_.points(2).rho(), 0.55);
+}
+
+TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
+  for (const double epsilon : {0.0, 0.25, 0.5}) request_.add_epsilon(epsilon);
+  request_.add_outgoing_epsilon(0.125);
+  request_.add_beta(2);
+  ASSERT_TRUE(Evaluate().ok());
+  const v1::PairAnalytics& point = response_.points(0);
+  EXPECT_NEAR(point.gas_delta_bound(), 0.2, 1e-14);
+  EXPECT_NEAR(point.tau_ball_piston(), 4 * point.volume() / point.area_ball_piston(),
+              1e-13 * point.tau_ball_piston());
+  ASSERT_EQ(point.energies_size(), 3);
+  EXPECT_NEAR(point.energies(0).phi(), std::sqrt(8) / M_PI, 1e-15);
+  EXPECT_NEAR(point.energies(1).phi(), 1, 1e-15);
+  EXPECT_NEAR(point.energies(2).phi(), std::sqrt(2), 1e-15);
+  EXPECT_NEAR(point.energies(1).mean_free_time_conditional(), point.tau_ball_piston(), 1e-12);
+  ASSERT_EQ(point.energies(1).kernel_size(), 1);
+  EXPECT_NEAR(point.energies(1).kernel(0), 0.5 / (2 * M_PI * std::sqrt(0.125 * 0.125)), 1e-14);
+  ASSERT_EQ(point.canonical_size(), 1);
+  EXPECT_NEAR(point.canonical(0).mean_f(), 1 / std::sqrt(4 * M_PI), 1e-15);
+  EXPECT_NEAR(point.canonical(0).mean_h(), 0.5 * point.canonical(0).mean_f(), 1e-15);
+}
+
+TEST_F(AnalyticServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
+  request_.add_rho(0.4);
+  request_.add_delta(-1);
+  request_.add_delta(std::numeric_limits<double>::quiet_NaN());
+  request_.add_epsilon(0.6);
+  request_.add_outgoing_epsilon(0.5);
+  request_.add_beta(std::numeric_limits<double>::infinity());
+  const grpc::Status status = Evaluate();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(DetailsOf(status).reason, "INVALID_REQUEST");
+  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("rho[1]", "delta[1]", "delta[2]", "epsilon[0]",
+                                                    "outgoing_epsilon[0]", "beta[0]"));
+}
+
+TEST_F(AnalyticServiceTest, ADeltaBeyondTheBoundNamesValueBoundAndRho) {
+  request_.add_rho(0.6);  // its bound is the smaller one
+  request_.set_delta(0, 0.3);
+  const grpc::Status status = Evaluate();
+  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("delta[0]"));
+  EXPECT_THAT(status.error_message(), HasSubstr("0.3;"));
+  EXPECT_THAT(status.error_message(), HasSubstr("0.6:"));
+  EXPECT_THAT(status.error_message(), HasSubstr("(1 - lambda)/2"));
+}
+
+TEST_F(AnalyticServiceTest, EmptyListsAreViolations) {
+  request_.Clear();
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("rho", "delta"));
+}
+
+TEST_F(AnalyticServiceTest, TooManyPairsOrValuesAreRefused) {
+  for (int i = 0; i < 100; ++i) {
+    request_.add_rho(0.53);
+    request_.add_delta(0.1);
+  }
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("rho"));
+  request_.mutable_delta()->Truncate(1);
+  for (int i = 0; i < 200; ++i) request_.add_epsilon(0.1);
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("epsilon"));
+}
+
+TEST_F(AnalyticServiceTest, HugeWrongListsAreAnsweredQuickly) {
+  for (int i = 0; i < 200'000; ++i) {
+    request_.add_rho(0.53);
+    request_.add_delta(7);
+  }
+  EXPECT_EQ(Evaluate().error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(AnalyticServiceTest, WhatLeavesTheRangeOfDoubleIsAViolation) {
+  request_.add_delta(1e-300);
+  request_.add_beta(1e-310);
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("delta[1]", "beta[0]"));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,210 @@
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/server.h"
+#include "grpcpp/server_builder.h"
+#include "gtest/gtest.h"
+#include "server/api/methods.h"
+#include "server/api/services.h"
+#include "server/convert/spec.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+// What stands behind the API, without gRPC: so a test says itself who calls.
+class ServerStatusTest : public testing::Test {
+ protected:
+  explicit ServerStatusTest(const Store::Options& options = {})
+      : store_(*Store::Open(folder_.File("store.sqlite3"), options)) {}
+  ~ServerStatusTest() override { gate_.Open(); }
+
+  void Submit(const std::string& principal, int points = 1) {
+    v1::CreateEnsembleJobRequest request;
+    *request.mutable_spec() = Equilibrium(points, 100);
+    request.set_fresh(true);
+    const auto job = book_.Create({principal, Role::kSubmit}, request, CheckSpec(request.spec()));
+    ASSERT_TRUE(job.ok()) << job.status();
+  }
+
+  v1::ServerStatus AskedBy(const std::string& principal, Role role) {
+    const Call call{.method = "GetServerStatus", .request_id = "", .caller = {principal, role}};
+    const auto status = GetServerStatus(context_, call, v1::GetServerStatusRequest());
+    EXPECT_TRUE(status.ok()) << status.status();
+    return *status;
+  }
+
+  TemporaryFolder folder_;
+  Gate gate_;
+  const Limits limits_ = {.max_active_jobs = 7,
+                          .max_active_points = 71,
+                          .max_active_points_per_principal = 72,
+                          .max_samples_per_job = 0,
+                          .max_calls_per_principal = 73,
+                          .max_call_bytes_per_principal = 1000};
+  Authenticator authenticator_;
+  std::unique_ptr<Store> store_;
+  ModelLadder ladder_{*store_, 2};
+  JobBook book_{
+      *store_, limits_, 2,
+      FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); }),
+      nullptr};
+  RpcExecutor executor_{1};
+  WatchRegistry watches_{std::chrono::milliseconds(1)};
+  ComparisonThread comparisons_{CoreComparer()};
+  Activity activity_;
+  std::atomic<bool> draining_ = false;
+  CallObserver calls_;
+  ServiceContext context_{.authenticator = authenticator_,
+                          .limits = limits_,
+                          .book = book_,
+                          .ladder = ladder_,
+                          .executor = executor_,
+                          .watches = watches_,
+                          .comparisons = comparisons_,
+                          .activity = activity_,
+                          .draining = draining_,
+                          .instance = "test",
+                          .timing = {},
+                          .store = *store_,
+                          .calls = calls_,
+                          .start_time = absl::FromUnixMicros(1'700'000'000'250'000),
+                          .store_path = folder_.File("store.sqlite3")};
+};
+
+TEST_F(ServerStatusTest, TellsWhatIsQueuedAndComputed) {
+  Submit("alice");
+  gate_.AwaitWaiting(2);
+  Submit("bob");
+  const v1::ServerStatus status = AskedBy("root", Role::kAdmin);
+  EXPECT_EQ(status.state(), v1::ServerStatus::SERVING);
+  EXPECT_EQ(status.start_time().seconds(), 1'700'000'000);
+  EXPECT_EQ(status.start_time().nanos(), 250'000'000);
+  EXPECT_EQ(status.workers(), 2);
+  EXPECT_EQ(status.busy_workers(), 2);
+  EXPECT_EQ(status.running_jobs(), 1);
+  EXPECT_EQ(status.queued_jobs(), 1);
+  EXPECT_EQ(status.stored_jobs(), 2);
+  EXPECT_GT(status.store_bytes(), 4096);
+  EXPECT_GT(status.rates().wall_hit(), 0);
+  EXPECT_GT(status.rates().jump(), 0);
+  EXPECT_EQ(status.limits().max_active_jobs(), 7);
+  EXPECT_EQ(status.limits().max_samples_per_job(), 0);
+  EXPECT_EQ(status.limits().max_active_points(), 71);
+  EXPECT_EQ(status.limits().max_active_points_per_principal(), 72);
+  EXPECT_EQ(status.limits().max_calls_per_principal(), 73);
+  EXPECT_EQ(status.limits().max_call_bytes_per_principal(), 1000);
+  EXPECT_EQ(status.engine_version(), EngineVersion());
+}
+
+TEST_F(ServerStatusTest, OnlyAnAdministratorSeesWhoElseIsThere) {
+  Submit("alice");
+  gate_.AwaitWaiting(2);
+  Submit("bob");
+  Submit("bob");
+  const v1::ServerStatus all = AskedBy("root", Role::kAdmin);
+  EXPECT_EQ(all.principal(), "root");
+  EXPECT_EQ(all.role(), "admin");
+  ASSERT_EQ(all.principals_size(), 2);
+  EXPECT_EQ(all.principals(0).principal(), "alice");
+  EXPECT_EQ(all.principals(0).running_jobs(), 1);
+  EXPECT_EQ(all.principals(1).principal(), "bob");
+  EXPECT_EQ(all.principals(1).queued_jobs(), 2);
+
+  for (const Role role : {Role::kRead, Role::kSubmit}) {
+    const v1::ServerStatus own = AskedBy("alice", role);
+    ASSERT_EQ(own.principals_size(), 1);
+    EXPECT_EQ(own.principals(0).principal(), "alice");
+    EXPECT_EQ(own.DebugString().find("bob"), std::string::npos);
+    EXPECT_EQ(own.queued_jobs(), 2);  // of all, as the queue is what one waits in
+  }
+  EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
+}
+
+TEST_F(ServerStatusTest, SaysWhenItIsStopping) {
+  draining_ = true;
+  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::DRAINING);
+}
+
+TEST(ServerStatus, IsServedToWhoeverIsLetIn) {
+  TemporaryFolder folder;
+  ServerOptions options;
+  options.data_dir = folder.path();
+  options.factory = FakeExperiments();
+  RunningServer server(options);
+  server.AwaitEnd(server.Submit(Equilibrium(2, 5)));
+  grpc::ClientContext context;
+  v1::ServerStatus status;
+  const auto stub = v1::ServerService::NewStub(server.channel());
+  ASSERT_TRUE(stub->GetServerStatus(&context, v1::GetServerStatusRequest(), &status).ok());
+  EXPECT_EQ(status.principal(), "local");
+  EXPECT_EQ(status.role(), "admin");
+  EXPECT_EQ(status.blocks_computed(), 10);
+  EXPECT_EQ(status.samples_computed(), 10 * kFakeSamplesPerBlock);
+  EXPECT_EQ(status.limits().max_active_jobs(), Limits().max_active_jobs);
+  EXPECT_EQ(status.principals_size(), 0);
+}
+
+class HangingDiskTest : public ServerStatusTest {
+ protected:
+  HangingDiskTest() : ServerStatusTest({.stall = std::chrono::milliseconds(1)}) {
+    gate_.AwaitWaiting(1);
+    while (!store_->stalled()) std::this_thread::yield();
+  }
+  ~HangingDiskTest() override {
+    gate_.Open();
+    hanging_.join();
+  }
+
+ private:
+  void Hang() {
+    const auto hang = [this](Database&) {
+      gate_.Pass(std::stop_token());
+      return absl::OkStatus();
+    };
+    store_->Commit(hang).IgnoreError();
+  }
+
+  std::thread hanging_{[this] { Hang(); }};
+};
+
+TEST_F(HangingDiskTest, IsAStoreThatFails) {
+  EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
+}
+
+// One thread runs the calls: any that waited would be the last.
+TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndOthersAnswered) {
+  EnsembleService service(context_);
+  const std::string address = "unix:" + folder_.File("socket");
+  const auto server = grpc::ServerBuilder()
+                          .RegisterService(&service)
+                          .AddListeningPort(address, grpc::InsecureServerCredentials())
+                          .BuildAndStart();
+  const auto stub = v1::EnsembleService::NewStub(
+      grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+  for (int i = 0; i < 20; ++i) {
+    grpc::ClientContext create, list;
+    const auto deadline = std::chrono::system_clock::now() + std::chrono::minutes(10);
+    create.set_deadline(deadline);
+    list.set_deadline(deadline);
+    v1::CreateEnsembleJobRequest request;
+    *request.mutable_spec() = Equilibrium(1, 1);
+    v1::EnsembleJob job;
+    const grpc::Status refused = stub->CreateEnsembleJob(&create, request, &job);
+    EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE) << refused.error_message();
+    EXPECT_EQ(DetailsOf(refused).reason, "STORE_FAILED");
+    v1::ListEnsembleJobsResponse jobs;
+    EXPECT_TRUE(stub->ListEnsembleJobs(&list, {}, &jobs).ok());
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

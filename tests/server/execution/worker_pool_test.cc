@@ -1,0 +1,535 @@
+#include "server/execution/worker_pool.h"
+
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+#include <new>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "absl/strings/str_format.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/execution/recording_journal.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+RunRequest Request(int64_t key, const EnsembleSpec& spec,
+                   std::shared_ptr<RecordingJournal> journal) {
+  RunRequest request;
+  request.key = key;
+  request.spec = spec;
+  request.finished.assign(PointCount(spec), false);
+  request.journal = std::move(journal);
+  return request;
+}
+
+void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJournal& journal) {
+  const auto blocks = static_cast<uint64_t>(*spec.target.samples);
+  ASSERT_EQ(journal.finished.size(), PointCount(spec));
+  for (const auto& [point, merged] : journal.finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
+  }
+}
+
+TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
+  const EnsembleSpec spec = FakeSpec(20, 40);
+  for (const int workers : {1, 2, 8}) {
+    WorkerPool pool(workers, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, spec, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ExpectAllPointsRight(spec, *journal);
+    EXPECT_EQ(journal->begun, 1);
+  }
+}
+
+TEST(WorkerPool, BlocksOfAPointAreMergedInOrderAndOnce) {
+  const EnsembleSpec spec = FakeSpec(5, 100);
+  WorkerPool pool(8, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  for (const auto& [point, blocks] : journal->merged) {
+    EXPECT_EQ(blocks.size(), 100u);
+    EXPECT_TRUE(std::is_sorted(blocks.begin(), blocks.end()));
+  }
+}
+
+TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
+  const EnsembleSpec spec = FakeSpec(2, 30);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 1, std::stop_token());
+  for (const uint64_t block : {0, 1, 2, 7, 9}) {  // with gaps: an early block was stored
+    journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
+  }
+  std::mutex mutex;
+  std::set<uint64_t> computed;
+  WorkerPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
+                    std::lock_guard lock(mutex);
+                    if (point == 1) computed.insert(block);
+                  }));
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed.size(), 25u);
+  for (const uint64_t block : {0, 1, 2, 7, 9}) EXPECT_FALSE(computed.contains(block));
+}
+
+TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  for (uint64_t block = 0; block < 3; ++block) {
+    journal->stored[0].emplace(block, *experiment->RunBlock(block, {}));
+  }
+  std::atomic<int> computed = 0;
+  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ExpectAllPointsRight(spec, *journal);
+  EXPECT_EQ(computed, 0);
+}
+
+TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
+  const EnsembleSpec spec = FakeSpec(1, 3);
+  auto journal = std::make_shared<RecordingJournal>();
+  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  journal->stored[0].emplace(0, *experiment->RunBlock(0, {}));
+  journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
+  journal->stored[0].at(1).moments.resize(1000);
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.has_stored_blocks = true;
+  pool.Add(std::move(request));
+  EXPECT_TRUE(absl::IsDataLoss(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
+}
+
+TEST(WorkerPool, FinishedPointsAreLeftAlone) {
+  const EnsembleSpec spec = FakeSpec(4, 5);
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, FakeExperiments());
+  RunRequest request = Request(1, spec, journal);
+  request.finished = {true, false, true, false};
+  pool.Add(std::move(request));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ASSERT_EQ(journal->finished.size(), 2u);
+  EXPECT_TRUE(journal->finished.contains(1));
+  EXPECT_TRUE(journal->finished.contains(3));
+}
+
+TEST(WorkerPool, ARunWithNothingToComputeEnds) {
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1, FakeExperiments());
+  RunRequest request = Request(1, FakeSpec(1, 5), journal);
+  request.finished = {true};
+  pool.Add(std::move(request));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  EXPECT_EQ(journal->begun, 0);
+}
+
+TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
+  constexpr int kWorkers = 4;
+  Gate gate;
+  std::atomic<uint64_t> furthest = 0;
+  EnsembleSpec spec = FakeSpec(1, 0);
+  spec.target = {};
+  spec.target.tolerance = 0.05;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(kWorkers, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    uint64_t seen = furthest;
+                    while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
+                    }
+                    if (block == 0) gate.Pass(stop);
+                    // The last block of the window: no more can be handed out before the first.
+                    if (block == 4 * kWorkers - 1) gate.Open();
+                  }));
+  pool.Add(Request(1, spec, journal));
+  ASSERT_TRUE(journal->AwaitEnd().ok());
+  const uint64_t merged = journal->merged[0].size();
+  EXPECT_LT(merged, 1000u);
+  EXPECT_LE(furthest, merged + 4 * kWorkers);
+  EXPECT_TRUE(journal->finished.at(0) == FakeMerged(spec, 0, merged));
+}
+
+// ---- budgets ----
+
+// Spent when the first block is merged, however fast the machine: a block takes some time.
+constexpr double kSpentAtOnce = 1e-12;
+
+EnsembleSpec FakeBudget(int points) {
+  EnsembleSpec spec = FakeSpec(points, 0);
+  spec.target = {.budget_seconds = kSpentAtOnce};
+  return spec;
+}
+
+TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
+  const EnsembleSpec spec = FakeBudget(5);
+  for (const int workers : {1, 4}) {
+    WorkerPool pool(workers, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, spec, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ASSERT_EQ(journal->finished.size(), 5u);
+    for (const auto& [point, merged] : journal->finished) {
+      const uint64_t blocks = journal->merged[point].size();
+      // Blocks that were out of order when the first came are merged with it.
+      EXPECT_GE(blocks, 1u);
+      EXPECT_LT(blocks, 1000u);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
+    }
+  }
+}
+
+TEST(WorkerPool, AnAmpleBudgetEndsNothing) {
+  EnsembleSpec spec = FakeSpec(2, 0);
+  spec.target = {.budget_seconds = 1e6};
+  WorkerPool pool(2, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
+  }
+}
+
+// With one worker one block is merged at a time, so nothing but the first.
+TEST(WorkerPool, AToleranceThatTheBudgetDoesNotReachIsToldAfterAllPointsAreFinished) {
+  EnsembleSpec spec = FakeBudget(5);
+  spec.target.tolerance = 0.001;
+  WorkerPool pool(1, FakeExperiments());
+  auto journal = std::make_shared<RecordingJournal>();
+  pool.Add(Request(1, spec, journal));
+  const absl::Status outcome = journal->AwaitEnd();
+  EXPECT_TRUE(absl::IsDeadlineExceeded(outcome)) << outcome;
+  EXPECT_EQ(journal->finished.size(), 5u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, 1)) << "point " << point;
+  }
+  // That of the point that came first.
+  const BlockResult merged = FakeMerged(spec, 0, 1);
+  const double reached = *merged.moments[0].StandardError() / merged.moments[0].mean;
+  EXPECT_EQ(std::string(outcome.message()),
+            absl::StrFormat("point 0: tolerance 0.001 was not reached within the budget of 1e-12 "
+                            "s: reached %.2g",
+                            reached));
+}
+
+TEST(WorkerPool, AToleranceThatIsReachedLeavesTheBudgetAlone) {
+  EnsembleSpec spec = FakeSpec(3, 0);
+  spec.target = {.tolerance = 0.05};
+  EnsembleSpec with_budget = spec;
+  with_budget.target.budget_seconds = 1e6;
+  for (const EnsembleSpec& asked : {spec, with_budget}) {
+    WorkerPool pool(1, FakeExperiments());
+    auto journal = std::make_shared<RecordingJournal>();
+    pool.Add(Request(1, asked, journal));
+    EXPECT_TRUE(journal->AwaitEnd().ok());
+    ASSERT_EQ(journal->finished.size(), 3u);
+    for (const auto& [point, merged] : journal->finished) {
+      EXPECT_GT(merged.samples, kMinBlocks * kFakeSamplesPerBlock);
+      EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
+      EXPECT_TRUE(merged == FakeMerged(spec, point, journal->merged[point].size()));
+    }
+  }
+}
+
+TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
+  EnsembleSpec spec = FakeSpec(4, 5);
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [](const EnsembleSpec& whole, size_t index, const std::stop_token& stop) {
+    EnsembleSpec of_point = whole;
+    if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
+    return FakeExperiments()(of_point, index, stop);
+  });
+  pool.Add(Request(1, spec, journal));
+  EXPECT_TRUE(journal->AwaitEnd().ok());
+  ASSERT_EQ(journal->finished.size(), 4u);
+  for (const auto& [point, merged] : journal->finished) {
+    EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
+  }
+  EXPECT_EQ(journal->merged.size(), 2u);
+}
+
+// As a pilot run that is told to stop does.
+TEST(WorkerPool, AFactoryIsToldToStopAndItsRunEndsAsCancelled) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1,
+                  [&](const EnsembleSpec& spec, size_t index,
+                      const std::stop_token& stop) -> std::unique_ptr<const PointExperiment> {
+                    gate.Pass(stop);
+                    if (stop.stop_requested()) return nullptr;
+                    return FakeExperiments()(spec, index, stop);
+                  });
+  pool.Add(Request(1, FakeSpec(3, 5), journal));
+  gate.AwaitWaiting(1);
+  pool.Cancel(1);
+  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  EXPECT_TRUE(journal->finished.empty());
+  EXPECT_EQ(journal->ends, 1);
+}
+
+TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
+  auto idle = std::make_shared<RecordingJournal>();
+  auto busy = std::make_shared<RecordingJournal>();
+  // Some of the thread's own time, whoever else computes.
+  const auto compute = [] {
+    timespec begin{}, now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    do {
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    } while (now.tv_sec == begin.tv_sec && now.tv_nsec - begin.tv_nsec < 2'000'000);
+  };
+  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    if (spec.seed == 2) compute();
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token) {
+      if (seed == 2) compute();
+    })(spec, index, stop);
+  });
+  pool.Add(Request(1, FakeSpec(1, 4, 1), idle));
+  ASSERT_TRUE(idle->AwaitEnd().ok());
+  pool.Add(Request(2, FakeSpec(1, 4, 2), busy));
+  ASSERT_TRUE(busy->AwaitEnd().ok());
+  EXPECT_GT(idle->work, 0);
+  // At least one of five in each second of the clock: a turn of the second cuts one short.
+  EXPECT_GE(busy->work, 4 * 0.002);
+}
+
+TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    if (block >= 3) gate.Pass(stop);
+                  }));
+  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  gate.AwaitWaiting(2);
+  pool.Cancel(1);
+  pool.Cancel(1);
+  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 1);
+  EXPECT_TRUE(journal->finished.empty());
+}
+
+TEST(WorkerPool, AnExceptionFailsItsRunAndNoOther) {
+  auto good = std::make_shared<RecordingJournal>();
+  auto bad = std::make_shared<RecordingJournal>();
+  auto hungry = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    return FakeExperiments([seed = spec.seed](size_t, uint64_t block, std::stop_token) {
+      if (seed == 13 && block == 5) throw std::runtime_error("the ball left the cell");
+      if (seed == 14 && block == 5) throw std::bad_alloc();
+    })(spec, index, stop);
+  });
+  pool.Add(Request(1, FakeSpec(3, 20, 13), bad));
+  pool.Add(Request(2, FakeSpec(3, 20, 14), hungry));
+  pool.Add(Request(3, FakeSpec(3, 20, 15), good));
+  EXPECT_TRUE(good->AwaitEnd().ok());
+  EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
+  EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
+  ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
+}
+
+TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2,
+                  [](const EnsembleSpec&, size_t,
+                     const std::stop_token&) -> std::unique_ptr<const PointExperiment> {
+                    throw std::runtime_error("no such experiment");
+                  });
+  pool.Add(Request(1, FakeSpec(3, 20), journal));
+  EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
+}
+
+// A short run beside a long one that came first: it has ended when the long one has not.
+TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
+  auto long_run = std::make_shared<RecordingJournal>();
+  auto short_run = std::make_shared<RecordingJournal>();
+  Gate gate;
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t block, std::stop_token stop) {
+      if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
+    })(spec, index, told);
+  });
+  pool.Add(Request(1, FakeSpec(1, 1'000'000'000, 1), long_run));
+  gate.AwaitWaiting(1);
+  pool.Add(Request(2, FakeSpec(1, 10, 2), short_run));
+  gate.Open();
+  EXPECT_TRUE(short_run->AwaitEnd().ok());
+  EXPECT_EQ(long_run->ends, 0);
+}
+
+// What a worker does with a task. Block 5 of each point was stored before.
+void Do(const RunTask& task, const EnsembleSpec& spec, Run& run) {
+  if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
+    auto open = std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {}));
+    open->merge.Add(5, *open->experiment->RunBlock(5, {}), nullptr);
+    run.PointOpened(opening->point, std::move(open));
+  } else {
+    const auto& block = std::get<BlockTask>(task);
+    OpenPoint* open = run.FindOpen(block.point);
+    open->merge.Add(block.block, *block.experiment->RunBlock(block.block, {}), nullptr);
+    if (open->merge.finished()) run.PointClosed(block.point);
+  }
+  run.TaskDone(task);
+}
+
+// So that of 10,000 runs no more are asked in vain than there are workers.
+TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
+  const EnsembleSpec spec = FakeSpec(4, 10);
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::minstd_rand random(seed);
+    server::Run run(Request(1, spec, nullptr), 3);
+    std::vector<RunTask> out;
+    while (!run.over()) {
+      std::optional<RunTask> task = run.NextTask();
+      if (task) out.push_back(*std::move(task));
+      ASSERT_FALSE(out.empty());
+      if (task && random() % 2 == 0) continue;
+      std::swap(out[random() % out.size()], out.back());
+      Do(out.back(), spec, run);
+      out.pop_back();
+    }
+    EXPECT_TRUE(out.empty());
+  }
+}
+
+// Whose blocks were begun, by the seed of their specification, in that order.
+class Begun {
+ public:
+  void Add(uint64_t seed) {
+    std::lock_guard lock(mutex_);
+    seeds_.push_back(seed);
+  }
+  std::vector<uint64_t> seeds() const {
+    std::lock_guard lock(mutex_);
+    return seeds_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<uint64_t> seeds_;
+};
+
+RunRequest RequestOf(const char* principal, int32_t priority, int64_t key, const EnsembleSpec& spec,
+                     std::shared_ptr<RecordingJournal> journal) {
+  RunRequest request = Request(key, spec, std::move(journal));
+  request.principal = principal;
+  request.priority = priority;
+  return request;
+}
+
+// Added while the only worker is held up by a first run, so that all of them are there when it goes
+// on.
+TEST(WorkerPool, AHigherPriorityIsServedFirst) {
+  Gate gate;
+  Begun begun;
+  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
+    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token stop) {
+      begun.Add(seed);
+      if (seed == 1) gate.Pass(stop);
+    })(spec, index, told);
+  });
+  std::vector<std::shared_ptr<RecordingJournal>> journals;
+  const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
+    journals.push_back(std::make_shared<RecordingJournal>());
+    pool.Add(RequestOf("a", priority, key, FakeSpec(2, blocks, seed), journals.back()));
+  };
+  add(1, 0, 1, 1);
+  gate.AwaitWaiting(1);
+  add(2, -7, 2, 10);
+  add(3, 0, 3, 10);
+  add(4, 7, 4, 10);
+  gate.Open();
+  for (const auto& journal : journals) EXPECT_TRUE(journal->AwaitEnd().ok());
+  // The first run's second point comes when its priority's turn has come.
+  std::vector<uint64_t> others = begun.seeds();
+  std::erase(others, 1u);
+  std::vector<uint64_t> expected;
+  for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
+  EXPECT_EQ(others, expected);
+}
+
+// The first has a point that takes long to be opened; nothing but that keeps it from working.
+TEST(WorkerPool, ARunWithNothingToHandOutLetsTheNextGoOn) {
+  Gate gate;
+  auto first = std::make_shared<RecordingJournal>();
+  auto next = std::make_shared<RecordingJournal>();
+  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+    if (spec.seed == 1) gate.Pass(stop);
+    return FakeExperiments()(spec, index, stop);
+  });
+  pool.Add(RequestOf("a", 100, 1, FakeSpec(1, 5, 1), first));
+  gate.AwaitWaiting(1);
+  pool.Add(RequestOf("a", -100, 2, FakeSpec(3, 50, 2), next));
+  EXPECT_TRUE(next->AwaitEnd().ok());
+  EXPECT_EQ(first->ends, 0);
+  gate.Open();
+  EXPECT_TRUE(first->AwaitEnd().ok());
+}
+
+TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
+  struct Owner {
+    const char* principal;
+    int32_t priority;
+  };
+  for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
+                             std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
+                             std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
+    WorkerPool pool(3, FakeExperiments());
+    std::vector<std::shared_ptr<RecordingJournal>> journals;
+    for (size_t i = 0; i < owners.size(); ++i) {
+      journals.push_back(std::make_shared<RecordingJournal>());
+      pool.Add(RequestOf(owners[i].principal, owners[i].priority, static_cast<int64_t>(i) + 1,
+                         FakeSpec(5, 40, i), journals.back()));
+    }
+    for (size_t i = 0; i < owners.size(); ++i) {
+      EXPECT_TRUE(journals[i]->AwaitEnd().ok());
+      ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
+    }
+  }
+}
+
+TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(
+      2, FakeExperiments([&](size_t, uint64_t, std::stop_token stop) { gate.Pass(stop); }));
+  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  gate.AwaitWaiting(2);
+  pool.Shutdown();
+  EXPECT_EQ(journal->ends, 0);
+}
+
+TEST(WorkerPool, LivePointsAreThoseThatChanged) {
+  Gate gate;
+  auto journal = std::make_shared<RecordingJournal>();
+  WorkerPool pool(1, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+                    if (block == 6) gate.Pass(stop);
+                  }));
+  const EnsembleSpec spec = FakeSpec(1, 100);
+  pool.Add(Request(1, spec, journal));
+  gate.AwaitWaiting(1);
+  const auto live = pool.ChangedSince(1, 0, 10);
+  ASSERT_EQ(live.size(), 1u);
+  EXPECT_EQ(live[0].index, 0u);
+  EXPECT_EQ(live[0].version, 6u);
+  EXPECT_TRUE(live[0].merged == FakeMerged(spec, 0, 6));
+  EXPECT_TRUE(pool.ChangedSince(1, 6, 10).empty());
+  EXPECT_TRUE(pool.ChangedSince(2, 0, 10).empty());
+}
+
+}  // namespace
+}  // namespace ballpiston::server

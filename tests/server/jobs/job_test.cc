@@ -1,0 +1,268 @@
+#include "server/jobs/job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/jobs/job_journal.h"
+#include "server/jobs/job_name.h"
+#include "server/jobs/job_snapshot.h"
+#include "server/jobs/job_state.h"
+#include "server/store/job_table.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using v1::EnsembleJob;
+
+JobRecord Record(int64_t points = 4) {
+  JobRecord record;
+  record.sequence = 1;
+  record.id = "a";
+  record.points = points;
+  return record;
+}
+
+FinishedPoint Point(int number) {
+  auto point = std::make_shared<v1::PointResult>();
+  point->set_index(number);
+  return {number, point};
+}
+
+std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
+  std::vector<int64_t> numbers;
+  for (const FinishedPoint& point : points) numbers.push_back(point.number);
+  return numbers;
+}
+
+TEST(JobState, OnlyLegalTransitionsAreLegal) {
+  const std::vector<std::pair<JobState, JobState>> legal = {
+      {EnsembleJob::QUEUED, EnsembleJob::RUNNING},
+      {EnsembleJob::QUEUED, EnsembleJob::CANCELLING},
+      {EnsembleJob::QUEUED, EnsembleJob::SUCCEEDED},
+      {EnsembleJob::QUEUED, EnsembleJob::FAILED},
+      {EnsembleJob::RUNNING, EnsembleJob::CANCELLING},
+      {EnsembleJob::RUNNING, EnsembleJob::SUCCEEDED},
+      {EnsembleJob::RUNNING, EnsembleJob::FAILED},
+      {EnsembleJob::CANCELLING, EnsembleJob::CANCELLED}};
+  int found = 0;
+  for (int from = 0; from <= EnsembleJob::CANCELLED; ++from) {
+    for (int to = 0; to <= EnsembleJob::CANCELLED; ++to) {
+      const std::pair<JobState, JobState> step{static_cast<JobState>(from),
+                                               static_cast<JobState>(to)};
+      const bool is_legal = std::find(legal.begin(), legal.end(), step) != legal.end();
+      EXPECT_EQ(MayFollow(step.first, step.second), is_legal) << from << " -> " << to;
+      found += is_legal;
+    }
+  }
+  EXPECT_EQ(found, 8);
+}
+
+TEST(Job, AnIllegalTransitionChangesNothing) {
+  int told = 0;
+  Job job(Record(), [&] { ++told; });
+  EXPECT_TRUE(job.Enter(EnsembleJob::CANCELLING, absl::Now()));
+  EXPECT_FALSE(job.Enter(EnsembleJob::RUNNING, absl::Now()));
+  EXPECT_EQ(job.state(), EnsembleJob::CANCELLING);
+  EXPECT_FALSE(job.Message().has_start_time());
+  EXPECT_EQ(told, 1);
+}
+
+TEST(Job, TimesAreThoseOfTheTransitions) {
+  Job job(Record(), nullptr);
+  job.Enter(EnsembleJob::RUNNING, absl::FromUnixSeconds(10));
+  job.Enter(EnsembleJob::SUCCEEDED, absl::FromUnixSeconds(20));
+  EXPECT_EQ(job.Message().start_time().seconds(), 10);
+  EXPECT_EQ(job.Message().end_time().seconds(), 20);
+}
+
+TEST(Job, ProgressIsTheShareOfWorkDone) {
+  Job job(Record(4), nullptr);
+  job.AddRestoredPoints(1, 100, 1);
+  job.AddBlock(50, 0.5);
+  const v1::JobProgress progress = job.Progress();
+  EXPECT_EQ(progress.points(), 4);
+  EXPECT_EQ(progress.points_done(), 1);
+  EXPECT_EQ(progress.samples(), 150);
+  EXPECT_EQ(progress.fraction(), 1.5 / 4);
+}
+
+TEST(Job, WithAToleranceThereIsNoFraction) {
+  v1::EnsembleSpec spec;
+  spec.mutable_target()->set_tolerance(0.1);
+  JobRecord record = Record();
+  record.spec = spec.SerializeAsString();
+  EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
+}
+
+TEST(Job, APointIsDoneWhenItIsStored) {
+  Job job(Record(2), nullptr);
+  EXPECT_EQ(job.Progress().points_done(), 0);
+  const uint64_t before = job.last_change();
+  job.AddFinishedPoint(Point(1));
+  EXPECT_EQ(job.Progress().points_done(), 1);
+  EXPECT_EQ(job.last_finished(), 1);
+  EXPECT_GT(job.last_change(), before);
+}
+
+TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
+  Job job(Record(1000), nullptr);
+  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(Point(number));
+  const auto last = static_cast<int64_t>(300 - kRecentPoints);
+  EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
+  EXPECT_EQ(job.FinishedAfter(last, 1000)->size(), kRecentPoints);
+  EXPECT_THAT(Numbers(*job.FinishedAfter(250, 3)), testing::ElementsAre(251, 252, 253));
+  EXPECT_THAT(Numbers(*job.FinishedAfter(298, 10)), testing::ElementsAre(299, 300));
+  EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
+}
+
+// A store of an older version numbers results with gaps.
+TEST(Job, RestoredPointsAreNotKept) {
+  Job job(Record(1000), nullptr);
+  job.AddRestoredPoints(3, 12, 70);
+  EXPECT_EQ(job.last_finished(), 70);
+  EXPECT_EQ(job.FinishedAfter(69, 10), std::nullopt);
+  EXPECT_TRUE(job.FinishedAfter(70, 10)->empty());
+  job.AddFinishedPoint(Point(75));
+  EXPECT_THAT(Numbers(*job.FinishedAfter(70, 10)), testing::ElementsAre(75));
+  EXPECT_EQ(job.Progress().points_done(), 4);
+}
+
+TEST(SharedSnapshot, IsMadeAnewOnlyIfItIsOldAndSomethingChanged) {
+  SharedSnapshot shared;
+  uint64_t made = 0;
+  const auto make = [&made] {
+    JobSnapshot snapshot;
+    snapshot.change = ++made;
+    return snapshot;
+  };
+  const auto ever = std::chrono::hours(1);
+  const auto never = std::chrono::milliseconds(0);
+  const auto first = shared.Get(1, ever, make);
+  EXPECT_EQ(shared.Get(2, ever, make), first);   // young
+  EXPECT_EQ(shared.Get(1, never, make), first);  // nothing changed
+  const auto second = shared.Get(2, never, make);
+  EXPECT_EQ(second->change, 2u);
+  EXPECT_EQ(made, 2u);
+}
+
+class JobJournalTest : public testing::Test {
+ protected:
+  // Nothing is committed before it is flushed.
+  void SetUp() override {
+    auto store = Store::Open(folder_.File("store"), {.delay = std::chrono::hours(1)});
+    ASSERT_TRUE(store.ok()) << store.status();
+    store_ = *std::move(store);
+    record_ = Record(3);
+    ASSERT_TRUE(
+        store_->Commit([this](Database& database) { return InsertJob(database, record_); }).ok());
+    job_ = std::make_shared<Job>(record_, nullptr);
+    journal_.emplace(job_, *store_, nullptr);
+  }
+
+  void Finish(size_t point) {
+    const EnsembleSpec spec = FakeSpec(3, 1);
+    const auto experiment = FakeExperiments()(spec, point, std::stop_token());
+    journal_->PointFinished(point, *experiment, FakeMerged(spec, point, 1));
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<Store> store_;
+  JobRecord record_;
+  std::shared_ptr<Job> job_;
+  std::optional<JobJournal> journal_;
+};
+
+TEST_F(JobJournalTest, NothingIsToldThatIsNotOnDisk) {
+  journal_->Began();
+  Finish(2);
+  Finish(0);
+  EXPECT_EQ(job_->state(), EnsembleJob::QUEUED);
+  EXPECT_EQ(job_->last_finished(), 0);
+  ASSERT_TRUE(store_->Flush().ok());
+  EXPECT_EQ(job_->state(), EnsembleJob::RUNNING);
+  const auto told = *job_->FinishedAfter(0, 10);
+  EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
+  EXPECT_EQ(told[0].result->index(), 2);
+  EXPECT_EQ(told[1].result->index(), 0);
+}
+
+TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
+  for (const size_t point : {2, 0, 1}) Finish(point);
+  Finish(0);  // the first writer wins: no number for this one
+  ASSERT_TRUE(store_->Flush().ok());
+  std::vector<std::pair<int64_t, int64_t>> stored;
+  ASSERT_TRUE(store_
+                  ->Read([&](Database& database) {
+                    return ReadResultsStoredAfter(database, record_.sequence, 1,
+                                                  [&](int64_t number, const PointRow& row) {
+                                                    stored.emplace_back(number, row.point);
+                                                    return true;
+                                                  });
+                  })
+                  .ok());
+  EXPECT_THAT(stored, testing::ElementsAre(testing::Pair(2, 0), testing::Pair(3, 1)));
+  EXPECT_EQ(job_->last_finished(), 3);
+}
+
+// The results are told, and counted as told, only after the end was written down.
+TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
+  for (const size_t point : {0, 1, 2}) Finish(point);
+  journal_->Ended(absl::OkStatus());
+  ASSERT_TRUE(store_->Flush().ok());
+  std::optional<JobRecord> ended;
+  ASSERT_TRUE(store_
+                  ->Read([&](Database& database) {
+                    auto found = FindJob(database, record_.id);
+                    if (found.ok()) ended = *std::move(found);
+                    return found.status();
+                  })
+                  .ok());
+  EXPECT_EQ(ended->state, EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(ended->points_done, 3);
+  EXPECT_EQ(job_->Progress().points_done(), 3);
+}
+
+TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
+  for (const size_t point : {0, 2}) Finish(point);
+  journal_->Ended(absl::OkStatus());
+  ASSERT_TRUE(store_->Flush().ok());
+  const EnsembleJob job = job_->Message();
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
+}
+
+TEST(LeaveOutFinished, OfAPointInBothListsOnlyTheEndIsTold) {
+  v1::StatisticsSnapshot message;
+  for (const int index : {4, 2, 7}) message.add_points()->set_index(index);
+  for (const int index : {1, 2}) message.add_finished_points()->set_index(index);
+  LeaveOutFinished(message);
+  ASSERT_EQ(message.points_size(), 2);
+  EXPECT_EQ(message.points(0).index(), 4);
+  EXPECT_EQ(message.points(1).index(), 7);
+  EXPECT_EQ(message.finished_points_size(), 2);
+}
+
+TEST(JobName, OnlyJobsHaveJobNames) {
+  EXPECT_EQ(JobIdOf("ensembleJobs/0a-9"), "0a-9");
+  const std::string too_long(64, 'a');
+  for (const std::string& name :
+       {std::string(), std::string("ensembleJobs/"), "jobs/a" + too_long,
+        std::string("ensembleJobs/A"), std::string("ensembleJobs/a/b"), "ensembleJobs/" + too_long,
+        std::string("a"), std::string("ensembleJobs/a b")}) {
+    EXPECT_EQ(JobIdOf(name), std::nullopt) << name;
+  }
+  EXPECT_TRUE(JobIdOf(JobName(RandomId())));
+  EXPECT_NE(RandomId(), RandomId());
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,268 @@
+#include "server/observability/metrics.h"
+
+#include <future>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "grpcpp/generic/generic_stub.h"
+#include "gtest/gtest.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/http_get.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr char kCreated[] =
+    "grpc_server_handled_total{grpc_service=\"ballpiston.v1.EnsembleService\",grpc_method="
+    "\"CreateEnsembleJob\",grpc_type=\"unary\",grpc_code=\"OK\"}";
+
+constexpr char kSample[] =
+    R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
+
+// By name with labels. A test failure where a line is not of the text format.
+std::map<std::string, double> Samples(const std::string& page) {
+  std::map<std::string, double> samples;
+  std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("# HELP ", 0) == 0 || line.rfind("# TYPE ", 0) == 0) continue;
+    EXPECT_THAT(line, MatchesRegex(kSample));
+    const size_t space = line.rfind(' ');
+    const auto inserted =
+        samples.emplace(line.substr(0, space), std::strtod(line.c_str() + space, nullptr));
+    EXPECT_TRUE(inserted.second) << "twice: " << line;
+  }
+  return samples;
+}
+
+class MetricsTest : public testing::Test {
+ protected:
+  ~MetricsTest() override { gate_.Open(); }
+
+  RunningServer& Start(bool held = false) {
+    ServerOptions options;
+    options.data_dir = folder_.File("data");
+    options.workers = 2;
+    options.metrics_listen = "127.0.0.1:0";
+    options.limits.max_points_per_job = 10;
+    options.factory = FakeExperiments([this, held](size_t, uint64_t, std::stop_token stop) {
+      if (held) gate_.Pass(stop);
+    });
+    server_.emplace(options);
+    return *server_;
+  }
+  std::string Address() { return server_->server().metrics_address(); }
+  std::string Page() { return HttpGet(Address(), "/metrics"); }
+  std::map<std::string, double> Metrics() { return Samples(Page()); }
+  // A job or a stream is told to have ended just before it is counted.
+  void Await(const std::string& metric, double value) {
+    while (Metrics().at(metric) != value) std::this_thread::yield();
+  }
+
+  TemporaryFolder folder_;
+  Gate gate_;
+  std::optional<RunningServer> server_;
+};
+
+TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
+  const auto names = [](const ServerSnapshot& server) {
+    std::map<std::string, double> values;
+    for (const auto& family : ServerMetrics(server)) {
+      if (!family.metric.empty()) values[family.name] = family.metric[0].gauge.value;
+    }
+    return values;
+  };
+  constexpr char kExpiry[] = "ballpiston_certificate_expiry_timestamp_seconds";
+  ServerSnapshot server;
+  EXPECT_EQ(names(server).count(kExpiry), 0u);
+  server.certificate_expiry = absl::FromUnixSeconds(2'000'000'000);
+  EXPECT_EQ(names(server)[kExpiry], 2e9);
+}
+
+TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
+  testing::internal::CaptureStderr();
+  RunningServer& server = Start();
+  {
+    grpc::ClientContext context;
+    grpc::CompletionQueue queue;
+    const auto await = [&queue] {
+      void* tag = nullptr;
+      bool ok = false;
+      return queue.Next(&tag, &ok) && ok;
+    };
+    grpc::GenericStub stub(server.channel());
+    const auto call = stub.PrepareCall(&context, "/grpc.health.v1.Health/Watch", &queue);
+    call->StartCall(nullptr);
+    ASSERT_TRUE(await());
+    const grpc::Slice whole_server(std::string("\x0a\0", 2));
+    call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
+    ASSERT_TRUE(await());
+    grpc::ByteBuffer state;
+    call->Read(&state, nullptr);
+    ASSERT_TRUE(await());
+    context.TryCancel();
+    grpc::Status status;
+    call->Finish(&status, nullptr);
+    await();
+  }
+  const auto ended_as = [this](const std::string& code) {
+    const auto metrics = Metrics();
+    const auto found = metrics.find(
+        "grpc_server_handled_total{grpc_service=\"grpc.health.v1.Health\",grpc_method=\"Watch\","
+        "grpc_type=\"server_stream\",grpc_code=\"" +
+        code + "\"}");
+    return found == metrics.end() ? 0 : found->second;
+  };
+  while (ended_as("CANCELLED") + ended_as("UNKNOWN") == 0) std::this_thread::yield();
+  EXPECT_EQ(ended_as("CANCELLED"), 1);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
+}
+
+TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
+  Start();
+  const auto metrics = Metrics();
+  ASSERT_EQ(metrics.count(kCreated), 1u);
+  EXPECT_EQ(metrics.at(kCreated), 0);
+  EXPECT_EQ(metrics.count("grpc_server_started_total{grpc_service=\"ballpiston.v1.ServerService\","
+                          "grpc_method=\"GetServerStatus\",grpc_type=\"unary\"}"),
+            1u);
+}
+
+TEST_F(MetricsTest, CountersMoveWithCallsJobsAndBlocks) {
+  RunningServer& server = Start();
+  for (int i = 0; i < 3; ++i) server.AwaitEnd(server.Submit(Equilibrium(2, 50)));
+  Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
+  const auto metrics = Metrics();
+  EXPECT_EQ(metrics.at(kCreated), 3);
+  EXPECT_EQ(metrics.at("ballpiston_jobs_ended_total{state=\"succeeded\"}"), 3);
+  EXPECT_EQ(metrics.at("ballpiston_blocks_computed_total"), 3 * 2 * 50);
+  EXPECT_EQ(metrics.at("ballpiston_samples_computed_total"), 3 * 2 * 50 * kFakeSamplesPerBlock);
+  EXPECT_EQ(metrics.at("ballpiston_workers"), 2);
+  EXPECT_GT(metrics.at("ballpiston_store_commits_total"), 3);
+  EXPECT_GT(metrics.at("ballpiston_store_bytes"), 4096);
+  EXPECT_EQ(metrics.at("ballpiston_store_failing"), 0);
+  EXPECT_GT(metrics.at("ballpiston_processor_seconds_total"), 0);
+  EXPECT_EQ(metrics.at("grpc_server_handling_seconds_count{grpc_service=\"ballpiston.v1."
+                       "EnsembleService\",grpc_method=\"WatchEnsembleJob\",grpc_type="
+                       "\"server_stream\"}"),
+            3);
+}
+
+TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
+  RunningServer& server = Start(true);
+  const std::string first = server.Submit(Equilibrium(2, 50));
+  gate_.AwaitWaiting(2);
+  const std::string second = server.Submit(Equilibrium(1, 1));
+  grpc::ClientContext context;
+  v1::WatchEnsembleJobRequest request;
+  request.set_name(first);
+  const auto watch = server.ensemble().WatchEnsembleJob(&context, request);
+  v1::WatchEnsembleJobResponse message;
+  ASSERT_TRUE(watch->Read(&message));
+  const auto metrics = Metrics();
+  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_queue_length"), 1);
+  EXPECT_EQ(metrics.at("ballpiston_busy_workers"), 2);
+  EXPECT_EQ(metrics.at("ballpiston_streams"), 1);
+  gate_.Open();
+  while (watch->Read(&message)) {
+  }
+  server.AwaitEnd(second);
+  Await("ballpiston_streams", 0);
+  EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
+}
+
+TEST_F(MetricsTest, RefusalsAreCountedByReason) {
+  RunningServer& server = Start();
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = Equilibrium(11, 1);
+  v1::EnsembleJob job;
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(server.Create(request, &job).ok());
+  EXPECT_EQ(Metrics().at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 2);
+}
+
+TEST_F(MetricsTest, NoLabelNamesAJobOrAPrincipal) {
+  RunningServer& server = Start();
+  const std::string name = server.Submit(Equilibrium(1, 2));
+  server.AwaitEnd(name);
+  const std::string page = Page();
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_THAT(page, Not(HasSubstr(name.substr(name.find('/') + 1))));
+  EXPECT_THAT(page, Not(HasSubstr("\"local\"")));
+}
+
+TEST_F(MetricsTest, WhatIsNotAskedForInOrderHarmsNobody) {
+  Start();
+  Connection silent(Address()), slow(Address());
+  slow.Send("GET /met");
+  for (const std::string& request :
+       {std::string("no HTTP at all\r\n\r\n"), "GET /" + std::string(100'000, 'a') + "\r\n\r\n",
+        std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"),
+        std::string("POST /metrics HTTP/1.0\r\nContent-Length: 9\r\n\r\n"),
+        std::string(5000, '\0')}) {
+    Connection connection(Address());
+    connection.Send(request);
+    EXPECT_THAT(connection.ReadToTheEnd(), Not(HasSubstr(" 200 "))) << request.substr(0, 40);
+  }
+  EXPECT_THAT(HttpGet(Address(), "/"), HasSubstr(" 404 "));
+  EXPECT_EQ(Metrics().at("ballpiston_workers"), 2);
+}
+
+TEST_F(MetricsTest, AStoppedServerIsAskedNoMore) {
+  RunningServer& server = Start();
+  Connection slow(Address());
+  slow.Send("GET /met");
+  server.server().Shutdown(std::chrono::seconds(10));
+  const std::string page = Page();
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_THAT(page, Not(HasSubstr("ballpiston_")));
+}
+
+TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
+  for (const char* address :
+       {"0.0.0.0:9090", "192.168.1.1:9090", "[::]:9090", "example.org:9090", "9090", ":9090",
+        "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "::1:9090", "[127.0.0.1]:1",
+        "127.0.0.1:9090,0.0.0.0:9091", "unix:/tmp/metrics", "127.0.0.1:90s"}) {
+    ServerOptions options;
+    options.data_dir = folder_.File("data");
+    options.metrics_listen = address;
+    const auto server = BallpistonServer::Start(options);
+    EXPECT_EQ(server.status().code(), absl::StatusCode::kInvalidArgument) << address;
+    EXPECT_THAT(std::string(server.status().message()),
+                HasSubstr("--metrics_listen=" + std::string(address)));
+  }
+}
+
+// The HTTP server takes no names.
+TEST_F(MetricsTest, LocalhostIsAnAddress) {
+  ServerOptions options;
+  options.data_dir = folder_.File("data");
+  options.metrics_listen = "localhost:0";
+  RunningServer server(options);
+  EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
+}
+
+TEST_F(MetricsTest, AnAddressInUseIsRefused) {
+  Start();
+  TemporaryFolder other;
+  ServerOptions options;
+  options.data_dir = other.path();
+  options.metrics_listen = Address();
+  const auto server = BallpistonServer::Start(options);
+  EXPECT_EQ(server.status().code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(server.status().message()), HasSubstr(Address()));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,209 @@
+#include "server/security/access_list.h"
+
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/convert/errors.h"
+#include "server/security/token_hash.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const NamedFile kFile{"access_file", "list"};
+const absl::Time kNow = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
+
+std::string HashText(const std::string& token) { return "sha256:" + HexOf(HashOf(token)); }
+
+AccessList Parsed(const std::string& text) {
+  auto list = AccessList::Parse(kFile, text);
+  EXPECT_TRUE(list.ok()) << list.status();
+  return *std::move(list);
+}
+
+std::string ReasonOf(const absl::StatusOr<Principal>& who) {
+  EXPECT_TRUE(absl::IsUnauthenticated(who.status())) << who.status();
+  return DetailsOf(GrpcStatus(who.status())).reason;
+}
+
+std::string ErrorOf(const std::string& text) {
+  const auto list = AccessList::Parse(kFile, text);
+  EXPECT_TRUE(absl::IsInvalidArgument(list.status())) << text;
+  return std::string(list.status().message());
+}
+
+TEST(TokenHash, IsTheStandardsSha256) {
+  EXPECT_EQ(HexOf(HashOf("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(*ParseTokenHash(HexOf(HashOf("abc"))), HashOf("abc"));
+  EXPECT_TRUE(HashOf("abc") == HashOf("abc"));
+  EXPECT_FALSE(HashOf("abc") == HashOf("abd"));
+}
+
+TEST(AccessList, ATokenIsItsPrincipals) {
+  const AccessList list =
+      Parsed("# the laboratory\n\ntoken " + HashText("one") + " alice submit\n  token\t" +
+             HashText("two") + " bob@lab.example read # on paper\r\ntoken " + HashText("three") +
+             " root-3 admin 2030-06-02");
+  EXPECT_EQ(list.size(), 3u);
+  EXPECT_EQ(list.OfToken("one", kNow)->name, "alice");
+  EXPECT_EQ(list.OfToken("one", kNow)->role, Role::kSubmit);
+  EXPECT_EQ(list.OfToken("two", kNow)->name, "bob@lab.example");
+  EXPECT_EQ(list.OfToken("two", kNow)->role, Role::kRead);
+  EXPECT_EQ(list.OfToken("three", kNow)->role, Role::kAdmin);
+}
+
+TEST(AccessList, WhatIsNotATokenOfItIsInvalid) {
+  const AccessList list = Parsed("token " + HashText("one") + " alice submit");
+  const std::string long_token(kLongestToken + 1, 'x');
+  for (const std::string& token : {std::string("two"), std::string(), std::string("one "),
+                                   std::string("on"), HashText("one"), long_token}) {
+    EXPECT_EQ(ReasonOf(list.OfToken(token, kNow)), "CREDENTIALS_INVALID") << token;
+  }
+}
+
+TEST(AccessList, ATokenThatIsTooLongIsRefusedEvenIfItsHashIsListed) {
+  const std::string longest(kLongestToken, 'x');
+  const AccessList list = Parsed("token " + HashText(longest) + " a read\ntoken " +
+                                 HashText(longest + "x") + " b read\n");
+  EXPECT_TRUE(list.OfToken(longest, kNow).ok());
+  EXPECT_EQ(ReasonOf(list.OfToken(longest + "x", kNow)), "CREDENTIALS_INVALID");
+}
+
+TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
+  const AccessList list =
+      Parsed("token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " +
+             HashText("zone") + " b read 2030-06-01T14:00:00.5+02:00\ntoken " + HashText("date") +
+             " c read 2030-06-02\ncertificate old d read 2030-06-01\n");
+  EXPECT_TRUE(list.OfToken("time", kNow - absl::Milliseconds(1)).ok());
+  EXPECT_EQ(ReasonOf(list.OfToken("time", kNow)), "CREDENTIALS_EXPIRED");
+  EXPECT_TRUE(list.OfToken("zone", kNow).ok());
+  EXPECT_EQ(ReasonOf(list.OfToken("zone", kNow + absl::Seconds(1))), "CREDENTIALS_EXPIRED");
+  EXPECT_TRUE(list.OfToken("date", kNow + absl::Hours(11)).ok());
+  EXPECT_EQ(ReasonOf(list.OfToken("date", kNow + absl::Hours(12))), "CREDENTIALS_EXPIRED");
+  EXPECT_EQ(ReasonOf(list.OfCertificate("old", kNow)), "CREDENTIALS_EXPIRED");
+}
+
+TEST(AccessList, ACertificateIsKnownByItsWholeCommonName) {
+  const AccessList list =
+      Parsed("certificate \"Ada Lovelace\" ada admin\ncertificate box box read");
+  EXPECT_TRUE(list.has_certificates());
+  EXPECT_EQ(list.OfCertificate("Ada Lovelace", kNow)->name, "ada");
+  EXPECT_EQ(list.OfCertificate("box", kNow)->role, Role::kRead);
+  for (const std::string name : {"Ada", "", "BOX", "box.evil.example"}) {
+    EXPECT_EQ(ReasonOf(list.OfCertificate(name, kNow)), "CREDENTIALS_INVALID");
+  }
+  EXPECT_EQ(ReasonOf(list.OfCertificate(std::string("box\0.evil", 9), kNow)),
+            "CREDENTIALS_INVALID");
+}
+
+TEST(AccessList, AFormattedEntryIsReadAsItself) {
+  const AccessEntry entries[] = {
+      {HashOf("one"), {"alice", Role::kSubmit}, kNow},
+      {std::string("Ada Lovelace"), {"ada", Role::kAdmin}, absl::InfiniteFuture()}};
+  for (const AccessEntry& entry : entries) {
+    const auto read = ParseAccessEntry(FormatAccessEntry(entry));
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_EQ((*read)->credential, entry.credential);
+    EXPECT_EQ((*read)->principal.name, entry.principal.name);
+    EXPECT_EQ((*read)->principal.role, entry.principal.role);
+    EXPECT_EQ((*read)->expires, entry.expires);
+  }
+}
+
+// In every place of a line where somebody may have put a token.
+TEST(AccessList, AMalformedLineIsNamedWithoutAWordOfIt) {
+  const std::string secret = "hunter2hunter2";
+  const std::string good = HashText("one");
+  const std::pair<std::string, std::string> cases[] = {
+      {secret, "there are 1 words"},
+      {"token " + secret, "words"},
+      {"token " + secret + " alice read", "sha256: and 64 hexadecimal digits"},
+      {"token sha256:" + secret + " alice read", "64 hexadecimal digits"},
+      {"token " + good + "0 alice read", "64 hexadecimal digits"},
+      {"token " + good.substr(0, 70) + "g alice read", "64 hexadecimal digits"},
+      {secret + " " + good + " alice read", "permitted: token, certificate"},
+      {"token " + good + " " + secret + "! read", "a-z"},
+      {"token " + good + " local read", "not local"},
+      {"token " + good + " " + std::string(65, 'a') + " read", "1 to 64"},
+      {"token " + good + " alice " + secret, "read, submit, admin"},
+      {"token " + good + " alice READ", "read, submit, admin"},
+      {"token " + good + " alice read " + secret, "2027-01-31"},
+      {"token " + good + " alice read infinite-future", "2027-01-31"},
+      {"token " + good + " alice read 2030-13-01", "2027-01-31"},
+      {"token " + good + " alice read 2030-06-01 " + secret, "there are 6 words"},
+      {"certificate \"" + secret + " alice read", "quotation mark"},
+      {"certificate \"\" alice read", "quotation mark"},
+      {"certificate " + secret + std::string(300, 'x') + " alice read", "at most 256"}};
+  for (const auto& [line, permitted] : cases) {
+    EXPECT_THAT(ErrorOf("# first\n" + line + "\n"),
+                AllOf(HasSubstr("--access_file=list, line 2: "), HasSubstr(permitted),
+                      Not(HasSubstr("hunter2"))));
+  }
+}
+
+TEST(AccessList, TwoEntriesOfOneCredentialAreRefused) {
+  const std::string line = "token " + HashText("one") + " alice read\n";
+  EXPECT_THAT(ErrorOf(line + "token " + HashText("one") + " bob admin"), HasSubstr("line 2"));
+  EXPECT_THAT(ErrorOf("certificate a alice read\n\ncertificate \"a\" bob read"),
+              HasSubstr("line 3"));
+}
+
+class AccessFile : public ::testing::Test {
+ protected:
+  // The outcome of reading it with this mode.
+  absl::Status With(mode_t mode) {
+    std::ofstream(file_.path) << "token " << HashText("one") << " alice read\n";
+    chmod(file_.path.c_str(), mode);
+    return AccessList::Read(file_).status();
+  }
+
+  TemporaryFolder folder_;
+  NamedFile file_{"access_file", folder_.File("list")};
+};
+
+TEST_F(AccessFile, ThatOthersMayReadOrWriteIsRefused) {
+  EXPECT_TRUE(With(0600).ok());
+  EXPECT_TRUE(With(0400).ok());
+  EXPECT_TRUE(With(0640).ok());
+  for (const mode_t mode : {0604, 0644, 0660, 0620, 0602, 0666, 0777}) {
+    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to others")) << mode;
+  }
+}
+
+TEST_F(AccessFile, OfAnotherUserIsRefusedUnlessItIsRoots) {
+  struct stat status {};
+  status.st_mode = S_IFREG | 0600;
+  status.st_uid = 1000;
+  EXPECT_TRUE(CheckKeptPrivate(file_, status, 1000).ok());
+  EXPECT_THAT(std::string(CheckKeptPrivate(file_, status, 1001).message()),
+              HasSubstr("belongs to user 1000; permitted: this server's user (1001) or root"));
+  status.st_uid = 0;
+  EXPECT_TRUE(CheckKeptPrivate(file_, status, 1000).ok());
+}
+
+TEST_F(AccessFile, ThatIsNoRegularFileOrNoneAtAllIsRefused) {
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
+              HasSubstr("cannot be opened"));
+  ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
+              HasSubstr("is not a regular file"));
+  EXPECT_TRUE(absl::IsInvalidArgument(AccessList::Read({"access_file", folder_.path()}).status()));
+}
+
+TEST_F(AccessFile, ThatIsTooLongIsRefused) {
+  std::ofstream(file_.path) << std::string(kMaxSecurityFile + 1, '#');
+  chmod(file_.path.c_str(), 0600);
+  EXPECT_THAT(std::string(AccessList::Read(file_).status().message()), HasSubstr("longer than"));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,239 @@
+// What clients may take before it is known who they are: descriptors, streams, threads.
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/security/socket_listener.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/http_get.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/server/unread_call.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+constexpr char kList[] = "/ballpiston.v1.EnsembleService/ListEnsembleJobs";
+
+ServerOptions Options(const TemporaryFolder& folder) {
+  ServerOptions options;
+  options.data_dir = folder.path();
+  options.listen = "127.0.0.1:0";
+  options.factory = FakeExperiments();
+  return options;
+}
+
+// The number that the next descriptor gets.
+rlim_t NextDescriptor() {
+  const int next = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(next);
+  return static_cast<rlim_t>(next);
+}
+
+class DescriptorLimit {
+ public:
+  explicit DescriptorLimit(rlim_t limit) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit lowered{limit, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &lowered);
+  }
+  ~DescriptorLimit() { setrlimit(RLIMIT_NOFILE, &before_); }
+  DescriptorLimit(const DescriptorLimit&) = delete;
+  DescriptorLimit& operator=(const DescriptorLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(ConnectionBounds, AQuarterOfAFewDescriptorsIsReservedAndNoMoreThan32) {
+  EXPECT_EQ(ReservedDescriptors(64), 16u);
+  EXPECT_EQ(ReservedDescriptors(128), 32u);
+  EXPECT_EQ(ReservedDescriptors(1'000'000), 32u);
+}
+
+// As many connections as the process has descriptors, and more: the surplus is closed, the process
+// can still open files, and when they have gone the server serves as before.
+TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsAndPasses) {
+  constexpr rlim_t kFlood = 100;
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  ASSERT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  testing::internal::CaptureStderr();
+  {
+    // Descriptors of the clients, in this same process, are below the limit; half as many of the
+    // server's are above what is reserved.
+    const rlim_t limit = std::max<rlim_t>(NextDescriptor() + 3 * kFlood / 2, 128);
+    const DescriptorLimit lowered(limit);
+    std::vector<std::unique_ptr<Connection>> flood;
+    int closed = 0;
+    for (rlim_t i = 0; i < kFlood && closed < 3; ++i) {
+      flood.push_back(std::make_unique<Connection>(server.server().address()));
+      if (flood.back()->ReadSome().empty()) ++closed;
+    }
+    EXPECT_EQ(closed, 3);
+    EXPECT_LT(NextDescriptor(), limit);
+  }
+  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  EXPECT_FALSE(Connection(server.server().address()).ReadSome().empty());
+  const std::string log = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr("1 connection closed: the process has nearly as many descriptors"));
+}
+
+TEST(ConnectionBounds, AConnectionIsToldHowManyStreamsItMayHave) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  Connection connection(server.server().address());
+  // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 2,048 is 0x800.
+  EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x8\0", 6)));
+}
+
+// A client, HTTP/2 by hand, whose requests never end: each announces more than it sends.
+class EndlessRequests {
+ public:
+  explicit EndlessRequests(const std::string& address) : connection_(address) {
+    connection_.Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + Frame(kSettings, 0, 0, ""));
+  }
+
+  // Begins a request, and sends `bytes` of it, as fast as the server takes them. Whether it does:
+  // false if it ended a request of this client.
+  bool Send(size_t bytes) {
+    const uint32_t stream = next_stream_;
+    next_stream_ += 2;
+    connection_.Send(Frame(kHeaders, 4, stream, Headers()));
+    Send(stream, std::string("\0\0\x3f\xff\xff", 5));  // of a message of just under 4 MiB
+    for (size_t sent = 0; sent < bytes && !ended_; sent += kPiece) {
+      Send(stream, std::string(kPiece, 'x'));
+    }
+    return !ended_;
+  }
+
+  // Waits until the server ends a request, or the connection.
+  bool EndsOne() {
+    while (!ended_) ReadFrame();
+    return ended_;
+  }
+
+ private:
+  enum Type : uint8_t { kData = 0, kHeaders = 1, kReset = 3, kSettings = 4, kWindowUpdate = 8 };
+  static constexpr size_t kPiece = 16'384;
+
+  static std::string Number(uint64_t value, int bytes) {
+    std::string text;
+    for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>(value >> (8 * i));
+    return text;
+  }
+  static std::string Frame(Type type, uint8_t flags, uint32_t stream, const std::string& payload) {
+    return Number(payload.size(), 3) + Number(type, 1) + Number(flags, 1) + Number(stream, 4) +
+           payload;
+  }
+  static std::string Headers() {
+    std::string all;
+    for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{
+             {":method", "POST"},
+             {":scheme", "http"},
+             {":path", "/ballpiston.v1.EnsembleService/CreateEnsembleJob"},
+             {":authority", "localhost"},
+             {"te", "trailers"},
+             {"content-type", "application/grpc"}}) {
+      all += Number(0, 1) + Number(name.size(), 1) + name + Number(value.size(), 1) + value;
+    }
+    return all;
+  }
+
+  // Of the stream's own window no more is used than each has from the start.
+  void Send(uint32_t stream, const std::string& data) {
+    while (window_ < static_cast<int64_t>(data.size()) && !ended_) ReadFrame();
+    if (ended_) return;
+    window_ -= static_cast<int64_t>(data.size());
+    connection_.Send(Frame(kData, 0, stream, data));
+  }
+
+  void ReadFrame() {
+    const auto number = [this](size_t at, size_t bytes) {
+      uint64_t value = 0;
+      for (size_t i = at; i < at + bytes; ++i) value = value << 8 | static_cast<uint8_t>(read_[i]);
+      return value;
+    };
+    if (!Await(9) || !Await(9 + number(0, 3))) return;
+    const auto type = static_cast<Type>(number(3, 1));
+    const uint64_t stream = number(5, 4);
+    if (type == kWindowUpdate && stream == 0) window_ += static_cast<int64_t>(number(9, 4));
+    if (type == kReset || type == kHeaders) ended_ = true;
+    read_.erase(0, 9 + number(0, 3));
+  }
+
+  bool Await(size_t bytes) {
+    while (read_.size() < bytes && !ended_) {
+      const std::string some = connection_.ReadSome();
+      ended_ = some.empty();
+      read_ += some;
+    }
+    return !ended_;
+  }
+
+  Connection connection_;
+  std::string read_;
+  int64_t window_ = 65'535;  // of the connection
+  uint32_t next_stream_ = 1;
+  bool ended_ = false;
+};
+
+// Some 40 MiB without end, where 16 MiB are allowed; on one connection, that shows no credentials.
+TEST(ConnectionBounds, RequestsThatNeverEndAreEndedWhenMemoryIsUsedUp) {
+  constexpr size_t kOfEach = 49'152;  // less than a stream's window at the start
+  TemporaryFolder folder;
+  ServerOptions options = Options(folder);
+  options.limits.max_transfer_mib = 16;
+  RunningServer server(options);
+  EndlessRequests client(server.server().address());
+  for (int begun = 0; begun < 900 && client.Send(kOfEach); ++begun) {
+  }
+  EXPECT_TRUE(client.EndsOne());
+  // Others come in again, if not at once: there is room for a moment only.
+  while (!CallByName(server.channel(), kList, "", {}).ok()) {
+  }
+}
+
+size_t Threads() {
+  const std::filesystem::directory_iterator all("/proc/self/task");
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(ConnectionBounds, ReflectionTakesSoManyThreadsAndOtherCallsGoOn) {
+  TemporaryFolder folder;
+  RunningServer server(Options(folder));
+  const std::string list_services("\x3a\x00", 2);
+  ASSERT_TRUE(CallByName(server.channel(), kReflection, list_services, {}).ok());
+  const size_t before = Threads();
+  std::vector<std::unique_ptr<UnreadCall>> streams;
+  for (int i = 0; i < 60; ++i) {
+    streams.push_back(std::make_unique<UnreadCall>(server.channel(), kReflection));
+  }
+  // The last is refused, in a moment; it would be open as long as the client likes.
+  EXPECT_EQ(streams.back()->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_LT(Threads(), before + 50);  // the client's own may be among them
+  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  EXPECT_TRUE(CallByName(server.channel(), "/grpc.health.v1.Health/Check", "", {}).ok());
+  streams.clear();
+  while (!CallByName(server.channel(), kReflection, list_services, {}).ok()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the server is to have the core
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

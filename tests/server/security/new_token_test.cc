@@ -1,0 +1,151 @@
+#include "server/security/new_token.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/security/access_list.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const absl::Time kNow = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
+
+class NewToken : public ::testing::Test {
+ protected:
+  std::string Text() const {
+    std::ifstream in(file_.path);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  std::string Issue(const std::string& request) const {
+    const auto token = IssueToken(file_, *ParseTokenRequest(request), kNow);
+    EXPECT_TRUE(token.ok()) << token.status();
+    return *token;
+  }
+
+  TemporaryFolder folder_;
+  const NamedFile file_{"access_file", folder_.File("list")};
+};
+
+TEST_F(NewToken, LetsItsPrincipalInAndIsNotInTheFile) {
+  const std::string token = Issue("alice:submit");
+  const auto list = AccessList::Read(file_);
+  ASSERT_TRUE(list.ok()) << list.status();
+  EXPECT_EQ(list->OfToken(token, kNow + absl::Hours(24 * 36'500))->name, "alice");
+  EXPECT_EQ(list->OfToken(token, kNow)->role, Role::kSubmit);
+  EXPECT_THAT(Text(), Not(HasSubstr(token)));
+  EXPECT_THAT(Text(), Not(HasSubstr(token.substr(3))));  // without its prefix
+}
+
+TEST_F(NewToken, TheFileIsItsOwnersOnly) {
+  const mode_t before = umask(0);
+  Issue("alice:read");
+  umask(before);
+  struct stat found {};
+  ASSERT_EQ(stat(file_.path.c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 07777, 0600u);
+}
+
+TEST_F(NewToken, ExpiresAfterItsDays) {
+  const std::string token = Issue("alice:admin:30");
+  const auto list = AccessList::Read(file_);
+  EXPECT_TRUE(list->OfToken(token, kNow + 29.9 * absl::Hours(24)).ok());
+  EXPECT_FALSE(list->OfToken(token, kNow + 30 * absl::Hours(24)).ok());
+}
+
+TEST_F(NewToken, IsAppendedAfterALineWithoutAnEnd) {
+  std::ofstream(file_.path) << "certificate box box read";
+  chmod(file_.path.c_str(), 0600);
+  Issue("alice:read");
+  const auto list = AccessList::Read(file_);
+  ASSERT_TRUE(list.ok()) << list.status();
+  EXPECT_EQ(list->size(), 2u);
+}
+
+TEST_F(NewToken, ManyAtOnceAreAllThereAndAllDifferent) {
+  std::vector<std::string> tokens(8);
+  std::vector<std::thread> threads;
+  for (std::string& token : tokens) threads.emplace_back([&] { token = Issue("alice:read"); });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(std::set<std::string>(tokens.begin(), tokens.end()).size(), tokens.size());
+  const auto list = AccessList::Read(file_);
+  ASSERT_TRUE(list.ok()) << list.status();
+  for (const std::string& token : tokens) EXPECT_TRUE(list->OfToken(token, kNow).ok());
+}
+
+TEST_F(NewToken, AFileThatIsOpenToOthersOrMalformedStaysAsItIs) {
+  std::ofstream(file_.path) << "certificate box box read\n";
+  chmod(file_.path.c_str(), 0644);
+  const TokenRequest request = *ParseTokenRequest("alice:read");
+  EXPECT_THAT(std::string(IssueToken(file_, request, kNow).status().message()),
+              HasSubstr("open to others"));
+  chmod(file_.path.c_str(), 0600);
+  std::ofstream(file_.path) << "nonsense\n";
+  EXPECT_THAT(std::string(IssueToken(file_, request, kNow).status().message()),
+              HasSubstr("line 1"));
+  EXPECT_EQ(Text(), "nonsense\n");
+}
+
+// No file may grow beyond `bytes`, as on a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*const handler_)(int) = signal(SIGXFSZ, SIG_IGN);
+  rlimit before_{};
+};
+
+TEST_F(NewToken, WithoutRoomForItsWholeLineTheFileStaysAsItIs) {
+  while (!std::filesystem::exists(file_.path) || Text().size() < 900) Issue("alice:submit");
+  const std::string before = Text();
+  {
+    const FullDisk disk(before.size() + 20);
+    const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kNow);
+    EXPECT_THAT(std::string(token.status().message()), HasSubstr("File too large"));
+  }
+  EXPECT_EQ(Text(), before);
+  Issue("bob:submit");
+}
+
+TEST_F(NewToken, WhereNoFileCanBeMadeThereIsNone) {
+  const NamedFile nowhere{"access_file", folder_.File("no/such/list")};
+  EXPECT_TRUE(absl::IsPermissionDenied(
+      IssueToken(nowhere, *ParseTokenRequest("alice:read"), kNow).status()));
+}
+
+TEST_F(NewToken, ARequestThatIsNoneIsRefused) {
+  for (const char* text :
+       {"", "alice", "alice:", ":read", "alice:root", "alice:read:", "a b:read", "alice:read:0",
+        "alice:read:x", "alice:read:36501", "alice:read:1:2", "local:read"}) {
+    const auto request = ParseTokenRequest(text);
+    EXPECT_TRUE(absl::IsInvalidArgument(request.status())) << text;
+    EXPECT_THAT(std::string(request.status().message()), HasSubstr("--new_token"));
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::server

@@ -1,0 +1,391 @@
+#include "server/security/server_security.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "gmock/gmock.h"
+#include "grpcpp/create_channel.h"
+#include "gtest/gtest.h"
+#include "server/security/published_file.h"
+#include "server/security/server_tls.h"
+#include "server/security/tls_files.h"
+#include "tests/server/call_by_name.h"
+#include "tests/support/running_server.h"
+#include "tests/server/secure_server.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr char kList[] = "/ballpiston.v1.EnsembleService/ListEnsembleJobs";
+
+// The flags that are given, as letters: a(ccess file), c(ertificate), k(ey), m(utual: client CA).
+SecurityOptions Flags(const std::string& letters) {
+  const auto path = [&](char letter) { return letters.find(letter) == letters.npos ? "" : "f"; };
+  return {.access_file = path('a'),
+          .tls_certificate = path('c'),
+          .tls_key = path('k'),
+          .tls_client_ca = path('m')};
+}
+
+std::string Refusal(const std::string& listen, const std::string& flags) {
+  const absl::Status status = CheckCombination(Flags(flags), *ParseListenAddress(listen));
+  if (!status.ok()) {
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  }
+  return std::string(status.message());
+}
+
+TEST(SecurityCombination, OfAllSixteenTheSafeOnesAreAccepted) {
+  const std::map<std::string, std::set<std::string>> accepted = {
+      {"unix:/tmp/x", {""}},
+      {"127.0.0.1:1", {"", "ck", "cka", "ckam"}},
+      {"[::1]:1", {"", "ck", "cka", "ckam"}},
+      {"localhost:1", {"", "ck", "cka", "ckam"}},
+      {"0.0.0.0:1", {"cka", "ckam"}},
+      {"[::]:1", {"cka", "ckam"}},
+      {"192.168.0.7:1", {"cka", "ckam"}},
+      {"node.example.org:1", {"cka", "ckam"}}};
+  for (const auto& [listen, safe] : accepted) {
+    for (unsigned set = 0; set < 16; ++set) {
+      std::string flags;
+      for (unsigned i = 0; i < 4; ++i)
+        flags += (set >> i & 1) != 0 ? std::string(1, "ckam"[i]) : "";
+      EXPECT_EQ(Refusal(listen, flags).empty(), safe.count(flags) == 1) << listen << " " << flags;
+    }
+  }
+}
+
+TEST(SecurityCombination, ARefusalNamesWhatIsMissing) {
+  EXPECT_THAT(Refusal("0.0.0.0:1", ""),
+              HasSubstr("missing: --tls_certificate and --tls_key and --access_file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access_file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls_certificate"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "a"), HasSubstr("tokens would travel readable"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "c"), HasSubstr("both or neither"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "ckm"), HasSubstr("--access_file"));
+  EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls_certificate, --tls_key"));
+}
+
+TEST(SecurityCombination, CertificatesOnTheListNeedAnAuthorityOfClients) {
+  const LaboratoryFiles files;
+  files.WriteAccessFile("certificate box box read\n");
+  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
+  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--tls_client_ca"));
+}
+
+TEST(Start, AnAddressThatOthersReachIsRefusedWithoutCredentials) {
+  TemporaryFolder folder;
+  for (const char* listen : {"0.0.0.0:0", "[::]:0"}) {
+    ServerOptions options = SecureOptions({}, folder.path());
+    options.listen = listen;
+    const auto server = BallpistonServer::Start(options);
+    EXPECT_TRUE(absl::IsInvalidArgument(server.status())) << server.status();
+  }
+}
+
+TEST(Start, AnAddressThatOthersReachIsServedWithThem) {
+  const LaboratoryFiles files;
+  TemporaryFolder folder;
+  ServerOptions options = SecureOptions(files.options(), folder.path());
+  options.listen = "0.0.0.0:0";
+  const auto server = BallpistonServer::Start(options);
+  ASSERT_TRUE(server.ok()) << server.status();
+  const std::string address = "localhost" + (*server)->address().substr(7);
+  const auto channel = SecureChannel(address, files.authority().Pem());
+  EXPECT_TRUE(CallByName(channel, kList, "", Bearer(kAlice)).ok());
+  EXPECT_FALSE(CallByName(channel, kList, "", {}).ok());
+}
+
+class TlsFilesTest : public ::testing::Test {
+ protected:
+  std::string Error() const {
+    const auto identity = ReadTlsIdentity({{"tls_certificate", files_.options().tls_certificate},
+                                           {"tls_key", files_.options().tls_key},
+                                           {"tls_client_ca", files_.options().tls_client_ca}},
+                                          absl::Now());
+    if (identity.ok()) return "";
+    EXPECT_TRUE(absl::IsInvalidArgument(identity.status()));
+    EXPECT_THAT(std::string(identity.status().message()), Not(HasSubstr("BEGIN")));
+    return std::string(identity.status().message());
+  }
+
+  const LaboratoryFiles files_{true};
+  const TestAuthority other_{"another authority"};
+};
+
+TEST_F(TlsFilesTest, AGoodSetIsTaken) { EXPECT_EQ(Error(), ""); }
+
+TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
+  files_.Write("server.key", other_.Issue("x").key);
+  EXPECT_THAT(Error(), HasSubstr("--tls_key="));
+  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls_certificate="));
+}
+
+TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRefused) {
+  using std::chrono::hours;
+  files_.WriteCertificate(files_.authority().Issue("old", {hours(-2), hours(-1)}));
+  EXPECT_THAT(Error(), HasSubstr("the certificate is valid from "));
+  files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
+  EXPECT_THAT(Error(), HasSubstr("the certificate is valid from "));
+}
+
+TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
+  chmod(files_.options().tls_key.c_str(), 0644);
+  EXPECT_THAT(Error(), HasSubstr("open to others (mode 0644)"));
+}
+
+TEST_F(TlsFilesTest, WhatIsNoPemIsRefused) {
+  for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
+    files_.Write("server.pem", text);
+    EXPECT_THAT(Error(), HasSubstr("--tls_certificate")) << text;
+  }
+  const KeyAndCertificate good = files_.authority().Issue("good");
+  files_.WriteCertificate({good.certificate, "nonsense"});
+  EXPECT_THAT(Error(), HasSubstr("has no private key"));
+  files_.WriteCertificate(good);
+  files_.Write("clients.pem", "nonsense");
+  EXPECT_THAT(Error(), HasSubstr("--tls_client_ca"));
+}
+
+TEST_F(TlsFilesTest, AMissingFileIsNamed) {
+  unlink(files_.options().tls_key.c_str());
+  EXPECT_THAT(Error(), HasSubstr("--tls_key="));
+  EXPECT_THAT(Error(), HasSubstr("No such file"));
+}
+
+std::string Content(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(PublishedFile, IsExchangedAsAWhole) {
+  PublishedFile file;
+  ASSERT_TRUE(file.Publish(std::string(100'000, 'a')).ok());
+  const std::string path = file.Path();
+  std::ifstream reading(path);
+  std::string begun(10, '\0');
+  reading.read(begun.data(), 10);
+  ASSERT_TRUE(file.Publish("b").ok());
+  EXPECT_EQ(file.Path(), path);
+  EXPECT_EQ(Content(path), "b");
+  // Who was reading the old content goes on with it.
+  begun.append(std::istreambuf_iterator<char>(reading), {});
+  EXPECT_EQ(begun, std::string(100'000, 'a'));
+}
+
+TEST(PublishedFile, EachContentHasALaterSecond) {
+  PublishedFile file;
+  time_t last = 0;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(file.Publish("x").ok());
+    struct stat found {};
+    ASSERT_EQ(stat(file.Path().c_str(), &found), 0);
+    EXPECT_GT(found.st_mtime, last);
+    last = found.st_mtime;
+  }
+}
+
+// What is in the files in memory of this process.
+std::string Published() {
+  std::string all;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string file = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (file.find("/memfd:ballpiston") == 0) all += Content(entry.path().string());
+  }
+  return all;
+}
+
+// The certificate must not be exchanged without the authority that belongs to it.
+TEST(ServerTls, WhenThereIsRoomForOneFileOnlyBothStayOld) {
+  const LaboratoryFiles files(true);
+  const SecurityOptions& options = files.options();
+  const auto tls = ServerTls::Create({{"tls_certificate", options.tls_certificate},
+                                      {"tls_key", options.tls_key},
+                                      {"tls_client_ca", options.tls_client_ca}});
+  ASSERT_TRUE(tls.ok()) << tls.status();
+  const KeyAndCertificate next = files.authority().Issue("server-2");
+  files.WriteCertificate(next);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const int free = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  close(free);
+  const rlimit one_more{static_cast<rlim_t>(free) + 1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &one_more);
+  const absl::Status reloaded = (*tls)->Reload();
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_TRUE(absl::IsInternal(reloaded)) << reloaded;
+  EXPECT_THAT(Published(), Not(HasSubstr(next.certificate)));
+  ASSERT_TRUE((*tls)->Reload().ok());
+  EXPECT_THAT(Published(), HasSubstr(next.certificate));
+}
+
+class SecureServer : public ::testing::Test {
+ protected:
+  explicit SecureServer(bool mutual = false) : files_(mutual) {}
+
+  grpc::Status List(const std::shared_ptr<grpc::Channel>& channel, const std::string& token) {
+    return CallByName(channel, kList, "", Bearer(token));
+  }
+  std::shared_ptr<grpc::Channel> Channel(const KeyAndCertificate& own = {}) {
+    return SecureChannel(server_->address(), files_.authority().Pem(), own);
+  }
+  std::string ReasonOf(const grpc::Status& status) { return DetailsOf(status).reason; }
+
+  const LaboratoryFiles files_;
+  TemporaryFolder folder_;
+  std::unique_ptr<BallpistonServer> server_ =
+      *BallpistonServer::Start(SecureOptions(files_.options(), folder_.path()));
+};
+
+TEST_F(SecureServer, PlainTextGetsNoAnswer) {
+  const auto channel = grpc::CreateChannel(server_->address(), grpc::InsecureChannelCredentials());
+  EXPECT_EQ(List(channel, kAlice).error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_TRUE(List(Channel(), kAlice).ok());
+}
+
+TEST_F(SecureServer, AClientThatTrustsAnotherAuthorityDoesNotConnect) {
+  const TestAuthority other("another authority");
+  const auto channel = SecureChannel(server_->address(), other.Pem());
+  EXPECT_EQ(List(channel, kAlice).error_code(), grpc::StatusCode::UNAVAILABLE);
+}
+
+TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
+  const auto channel = Channel();
+  ASSERT_TRUE(List(channel, kAlice).ok());
+  files_.WriteAccessFile("");
+  EXPECT_TRUE(List(channel, kAlice).ok());  // not yet
+  ASSERT_TRUE(server_->Reload().ok());
+  EXPECT_EQ(ReasonOf(List(channel, kAlice)), "CREDENTIALS_INVALID");
+  files_.WriteAccessFile(LaboratoryTokens());
+  ASSERT_TRUE(server_->Reload().ok());
+  EXPECT_TRUE(List(channel, kAlice).ok());
+  EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
+}
+
+TEST_F(SecureServer, AnAccessFileThatIsWrongLeavesTheOldOne) {
+  const auto channel = Channel();
+  files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
+  const absl::Status status = server_->Reload();
+  EXPECT_THAT(std::string(status.message()), HasSubstr("line 1"));
+  EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kBob)));
+  EXPECT_TRUE(List(channel, kAlice).ok());
+  unlink(files_.options().access_file.c_str());
+  EXPECT_FALSE(server_->Reload().ok());
+  EXPECT_TRUE(List(channel, kAlice).ok());
+}
+
+// The old connection is not disturbed; new ones see the new certificate, as soon as gRPC looks.
+TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
+  const auto channel = Channel();
+  ASSERT_TRUE(List(channel, kAlice).ok());
+  ASSERT_EQ(ServedCommonName(server_->address()), "server-1");
+  files_.WriteCertificate(files_.authority().Issue("server-2"));
+  ASSERT_TRUE(server_->Reload().ok());
+  while (ServedCommonName(server_->address()) != "server-2") {
+  }
+  EXPECT_TRUE(List(channel, kAlice).ok());
+  EXPECT_TRUE(List(Channel(), kAlice).ok());
+}
+
+TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
+  files_.Write("server.key", files_.authority().Issue("x").key);
+  EXPECT_THAT(std::string(server_->Reload().message()), HasSubstr("--tls_key="));
+  files_.WriteCertificate(files_.authority().Issue("good"));
+  files_.WriteAccessFile("nonsense\n");
+  EXPECT_FALSE(server_->Reload().ok());  // of the access file; the certificate is taken
+  while (ServedCommonName(server_->address()) != "good") {
+  }
+  EXPECT_TRUE(List(Channel(), kAlice).ok());
+}
+
+// Of 24 hours, as these are, and then of a year.
+TEST_F(SecureServer, ACertificateThatEndsSoonIsWarnedOf) {
+  const auto reload = [this] {
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(server_->Reload().ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(reload(), HasSubstr("is valid until 2"));
+  const auto day = absl::ToUnixSeconds(absl::Now()) + 24 * 3600;
+  EXPECT_NEAR(static_cast<double>(absl::ToUnixSeconds(*server_->security().CertificateExpiry())),
+              static_cast<double>(day), 600);
+  files_.WriteCertificate(
+      files_.authority().Issue("server-2", {.until = std::chrono::hours(365 * 24)}));
+  EXPECT_THAT(reload(), Not(HasSubstr("is valid until")));
+  EXPECT_GT(*server_->security().CertificateExpiry(), absl::Now() + absl::Hours(364 * 24));
+}
+
+class MutualServer : public SecureServer {
+ protected:
+  MutualServer() : SecureServer(true) {
+    files_.WriteAccessFile(LaboratoryTokens() + "certificate \"Ada L.\" alice submit\n" +
+                           "certificate old bob submit 2020-01-01\n");
+    EXPECT_TRUE(server_->Reload().ok());
+  }
+  std::shared_ptr<grpc::Channel> With(const std::string& common_name) {
+    return Channel(files_.authority().Issue(common_name));
+  }
+};
+
+TEST_F(MutualServer, ACertificateIsItsPrincipals) {
+  EXPECT_TRUE(List(With("Ada L."), "").ok());
+  EXPECT_EQ(ReasonOf(List(With("ada l."), "")), "CREDENTIALS_INVALID");
+  EXPECT_EQ(ReasonOf(List(With("old"), "")), "CREDENTIALS_EXPIRED");
+}
+
+TEST_F(MutualServer, ATokenBesideACertificateDecides) {
+  EXPECT_TRUE(List(With("stranger"), kBob).ok());
+  EXPECT_EQ(ReasonOf(List(With("Ada L."), "no-such-token")), "CREDENTIALS_INVALID");
+}
+
+TEST_F(MutualServer, ClientsWithoutAGoodCertificateDoNotConnect) {
+  using std::chrono::hours;
+  const TestAuthority other("the laboratory's authority");  // of the same name
+  const auto expired = files_.authority().Issue("Ada L.", {hours(-2), hours(-1)});
+  for (const auto& own : {KeyAndCertificate(), other.Issue("Ada L."), expired}) {
+    EXPECT_EQ(List(Channel(own), kAlice).error_code(), grpc::StatusCode::UNAVAILABLE);
+  }
+}
+
+TEST_F(MutualServer, TheAuthorityOfClientsIsExchangedToo) {
+  const TestAuthority next("the next authority");
+  files_.Write("clients.pem", next.Pem());
+  ASSERT_TRUE(server_->Reload().ok());
+  const auto own = next.Issue("Ada L.");
+  while (!List(Channel(own), "").ok()) {
+  }
+  EXPECT_FALSE(List(With("Ada L."), "").ok());
+}
+
+// A byte of plain text first, then nothing at all: neither keeps others from being served.
+TEST_F(SecureServer, AHangingConnectionHoldsUpNobody) {
+  const int hanging = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<uint16_t>(
+      std::stoi(server_->address().substr(server_->address().rfind(':') + 1))));
+  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+  ASSERT_EQ(connect(hanging, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(write(hanging, "\x16", 1), 1);
+  EXPECT_TRUE(List(Channel(), kAlice).ok());
+  server_->Shutdown(std::chrono::milliseconds(0));
+  close(hanging);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

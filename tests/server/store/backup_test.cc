@@ -1,0 +1,273 @@
+// Checking and copying stores, also while somebody writes to them.
+#include "server/store/backup.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/check_store.h"
+#include "server/store/schema.h"
+#include "server/store/sqlite.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/running_server.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using v1::EnsembleJob;
+
+std::string Contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+ServerOptions Options(const std::string& data_dir, ExperimentFactory factory) {
+  ServerOptions options;
+  options.data_dir = data_dir;
+  options.workers = 2;
+  options.factory = std::move(factory);
+  options.watch.snapshot = std::chrono::milliseconds(5);
+  options.store.delay = std::chrono::milliseconds(1);
+  return options;
+}
+
+class BackupTest : public testing::Test {
+ protected:
+  std::string Store() const { return folder_.File("store.sqlite3"); }
+  std::string Copy() const { return folder_.File("copy"); }
+
+  // With a job that has succeeded, and one in the midst of it with blocks in the store.
+  void MakeStore() {
+    Gate gate;
+    RunningServer server(Options(
+        folder_.path(), FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
+          if (point == 2 && block >= 3) gate.Pass(stop);
+        })));
+    finished_ = server.Submit(Equilibrium(2, 3));
+    EXPECT_EQ(server.AwaitEnd(finished_).state(), EnsembleJob::SUCCEEDED);
+    results_ = server.ResultBytes(finished_);
+    unfinished_ = server.Submit(Equilibrium(3, 6));
+    gate.AwaitWaiting(2);  // both workers: all before is done
+  }
+
+  void Execute(const std::string& sql) {
+    const auto database = Database::Open(Store(), Database::Mode::kReadWrite);
+    const absl::Status done = (*database)->Execute(sql);
+    ASSERT_TRUE(done.ok()) << done;
+  }
+
+  std::vector<std::string> Problems() {
+    const auto summary = CheckStore(Store());
+    EXPECT_TRUE(summary.ok()) << summary.status();
+    return summary.ok() ? summary->problems : std::vector<std::string>();
+  }
+
+  TemporaryFolder folder_;
+  std::string finished_;
+  std::string unfinished_;
+  std::vector<std::string> results_;
+};
+
+TEST_F(BackupTest, ASoundStoreIsSummedUp) {
+  MakeStore();
+  const auto summary = CheckStore(Store());
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_TRUE(summary->sound());
+  EXPECT_EQ(summary->version, kSchemaVersion);
+  EXPECT_EQ(summary->jobs.at("SUCCEEDED"), 1);
+  EXPECT_EQ(summary->jobs.at("RUNNING"), 1);
+  EXPECT_GE(summary->results, 2);
+  EXPECT_THAT(SummaryText(*summary), HasSubstr("the store is sound"));
+}
+
+TEST_F(BackupTest, EachInconsistencyIsToldInASentence) {
+  const struct {
+    const char* sql;
+    const char* sentence;
+  } damages[] = {
+      {"UPDATE jobs SET state = 9 WHERE sequence = 1", "has no such state: 9"},
+      {"UPDATE jobs SET spec = x'ff' WHERE sequence = 1", "job "},
+      {"UPDATE jobs SET end_time = NULL WHERE sequence = 1", "ended at no time"},
+      {"UPDATE jobs SET error = x'ff' WHERE sequence = 1", "its error cannot be read"},
+      {"UPDATE jobs SET points_done = 1 WHERE sequence = 1", "finished 1 points and has 2 results"},
+      {"UPDATE jobs SET points = 3 WHERE sequence = 1", "succeeded with 2 results of 3"},
+      {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},
+      {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result of no point"},
+      {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1", "the result of job 1"},
+      {"INSERT INTO results (job, point, samples, result) VALUES (77, 0, 1, x'')",
+       "a result of no point: job 77, point 0"},
+      {"INSERT INTO blocks VALUES (1, 0, 0, x'')", "blocks of no point of an active job"},
+      {"INSERT INTO blocks VALUES (2, 2, 99, x'ff')", "block 99 of job 2, point 2"},
+      {"INSERT INTO blocks VALUES (2, 0, 0, x'')", "blocks of a finished point"},
+  };
+  MakeStore();
+  const std::string sound = Contents(Store());
+  for (const auto& damage : damages) {
+    std::ofstream(Store(), std::ios::binary) << sound;
+    EXPECT_THAT(Problems(), IsEmpty());
+    Execute(damage.sql);
+    EXPECT_THAT(Problems(), Contains(HasSubstr(damage.sentence))) << damage.sql;
+  }
+}
+
+TEST_F(BackupTest, ADamagedPageIsTold) {
+  MakeStore();
+  std::string contents = Contents(Store());
+  for (size_t at = 5 * 4096; at < contents.size(); ++at) contents[at] = 'x';
+  std::ofstream(Store(), std::ios::binary) << contents;
+  const auto summary = CheckStore(Store());
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_FALSE(summary->sound());
+  EXPECT_THAT(SummaryText(*summary), HasSubstr("the store is damaged"));
+  EXPECT_TRUE(absl::IsDataLoss(BackupStore(Store(), Copy()).status()));
+  EXPECT_FALSE(std::filesystem::exists(Copy()));
+}
+
+TEST_F(BackupTest, WhatIsNoStoreIsNotChecked) {
+  EXPECT_TRUE(absl::IsNotFound(CheckStore(Store()).status()));
+  std::ofstream(Store()) << std::string(5000, 'x');
+  EXPECT_TRUE(absl::IsFailedPrecondition(CheckStore(Store()).status()));
+}
+
+TEST_F(BackupTest, ACopyIsOneFileForItsOwner) {
+  MakeStore();
+  const auto summary = BackupStore(Store(), Copy());
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_TRUE(summary->sound());
+  struct stat found {};
+  ASSERT_EQ(stat(Copy().c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 0777, 0600u);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name == "copy" || !name.starts_with("copy")) << name;
+  }
+}
+
+TEST_F(BackupTest, NothingIsOverwritten) {
+  MakeStore();
+  std::ofstream(Copy()) << "precious";
+  EXPECT_TRUE(absl::IsAlreadyExists(BackupStore(Store(), Copy()).status()));
+  EXPECT_EQ(Contents(Copy()), "precious");
+}
+
+TEST_F(BackupTest, AFolderThatIsNotThereIsTold) {
+  MakeStore();
+  EXPECT_TRUE(absl::IsPermissionDenied(BackupStore(Store(), folder_.File("no/copy")).status()));
+  EXPECT_TRUE(absl::IsNotFound(BackupStore(folder_.File("none"), Copy()).status()));
+}
+
+TEST_F(BackupTest, ARestoredCopyGoesOnToTheSameBytes) {
+  MakeStore();
+  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
+  TemporaryFolder elsewhere;
+  std::filesystem::copy_file(Copy(), elsewhere.File("store.sqlite3"));
+  RunningServer restored(Options(elsewhere.path(), FakeExperiments()));
+  EXPECT_EQ(restored.ResultBytes(finished_), results_);
+  EXPECT_EQ(restored.AwaitEnd(unfinished_).state(), EnsembleJob::SUCCEEDED);
+  RunningServer original(Options(folder_.path(), FakeExperiments()));
+  EXPECT_EQ(original.AwaitEnd(unfinished_).state(), EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(restored.ResultBytes(unfinished_), original.ResultBytes(unfinished_));
+}
+
+// The operator forgot to move the old store's log away.
+TEST_F(BackupTest, ACopyRestoredBesideAnOldLogIsRefused) {
+  MakeStore();
+  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
+  std::string log;
+  {
+    RunningServer server(Options(folder_.path(), FakeExperiments()));
+    server.AwaitEnd(unfinished_);
+    log = Contents(Store() + "-wal");
+  }
+  ASSERT_GT(log.size(), 1000u);
+  std::filesystem::copy_file(Copy(), Store(), std::filesystem::copy_options::overwrite_existing);
+  std::ofstream(Store() + "-wal", std::ios::binary) << log;
+  const auto opened = OpenStoreFile(Store());
+  EXPECT_TRUE(absl::IsFailedPrecondition(opened.status())) << opened.status();
+  EXPECT_THAT(std::string(opened.status().message()), HasSubstr("the log of another store"));
+  EXPECT_EQ(Contents(Store() + "-wal"), log);
+}
+
+// A server writes and checkpoints without a pause, while copies are made and checked.
+TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
+  RunningServer server(Options(folder_.path(), FakeExperiments()));
+  std::atomic<bool> done = false;
+  std::thread client([&] {
+    while (!done) {
+      const std::string name = server.Submit(Equilibrium(20, 5));
+      server.AwaitEnd(name);
+      server.Delete(name);
+    }
+  });
+  for (int i = 0; i < 10; ++i) {
+    const auto copied = BackupStore(Store(), folder_.File("copy-" + std::to_string(i)));
+    EXPECT_TRUE(copied.ok()) << copied.status();
+    const auto checked = CheckStore(Store());
+    ASSERT_TRUE(checked.ok()) << checked.status();
+    EXPECT_THAT(checked->problems, IsEmpty());
+  }
+  done = true;
+  client.join();
+}
+
+std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(BackupTest, NothingIsLeftBesideAStoreThatNobodyHasOpen) {
+  MakeStore();
+  const std::vector<std::string> before = NamesIn(folder_.path());
+  const std::string file = Contents(Store());
+  ASSERT_TRUE(CheckStore(Store()).ok());
+  EXPECT_EQ(NamesIn(folder_.path()), before);
+  TemporaryFolder elsewhere;
+  ASSERT_TRUE(BackupStore(Store(), elsewhere.File("copy")).ok());
+  EXPECT_EQ(NamesIn(folder_.path()), before);
+  EXPECT_EQ(Contents(Store()), file);
+}
+
+TEST_F(BackupTest, TheBytesAreThoseOfTheLogToo) {
+  RunningServer server(Options(folder_.path(), FakeExperiments()));
+  server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+  const auto log = std::filesystem::file_size(Store() + "-wal");
+  ASSERT_GT(log, 0u);
+  const auto summary = CheckStore(Store());
+  ASSERT_TRUE(summary.ok()) << summary.status();
+  EXPECT_EQ(static_cast<uintmax_t>(summary->bytes), std::filesystem::file_size(Store()) + log);
+}
+
+// Neither the file nor its log, which a checkpoint would write back.
+TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
+  MakeStore();
+  RunningServer server(Options(folder_.path(), FakeExperiments()));
+  server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+  server.AwaitEnd(unfinished_);  // nothing is left to write
+  const std::string file = Contents(Store());
+  const std::string log = Contents(Store() + "-wal");
+  ASSERT_FALSE(log.empty());
+  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
+  ASSERT_TRUE(CheckStore(Store()).ok());
+  EXPECT_EQ(Contents(Store()), file);
+  EXPECT_EQ(Contents(Store() + "-wal"), log);
+}
+
+}  // namespace
+}  // namespace ballpiston::server

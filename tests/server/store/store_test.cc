@@ -1,0 +1,744 @@
+#include "server/store/store.h"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <new>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/data_directory.h"
+#include "server/store/job_table.h"
+#include "server/store/pilot_table.h"
+#include "server/store/request_table.h"
+#include "server/store/schema.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/store/first_store_version.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string Contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+JobRecord Record(const std::string& id) {
+  JobRecord record;
+  record.id = id;
+  record.spec = "spec";
+  record.create_time = absl::FromUnixNanos(1'700'000'000'123'456'789);
+  record.engine_version = "1";
+  record.principal = "ada";
+  record.priority = -3;
+  record.question = "question of " + id;
+  record.points = 3;
+  return record;
+}
+
+class StoreTest : public testing::Test {
+ protected:
+  std::unique_ptr<Store> Open(Store::Options options = {}) {
+    auto store = Store::Open(File(), options);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return store.ok() ? *std::move(store) : nullptr;
+  }
+  std::string File() const { return folder_.File("store.sqlite3"); }
+
+  static int64_t Insert(Store& store, JobRecord record) {
+    EXPECT_TRUE(store.Commit([&](Database& database) { return InsertJob(database, record); }).ok());
+    return record.sequence;
+  }
+
+  static std::optional<JobRecord> Find(Store& store, const std::string& id) {
+    std::optional<JobRecord> record;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      auto found = FindJob(database, id);
+                      if (found.ok()) record = *found;
+                      return found.status();
+                    })
+                    .ok());
+    return record;
+  }
+
+  static std::vector<std::string> Blocks(Store& store, int64_t job, int64_t point) {
+    std::vector<std::string> blocks;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      return ReadBlocks(database, job, point,
+                                        [&](int64_t block, const std::string& record) {
+                                          blocks.push_back(std::to_string(block) + record);
+                                          return absl::OkStatus();
+                                        });
+                    })
+                    .ok());
+    return blocks;
+  }
+
+  static std::vector<std::string> Results(Store& store, int64_t job) {
+    std::vector<std::string> results;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      return ReadResults(database, job, 0, [&](PointRow row) {
+                        results.push_back(std::to_string(row.point) + row.result);
+                        return true;
+                      });
+                    })
+                    .ok());
+    return results;
+  }
+
+  static void KeepPilot(Store& store, const std::string& engine, const PilotPlace& place,
+                        const Pilot& pilot) {
+    EXPECT_TRUE(
+        store
+            .Commit([&](Database& database) { return InsertPilot(database, engine, place, pilot); })
+            .ok());
+  }
+
+  static std::optional<Pilot> StoredPilot(Store& store, const std::string& engine,
+                                          const PilotPlace& place) {
+    std::optional<Pilot> pilot;
+    EXPECT_TRUE(store
+                    .Read([&](Database& database) {
+                      auto found = FindPilot(database, engine, place);
+                      if (found.ok()) pilot = *found;
+                      return found.status();
+                    })
+                    .ok());
+    return pilot;
+  }
+
+  static std::optional<RequestRecord> StoredRequest(Store& store, const std::string& principal,
+                                                    const std::string& request_id) {
+    std::optional<RequestRecord> request;
+    const absl::Status read = store.Read([&](Database& database) {
+      auto found = FindRequest(database, principal, request_id);
+      if (found.ok()) request = *std::move(found);
+      return found.status();
+    });
+    EXPECT_TRUE(read.ok()) << read;
+    return request;
+  }
+
+  static JobState End(Store& store, int64_t job, JobState wish) {
+    JobState state{};
+    EXPECT_TRUE(
+        store
+            .Commit([&](Database& database) {
+              const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
+              if (now.ok()) state = *now;
+              return now.status();
+            })
+            .ok());
+    return state;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(StoreTest, AJobIsThereAfterReopening) {
+  Insert(*Open(), Record("a"));
+  const auto found = Find(*Open(), "a");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->spec, "spec");
+  EXPECT_EQ(found->state, v1::EnsembleJob::QUEUED);
+  EXPECT_EQ(found->create_time, Record("a").create_time);
+  EXPECT_FALSE(found->start_time);
+  EXPECT_EQ(found->principal, "ada");
+  EXPECT_EQ(found->priority, -3);
+  EXPECT_EQ(found->question, "question of a");
+  EXPECT_EQ(found->points, 3);
+}
+
+TEST_F(StoreTest, WritesAreFlushedToTheDisk) {
+  const auto store = Open();
+  std::string mode;
+  int64_t synchronous = 0;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    mode = database.Text("PRAGMA journal_mode").value_or("");
+                    synchronous = database.Integer("PRAGMA synchronous").value_or(0);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_EQ(mode, "wal");
+  EXPECT_EQ(synchronous, 2);  // FULL
+}
+
+TEST_F(StoreTest, TheReaderCannotWrite) {
+  const auto store = Open();
+  EXPECT_FALSE(
+      store->Read([](Database& database) { return database.Execute("DELETE FROM jobs"); }).ok());
+}
+
+TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
+  Open().reset();
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE((*database)->Execute("PRAGMA user_version = 99").ok());
+  }
+  const std::string before = Contents(File());
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("version 99"));
+  EXPECT_EQ(Contents(File()), before);
+}
+
+// A job, a block and a result.
+constexpr char kRowsOfVersion1[] = R"sql(
+INSERT INTO jobs VALUES (7, 'old', x'73706563', 4, 1700000000123456789, 1700000001000000000,
+  1700000002000000000, x'', '0.2', 'request', NULL, 3, 2, 12.5);
+INSERT INTO blocks VALUES (7, 2, 0, x'72');
+INSERT INTO results VALUES (7, 1, 12.5, x'72');
+)sql";
+
+void MakeStoreOfVersion1(const std::string& path) {
+  auto database = Database::Open(path, Database::Mode::kReadWrite);
+  ASSERT_TRUE(database.ok()) << database.status();
+  ASSERT_TRUE((*database)->Execute(kTablesOfVersion1).ok());
+  ASSERT_TRUE((*database)->Execute(kRowsOfVersion1).ok());
+  ASSERT_TRUE(
+      (*database)->Execute("PRAGMA application_id = " + std::to_string(kApplicationId)).ok());
+}
+
+TEST_F(StoreTest, AStoreOfTheFirstVersionIsTakenOverWithAllThatIsInIt) {
+  MakeStoreOfVersion1(File());
+  for (int opened = 0; opened < 2; ++opened) {  // the second time it is of this version
+    const auto store = Open();
+    ASSERT_TRUE(store);
+    const auto found = Find(*store, "old");
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->sequence, 7);
+    EXPECT_EQ(found->spec, "spec");
+    EXPECT_EQ(found->state, v1::EnsembleJob::SUCCEEDED);
+    EXPECT_EQ(found->create_time, Record("a").create_time);
+    EXPECT_EQ(found->principal, "local");
+    EXPECT_EQ(found->priority, 0);
+    const auto request = StoredRequest(*store, "local", "request");
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->job, 7);
+    EXPECT_EQ(request->payload, "");
+    EXPECT_EQ(found->points_done, 2);
+    EXPECT_EQ(found->samples, 12.5);
+    EXPECT_EQ(found->work, 0);
+    EXPECT_THAT(Blocks(*store, 7, 2), testing::ElementsAre("0r"));
+    EXPECT_THAT(Results(*store, 7), testing::ElementsAre("1r"));
+    int64_t version = 0;
+    ASSERT_TRUE(store
+                    ->Read([&](Database& database) {
+                      version = database.Integer("PRAGMA user_version").value_or(0);
+                      return absl::OkStatus();
+                    })
+                    .ok());
+    EXPECT_EQ(version, kSchemaVersion);
+  }
+  EXPECT_GT(Insert(*Open(), Record("new")), 7);
+}
+
+TEST_F(StoreTest, AStoreOfTheThirdVersionIsTakenOver) {
+  Insert(*Open(), Record("a"));
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE(database.ok()) << database.status();
+    ASSERT_TRUE((*database)
+                    ->Execute("ALTER TABLE jobs DROP COLUMN restarts; PRAGMA user_version = 3")
+                    .ok());
+  }
+  const auto found = Find(*Open(), "a");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->restarts, 0);
+}
+
+TEST_F(StoreTest, AStoreTakenOverKeepsPilotsAndWork) {
+  MakeStoreOfVersion1(File());
+  const auto store = Open();
+  const PilotPlace place = {.rho = 0.53, .delta = 0.1};
+  KeepPilot(*store, "2", place, {.difference = 0.01, .standard_error = 0.002});
+  EXPECT_TRUE(StoredPilot(*store, "2", place));
+}
+
+TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
+  const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
+  const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
+  const PilotPlace from_energy = {.rho = 0.53, .delta = 0.1, .epsilon = 0.25};
+  const auto pilot = [](double difference) {
+    return Pilot{.difference = difference, .standard_error = difference / 3};
+  };
+  {
+    const auto store = Open();
+    KeepPilot(*store, "2", in_equilibrium, pilot(0.1));
+    KeepPilot(*store, "2", at_zero, pilot(-0.2));
+    KeepPilot(*store, "2", from_energy, pilot(0.3));
+    KeepPilot(*store, "3", in_equilibrium, pilot(0.4));
+    KeepPilot(*store, "2", in_equilibrium, pilot(0.5));  // the first one stays
+  }
+  const auto store = Open();
+  const auto expect = [&](const std::string& engine, const PilotPlace& place, double difference) {
+    const auto found = StoredPilot(*store, engine, place);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->difference, difference);
+    EXPECT_EQ(found->standard_error, difference / 3);
+    EXPECT_FALSE(found->predicted);
+  };
+  expect("2", in_equilibrium, 0.1);
+  expect("2", at_zero, -0.2);
+  expect("2", from_energy, 0.3);
+  expect("3", in_equilibrium, 0.4);
+  EXPECT_FALSE(StoredPilot(*store, "3", from_energy));
+  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.53, .delta = 0.2}));
+  EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.54, .delta = 0.1}));
+}
+
+TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
+  std::ofstream(File()) << std::string(5000, 'x');
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_EQ(Contents(File()), std::string(5000, 'x'));
+}
+
+TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
+  {
+    const auto store = Open();
+    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
+  }
+  std::string contents = Contents(File());
+  ASSERT_GT(contents.size(), 20000u);
+  // The second page on: the first holds the schema.
+  contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
+  std::ofstream(File(), std::ios::binary) << contents;
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_EQ(Contents(File()), contents);
+}
+
+TEST_F(StoreTest, ATruncatedFileIsRefused) {
+  {
+    const auto store = Open();
+    for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
+  }
+  std::filesystem::resize_file(File(), std::filesystem::file_size(File()) / 2);
+  EXPECT_TRUE(absl::IsFailedPrecondition(Store::Open(File(), {}).status()));
+}
+
+// All that lies in the folder, by name.
+std::map<std::string, std::string> ContentsOfFolder(const std::string& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    contents[entry.path().filename()] = Contents(entry.path());
+  }
+  return contents;
+}
+
+void ExpectRefusedAndUntouched(const std::string& path, const std::string& why) {
+  const std::string folder = std::filesystem::path(path).parent_path();
+  const auto before = ContentsOfFolder(folder);
+  const auto store = Store::Open(path, {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr(why));
+  EXPECT_EQ(ContentsOfFolder(folder), before);
+}
+
+void WriteAt(const std::string& path, int64_t offset, const std::string& bytes) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(offset);
+  file << bytes;
+}
+
+// A store of some pages, closed.
+void MakeStore(const std::string& path, int jobs) {
+  const auto store = Store::Open(path, {});
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_TRUE((*store)
+                  ->Commit([&](Database& database) {
+                    for (int i = 0; i < jobs; ++i) {
+                      JobRecord record = Record("job-" + std::to_string(i));
+                      record.spec = std::string(300, 's');
+                      if (const auto made = InsertJob(database, record); !made.ok()) return made;
+                    }
+                    return absl::OkStatus();
+                  })
+                  .ok());
+}
+
+TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
+  struct Damage {
+    const char* why;
+    std::function<void(const std::string&)> done;
+  };
+  const Damage damages[] = {
+      {"damaged", [](const std::string& path) { WriteAt(path, 0, "not a database"); }},
+      {"damaged", [](const std::string& path) { WriteAt(path, 100, std::string(8, '\x7f')); }},
+      {"damaged", [](const std::string& path) { WriteAt(path, 40960, std::string(4096, 'x')); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 20000); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 4096); }},
+      {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 10); }},
+      {"version -1", [](const std::string& path) { WriteAt(path, 60, "\xff\xff\xff\xff"); }},
+      {"newer", [](const std::string& path) { WriteAt(path, 60, std::string("\0\0\1\0", 4)); }},
+      {"not a ballpiston store", [](const std::string& path) { WriteAt(path, 68, "cake"); }},
+  };
+  for (const Damage& damage : damages) {
+    TemporaryFolder folder;
+    MakeStore(folder.File("store.sqlite3"), 200);
+    ASSERT_GT(std::filesystem::file_size(folder.File("store.sqlite3")), 50000u);
+    damage.done(folder.File("store.sqlite3"));
+    ExpectRefusedAndUntouched(folder.File("store.sqlite3"), damage.why);
+  }
+}
+
+TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
+  std::filesystem::create_directory(File());
+  const auto store = Store::Open(File(), {});
+  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("is a folder"));
+  EXPECT_TRUE(std::filesystem::is_directory(File()));
+}
+
+TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
+  std::ofstream(File()).close();
+  EXPECT_GT(Insert(*Open(), Record("a")), 0);
+}
+
+// The log of a store that was in use, put beside another.
+TEST_F(StoreTest, TheLogOfAnotherStoreIsNoticed) {
+  TemporaryFolder other;
+  MakeStore(other.File("store.sqlite3"), 20);
+  // Its log has some of its pages; one that had all of them would be a whole store.
+  const auto used = Store::Open(other.File("store.sqlite3"), {});
+  Insert(**used, Record("other"));
+  MakeStore(File(), 200);
+  std::filesystem::copy_file(other.File("store.sqlite3-wal"), File() + "-wal");
+  ExpectRefusedAndUntouched(File(), "damaged");
+}
+
+TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  const auto broken = [](Database& database) {
+    return database.Execute(
+        "INSERT INTO results (job, point, samples, result) VALUES (1, 1, NULL, x'00')");
+  };
+  absl::Status told;
+  store->RecordBlock(1, 0, 0, [] { return "before"; });
+  store->Record(broken, [&](const absl::Status& status) { told = status; });
+  store->RecordBlock(1, 0, 1, [] { return "after"; });
+  const absl::Status commit = store->Commit(broken);
+  EXPECT_TRUE(absl::IsInvalidArgument(commit)) << commit;
+  EXPECT_TRUE(absl::IsInvalidArgument(told)) << told;
+  EXPECT_FALSE(store->failing());
+  EXPECT_EQ(store->pending_writes(), 0);
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0before", "1after"));
+}
+
+TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  absl::Status full = absl::ResourceExhaustedError("too many jobs");
+  full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
+  const absl::Status refused = store->Commit([&](Database& database) {
+    JobRecord record = Record("half");
+    EXPECT_TRUE(InsertJob(database, record).ok());
+    return full;
+  });
+  EXPECT_EQ(refused, full);
+  EXPECT_FALSE(store->failing());
+  EXPECT_FALSE(Find(*store, "half"));
+  EXPECT_EQ(Blocks(*store, 1, 0).size(), 1u);
+}
+
+TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
+  const auto store =
+      Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
+  int attempts = 0;
+  store->RecordBlock(1, 0, 0, [&]() -> std::string {
+    if (++attempts < 3) throw std::bad_alloc();
+    return "kept";
+  });
+  while (!store->Flush().ok()) {
+  }
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+}
+
+TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
+  {
+    auto database = Database::Open(File(), Database::Mode::kReadWrite);
+    ASSERT_TRUE((*database)->Execute("CREATE TABLE recipes (name TEXT)").ok());
+  }
+  const auto store = Store::Open(File(), {});
+  EXPECT_THAT(std::string(store.status().message()), HasSubstr("not a ballpiston store"));
+}
+
+TEST_F(StoreTest, TheFirstWriterOfABlockWins) {
+  const auto store = Open();
+  store->RecordBlock(1, 2, 3, [] { return "first"; });
+  ASSERT_TRUE(store->Flush().ok());
+  store->RecordBlock(1, 2, 3, [] { return "second"; });
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Blocks(*store, 1, 2), testing::ElementsAre("3first"));
+}
+
+TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
+  const auto store = Open();
+  store->RecordResult(1, {2, 10, "first"});
+  ASSERT_TRUE(store->Flush().ok());
+  store->RecordResult(1, {2, 10, "second"});
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Results(*store, 1), testing::ElementsAre("2first"));
+}
+
+TEST_F(StoreTest, BlocksComeBackInOrder) {
+  const auto store = Open();
+  for (const int block : {10, 9, 2, 11}) {
+    store->RecordBlock(1, 0, block, [] { return "r"; });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("2r", "9r", "10r", "11r"));
+}
+
+TEST_F(StoreTest, WritesAreCommittedInGroups) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  for (int block = 0; block < 1000; ++block) {
+    store->RecordBlock(1, 0, block, [] { return "r"; });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->commits(), 1);
+  EXPECT_EQ(store->blocks_written(), 1000);
+}
+
+TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
+  const auto store = Open();
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 64; ++i) {
+    threads.emplace_back([&, i] { Insert(*store, Record("job-" + std::to_string(i))); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(Find(*store, "job-" + std::to_string(i)));
+  EXPECT_LE(store->commits(), 64);
+}
+
+TEST_F(StoreTest, BlocksOfAFinishedPointAreNeitherWrittenNorKept) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  store->RecordBlock(1, 0, 0, [] { return "r"; });
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->blocks_written(), 1);
+  store->RecordBlock(1, 0, 1, [] { return "r"; });
+  store->RecordBlock(1, 5, 0, [] { return "other"; });
+  store->RecordResult(1, {0, 8, "result"});
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_EQ(store->blocks_written(), 2);
+  EXPECT_TRUE(Blocks(*store, 1, 0).empty());
+  EXPECT_EQ(Blocks(*store, 1, 5).size(), 1u);
+}
+
+TEST_F(StoreTest, ClosingWritesWhatIsPending) {
+  {
+    const auto store = Open({.delay = std::chrono::hours(1)});
+    store->RecordBlock(1, 0, 0, [] { return "r"; });
+  }
+  EXPECT_EQ(Blocks(*Open(), 1, 0).size(), 1u);
+}
+
+TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
+  const auto store = Open();
+  std::vector<int> order;
+  for (int i = 0; i < 5; ++i) {
+    store->Record([](Database&) { return absl::OkStatus(); },
+                  [&order, i](const absl::Status& status) {
+                    EXPECT_TRUE(status.ok());
+                    order.push_back(i);
+                  });
+  }
+  ASSERT_TRUE(store->Flush().ok());
+  EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST_F(StoreTest, AFailedCommitTellsAndLeavesNothingBehind) {
+  const auto store = Open();
+  const absl::Status failed = store->Commit([](Database& database) {
+    JobRecord record = Record("half");
+    EXPECT_TRUE(InsertJob(database, record).ok());
+    return absl::UnavailableError("disk full");
+  });
+  EXPECT_TRUE(absl::IsUnavailable(failed));
+  EXPECT_FALSE(Find(*store, "half"));
+}
+
+TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
+  const auto store =
+      Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
+  int attempts = 0;
+  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  store->Record([&](Database&) {
+    return ++attempts < 4 ? absl::UnavailableError("disk full") : absl::OkStatus();
+  });
+  while (!store->Flush().ok()) {
+  }
+  EXPECT_EQ(attempts, 4);
+  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+}
+
+// A disk that hangs is one commit that does not end.
+TEST_F(StoreTest, WhileACommitHangsReadsGoOnAndRequestsAreRefused) {
+  const auto store = *Store::Open(folder_.File("store"), {.stall = std::chrono::milliseconds(1)});
+  Gate gate;
+  std::thread hanging([&] {
+    EXPECT_TRUE(store
+                    ->Commit([&](Database&) {
+                      gate.Pass(std::stop_token());
+                      return absl::OkStatus();
+                    })
+                    .ok());
+  });
+  gate.AwaitWaiting(1);
+  while (!store->stalled()) std::this_thread::yield();
+  EXPECT_FALSE(store->failing());
+  bool run = false;
+  const auto change = [&](Database&) {
+    run = true;
+    return absl::OkStatus();
+  };
+  bool told = false;
+  const absl::Status refused =
+      store->Commit(change, [&](const absl::Status& done) { told = !done.ok(); });
+  EXPECT_TRUE(absl::IsUnavailable(refused)) << refused;
+  EXPECT_TRUE(told);
+  EXPECT_FALSE(run);
+  EXPECT_TRUE(store->Read([](Database& database) { return CountJobs(database).status(); }).ok());
+  gate.Open();
+  hanging.join();
+  while (!store->Commit(change).ok()) {  // until the store's thread has seen the end of it
+  }
+  EXPECT_TRUE(run);
+}
+
+TEST_F(StoreTest, JobsAreReadOneByOneAndNoMoreThanAreWanted) {
+  const auto store = *Store::Open(folder_.File("store"), {});
+  for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
+  std::vector<std::string> read;
+  const auto take = [&](const JobRecord& job) {
+    read.push_back(job.id);
+    return read.size() < 2;
+  };
+  ASSERT_TRUE(
+      store->Read([&](Database& database) { return ReadJobs(database, std::nullopt, 1000, take); })
+          .ok());
+  EXPECT_THAT(read, testing::ElementsAre("d", "c"));
+}
+
+TEST_F(StoreTest, AfterClosingWritesFail) {
+  const auto store = Open();
+  store->Close();
+  EXPECT_TRUE(absl::IsUnavailable(store->Flush()));
+  EXPECT_TRUE(absl::IsUnavailable(store->Read([](Database&) { return absl::OkStatus(); })));
+}
+
+TEST_F(StoreTest, ACancellationThatCameFirstIsNotOvertakenByTheEnd) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  bool begun = false;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    begun = BeginCancellation(database, job, "").value_or(false);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_TRUE(begun);
+  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::CANCELLED);
+  EXPECT_EQ(Find(*store, "a")->error, "");
+}
+
+TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::SUCCEEDED);
+  bool begun = true;
+  ASSERT_TRUE(store
+                  ->Commit([&](Database& database) {
+                    begun = BeginCancellation(database, job, "").value_or(true);
+                    return absl::OkStatus();
+                  })
+                  .ok());
+  EXPECT_FALSE(begun);
+  EXPECT_EQ(Find(*store, "a")->state, v1::EnsembleJob::SUCCEEDED);
+}
+
+TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordBlock(job, 0, 0, [] { return "r"; });
+  End(*store, job, v1::EnsembleJob::FAILED);
+  const auto found = Find(*store, "a");
+  EXPECT_EQ(found->points_done, 2);
+  EXPECT_EQ(found->samples, 7.5);
+  EXPECT_EQ(found->work, 0.25);
+  EXPECT_EQ(found->error, "why");
+  EXPECT_TRUE(found->end_time);
+  EXPECT_TRUE(Blocks(*store, job, 0).empty());
+}
+
+TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordResult(job, {0, 1, "r"});
+  ASSERT_TRUE(store->Commit([&](Database& database) { return DeleteJob(database, job); }).ok());
+  EXPECT_FALSE(Find(*store, "a"));
+  EXPECT_TRUE(Results(*store, job).empty());
+  EXPECT_GT(Insert(*store, Record("a")), job);
+}
+
+TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
+  const auto store = Open();
+  const int64_t job = Insert(*store, Record("a"));
+  store->RecordResult(job, {0, 1, "r"});
+  store->RecordBlock(job, 1, 0, [] { return "r"; });
+  ASSERT_TRUE(
+      store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }).ok());
+  EXPECT_TRUE(Results(*store, job).empty());
+  EXPECT_TRUE(Blocks(*store, job, 1).empty());
+  EXPECT_EQ(Find(*store, "a")->engine_version, "2");
+}
+
+TEST(DataDirectory, IsMadeForItsOwnerOnly) {
+  TemporaryFolder folder;
+  const auto directory = DataDirectory::Open(folder.File("a/b"));
+  ASSERT_TRUE(directory.ok()) << directory.status();
+  struct stat found {};
+  ASSERT_EQ(stat(directory->path().c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 0777, 0700u);
+}
+
+TEST(DataDirectory, IsHeldByOneAtATime) {
+  TemporaryFolder folder;
+  {
+    const auto first = DataDirectory::Open(folder.path());
+    ASSERT_TRUE(first.ok());
+    const auto second = DataDirectory::Open(folder.path());
+    EXPECT_TRUE(absl::IsFailedPrecondition(second.status()));
+    EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+  }
+  EXPECT_TRUE(DataDirectory::Open(folder.path()).ok());
+}
+
+TEST(DataDirectory, AFileInItsPlaceIsNotWritable) {
+  TemporaryFolder folder;
+  std::ofstream(folder.File("file")) << "x";
+  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file")).status()));
+  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file/below")).status()));
+}
+
+}  // namespace
+}  // namespace ballpiston::server

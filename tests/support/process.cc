@@ -1,0 +1,123 @@
+#include "tests/support/process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+namespace ballpiston {
+namespace {
+
+struct Pipe {
+  int read = -1;
+  int write = -1;
+  Pipe() {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    read = ends[0];
+    write = ends[1];
+  }
+};
+
+std::vector<std::string> Environment(const std::map<std::string, std::string>& changes) {
+  std::vector<std::string> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string variable = *entry;
+    if (changes.count(variable.substr(0, variable.find('='))) == 0) variables.push_back(variable);
+  }
+  for (const auto& [name, value] : changes) {
+    if (!value.empty()) variables.push_back(name + "=" + value);
+  }
+  return variables;
+}
+
+std::vector<char*> Pointers(const std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+void WriteAll(int descriptor, const std::string& text) {
+  size_t written = 0;
+  while (written < text.size()) {
+    const ssize_t n = write(descriptor, text.data() + written, text.size() - written);
+    if (n <= 0) break;
+    written += static_cast<size_t>(n);
+  }
+  close(descriptor);
+}
+
+}  // namespace
+
+Process::Process(const ProcessOptions& options) {
+  const Pipe in, out, err;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, in.read, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
+  const std::vector<std::string> environment = Environment(options.environment);
+  const int error = posix_spawnp(&pid_, options.command[0].c_str(), &actions, nullptr,
+                                 Pointers(options.command).data(), Pointers(environment).data());
+  posix_spawn_file_actions_destroy(&actions);
+  for (const int end : {in.read, out.write, err.write}) close(end);
+  if (error != 0) throw std::runtime_error("cannot start " + options.command[0]);
+  WriteAll(in.write, options.input);
+  out_.descriptor = out.read;
+  err_.descriptor = err.read;
+  for (Stream* stream : {&out_, &err_}) {
+    stream->reader = std::thread([this, stream] { Read(*stream); });
+  }
+}
+
+Process::~Process() {
+  if (!waited_) {
+    kill(pid_, SIGKILL);
+    Wait();
+  }
+}
+
+void Process::Read(Stream& stream) {
+  char buffer[1 << 14];
+  while (true) {
+    const ssize_t size = read(stream.descriptor, buffer, sizeof(buffer));
+    const std::lock_guard lock(mutex_);
+    if (size > 0) stream.text.append(buffer, static_cast<size_t>(size));
+    if (size <= 0) stream.ended = true;
+    news_.notify_all();
+    if (size <= 0) return;
+  }
+}
+
+void Process::Signal(int signal) const { kill(pid_, signal); }
+
+bool Process::WaitForErr(const std::string& text) {
+  std::unique_lock lock(mutex_);
+  const auto found = [&] { return err_.text.find(text) != std::string::npos; };
+  news_.wait(lock, [&] { return found() || err_.ended; });
+  return found();
+}
+
+ProcessResult Process::Wait() {
+  if (!waited_) {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    waited_ = true;
+    for (Stream* stream : {&out_, &err_}) {
+      stream->reader.join();
+      close(stream->descriptor);
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  return {exit_code_, out_.text, err_.text};
+}
+
+ProcessResult RunProgram(const ProcessOptions& options) { return Process(options).Wait(); }
+
+}  // namespace ballpiston

@@ -1,0 +1,25 @@
+// A folder that exists as long as the object, with a path short enough for a Unix socket in it.
+#ifndef BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
+#define BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
+
+#include <string>
+
+namespace ballpiston {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder();   // throws std::runtime_error if no folder can be made
+  ~TemporaryFolder();  // removes the folder with all that is in it
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string File(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
