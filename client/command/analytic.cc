@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston analytic: the closed forms at every pair of (rho, delta).
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <vector>

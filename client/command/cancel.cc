@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston cancel: stops a job; the points it finished stay. Prints the job's name and state.
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 

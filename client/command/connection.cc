@@ -90,7 +90,7 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
 
 using Verb = std::function<absl::StatusOr<ExitCode>(const Connection&)>;
 
-absl::StatusOr<ExitCode> Run(const absl::StatusOr<Connection>& connection, const Verb& verb) {
+absl::StatusOr<ExitCode> RunOver(const absl::StatusOr<Connection>& connection, const Verb& verb) {
   if (!connection.ok()) return connection.status();
   absl::StatusOr<ExitCode> result = verb(*connection);
   if (!result.ok()) return NameServer(result.status(), *connection);
@@ -152,11 +152,11 @@ absl::Status Connection::Revive() const {
 }
 
 absl::StatusOr<ExitCode> WithServer(const ServerFlag& flag, const Verb& verb) {
-  return Run(Connect(flag, &ConnectToLocalServer), verb);
+  return RunOver(Connect(flag, &ConnectToLocalServer), verb);
 }
 
 absl::StatusOr<ExitCode> WithRunningServer(const ServerFlag& flag, const Verb& verb) {
-  return Run(Connect(flag, &ConnectIfRunning), verb);
+  return RunOver(Connect(flag, &ConnectIfRunning), verb);
 }
 
 }  // namespace ballpiston::client

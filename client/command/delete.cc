@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston delete: deletes an ended job with its results. Prints nothing.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

@@ -1,7 +1,6 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston figure NAME --out DIR: measures what a figure shows, writes data and a gnuplot script,
 // and draws it. Prints the files' names.
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 

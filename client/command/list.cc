@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston list: prints the server's jobs, the newest first.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

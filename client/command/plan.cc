@@ -1,7 +1,6 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston plan: what each model of the ladder would cost for a question, how well it would
 // answer, and which one would be taken. Runs nothing.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston result: prints a job's finished points.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

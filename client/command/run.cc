@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston run: submit, watch, and print the result.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston status: what the server is doing and what it permits. Starts none.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "absl/time/clock.h"

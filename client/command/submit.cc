@@ -1,7 +1,6 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston submit: hands a job to the server and prints its name, alone, on standard output; on
 // standard error, if the answer was there already.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

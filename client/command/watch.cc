@@ -1,6 +1,5 @@
-#include <CLI/CLI.hpp>
-
 // ballpiston watch: shows a job's progress until it ends.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "client/command/connection.h"

@@ -21,7 +21,7 @@ std::string TimeText(bool present, const google::protobuf::Timestamp& time) {
   return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", instant, absl::UTCTimeZone());
 }
 
-std::vector<std::string> Cells(const v1::EnsembleJob& job) {
+std::vector<std::string> CellsOf(const v1::EnsembleJob& job) {
   return {job.name(),
           Spelling(job.spec().experiment()),
           Spelling(job.state()),
@@ -57,7 +57,7 @@ void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
          "priority\n";
   for (const v1::EnsembleJob& job : jobs) {
-    out << absl::StrJoin(Cells(job), ",") << ',' << Quoted(job.principal()) << ',' << job.priority()
+    out << absl::StrJoin(CellsOf(job), ",") << ',' << Quoted(job.principal()) << ',' << job.priority()
         << '\n';
   }
 }
@@ -72,7 +72,7 @@ void PrintTable(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   if (differ.priorities) columns.push_back({"priority"});
   TextTable table(std::move(columns));
   for (const v1::EnsembleJob& job : jobs) {
-    std::vector<std::string> cells = Cells(job);
+    std::vector<std::string> cells = CellsOf(job);
     if (differ.principals) cells.push_back(job.principal());
     if (differ.priorities) cells.push_back(absl::StrCat(job.priority()));
     table.AddRow(std::move(cells));

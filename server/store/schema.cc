@@ -123,14 +123,10 @@ absl::Status Refused(const std::string& path, const std::string& why) {
                    "; it was left as it is: move it away, or choose another --data_dir"));
 }
 
-std::string Text(const absl::Status& status) {
-  return {status.message().data(), status.message().size()};
-}
-
 // The disk is full, or fails, or the file is not this user's: nothing is said of what is in it.
 absl::Status NotUsable(const std::string& path, const absl::Status& found) {
   return absl::UnavailableError(absl::StrCat(
-      "store ", path, " cannot be used now (", Text(found),
+      "store ", path, " cannot be used now (", found.message(),
       "); it was left as it is: see whether its disk works and has room, and whether the file is "
       "this user's"));
 }
@@ -138,7 +134,7 @@ absl::Status NotUsable(const std::string& path, const absl::Status& found) {
 absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
   const bool is_of_its_place = absl::IsUnavailable(found) || absl::IsResourceExhausted(found);
   if (is_of_its_place) return NotUsable(path, found);
-  return Refused(path, absl::StrCat("is damaged (", Text(found), ")"));
+  return Refused(path, absl::StrCat("is damaged (", found.message(), ")"));
 }
 
 bool IsFolder(const std::string& path) {
