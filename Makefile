@@ -2,9 +2,10 @@
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
 TEST_JOBS ?= 2
+STABILITY_OUT ?= stability.md
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart ladder bench stability torture asan tsan fuzz format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture asan tsan fuzz format check-format tidy setup clean help
 
 build: build-release ## Build everything, optimised, in build/release (the default)
 
@@ -26,9 +27,13 @@ ladder: build/release/.configured ## Ask a dozen questions: planned and measured
 bench: build-release ## Build, then run the benchmarks on one core
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.configured ## Show where methods fail and which do; write the tables of core/README.md (10 minutes)
+stability: build/release/.configured ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --out core/README.md
+	@build/release/bin/stability --out '$(STABILITY_OUT)'
+
+stability-table: build/release/.configured ## The same, written into core/README.md (10 minutes)
+	@cmake --build build/release --target stability
+	@build/release/bin/stability --into core/README.md
 
 torture: build/release/.configured ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
@@ -55,13 +60,13 @@ check-format: ## Say which lines are not formatted
 
 tidy: build-release ## Run clang-tidy over the project's sources
 	@scripts/setup.sh clang-tidy
-	@run-clang-tidy -quiet -p build/release '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
+	@run-clang-tidy -quiet -p build/release '$(CURDIR)/(core|server|client|tests|tools)/' 2>/dev/null
 
-clean: ## Remove everything that was built, and the output of demo and chart
-	@rm -rf build demo chart
+clean: ## Remove everything that was built, and the output of demo, chart and stability
+	@rm -rf build demo chart stability.md
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
