@@ -4,12 +4,13 @@ SHELL := /bin/bash
 TEST_JOBS ?= $(shell nproc)
 # ci-: the same presets with warnings as errors.
 PRESETS_PREFIX ?=
+STABILITY_OUT ?= stability.md
 
 TEST_PACKAGES := libgtest-dev libgmock-dev
 PROGRAMS := ballpiston ballpistond
 
 .DEFAULT_GOAL := build
-.PHONY: build test demo chart ladder bench stability torture asan tsan fuzz nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture asan tsan fuzz nightly format check-format tidy setup clean help
 
 build: build/release/.programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -31,9 +32,13 @@ bench: setup ## Build, then run the benchmarks on one core
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.programs ## Show where methods fail and which do (10 minutes)
+stability: build/release/.programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
-	@build/release/bin/stability --out core/README.md
+	@build/release/bin/stability --out '$(STABILITY_OUT)'
+
+stability-table: build/release/.programs ## The same, written into core/README.md (10 minutes)
+	@cmake --build build/release --target stability
+	@build/release/bin/stability --into core/README.md
 
 torture: build/release/.tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
@@ -66,13 +71,13 @@ tidy: ## Compile every file alone with Clang, warnings as errors, and run clang-
 	@scripts/setup.sh clang clang-tidy libbenchmark-dev
 	@$(MAKE) build/single/.tests
 	@cmake --build --preset single
-	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests)/' 2>/dev/null
+	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests|tools)/' 2>/dev/null
 
-clean: ## Remove everything that was built, and the output of demo and chart
-	@rm -rf build demo chart
+clean: ## Remove everything that was built, and the output of demo, chart and stability
+	@rm -rf build demo chart stability.md
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
 #include "core/method_comparison/fixed_step_flow.h"
-#include "core/method_comparison/lane_balls.h"
 #include "core/method_comparison/processor_time.h"
 
 namespace ballpiston {

@@ -21,9 +21,9 @@
 // After hwy/targets.h.
 #include <hwy/highway.h>
 
+#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/experiment/point_experiment.h"
-#include "core/method_comparison/lane_balls.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/sampling/direction.h"
 

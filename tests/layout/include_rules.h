@@ -5,6 +5,7 @@
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other.
+//   tools:   the core only. Nobody but their tests knows them.
 //   server/convert alone speaks of the core's physics and of the API's messages in one file.
 //
 // A new folder needs a row of its own in the table: a file without one is a violation.

@@ -30,7 +30,7 @@ std::string ReadFile(const std::filesystem::path& path) {
 std::map<std::string, std::string> SourceFiles() {
   const std::filesystem::path root = SourcePath("");
   std::map<std::string, std::string> files;
-  for (const char* folder : {"core", "server", "client", "tests"}) {
+  for (const char* folder : {"core", "server", "client", "tests", "tools"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension();
       if (extension != ".h" && extension != ".cc") continue;
@@ -62,12 +62,13 @@ TEST(Layout, TheWholeHouseIsRead) {
   const std::map<std::string, std::string> files = SourceFiles();
   EXPECT_TRUE(files.contains("core/geometry/pair_geometry.h"));
   EXPECT_TRUE(files.contains("tests/layout/layout_test.cc"));
+  EXPECT_TRUE(files.contains("tools/stability/main.cc"));
   EXPECT_THAT(IncludesOf(files.at("core/geometry/pair_geometry.cc")),
               Contains("core/geometry/pair_geometry.h"));
 }
 
 TEST(Layout, EveryTopFolderHasItsMap) {
-  for (const char* folder : {"core", "proto", "server", "client", "tests"}) {
+  for (const char* folder : {"core", "proto", "server", "client", "tests", "tools"}) {
     EXPECT_TRUE(
         std::filesystem::exists(SourcePath(folder) + "/README.md"))
         << folder;
@@ -170,6 +171,29 @@ TEST(IncludeRules, TheServerKnowsNoClient) {
   ExpectWrong("server/api/x.cc", "\"client/library/client.h\"");
   ExpectWrong("server/api/x.cc", "<CLI/CLI.hpp>");
   ExpectWrong("server/api/x.cc", "\"tests/layout/include_rules.h\"");
+}
+
+TEST(IncludeRules, ToolsKnowTheCoreOnly) {
+  EXPECT_THAT(WrongIncludes("tools/stability/x.cc",
+                            "#include <thread>\n#include <unistd.h>\n#include <hwy/highway.h>\n"
+                            "#include \"core/billiard/orbits.h\"\n"
+                            "#include \"tools/stability/report.h\"\n"),
+              IsEmpty());
+  for (const char* include :
+       {"\"server/store/store.h\"", "\"client/library/client.h\"", "\"ballpiston/v1/result.pb.h\"",
+        "\"tests/oracle/exact_flight.h\"", "<gtest/gtest.h>", "<grpcpp/grpcpp.h>", "<sqlite3.h>"}) {
+    ExpectWrong("tools/stability/x.cc", include);
+  }
+}
+
+TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
+  const std::string tool = "\"tools/stability/report.h\"";
+  EXPECT_THAT(WrongIncludes("tests/tools/stability/x.cc", "#include " + tool), IsEmpty());
+  for (const char* path : {"core/billiard/x.cc", "server/jobs/x.cc", "client/command/x.cc",
+                           "tests/core/billiard/x.cc", "tests/end_to_end/x.cc"}) {
+    ExpectWrong(path, tool);
+  }
+  ExpectWrong("tests/tools/stability/x.cc", "\"server/store/store.h\"");
 }
 
 TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {

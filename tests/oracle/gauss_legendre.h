@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/oracle/quad_precision.h"
+#include "core/geometry/quad_precision.h"
 
 namespace ballpiston::oracle {
 

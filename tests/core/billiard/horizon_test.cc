@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
+#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
 #include "core/sampling/invariant_measure.h"
-#include "tests/oracle/lane_balls.h"
 
 namespace ballpiston {
 namespace {
@@ -70,12 +70,11 @@ Places FlownBeside(const PairGeometry& geometry, const PairState& start, double 
 
 template <typename Fly>
 Places FlownInLanes(const PairGeometry& geometry, const PairState& start, Fly fly) {
-  oracle::LaneBall ball = {.frame = FrameOfBallOnWall(start.position, start.direction)};
+  const LaneFrame frame = FrameOfBallOnWall(start.position, start.direction);
+  std::vector<LaneHit> hits(kHits);
+  fly(geometry, {&frame, 1}, kHits, hits);
   Places places;
-  for (size_t hit = 0; hit < kHits; ++hit) {
-    fly(geometry, 1, {&ball, 1});
-    places.push_back(PositionInCell(ball.frame));
-  }
+  for (const LaneHit& hit : hits) places.push_back(PositionInCell(hit.frame));
   return places;
 }
 
@@ -90,13 +89,12 @@ std::vector<Column> Columns(const PairGeometry& geometry) {
   const auto beside = [&geometry](double unit) {
     return [&geometry, unit](const PairState& s) { return FlownBeside(geometry, s, unit); };
   };
-  return {
-      {"reference", [&](const PairState& s) { return Flown(geometry, s); }},
-      {"lanes", [&](const PairState& s) { return FlownInLanes(geometry, s, oracle::FlyInLanes); }},
-      {"exact, 2^-53", beside(kDoubleUnit)},
-      {"lanes single",
-       [&](const PairState& s) { return FlownInLanes(geometry, s, oracle::FlyInLanesSingle); }},
-      {"exact, 2^-24", beside(kSingleUnit)}};
+  return {{"reference", [&](const PairState& s) { return Flown(geometry, s); }},
+          {"lanes", [&](const PairState& s) { return FlownInLanes(geometry, s, FlyLaneBalls); }},
+          {"exact, 2^-53", beside(kDoubleUnit)},
+          {"lanes single",
+           [&](const PairState& s) { return FlownInLanes(geometry, s, FlyLaneBallsSingle); }},
+          {"exact, 2^-24", beside(kSingleUnit)}};
 }
 
 double Median(std::vector<double> values) {

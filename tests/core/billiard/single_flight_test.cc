@@ -20,12 +20,12 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/reference_flow.h"
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/oracle/exact_flight.h"
-#include "tests/oracle/lane_balls.h"
 
 namespace ballpiston {
 namespace {
@@ -240,7 +240,7 @@ Tally JudgeReference(const PairGeometry& geometry, const std::vector<ReferenceFl
 
 // The ball's place is along the ray as uncertain as the time; its direction turns by the angle to
 // the normal twice, each uncertain by as much over rho > 1/2.
-void CompareEngines(double bounds, const ReferenceFlight& reference, const oracle::LaneBall& lane,
+void CompareEngines(double bounds, const ReferenceFlight& reference, const LaneHit& lane,
                     Tally& tally) {
   const Vector2d place = PositionInCell(lane.frame), direction = DirectionInCell(lane.frame);
   const auto worsen = [bounds](double& worst, double difference) {
@@ -254,27 +254,28 @@ void CompareEngines(double bounds, const ReferenceFlight& reference, const oracl
 
 Tally JudgeLanes(double unit, const PairGeometry& geometry,
                  const std::vector<ReferenceFlight>& flights) {
-  std::vector<oracle::LaneBall> balls;
+  std::vector<LaneFrame> starts;
   for (const ReferenceFlight& flight : flights) {
-    balls.push_back({.frame = FrameOfBallOnWall(flight.before.position, flight.before.direction)});
+    starts.push_back(FrameOfBallOnWall(flight.before.position, flight.before.direction));
   }
-  (unit == kDouble ? oracle::FlyInLanes : oracle::FlyInLanesSingle)(geometry, 1, balls);
+  std::vector<LaneHit> hits(starts.size());
+  (unit == kDouble ? FlyLaneBalls : FlyLaneBallsSingle)(geometry, starts, 1, hits);
   Tally tally;
   for (size_t i = 0; i < flights.size(); ++i) {
     const ReferenceFlight& flight = flights[i];
     const Exact exact(geometry, flight.before.position, flight.before.direction, flight.from);
-    const int disc = DiscOf(balls[i].frame);
-    Judge(unit, exact, geometry.rho(), disc, balls[i].length, tally);
+    const int disc = DiscOf(hits[i].frame);
+    Judge(unit, exact, geometry.rho(), disc, hits[i].length, tally);
     if (disc == exact.first) {
       const long double impact = std::fabs(exact.First().impact);
       tally.worst_impact =
           std::max(tally.worst_impact,
-                   static_cast<double>(std::fabs(std::fabs(balls[i].frame.c) - impact)) / unit);
+                   static_cast<double>(std::fabs(std::fabs(hits[i].frame.c) - impact)) / unit);
     }
     if (disc != flight.to) {
       ++tally.parted;
     } else {
-      CompareEngines(2 * TimeBound(unit, exact.Of(disc).cosine), flight, balls[i], tally);
+      CompareEngines(2 * TimeBound(unit, exact.Of(disc).cosine), flight, hits[i], tally);
     }
   }
   return tally;

@@ -11,7 +11,6 @@ namespace ballpiston {
 namespace {
 
 using oracle::Integrate;
-using oracle::Quad;
 
 // Integral of g(eb, ep) over the canonical density, in the total energy E and u = sqrt(ep/E):
 // deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2 that

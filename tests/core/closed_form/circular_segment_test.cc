@@ -4,20 +4,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
-#include "tests/oracle/quad_precision.h"
 
 namespace ballpiston {
 namespace {
-
-using oracle::Quad;
 
 TEST(CircularSegment, AngleMinusSineIsAccurate) {
   double worst = 0;
   // From 1e-8, where the quadruple difference has 18 digits left.
   for (double angle = 1e-8; angle < 2 * std::numbers::pi; angle *= 1.01) {
-    const double error =
-        oracle::RelativeError(AngleMinusSine(angle), Quad{angle} - oracle::Sin(Quad{angle}));
+    const double error = RelativeError(AngleMinusSine(angle), Quad{angle} - Sin(Quad{angle}));
     worst = std::max(worst, error);
   }
   EXPECT_LE(worst, kAngleMinusSineRelativeError);

@@ -5,20 +5,17 @@
 #include <random>
 
 #include "core/closed_form/mean_free_time.h"
+#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
-#include "tests/oracle/printed_formulas.h"
 
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-
 double ErrorOfPhi(double ep) {
   const Quad eb = Quad{1} / 2 - Quad{ep};
-  return oracle::RelativeError(Phi(ep),
-                               4 * oracle::CollisionRateAsPrinted(eb, Quad{ep}, oracle::QuadPi()));
+  return RelativeError(Phi(ep), 4 * CollisionRateAsPrinted(eb, Quad{ep}, QuadPi()));
 }
 
 TEST(ConditionalRate, AccurateAtRandomEnergies) {

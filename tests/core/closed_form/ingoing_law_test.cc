@@ -10,25 +10,20 @@
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-using oracle::QuadPi;
-using oracle::RelativeError;
-using oracle::Sqrt;
-
 constexpr double kEnergies[] = {0.0,          1e-300, 1e-16, 1e-8,         1.0 / 3200,
                                 0.01,         0.125,  0.249, 0.2499999999, 0.25,
                                 0.2500000001, 0.251,  0.375, 0.49,         0.5};
 
 // eq. falpha with n = 1, not normalised.
 Quad Weight(double ep, int sigma, Quad alpha) {
-  const Quad value = Sqrt(Quad{1} / 2 - Quad{ep}) * oracle::Cos(alpha) - sigma * Sqrt(Quad{ep});
+  const Quad value = Sqrt(Quad{1} / 2 - Quad{ep}) * Cos(alpha) - sigma * Sqrt(Quad{ep});
   return value > 0 ? value : Quad{0};
 }
 
 Quad Edge(double ep, int sigma) {
   if (ep >= 0.25) return sigma > 0 ? Quad{0} : QuadPi();
   const Quad ratio = Sqrt(Quad{ep} / (Quad{1} / 2 - Quad{ep}));
-  return QuadPi() / 2 - sigma * oracle::Asin(ratio);
+  return QuadPi() / 2 - sigma * Asin(ratio);
 }
 
 // Integral of g(alpha, sigma) times the weight over both signs.
@@ -136,7 +131,7 @@ TEST(IngoingLaw, MeansAreThoseOfTheDensity) {
   for (double ep : kEnergies) {
     const IngoingLaw law(ep);
     const Quad norm = Norm(ep);
-    const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return oracle::Cos(a); }) / norm;
+    const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return Cos(a); }) / norm;
     const Quad sign = OverTheCircle(ep, [](Quad, int sigma) { return sigma; }) / norm;
     // Absolute: both integrals cancel where they are small, the library's closed forms do not.
     EXPECT_NEAR(law.MeanCosAlpha(), static_cast<double>(cosine), 1e-14) << ep;

@@ -6,19 +6,13 @@
 
 #include "core/closed_form/kernel.h"
 #include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/printed_formulas.h"
+#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
-#include "tests/oracle/printed_formulas.h"
-#include "tests/oracle/quad_precision.h"
 
 namespace ballpiston {
 namespace {
-
-using oracle::Asin;
-using oracle::Quad;
-using oracle::QuadPi;
-using oracle::RelativeError;
-using oracle::Sqrt;
 
 // pi times the integral of W from 0 to ep_out, as it is found on paper: the arcsine part up to ep,
 // the root's part beyond.
@@ -56,10 +50,9 @@ TEST(KernelDistribution, AccurateAtRandomEnergies) {
       for (const double out : {eb * share, eb * (1 - share), ep * (1 + share), ep * (1 - share)}) {
         worst = std::max(worst, WorstError(ep, out));
       }
-      worst_rate =
-          std::max(worst_rate,
-                   RelativeError(KernelDistribution::OfPair(ep).CollisionRate(),
-                                 oracle::CollisionRateAsPrinted(PairBall(ep), Quad{ep}, QuadPi())));
+      worst_rate = std::max(
+          worst_rate, RelativeError(KernelDistribution::OfPair(ep).CollisionRate(),
+                                    CollisionRateAsPrinted(PairBall(ep), Quad{ep}, QuadPi())));
     }
   }
   EXPECT_LE(worst, kKernelDistributionRelativeError);
@@ -140,9 +133,7 @@ double CollisionsFromTo(double from, double to, double y) {
   for (size_t i = 0; i + 1 < std::size(ends); ++i) {
     const Quad middle = (ends[i] + ends[i + 1]) / 2, half = (ends[i + 1] - ends[i]) / 2;
     // u = middle + half sin t: roots at the ends become smooth.
-    const auto mapped = [&](Quad t) {
-      return integrand(middle + half * oracle::Sin(t)) * half * oracle::Cos(t);
-    };
+    const auto mapped = [&](Quad t) { return integrand(middle + half * Sin(t)) * half * Cos(t); };
     sum += static_cast<double>(oracle::Integrate(mapped, -QuadPi() / 2, QuadPi() / 2));
   }
   return sum;

@@ -4,21 +4,17 @@
 #include <cmath>
 #include <random>
 
+#include "core/closed_form/printed_formulas.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
-#include "tests/oracle/printed_formulas.h"
 
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-using oracle::QuadPi;
-using oracle::RelativeError;
-
 double WorstError(double f, double j, double h, Quad eb, Quad ep) {
-  return std::max({RelativeError(f, oracle::CollisionRateAsPrinted(eb, ep, QuadPi())),
-                   RelativeError(j, oracle::EnergyCurrentAsPrinted(eb, ep, QuadPi())),
-                   RelativeError(h, oracle::SquaredTransferAsPrinted(eb, ep, QuadPi()))});
+  return std::max({RelativeError(f, CollisionRateAsPrinted(eb, ep, QuadPi())),
+                   RelativeError(j, EnergyCurrentAsPrinted(eb, ep, QuadPi())),
+                   RelativeError(h, SquaredTransferAsPrinted(eb, ep, QuadPi()))});
 }
 
 double ErrorAt(double eb, double ep) {
@@ -35,12 +31,12 @@ double PairErrorAt(double ep) {
 // ep_out = eb sin^2 t, cut where the maximum in W changes sides.
 Quad MomentByQuadrature(int n, double eb, double ep) {
   const auto integrand = [&](Quad t) {
-    const Quad out = Quad{eb} * oracle::Sin(t) * oracle::Sin(t);
+    const Quad out = Quad{eb} * Sin(t) * Sin(t);
     Quad power = 1;
     for (int k = 0; k < n; ++k) power *= out - Quad{ep};
-    return power * std::max(oracle::Sqrt(out), oracle::Sqrt(Quad{ep})) / QuadPi();
+    return power * std::max(Sqrt(out), Sqrt(Quad{ep})) / QuadPi();
   };
-  const Quad cut = ep < eb ? oracle::Asin(oracle::Sqrt(Quad{ep} / Quad{eb})) : QuadPi() / 2;
+  const Quad cut = ep < eb ? Asin(Sqrt(Quad{ep} / Quad{eb})) : QuadPi() / 2;
   return oracle::Integrate(integrand, 0, cut) + oracle::Integrate(integrand, cut, QuadPi() / 2);
 }
 
@@ -50,7 +46,7 @@ Quad CurrentZero() {
   Quad high = Quad{4} / 10;
   for (int i = 0; i < 110; ++i) {
     const Quad middle = (low + high) / 2;
-    (oracle::EnergyCurrentAsPrinted(1 - middle, middle, QuadPi()) > 0 ? low : high) = middle;
+    (EnergyCurrentAsPrinted(1 - middle, middle, QuadPi()) > 0 ? low : high) = middle;
   }
   return low;
 }
@@ -94,10 +90,10 @@ TEST(KernelMoments, CurrentIsAccurateThroughItsZero) {
     const double offset = std::pow(10, exponent(random)) * (i % 2 == 0 ? 1 : -1);
     const double ep = static_cast<double>(zero * (1 + Quad{offset}) / 2);
     worst = std::max(worst, PairErrorAt(ep));
-    worst_printed = std::max(
-        worst_printed,
-        RelativeError(oracle::EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
-                      oracle::EnergyCurrentAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi())));
+    worst_printed =
+        std::max(worst_printed,
+                 RelativeError(EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
+                               EnergyCurrentAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi())));
     const double eb = std::pow(10, energy_exponent(random));
     worst = std::max(
         worst, ErrorAt(eb, static_cast<double>(zero / (1 - zero) * (1 + Quad{offset}) * Quad{eb})));
@@ -150,8 +146,8 @@ TEST(KernelMoments, AccurateWhereThePrintedArcsineIsSteep) {
   for (double gap = 1e-16; gap < 1e-2; gap *= 3) {
     const double ep = 0.25 - gap;
     EXPECT_LE(PairErrorAt(ep), kKernelMomentsRelativeError) << gap;
-    const Quad exact = oracle::CollisionRateAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi());
-    const double printed = oracle::CollisionRateAsPrinted(0.5 - ep, ep, M_PI);
+    const Quad exact = CollisionRateAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi());
+    const double printed = CollisionRateAsPrinted(0.5 - ep, ep, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));
   }
   EXPECT_GT(worst_printed, 1e-12);

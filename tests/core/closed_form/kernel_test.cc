@@ -6,17 +6,13 @@
 #include <random>
 
 #include "core/closed_form/kernel_moments.h"
+#include "core/closed_form/printed_formulas.h"
+#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
-#include "tests/oracle/printed_formulas.h"
-#include "tests/oracle/quad_precision.h"
 
 namespace ballpiston {
 namespace {
-
-using oracle::Quad;
-using oracle::RelativeError;
-using oracle::Sqrt;
 
 Quad Positive(Quad x) { return x > 0 ? x : Quad{0}; }
 
@@ -27,7 +23,7 @@ Quad KernelOverSigns(Quad eb, Quad ep, Quad ep_out) {
   for (int before : {1, -1}) {
     for (int after : {1, -1}) sum += Positive(after * Sqrt(ep_out) - before * Sqrt(ep));
   }
-  return sum / (4 * oracle::QuadPi() * Sqrt(ep_out) * Sqrt(eb - ep_out));
+  return sum / (4 * QuadPi() * Sqrt(ep_out) * Sqrt(eb - ep_out));
 }
 
 TEST(Kernel, AccurateAtRandomEnergies) {
@@ -57,7 +53,7 @@ TEST(Kernel, AccurateWhereTheBallIsLeftWithLittle) {
     const double out = (0.5 - ep) * (1 - std::pow(10, exponent(random)));
     const Quad exact = KernelOverSigns(Quad{1} / 2 - Quad{ep}, ep, out);
     EXPECT_LE(RelativeError(PairKernel(ep, out), exact), kKernelRelativeError) << ep << " " << out;
-    const double printed = oracle::KernelAsPrinted(0.5 - ep, ep, out, M_PI);
+    const double printed = KernelAsPrinted(0.5 - ep, ep, out, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));
   }
   EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails

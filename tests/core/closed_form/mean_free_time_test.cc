@@ -29,11 +29,11 @@ TEST(MeanFreeTime, AccurateAtRandomGeometries) {
     const double delta = PairDeltaBound(rho) * std::pow(10, delta_exponent(random));
     const MeanFreeTimes tau = MeanFreeTimesOf(Geometry(rho, delta));
     const auto exact = oracle::MeasuresByQuadrature(rho, delta);
-    EXPECT_LE(oracle::RelativeError(tau.ball_piston, 4 * exact.volume / exact.area_ball_piston),
+    EXPECT_LE(RelativeError(tau.ball_piston, 4 * exact.volume / exact.area_ball_piston),
               kMeanFreeTimeRelativeError);
-    EXPECT_LE(oracle::RelativeError(tau.ball_wall, 4 * exact.volume / exact.area_ball_wall),
+    EXPECT_LE(RelativeError(tau.ball_wall, 4 * exact.volume / exact.area_ball_wall),
               kMeanFreeTimeRelativeError);
-    EXPECT_LE(oracle::RelativeError(tau.piston_wall, 4 * exact.volume / exact.area_piston_wall),
+    EXPECT_LE(RelativeError(tau.piston_wall, 4 * exact.volume / exact.area_piston_wall),
               kMeanFreeTimeRelativeError);
   }
 }

@@ -6,17 +6,15 @@
 #include <random>
 #include <string>
 
+#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/measures_by_quadrature.h"
-#include "tests/oracle/printed_formulas.h"
-#include "tests/oracle/quad_precision.h"
 
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-using oracle::RelativeError;
 using std::numbers::sqrt2;
 
 constexpr double kRadii[] = {0.5 + 1e-12, 0.5 + 1e-6, 0.501, 0.529561127988977,
@@ -28,7 +26,7 @@ PairGeometry Geometry(double rho, double delta) {
   return *geometry;
 }
 
-double WorstError(const PairMeasures& m, const oracle::PrintedMeasures<Quad>& exact) {
+double WorstError(const PairMeasures& m, const PrintedMeasures<Quad>& exact) {
   return std::max({RelativeError(m.eta, exact.eta), RelativeError(m.cell_area, exact.cell_area),
                    RelativeError(m.volume, exact.volume),
                    RelativeError(m.area_ball_piston, exact.area_ball_piston),
@@ -44,7 +42,7 @@ double ErrorAt(double rho, double delta) {
 TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
   for (double rho : {0.51, 0.529561127988977, 0.6, 0.69}) {
     const double delta = 0.3 * PairDeltaBound(rho);
-    const auto printed = oracle::MeasuresAsPrinted(Quad{rho}, Quad{delta}, oracle::QuadPi());
+    const auto printed = MeasuresAsPrinted(Quad{rho}, Quad{delta}, QuadPi());
     const auto quadrature = oracle::MeasuresByQuadrature(rho, delta);
     // 34 digits less the three that the printed formulas lose at the smallest cell.
     const auto agree = [](Quad a, Quad b) { return std::abs(static_cast<double>((a - b) / b)); };

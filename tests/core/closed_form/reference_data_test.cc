@@ -9,10 +9,10 @@
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
+#include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
 #include "tests/core/closed_form/reference_table.h"
-#include "tests/oracle/printed_formulas.h"
 
 namespace ballpiston {
 namespace {
@@ -41,7 +41,7 @@ Errors GeometryErrors() {
     }
     const PairMeasures m = Measures(*geometry);
     const MeanFreeTimes tau = MeanFreeTimesOf(*geometry);
-    const auto p = oracle::MeasuresAsPrinted(rho, delta, pi);
+    const auto p = MeasuresAsPrinted(rho, delta, pi);
     const auto add = [&](const std::string& column, double library, double printed) {
       errors.library.Add(row, column, library, table.Reference(row, column));
       errors.printed.Add(row, column, printed, table.Reference(row, column));
@@ -70,15 +70,15 @@ Errors KernelErrors() {
       errors.library.Add(row, column, library, table.Reference(row, column));
       errors.printed.Add(row, column, printed, table.Reference(row, column));
     };
-    const double rate = oracle::CollisionRateAsPrinted(eb, ep, pi);
+    const double rate = CollisionRateAsPrinted(eb, ep, pi);
     add("phi", Phi(ep), 4 * rate);
     add("f", PairCollisionRate(ep), rate);
-    add("j", PairEnergyCurrent(ep), oracle::EnergyCurrentAsPrinted(eb, ep, pi));
-    add("h", PairSquaredEnergyTransfer(ep), oracle::SquaredTransferAsPrinted(eb, ep, pi));
+    add("j", PairEnergyCurrent(ep), EnergyCurrentAsPrinted(eb, ep, pi));
+    add("h", PairSquaredEnergyTransfer(ep), SquaredTransferAsPrinted(eb, ep, pi));
     for (const std::string& column : table.columns()) {
       if (!absl::StartsWith(column, "w_at_")) continue;
       const double out = std::strtod(column.c_str() + 5, nullptr);
-      add(column, PairKernel(ep, out), oracle::KernelAsPrinted(eb, ep, out, pi));
+      add(column, PairKernel(ep, out), KernelAsPrinted(eb, ep, out, pi));
     }
   }
   return errors;

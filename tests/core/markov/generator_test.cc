@@ -16,8 +16,6 @@
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-
 const Generator& InUse() {
   static const auto* const generator = new Generator({});
   return *generator;

@@ -10,17 +10,13 @@
 #include <vector>
 
 #include "core/closed_form/kernel_moments.h"
+#include "core/geometry/quad_precision.h"
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/oracle/gauss_legendre.h"
-#include "tests/oracle/quad_precision.h"
 
 namespace ballpiston {
 namespace {
-
-using oracle::Asin;
-using oracle::Quad;
-using oracle::Sqrt;
 
 // From nothing to all, through the point where the two parts of the law part, 1/sqrt 2.
 std::vector<double> Energies() {
@@ -52,14 +48,14 @@ class ExactLaw {
  public:
   explicit ExactLaw(double u) : u_(u), s2_(1 - u_ * u_), s_(Sqrt(s2_)) {
     const Quad q2 = 1 - 2 * u_ * u_;
-    c_ = q2 > 0 ? Sqrt(q2) + u_ * Asin(u_ / s_) : u_ * oracle::QuadPi() / 2;
+    c_ = q2 > 0 ? Sqrt(q2) + u_ * Asin(u_ / s_) : u_ * QuadPi() / 2;
   }
   Quad Below(Quad next) const {
     if (next >= s_) return 1;
     if (next <= u_) return u_ * Asin(next / s_) / c_;
     return 1 - Sqrt(s2_ - next * next) / c_;
   }
-  Quad rate() const { return c_ / (Sqrt(Quad{2}) * oracle::QuadPi()); }
+  Quad rate() const { return c_ / (Sqrt(Quad{2}) * QuadPi()); }
 
  private:
   Quad u_, s2_, s_, c_;
@@ -96,7 +92,7 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
     for (const double v : UniformNumbers()) {
       const double time = JumpFrom(u, v, 0.5).waiting_time;
       ASSERT_TRUE(time > 0 && std::isfinite(time));
-      EXPECT_LE(oracle::RelativeError(time, -Quad{std::log(v)} / law.rate()), kJumpError) << u;
+      EXPECT_LE(RelativeError(time, -Quad{std::log(v)} / law.rate()), kJumpError) << u;
     }
   }
   // The closed form's rate; u^2/2 rounds.

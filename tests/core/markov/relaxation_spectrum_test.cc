@@ -12,8 +12,6 @@
 namespace ballpiston {
 namespace {
 
-using oracle::Quad;
-
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
 const RelaxationSpectrum& Spectrum() { return RelaxationSpectrum::Get(); }

@@ -1,0 +1,84 @@
+// The paper's formulas as printed, one expression each, in any arithmetic: in double the naive
+// evaluation that the rest of this folder has to beat, in quadruple precision the yardstick where
+// 34 digits less the cancellation are enough. For tests and for the stability tables.
+//
+// Rates, moments and the kernel are in units of |dG_bp|/|G|, as in the library.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_
+#define BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_
+
+#include <algorithm>
+
+#include "core/geometry/quad_precision.h"
+
+namespace ballpiston {
+
+template <typename Real>
+struct PrintedMeasures {
+  Real lambda;
+  Real eta;
+  Real cell_area;         // eq. areax1x2
+  Real volume;            // eq. Gv
+  Real area_ball_piston;  // eq. dGc
+  Real area_ball_wall;    // eq. dGb
+  Real area_piston_wall;  // eq. dGpw
+};
+
+template <typename Real>
+PrintedMeasures<Real> MeasuresAsPrinted(Real rho, Real delta, Real pi) {
+  const Real sqrt2 = Sqrt(Real{2});
+  PrintedMeasures<Real> m;
+  const Real l = m.lambda = Sqrt(4 * rho * rho - 1);
+  const Real stroke = l + 2 * delta;
+  const Real root = Sqrt(1 - 4 * delta * (l + delta));
+  const Real angles = Atan(l) - Atan(stroke / root);
+  m.eta = 1 - 2 * Sqrt(rho * rho - (l / 2 + delta) * (l / 2 + delta));
+  m.cell_area = 1 - l - rho * rho * (pi - 4 * Atan(l));
+  m.volume =
+      stroke * m.cell_area -
+      (2 * delta * (l + 4 * delta) + (1 - root) * (2 + 4 * delta * (l + delta) + 3 * l * l)) / 24 -
+      rho * rho * stroke * angles / 2;
+  m.area_ball_piston = (stroke * (2 - root) - l) / (2 * sqrt2) + sqrt2 * rho * rho * angles;
+  m.area_ball_wall =
+      rho * stroke *
+          (8 * Asin((1 - l) / (2 * sqrt2 * rho)) - Asin(stroke / (2 * rho)) + Asin(l / (2 * rho))) +
+      rho * (1 - root);
+  m.area_piston_wall = 2 * m.cell_area - m.area_ball_piston / sqrt2;
+  return m;
+}
+
+// Eq. intkernelnuf.
+template <typename Real>
+Real CollisionRateAsPrinted(Real eb, Real ep, Real pi) {
+  if (eb <= ep) return Sqrt(ep) / 2;
+  return (Sqrt(eb - ep) + Sqrt(ep) * Asin(Sqrt(ep / eb))) / pi;
+}
+
+// Eq. intkerneleta.
+template <typename Real>
+Real EnergyCurrentAsPrinted(Real eb, Real ep, Real pi) {
+  if (eb <= ep) return (eb - 2 * ep) * Sqrt(ep) / 4;
+  return ((4 * eb - 7 * ep) * Sqrt(eb - ep) + 3 * (eb - 2 * ep) * Sqrt(ep) * Asin(Sqrt(ep / eb))) /
+         (6 * pi);
+}
+
+// Eq. intkerneleta2.
+template <typename Real>
+Real SquaredTransferAsPrinted(Real eb, Real ep, Real pi) {
+  const Real quadratic = 3 * eb * eb / 8 - eb * ep + ep * ep;
+  if (eb <= ep) return Sqrt(ep) * quadratic / 2;
+  const Real d = eb - ep;
+  return (8 * d * d * Sqrt(d) + 15 * (-3 * ep * (eb - 2 * ep) * Sqrt(d) / 8 +
+                                      Sqrt(ep) * quadratic * Asin(Sqrt(ep / eb)))) /
+         (15 * pi);
+}
+
+// Eq. kernel.
+template <typename Real>
+Real KernelAsPrinted(Real eb, Real ep, Real ep_out, Real pi) {
+  if (ep_out >= eb) return 0;
+  return std::max(Sqrt(ep_out), Sqrt(ep)) / (2 * pi * Sqrt(ep_out * (eb - ep_out)));
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_

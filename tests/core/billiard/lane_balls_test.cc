@@ -1,0 +1,87 @@
+// What is recorded of balls in lanes. That each flight is right: single_flight_test.cc.
+#include "core/billiard/lane_balls.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "core/sampling/counter_random.h"
+#include "tests/core/billiard/each_target.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr uint64_t kHits = 12;
+
+PairGeometry Geometry() { return *PairGeometry::Create(0.529561127988977, 0.1); }
+
+// Balls on the middle of their disc's arc.
+std::vector<LaneFrame> Starts(size_t count) {
+  const double rho = Geometry().rho();
+  std::vector<LaneFrame> starts;
+  for (size_t i = 0; i < count; ++i) {
+    CounterRandom random(17, 0, i);
+    const double angle = (random.Uniform() - 0.5) * 3;  // to the normal
+    const Eigen::Vector2d normal = Eigen::Vector2d(1, 1).normalized();
+    const Eigen::Vector2d across(-normal.y(), normal.x());
+    starts.push_back(FrameOfBallOnWall(Eigen::Vector2d(-0.5, -0.5) + rho * normal,
+                                       std::cos(angle) * normal + std::sin(angle) * across));
+  }
+  return starts;
+}
+
+auto Bits(const LaneHit& hit) {
+  const LaneFrame& f = hit.frame;
+  return std::tuple(f.h, f.e, f.c, f.s, f.a, f.b, f.m, hit.length, hit.x);
+}
+
+std::vector<LaneHit> Flown(const std::vector<LaneFrame>& starts, size_t records) {
+  std::vector<LaneHit> recorded(starts.size() * records);
+  FlyLaneBalls(Geometry(), starts, kHits, recorded);
+  return recorded;
+}
+
+TEST(LaneBalls, FewerRecordsAreTheLastHitsOfEqualStretches) {
+  ForEachTarget([](int64_t) {
+    const std::vector<LaneFrame> starts = Starts(100);
+    const std::vector<LaneHit> all = Flown(starts, kHits);
+    for (const size_t records : {size_t{1}, size_t{4}}) {
+      const std::vector<LaneHit> some = Flown(starts, records);
+      const size_t between = kHits / records;
+      for (size_t i = 0; i < starts.size(); ++i) {
+        for (size_t j = 0; j < records; ++j) {
+          ASSERT_EQ(Bits(some[i * records + j]), Bits(all[i * kHits + (j + 1) * between - 1]));
+        }
+      }
+    }
+  });
+}
+
+// Numbers of balls that leave vectors, groups and batches incomplete, for vectors of 2 to 8.
+TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
+  ForEachTarget([](int64_t) {
+    const std::vector<LaneFrame> starts = Starts(100);
+    for (const size_t count : {1, 5, 7, 13, 25, 49, 100}) {
+      const std::vector<LaneFrame> some(starts.begin(),
+                                        starts.begin() + static_cast<std::ptrdiff_t>(count));
+      const std::vector<LaneHit> together = Flown(some, 1);
+      for (size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(Bits(together[i]), Bits(Flown({starts[i]}, 1)[0])) << i << " of " << count;
+      }
+    }
+  });
+}
+
+// Place and abscissa are two roads to the same x, of some rounded terms below 1 each.
+TEST(LaneBalls, TheAbscissaIsThatOfThePlace) {
+  for (const LaneHit& hit : Flown(Starts(100), kHits)) {
+    ASSERT_NEAR(hit.x, PositionInCell(hit.frame).x(), 8 * 0x1p-53);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,36 @@
+// The places where methods fail that need no piston, and how each method does there.
+#ifndef BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
+#define BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
+#include "core/sampling/counter_random.h"
+#include "tools/stability/ball_methods.h"
+#include "tools/stability/failures.h"
+
+namespace ballpiston::stability {
+
+struct BallCase {
+  struct Radius {
+    double rho;
+    uint64_t starts;  // in the full table
+  };
+
+  std::string name;
+  std::vector<Radius> radii;
+  PairState (*start)(const PairGeometry& geometry, CounterRandom& random);
+  uint64_t hits;  // of each; 0: until no tip can hold the ball any more
+};
+
+const std::vector<BallCase>& BallCases();
+
+// All starts of the case times `effort` and the method's share, the same ones for every method.
+Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double effort);
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_

@@ -1,0 +1,88 @@
+#include "tools/stability/ball_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tools/stability/tip_sequence.h"
+
+namespace ballpiston::stability {
+namespace {
+
+// Two discs that are this near are both touched: at a tip either may be the one that was hit.
+constexpr double kTouching = 1e-7;
+
+// Of the disc in the ball's quadrant, the nearest, and of its neighbours.
+std::array<Eigen::Vector2d, 3> NearestCentres(const Eigen::Vector2d& position) {
+  const double x = std::copysign(0.5, position.x()), y = std::copysign(0.5, position.y());
+  return {Eigen::Vector2d(x, y), Eigen::Vector2d(x, -y), Eigen::Vector2d(-x, y)};
+}
+
+// Not a number is outside too.
+bool InsideSquare(const Eigen::Vector2d& position) {
+  return std::fabs(position.x()) <= 0.5 && std::fabs(position.y()) <= 0.5;
+}
+
+}  // namespace
+
+BallWatch::BallWatch(const PairGeometry& geometry, double epsilon)
+    : rho_(geometry.rho()),
+      epsilon_(epsilon),
+      // Nor longer than what is short in a cell that has nearly vanished.
+      short_(std::min(kShortUlps * epsilon, 1e-3 * geometry.tip())),
+      longest_sequence_(LongestTipSequence(geometry)) {}
+
+bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& direction,
+                    double length, Failures& failures) {
+  ++failures.hits;
+  failures.negative_times += length < 0;
+  const double depth = Depth(position);
+  if (!InsideSquare(position) || IsEscape(depth, position, direction)) {
+    ++failures.escapes;
+    return false;
+  }
+  failures.deepest = std::max(failures.deepest, depth);
+  failures.inward += HeadsInward(position, direction);
+  sequence_ = length < short_ ? sequence_ + 1 : 0;
+  if (sequence_ <= longest_sequence_) return true;
+  ++failures.loops;
+  return false;
+}
+
+double BallWatch::Depth(const Eigen::Vector2d& position) const {
+  return rho_ - (position - NearestCentres(position)[0]).norm();
+}
+
+double BallWatch::Slack(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) const {
+  double cosine = 1;
+  for (const Eigen::Vector2d& centre : NearestCentres(position)) {
+    const Eigen::Vector2d normal = position - centre;
+    if (normal.norm() > rho_ + kTouching) continue;
+    cosine = std::min(cosine, std::fabs(direction.dot(normal)) / rho_);
+  }
+  return kPositionUlps * epsilon_ / std::max(cosine, std::sqrt(epsilon_));
+}
+
+bool BallWatch::IsEscape(double depth, const Eigen::Vector2d& position,
+                         const Eigen::Vector2d& direction) const {
+  if (depth <= kPositionUlps * epsilon_) return false;
+  return !(depth <= Slack(position, direction));
+}
+
+bool BallWatch::HeadsInward(const Eigen::Vector2d& position,
+                            const Eigen::Vector2d& direction) const {
+  const std::array<Eigen::Vector2d, 3> centres = NearestCentres(position);
+  const auto inward = [&](const Eigen::Vector2d& centre) {
+    return direction.dot(position - centre) < -kDirectionUlps * epsilon_;
+  };
+  const double touching = std::max(kTouching, kPositionUlps * epsilon_);
+  const auto touches = [&](const Eigen::Vector2d& centre) {
+    return (position - centre).norm() < rho_ + touching;
+  };
+  if (!inward(centres[0])) return false;
+  return std::none_of(centres.begin() + 1, centres.end(), [&](const Eigen::Vector2d& centre) {
+    return touches(centre) && !inward(centre);
+  });
+}
+
+}  // namespace ballpiston::stability

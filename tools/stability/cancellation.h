@@ -1,0 +1,21 @@
+// The closed forms where their printed formulas cancel.
+#ifndef BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
+#define BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
+
+#include <string>
+#include <vector>
+
+namespace ballpiston::stability {
+
+struct Cancellation {
+  std::string quantity;
+  std::string where;
+  double printed;  // relative error of the printed formula, evaluated in double
+  double library;  // of core/closed_form
+};
+
+std::vector<Cancellation> Cancellations();
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_

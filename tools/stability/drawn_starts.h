@@ -1,0 +1,30 @@
+// Starts of a case: the i-th is the same whatever is drawn before it.
+#ifndef BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
+#define BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston::stability {
+
+using DrawStart = PairState(const PairGeometry& geometry, CounterRandom& random);
+
+// Numbers first ... first + count - 1.
+inline std::vector<PairState> DrawnStarts(DrawStart& draw, const PairGeometry& geometry,
+                                          uint64_t seed, uint64_t first, uint64_t count) {
+  std::vector<PairState> starts;
+  starts.reserve(count);
+  for (uint64_t i = first; i < first + count; ++i) {
+    CounterRandom random(seed, 0, i);
+    starts.push_back(draw(geometry, random));
+  }
+  return starts;
+}
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_

@@ -1,0 +1,43 @@
+// What can go wrong with an orbit, counted.
+#ifndef BALLPISTON_TOOLS_STABILITY_FAILURES_H_
+#define BALLPISTON_TOOLS_STABILITY_FAILURES_H_
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ballpiston::stability {
+
+struct Failures {
+  uint64_t orbits = 0;
+  uint64_t hits = 0;  // of the ball: on walls in the tables of the ball, on the piston in the other
+
+  uint64_t escapes = 0;         // orbits that left the cell, or are not a number any more
+  uint64_t negative_times = 0;  // events before their predecessors
+  uint64_t loops = 0;           // orbits that stand still, see tip_sequence.h
+  uint64_t inward = 0;          // hits after which the ball still flies into what it hit
+  uint64_t looked_back = 0;     // hits on the piston of which is known whether one was missed
+  uint64_t missed = 0;          // the ball beyond the piston
+  uint64_t phantoms = 0;        // contacts with the piston elsewhere
+  double deepest = 0;           // inside a disc, of orbits that did not escape
+  double energy = 0;            // worst |dE/E|
+
+  uint64_t Total() const { return escapes + negative_times + loops + inward + missed + phantoms; }
+
+  void Merge(const Failures& other) {
+    orbits += other.orbits;
+    hits += other.hits;
+    escapes += other.escapes;
+    negative_times += other.negative_times;
+    loops += other.loops;
+    inward += other.inward;
+    looked_back += other.looked_back;
+    missed += other.missed;
+    phantoms += other.phantoms;
+    deepest = std::max(deepest, other.deepest);
+    energy = std::max(energy, other.energy);
+  }
+};
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_FAILURES_H_

@@ -1,0 +1,30 @@
+// Balls flown in vector lanes by the engine's own flight.
+#ifndef BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
+#define BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/billiard/lane_balls.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/geometry/pair_state.h"
+#include "tools/stability/failures.h"
+
+namespace ballpiston::stability {
+
+using FlyLanes = void (*)(const PairGeometry& geometry, std::span<const LaneFrame> starts,
+                          uint64_t hits, std::span<LaneHit> recorded);
+
+Failures FlyInLanesWatched(FlyLanes fly, double epsilon, const PairGeometry& geometry,
+                           std::span<const PairState> starts, uint64_t hits);
+
+std::vector<double> ThereAndBackInLanes(FlyLanes fly, const PairGeometry& geometry,
+                                        std::span<const PairState> starts, uint64_t hits);
+
+// |u|^2 - 1 of a ball in the lanes.
+double SquaredLengthError(const LaneFrame& frame);
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_

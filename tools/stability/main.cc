@@ -1,0 +1,14 @@
+// The stability tables: every place where methods fail, every engine in every precision, and the
+// naive methods beside them. Arguments and exit status: program.h.
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "tools/stability/program.h"
+#include "tools/stability/report.h"
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  return ballpiston::stability::RunProgram(arguments, ballpiston::stability::MakeReport, std::cout,
+                                           std::cerr);
+}

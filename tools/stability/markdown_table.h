@@ -1,0 +1,29 @@
+// A table in Markdown, columns padded so that it reads as plain text too.
+#ifndef BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
+#define BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ballpiston::stability {
+
+class MarkdownTable {
+ public:
+  explicit MarkdownTable(std::vector<std::string> head) : rows_{std::move(head)} {}
+
+  // As many cells as the head has; the first `labels` columns are texts, the others numbers.
+  void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  std::string Text(size_t labels) const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+std::string CountText(uint64_t count);  // 1,234,567
+std::string ErrorText(double error);    // 1.2e-15; 0; - where there is none
+std::string SignedText(double value);   // +1.2e-15
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_

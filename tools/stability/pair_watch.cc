@@ -1,0 +1,143 @@
+#include "tools/stability/pair_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/billiard/reference_flow.h"
+#include "tools/stability/ghost_flight.h"
+#include "tools/stability/tip_sequence.h"
+
+namespace ballpiston::stability {
+namespace {
+
+// Off the walls nothing tells by which cosine rounding was magnified: the worst case, a ball that
+// grazes, counts.
+double AnywhereSlack(double epsilon) { return kPositionUlps * std::sqrt(epsilon); }
+
+double Approach(const PairState& state) {
+  return state.ball_speed * state.direction.x() - state.piston_velocity;
+}
+
+PairState Turned(PairState state, double angle) {
+  const Eigen::Vector2d u = state.direction;
+  state.direction = (u + angle * Eigen::Vector2d(-u.y(), u.x())).normalized();
+  return state;
+}
+
+// Whether a number is above `slack` on all three, by more than they differ.
+bool Exceeds(const std::array<double, 3>& values, double slack) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return *least > slack + (*most - *least);
+}
+
+}  // namespace
+
+uint64_t LongestStandstill(const PairGeometry& geometry) {
+  return 64 + 4 * LongestTipSequence(geometry);
+}
+
+PairWatch::PairWatch(const PairGeometry& geometry, double epsilon)
+    : ball_(geometry, epsilon),
+      epsilon_(epsilon),
+      short_(std::min(kShortUlps * epsilon, 1e-3 * geometry.tip())),
+      longest_standstill_(LongestStandstill(geometry)) {}
+
+bool PairWatch::See(const PairState& state, EventKind kind, double duration, Failures& failures) {
+  failures.negative_times += duration < 0;
+  if (kind == EventKind::kEscape || !(ball_.Depth(state.position) <= AnywhereSlack(epsilon_))) {
+    ++failures.escapes;
+    return false;
+  }
+  failures.deepest = std::max(failures.deepest, ball_.Depth(state.position));
+  if (kind == EventKind::kBallWall)
+    failures.inward += ball_.HeadsInward(state.position, state.direction);
+  failures.hits += kind == EventKind::kBallPiston;
+  failures.looked_back += kind == EventKind::kBallPiston;
+  standstill_ = duration < short_ ? standstill_ + 1 : 0;
+  failures.loops += standstill_ > longest_standstill_;
+  // Where a corner is worked off in no time, the ball may be beyond until its collision is told.
+  const double beyond = state.position.x() - state.piston;
+  const bool missed = duration > short_ && beyond > kPositionUlps * epsilon_ &&
+                      beyond > ball_.Slack(state.position, state.direction);
+  failures.missed += missed;
+  return standstill_ <= longest_standstill_ && !missed;
+}
+
+void PairWatch::SeeExchanged(const PairState& state, Failures& failures) {
+  failures.inward += Approach(state) > kDirectionUlps * epsilon_;
+}
+
+CollisionWatch::CollisionWatch(const PairGeometry& geometry, double epsilon,
+                               std::span<const PairState> starts, uint64_t collisions)
+    : geometry_(geometry),
+      ball_(geometry, epsilon),
+      epsilon_(epsilon),
+      starts_(starts),
+      collisions_(collisions),
+      longest_standstill_(LongestStandstill(geometry)),
+      orbits_(starts.size()) {}
+
+PairState CollisionWatch::Start(uint64_t orbit) {
+  orbits_[orbit].departure = starts_[orbit];
+  return starts_[orbit];
+}
+
+AfterContact CollisionWatch::Meet(uint64_t i, const Contact& contact) {
+  Orbit& orbit = orbits_[i];
+  const PairState& state = contact.state;
+  const double depth = ball_.Depth(state.position);
+  if (contact.escaped || !(depth <= AnywhereSlack(epsilon_))) {
+    ++failures_.escapes;
+    return End(orbit);
+  }
+  ++failures_.hits;
+  failures_.deepest = std::max(failures_.deepest, depth);
+  failures_.negative_times += contact.time < 0;
+  failures_.energy = std::max(failures_.energy, EnergyError(state));
+  failures_.inward += Approach(state) < -kDirectionUlps * epsilon_;
+  LookBack(orbit.departure, contact);
+  ReferenceFlow flow(geometry_, state);
+  flow.ExchangeComponents();
+  orbit.departure = flow.state();
+  orbit.standstill = contact.time < kShortUlps * epsilon_ ? orbit.standstill + 1 : 0;
+  if (orbit.standstill <= longest_standstill_) {
+    return ++orbit.collisions < collisions_ ? AfterContact::kGoOn : End(orbit);
+  }
+  ++failures_.loops;
+  return End(orbit);
+}
+
+void CollisionWatch::LookBack(const PairState& departure, const Contact& contact) {
+  constexpr uint64_t kFewHits = 6;
+  if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
+  ++failures_.looked_back;
+  std::array<double, 3> overlaps, gaps, beyond;
+  for (size_t i = 0; i < 3; ++i) {
+    const double angle = 1e3 * epsilon_ * (static_cast<double>(i) - 1);
+    const GhostFlight ghost = FlyAsGhost(geometry_, Turned(departure, angle), contact.time);
+    overlaps[i] = ghost.overlap;
+    gaps[i] = ghost.gap;
+    beyond[i] = -ghost.gap;
+  }
+  // The piston's phase carries the rounding of all its way, and the time that of as many sums as
+  // there were events: of a slow ball millions, all rounded alike.
+  const double way = std::fabs(departure.piston_velocity) * contact.time;
+  const auto events = static_cast<double>(contact.ball_wall_hits + contact.piston_wall_hits);
+  const double slack = epsilon_ * (1e4 * (1 + way) + events * way);
+  failures_.missed += Exceeds(overlaps, slack);
+  failures_.phantoms += Exceeds(gaps, slack) || Exceeds(beyond, slack);
+}
+
+AfterContact CollisionWatch::End(Orbit& orbit) {
+  orbit.ended = true;
+  return AfterContact::kEnd;
+}
+
+Failures CollisionWatch::Finish() {
+  failures_.orbits = orbits_.size();
+  for (const Orbit& orbit : orbits_) failures_.missed += !orbit.ended;
+  return failures_;
+}
+
+}  // namespace ballpiston::stability

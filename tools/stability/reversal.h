@@ -1,0 +1,29 @@
+// How far an orbit comes from its start when its velocity is reversed after some hits and it flies
+// back: what rounding is after twice that many hits.
+#ifndef BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
+#define BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ballpiston::stability {
+
+inline constexpr std::array<uint64_t, 6> kReversalHits = {1, 2, 5, 10, 20, 30};
+
+struct Reversal {
+  std::string method;
+  std::array<double, kReversalHits.size()> median;  // distance, in cells; NaN: too few orbits
+};
+
+// The ball alone, any orbits at the paper's radius.
+std::vector<Reversal> BallReversals(uint64_t orbits);
+
+// Ball and piston, from one collision back to the one before, by the number of wall hits between.
+// At the paper's radius and delta = 0.1.
+std::vector<Reversal> PairReversals(uint64_t orbits);
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_REVERSAL_H_

@@ -1,0 +1,39 @@
+// The results as Markdown.
+#ifndef BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_
+#define BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/stability/cancellation.h"
+#include "tools/stability/energy_drift.h"
+#include "tools/stability/failures.h"
+#include "tools/stability/reversal.h"
+
+namespace ballpiston::stability {
+
+struct MethodResult {
+  std::string method;
+  bool promised;  // zeros
+  Failures failures;
+};
+
+struct CaseResult {
+  std::string name;
+  std::vector<MethodResult> methods;  // the same ones in each case
+};
+
+// One row a case, one column a method, failures by letter.
+std::string SummaryTable(const std::vector<CaseResult>& cases);
+// One row a case and method, one column a kind of failure.
+std::string BallTable(const std::vector<CaseResult>& cases);
+std::string PairTable(const std::vector<CaseResult>& cases);
+
+std::string ReversalTable(const std::vector<Reversal>& ball, const std::vector<Reversal>& pair);
+std::string EnergyTable(const std::vector<EnergyRun>& runs);
+std::string CancellationTable(const std::vector<Cancellation>& rows);
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_STABILITY_TABLES_H_

@@ -1,0 +1,27 @@
+// How many hits in a row a tip permits: what tells a true cusp sequence from an orbit that stands
+// still.
+//
+// Two discs meet at a tip at angles +-theta to the axis, tan(theta) = lambda. Between straight
+// walls at that angle the orbit unfolds to a straight line, which crosses at most pi/(2 theta) of
+// their images; the discs open wider than their tangents, so with them it is no more. Flights much
+// shorter than the cell are flights between two neighbours near their tip. A longer row of them is
+// no orbit: it repeats its state, or rounding has carried it out of the cell.
+#ifndef BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
+#define BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston::stability {
+
+// 5 at the paper's radius, 800 at rho - 1/2 = 1e-6, 800,000 at 1e-12; rounding may add a few.
+inline uint64_t LongestTipSequence(const PairGeometry& geometry) {
+  return static_cast<uint64_t>(std::numbers::pi / (2 * std::atan(geometry.lambda()))) + 8;
+}
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_

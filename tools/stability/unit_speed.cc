@@ -1,0 +1,38 @@
+#include "tools/stability/unit_speed.h"
+
+#include <algorithm>
+
+#include "core/geometry/pair_geometry.h"
+#include "tools/stability/textbook_flow.h"
+#include "tools/stability/wall_starts.h"
+
+namespace ballpiston::stability {
+namespace {
+
+using UnitSpeedFlow = TextbookFlow<TextbookRule::kUnitSpeed>;
+
+uint64_t HitsBefore(const PairGeometry& geometry, const PairState& start) {
+  constexpr double kGone = 1e-3;  // inside a disc, in cells: no rounding any more
+  UnitSpeedFlow flow(geometry, start);
+  for (uint64_t hits = 0;; ++hits) {
+    if (flow.Step().kind == EventKind::kEscape) return hits;
+    if (!InsideCell(geometry, flow.state().position, kGone)) return hits;
+  }
+}
+
+}  // namespace
+
+std::vector<uint64_t> HitsBeforeEscape(uint64_t orbits) {
+  constexpr double kPaperRho = 0.529561127988977;
+  constexpr uint64_t kSeed = 24;
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  std::vector<uint64_t> hits;
+  for (uint64_t i = 0; i < orbits; ++i) {
+    CounterRandom random(kSeed, 0, i);
+    hits.push_back(HitsBefore(geometry, AnywhereOnWall(geometry, random)));
+  }
+  std::sort(hits.begin(), hits.end());
+  return hits;
+}
+
+}  // namespace ballpiston::stability
