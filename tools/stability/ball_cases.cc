@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/paper.h"
 #include "tools/stability/drawn_starts.h"
 #include "tools/stability/tip_sequence.h"
 #include "tools/stability/wall_starts.h"
@@ -10,9 +11,8 @@
 namespace ballpiston::stability {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-constexpr uint64_t kSeed = 20;
-constexpr uint64_t kBatch = 4096;
+constexpr uint64_t kBallSeed = 20;
+constexpr uint64_t kBallBatch = 4096;
 
 }  // namespace
 
@@ -58,11 +58,11 @@ Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double eff
     // The ball is alone: any delta will do.
     const PairGeometry geometry = *PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho));
     const uint64_t hits = ball_case.hits > 0 ? ball_case.hits : LongestTipSequence(geometry) + 4;
-    for (uint64_t first = 0; first < starts; first += kBatch) {
-      failures.Merge(method.fly(
-          geometry,
-          DrawnStarts(*ball_case.start, geometry, kSeed, first, std::min(kBatch, starts - first)),
-          hits));
+    for (uint64_t first = 0; first < starts; first += kBallBatch) {
+      failures.Merge(method.fly(geometry,
+                                DrawnStarts(*ball_case.start, geometry, kBallSeed, first,
+                                            std::min(kBallBatch, starts - first)),
+                                hits));
     }
   }
   return failures;

@@ -7,12 +7,11 @@
 #include "core/closed_form/pair_measures.h"
 #include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 #include "core/geometry/quad_precision.h"
 
 namespace ballpiston::stability {
 namespace {
-
-constexpr double kPaperRho = 0.529561127988977;
 
 // One geometry: naively, by the library, and with 113 bits, of which cancellation leaves enough.
 struct ThreeWays {

@@ -7,6 +7,7 @@
 #include "core/billiard/orbits.h"
 #include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
@@ -17,13 +18,13 @@
 namespace ballpiston::stability {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977, kDelta = 0.1;
-constexpr uint64_t kSeed = 23;
+constexpr double kEnergyDelta = 0.1;
+constexpr uint64_t kEnergySeed = 23;
 
-PairGeometry Geometry() { return *PairGeometry::Create(kPaperRho, kDelta); }
+PairGeometry Geometry() { return *PairGeometry::Create(kPaperRho, kEnergyDelta); }
 
 PairState Start(uint64_t orbit) {
-  CounterRandom random(kSeed, 0, orbit);
+  CounterRandom random(kEnergySeed, 0, orbit);
   return DrawFromCollisionMeasure(Geometry(), random);
 }
 
@@ -38,7 +39,7 @@ EnergyRecord BallsInLanes(FlyLanes fly, uint64_t hits) {
   const PairGeometry geometry = Geometry();
   std::vector<LaneFrame> balls;
   for (uint64_t i = 0; i < 4; ++i) {
-    CounterRandom random(kSeed, 1, i);
+    CounterRandom random(kEnergySeed, 1, i);
     const PairState start = AnywhereOnWall(geometry, random);
     balls.push_back(FrameOfBallOnWall(start.position, start.direction));
   }

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/paper.h"
 #include "tools/stability/drawn_starts.h"
 #include "tools/stability/pair_starts.h"
 
 namespace ballpiston::stability {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-constexpr uint64_t kSeed = 21;
-constexpr uint64_t kBatch = 4096;
+constexpr uint64_t kPairSeed = 21;
+constexpr uint64_t kPairBatch = 4096;
 
 std::vector<PairGeometry> AtShares(const std::vector<double>& rhos,
                                    const std::vector<double>& shares) {
@@ -66,11 +66,11 @@ Failures RunCase(const PairCase& pair_case, const PairMethod& method, double eff
       std::ceil(static_cast<double>(pair_case.starts) * effort * method.share));
   for (const PairGeometry& geometry : pair_case.geometries) {
     if (geometry.delta() < method.smallest_delta) continue;
-    for (uint64_t first = 0; first < starts; first += kBatch) {
-      failures.Merge(method.run(
-          geometry,
-          DrawnStarts(*pair_case.start, geometry, kSeed, first, std::min(kBatch, starts - first)),
-          pair_case.collisions));
+    for (uint64_t first = 0; first < starts; first += kPairBatch) {
+      failures.Merge(method.run(geometry,
+                                DrawnStarts(*pair_case.start, geometry, kPairSeed, first,
+                                            std::min(kPairBatch, starts - first)),
+                                pair_case.collisions));
     }
   }
   return failures;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/billiard/orbits.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/stability/ball_methods.h"
 #include "tools/stability/wall_starts.h"
@@ -11,8 +12,8 @@
 namespace ballpiston::stability {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977, kDelta = 0.1;
-constexpr uint64_t kSeed = 22;
+constexpr double kReversalDelta = 0.1;
+constexpr uint64_t kReversalSeed = 22;
 constexpr size_t kEnough = 50;  // orbits, for a median to be shown
 
 double Median(std::vector<double> values) {
@@ -45,10 +46,10 @@ class FirstCollisions : public OrbitSource {
 };
 
 Reversal ReversalOf(Engine engine, const std::string& name, uint64_t orbits) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kDelta);
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kReversalDelta);
   std::vector<PairState> starts, turned;
   for (uint64_t i = 0; i < orbits; ++i) {
-    CounterRandom random(kSeed, 1, i);
+    CounterRandom random(kReversalSeed, 1, i);
     starts.push_back(DrawFromCollisionMeasure(geometry, random));
   }
   FirstCollisions there(starts);
@@ -75,10 +76,10 @@ Reversal ReversalOf(Engine engine, const std::string& name, uint64_t orbits) {
 }  // namespace
 
 std::vector<Reversal> BallReversals(uint64_t orbits) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kDelta);
+  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, kReversalDelta);
   std::vector<PairState> starts;
   for (uint64_t i = 0; i < orbits; ++i) {
-    CounterRandom random(kSeed, 0, i);
+    CounterRandom random(kReversalSeed, 0, i);
     starts.push_back(AnywhereOnWall(geometry, random));
   }
   std::vector<Reversal> reversals;

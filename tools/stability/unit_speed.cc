@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 #include "tools/stability/textbook_flow.h"
 #include "tools/stability/wall_starts.h"
 
@@ -23,12 +24,11 @@ uint64_t HitsBefore(const PairGeometry& geometry, const PairState& start) {
 }  // namespace
 
 std::vector<uint64_t> HitsBeforeEscape(uint64_t orbits) {
-  constexpr double kPaperRho = 0.529561127988977;
-  constexpr uint64_t kSeed = 24;
+  constexpr uint64_t kUnitSpeedSeed = 24;
   const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
   std::vector<uint64_t> hits;
   for (uint64_t i = 0; i < orbits; ++i) {
-    CounterRandom random(kSeed, 0, i);
+    CounterRandom random(kUnitSpeedSeed, 0, i);
     hits.push_back(HitsBefore(geometry, AnywhereOnWall(geometry, random)));
   }
   std::sort(hits.begin(), hits.end());
