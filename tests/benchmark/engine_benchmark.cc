@@ -26,11 +26,11 @@
 #include "core/method_comparison/lane_balls.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/sampling/direction.h"
+#include "tests/support/paper.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
 constexpr double kFastestPeer = 8.7e6;  // wall hits a second and core
 
 void Use(int64_t target) {

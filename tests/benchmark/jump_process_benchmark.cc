@@ -17,11 +17,11 @@
 #include "core/method_comparison/processor_time.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/support/paper.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
 constexpr double kDelta = 0.0125;
 
 // The best of the pieces measured so far; 0 before.

@@ -9,11 +9,10 @@
 
 #include "core/billiard/reference_flow.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/support/paper.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr double kPaperRho = 0.529561127988977;
 
 // Of processor time: what other programs take meanwhile does not count.
 double ProcessSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -5,11 +5,12 @@
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/invariant_measure.h"
 #include "core/sampling/outgoing_law.h"
+#include "tests/support/paper.h"
 
 namespace ballpiston {
 namespace {
 
-PairGeometry Paper() { return PairGeometry::Create(0.529561127988977, 0.05).value(); }
+PairGeometry Paper() { return PairGeometry::Create(kPaperRho, 0.05).value(); }
 
 void UniformNumber(benchmark::State& state) {
   CounterRandom random(1, 2, 3);

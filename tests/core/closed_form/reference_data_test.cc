@@ -11,8 +11,8 @@
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
-#include "tests/core/closed_form/reference_table.h"
 #include "tests/oracle/printed_formulas.h"
+#include "tests/oracle/reference_table.h"
 
 namespace ballpiston {
 namespace {
