@@ -50,7 +50,7 @@ asan: test-asan ## Run the fast tests under the address and undefined-behaviour 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_SECONDS a target
+fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS or FUZZ_SECONDS a target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.tests
 	@cmake --build --preset fuzz

@@ -3,13 +3,15 @@
 #
 #   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
 #
-# FUZZ_RUNS (100000) is the number of executions of each; FUZZ_SEED (1) makes them repeatable. Inputs
-# that broke something stay in build/fuzz/found, the others that it went on from in
-# build/fuzz/corpus. Exits with 1 if any target failed.
+# FUZZ_RUNS (100000) is the number of executions of each; with FUZZ_SECONDS each runs for that time
+# instead. FUZZ_SEED (1) makes them repeatable. Inputs that broke something stay in build/fuzz/found,
+# the others that it went on from in build/fuzz/corpus. Exits with 1 if any target failed.
 set -euo pipefail
 folder=$1
 shift
-readonly RUNS=${FUZZ_RUNS:-100000} SEED=${FUZZ_SEED:-1}
+readonly SEED=${FUZZ_SEED:-1}
+limit=(-runs="${FUZZ_RUNS:-100000}")
+[[ -z ${FUZZ_SECONDS:-} ]] || limit=(-max_total_time="$FUZZ_SECONDS")
 readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
 # Longer ones only repeat what shorter ones show.
 declare -A max_len=([stored_block]=3000 [log_line]=64 [access_list]=320 [number_list]=80
@@ -31,7 +33,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$CORPUS/$target"
   "$program" --write_seeds="$SEEDS" "$CORPUS/$target"
   result=ok
-  "$program" -runs="$RUNS" -seed="$SEED" -max_len="${max_len[$target]:-$MAX_LEN}" -len_control=0 -entropic=0 -timeout=60 \
+  "$program" "${limit[@]}" -seed="$SEED" -max_len="${max_len[$target]:-$MAX_LEN}" -len_control=0 -entropic=0 -timeout=60 \
     -rss_limit_mb=2048 -reload=0 -print_final_stats=1 -verbosity=1 \
     -artifact_prefix="$FOUND/$target-" "$CORPUS/$target" >"$log" 2>&1 || result=FAILED failed=1
   awk -v target="$target" -v result="$result" '

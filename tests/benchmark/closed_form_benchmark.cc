@@ -5,6 +5,7 @@
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 
 namespace ballpiston {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 void MeanFreeTimesOfAGeometry(benchmark::State& state) {
   double delta = 0.1;
   for (auto _ : state) {
-    const PairGeometry geometry = PairGeometry::Create(0.529561127988977, delta).value();
+    const PairGeometry geometry = PairGeometry::Create(kPaperRho, delta).value();
     benchmark::DoNotOptimize(MeanFreeTimesOf(geometry));
     delta = delta > 0.3 ? 0.1 : delta + 1e-9;
   }

@@ -24,13 +24,13 @@
 #include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
 #include "core/experiment/point_experiment.h"
+#include "core/geometry/paper.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/sampling/direction.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
 constexpr double kFastestPeer = 8.7e6;  // wall hits a second and core
 
 void Use(int64_t target) {

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "core/billiard/orbits.h"
+#include "core/geometry/paper.h"
 #include "core/markov/jump_process.h"
 #include "core/method_comparison/processor_time.h"
 #include "core/sampling/counter_random.h"
@@ -21,7 +22,6 @@
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
 constexpr double kDelta = 0.0125;
 
 // The best of the pieces measured so far; 0 before.

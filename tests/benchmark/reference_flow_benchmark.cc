@@ -8,12 +8,11 @@
 #include <ctime>
 
 #include "core/billiard/reference_flow.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr double kPaperRho = 0.529561127988977;
 
 // Of processor time: what other programs take meanwhile does not count.
 double ProcessSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/invariant_measure.h"
 #include "core/sampling/outgoing_law.h"
@@ -9,7 +10,7 @@
 namespace ballpiston {
 namespace {
 
-PairGeometry Paper() { return PairGeometry::Create(0.529561127988977, 0.05).value(); }
+PairGeometry Paper() { return PairGeometry::Create(kPaperRho, 0.05).value(); }
 
 void UniformNumber(benchmark::State& state) {
   CounterRandom random(1, 2, 3);

@@ -1,8 +1,6 @@
 #include "tests/client/fake_server.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 
 #include "client/library/channel.h"
 #include "google/rpc/error_details.pb.h"
@@ -118,15 +116,9 @@ grpc::Status FakeMethodService::CompareMethods(grpc::ServerContext* context,
   return end;
 }
 
-FakeServer::FakeServer() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "client_test_XXXXXX").string();
-  folder_ = mkdtemp(pattern.data());
-}
-
 FakeServer::~FakeServer() {
   ensemble.Release();
   if (server_) server_->Shutdown();
-  std::filesystem::remove_all(folder_);
 }
 
 void FakeServer::Start() {
@@ -143,7 +135,7 @@ std::shared_ptr<grpc::Channel> FakeServer::Channel() const { return *OpenChannel
 
 namespace {
 
-google::rpc::Status WithReason(const std::string& reason) {
+google::rpc::Status DetailsWithReason(const std::string& reason) {
   google::rpc::ErrorInfo info;
   info.set_reason(reason);
   info.set_domain("ballpiston");
@@ -159,24 +151,20 @@ grpc::Status InvalidSpec(const std::string& field, const std::string& descriptio
   auto* violation = request.add_field_violations();
   violation->set_field(field);
   violation->set_description(description);
-  google::rpc::Status details = WithReason("INVALID_SPEC");
+  google::rpc::Status details = DetailsWithReason("INVALID_SPEC");
   details.add_details()->PackFrom(request);
   return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "the specification is not valid",
                       details.SerializeAsString());
 }
 
 grpc::Status LimitExceeded(const std::string& reason, const std::string& message) {
-  google::rpc::ErrorInfo info;
-  info.set_reason(reason);
-  google::rpc::Status status;
-  status.add_details()->PackFrom(info);
-  return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, message, status.SerializeAsString());
+  return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, message,
+                      DetailsWithReason(reason).SerializeAsString());
 }
 
 grpc::Status JobNotFound(const std::string& name) {
-  const google::rpc::Status details = WithReason("JOB_NOT_FOUND");
   return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
-                      details.SerializeAsString());
+                      DetailsWithReason("JOB_NOT_FOUND").SerializeAsString());
 }
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token) {
@@ -195,7 +183,7 @@ v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& 
 
 v1::EnsembleJob JobIn(v1::EnsembleJob::State state) {
   v1::EnsembleJob job;
-  job.set_name("ensembleJobs/abc");
+  job.set_name(kJobName);
   job.set_state(state);
   return job;
 }

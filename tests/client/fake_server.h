@@ -1,4 +1,4 @@
-// A server whose answers a test has written down beforehand, on a Unix socket of its own.
+// A server on a Unix socket that sends the answers that a test has prepared.
 #ifndef BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
 #define BALLPISTON_TESTS_CLIENT_FAKE_SERVER_H_
 
@@ -14,10 +14,11 @@
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/method.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 
-// One attachment of a watch: messages, then the end; with `hangs` the end comes with the server's.
+// What one watch is sent: messages, then the end; with `hangs` the end comes when the server stops.
 struct WatchScript {
   std::vector<v1::WatchEnsembleJobResponse> messages;
   grpc::Status end;
@@ -26,19 +27,19 @@ struct WatchScript {
 
 class FakeEnsembleService final : public v1::EnsembleService::Service {
  public:
-  // What to play. Set before the server is used.
-  std::vector<WatchScript> watches;  // the last one is played again and again
+  // The answers. Set before the server is used.
+  std::vector<WatchScript> watches;  // further watches are sent the last one
   std::vector<v1::EnsembleJob> jobs;
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
   int unavailable_attempts = 0;  // so many attempts to create or cancel a job fail first
   grpc::Status create_end;
-  bool answers_from_store = false;  // says Create of what it answers
-  int page_size = 2;                // whatever was asked for
+  bool answers_from_store = false;  // the field of that name in what Create answers
+  int page_size = 2;                // whatever size the client asks for
   int unavailable_later_pages = 0;  // so many attempts to list results after the first page fail
 
-  // What was asked so far.
+  // The requests so far.
   struct Requests {
     std::vector<v1::WatchEnsembleJobRequest> watch;
     std::vector<v1::CreateEnsembleJobRequest> create;
@@ -88,7 +89,7 @@ class FakeAnalyticService final : public v1::AnalyticService::Service {
 
 class FakeMethodService final : public v1::MethodService::Service {
  public:
-  // What to play; with `hangs` again and again until the client leaves.
+  // The answers; with `hangs` sent again and again until the client ends the call.
   std::vector<v1::MethodMeasurement> measurements;
   grpc::Status end;
   bool hangs = false;
@@ -111,7 +112,7 @@ class FakeServerService final : public v1::ServerService::Service {
 
 class FakeServer {
  public:
-  FakeServer();
+  FakeServer() = default;
   ~FakeServer();
   FakeServer(const FakeServer&) = delete;
   FakeServer& operator=(const FakeServer&) = delete;
@@ -121,12 +122,13 @@ class FakeServer {
   FakeMethodService method;
   FakeServerService server;
 
-  std::string Address() const { return "unix:" + folder_ + "/socket"; }
+  std::string Address() const { return "unix:" + SocketPath(); }
+  std::string SocketPath() const { return folder_.File("socket"); }
   std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it
-  void Start();                                    // listens; not before the scripts are set
+  void Start();                                    // listens; the answers are set before
 
  private:
-  std::string folder_;
+  const TemporaryFolder folder_;
   std::unique_ptr<grpc::Server> server_;
 };
 
@@ -138,6 +140,8 @@ grpc::Status LimitExceeded(const std::string& reason, const std::string& message
 
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);
+
+inline constexpr char kJobName[] = "ensembleJobs/abc";  // of JobIn
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
 v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);

@@ -1,4 +1,4 @@
-// Two servers that want the same thing: the second one says so and ends.
+// Two servers that want the same folder or address: the second one says so and ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,59 +6,47 @@
 #include <string>
 
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
 
 using ::testing::HasSubstr;
 
-ProcessResult SecondServer(const TemporaryFolder& home, const std::vector<std::string>& flags) {
-  return RunProgram(ServerCommand(home, flags));
-}
-
 TEST(TwoServers, DoNotShareADataFolder) {
   const TestServer first;
   const TemporaryFolder home;
-  const ProcessResult second = SecondServer(
-      home, {"--listen", "unix:" + home.File("socket"), "--data_dir", first.DataDir()});
-  EXPECT_EQ(second.exit_code, 2);
-  EXPECT_THAT(second.err, HasSubstr(first.DataDir()));
-  EXPECT_EQ(first.Client({"list"}).exit_code, 0);  // unharmed
+  const ProcessResult second =
+      RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data_dir", first.data_dir()});
+  EXPECT_THAT(second, ExitsWith(2));
+  EXPECT_THAT(second.err, HasSubstr(first.data_dir()));
+  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));  // unharmed
 }
 
 TEST(TwoServers, DoNotShareASocket) {
   const TestServer first;
   const TemporaryFolder home;
   const ProcessResult second =
-      SecondServer(home, {"--listen", first.Address(), "--data_dir", home.File("data")});
-  EXPECT_EQ(second.exit_code, 2);
-  EXPECT_EQ(first.Client({"list"}).exit_code, 0);
+      RunServer(home, {"--listen", first.address(), "--data_dir", home.File("data")});
+  EXPECT_THAT(second, ExitsWith(2));
+  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));
 }
 
 TEST(TwoServers, DoNotShareAPort) {
+  const TestServer first({.listen = "127.0.0.1:0"});
   const TemporaryFolder home;
-  Process first(ServerCommand(home, {"--listen", "127.0.0.1:0", "--data_dir", home.File("first")}));
-  const std::string line = first.WaitForErrLine(
-      [](const std::string& text) { return text.find("listening on") != std::string::npos; });
-  const std::string address = line.substr(line.find("127.0.0.1:"));
   const ProcessResult second =
-      SecondServer(home, {"--listen", address, "--data_dir", home.File("second")});
-  EXPECT_EQ(second.exit_code, 2);
-  EXPECT_THAT(second.err, HasSubstr(address));
-  const ProcessResult list =
-      RunProgram({.command = {ClientProgram(), "list", "--server", address},
-                  .environment = CleanEnvironment(home),
-                  .input = ""});
-  EXPECT_EQ(list.exit_code, 0) << list.err;
+      RunServer(home, {"--listen", first.address(), "--data_dir", home.File("data")});
+  EXPECT_THAT(second, ExitsWith(2));
+  EXPECT_THAT(second.err, HasSubstr(first.address()));
+  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));
 }
 
 TEST(Server, NeedsADataFolderItCanWriteTo) {
   const TemporaryFolder home;
   std::ofstream(home.File("file")) << "not a folder";
-  const ProcessResult result = SecondServer(
+  const ProcessResult result = RunServer(
       home, {"--listen", "unix:" + home.File("socket"), "--data_dir", home.File("file/data")});
-  EXPECT_EQ(result.exit_code, 6);
+  EXPECT_THAT(result, ExitsWith(6));
   EXPECT_THAT(result.err, HasSubstr("data folder " + home.File("file")));
   EXPECT_THAT(result.err, HasSubstr("is not writable"));
 }

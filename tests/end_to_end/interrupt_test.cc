@@ -19,8 +19,8 @@ constexpr char kHint[] = "Press Ctrl-C again within 5 s to cancel the job.";
 
 constexpr std::chrono::seconds kWindow(5);
 
-// Where the machine was so busy that an attempt did not come to its end in the window, which says
-// nothing, there is another.
+// On a busy machine an attempt may last longer than the window, which proves nothing: it is
+// repeated.
 constexpr int kAttempts = 20;
 
 class Stopwatch {
@@ -38,16 +38,14 @@ class InterruptTest : public ::testing::Test {
 
   // A run that takes years; when this returns the job has been accepted and is being watched.
   void StartRun() {
-    run_ = server_.StartClient({"run", "equilibrium", "--rho", "0.53", "--delta", "0.05",
-                                "--collisions", "1000000000000", "--model", "billiard", "--fresh",
-                                "--progress", "json", "--format", "csv"});
+    run_ = server_.StartClient(
+        Joined({{"run"}, kEndlessQuestion, Split("--fresh --progress json --format csv")}));
     job_ = At(ParseJson(run_->WaitForErrLine([](const std::string&) { return true; })), "job")
                .string_value();
   }
 
   std::string State() const {
-    const auto json = ParseJson(server_.Client({"list", "--format", "json"}).out);
-    return At(json, "jobs", 0, "state").string_value();
+    return At(server_.Json({"list"}), "jobs", 0, "state").string_value();
   }
 
   const TestServer server_;
@@ -55,13 +53,13 @@ class InterruptTest : public ::testing::Test {
   std::string job_;
 };
 
-TEST_F(InterruptTest, WithoutASecondPressTheClientLetsGoAndTheJobGoesOn) {
+TEST_F(InterruptTest, WithoutASecondPressTheClientEndsAndTheJobGoesOn) {
   run_->Signal(SIGINT);
   const ProcessResult result = run_->Wait();
-  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result, ExitsWith(130));
   EXPECT_THAT(result.err,
-              HasSubstr("ballpiston watch " + job_ + " --server " + server_.Address() + "\\n"));
-  // All of it can be read by a program.
+              HasSubstr("ballpiston watch " + job_ + " --server " + server_.address() + "\\n"));
+  // A program can read every line.
   for (const auto line : absl::StrSplit(result.err, '\n', absl::SkipEmpty())) {
     EXPECT_FALSE(ParseJson(std::string(line)).fields().empty()) << line;
   }
@@ -84,24 +82,24 @@ TEST_F(InterruptTest, ASecondPressCancels) {
   }
   ASSERT_TRUE(in_window) << "the machine was not quick enough in " << kAttempts << " attempts";
   const ProcessResult result = run_->Wait();
-  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result, ExitsWith(130));
   EXPECT_THAT(result.err, HasSubstr("cancelled " + job_));
-  EXPECT_EQ(server_.Client({"watch", job_}).exit_code, 4);
+  EXPECT_THAT(server_.Client({"watch", job_}), ExitsWith(4));
   EXPECT_EQ(State(), "CANCELLED");
 }
 
-// Ended by another client while this one waits for the second press.
-TEST_F(InterruptTest, AJobThatEndsMeanwhileIsShown) {
+// Another client cancels the job while this one waits for the second press.
+TEST_F(InterruptTest, AJobThatEndsBeforeTheSecondPressIsPrinted) {
   for (int i = 0; i < kAttempts; ++i) {
     if (i > 0) StartRun();
     const Stopwatch since_first;
     run_->Signal(SIGINT);
     ASSERT_TRUE(run_->WaitForErr(kHint));
-    EXPECT_EQ(server_.Client({"cancel", job_}).exit_code, 0);
+    EXPECT_THAT(server_.Client({"cancel", job_}), ExitsWith(0));
     const bool in_time = since_first.Within(kWindow / 2);  // the rest is for the client to see it
     const ProcessResult result = run_->Wait();
     if (!in_time) continue;
-    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result, ExitsWith(4));
     EXPECT_THAT(result.out, HasSubstr("rho,delta,"));
     return;
   }

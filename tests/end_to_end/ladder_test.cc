@@ -1,4 +1,5 @@
-// Questions that leave the model to the service: the cheapest one that answers does, and says why.
+// Questions that leave the choice of the model to the service: it takes the cheapest model that
+// answers, and says why.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
 
 namespace ballpiston {
@@ -17,20 +17,11 @@ namespace {
 using google::protobuf::Value;
 using ::testing::HasSubstr;
 
-std::vector<std::string> Words(const std::string& text) {
-  return absl::StrSplit(text, ' ', absl::SkipEmpty());
-}
-
 class LadderTest : public ::testing::Test {
  protected:
-  // The whole document of `ballpiston COMMAND --format json`.
-  google::protobuf::Struct Ask(const std::string& command, int exit_code = 0) const {
-    const ProcessResult result = server_.Client(Words(command + " --format json"));
-    EXPECT_EQ(result.exit_code, exit_code) << command << "\n" << result.err;
-    return ParseJson(result.out);
+  google::protobuf::Struct Ask(const std::string& command) const {
+    return server_.Json(Split(command));
   }
-
-  int Jobs() const { return At(Ask("list"), "jobs").list_value().values_size(); }
 
   const TestServer server_;
 };
@@ -64,7 +55,7 @@ struct Question {
   std::string model;  // that answers
 };
 
-TEST_F(LadderTest, APlanTellsTheModelAndRunsNothing) {
+TEST_F(LadderTest, APlanNamesTheModelAndMakesNoJob) {
   const std::vector<Question> questions = {
       {"equilibrium --delta 0.1", "CLOSED_FORM"},
       {"equilibrium --delta 0.1 --tolerance 1e-6", "CLOSED_FORM"},
@@ -79,10 +70,10 @@ TEST_F(LadderTest, APlanTellsTheModelAndRunsNothing) {
   for (const Question& question : questions) {
     const auto plan = Ask("plan " + question.words + kRadius);
     EXPECT_EQ(ModelOf(plan), question.model) << question.words;
-    EXPECT_EQ(At(plan, "points", 0, "models").list_value().values_size(), 5) << question.words;
+    EXPECT_EQ(Length(At(plan, "points", 0, "models")), 5) << question.words;
     EXPECT_GT(At(plan, "work").number_value(), 0) << question.words;
   }
-  EXPECT_EQ(Jobs(), 0);
+  EXPECT_EQ(Length(At(Ask("list"), "jobs")), 0);
 }
 
 TEST_F(LadderTest, AMeanFreeTimeIsAnsweredByItsClosedFormWithoutASample) {
@@ -95,7 +86,7 @@ TEST_F(LadderTest, AMeanFreeTimeIsAnsweredByItsClosedFormWithoutASample) {
   EXPECT_EQ(At(time, "model_error").number_value(), 0);
 }
 
-TEST_F(LadderTest, ToVerifyAClosedFormTheBilliardIsRunBesideIt) {
+TEST_F(LadderTest, VerifyRunsTheBilliardBesideTheClosedForm) {
   const auto answer =
       Ask(std::string("run equilibrium --delta 0.1 --collisions 5000 --verify") + kRadius);
   EXPECT_EQ(ModelOf(answer), "BILLIARD");
@@ -126,7 +117,7 @@ TEST_F(LadderTest, RelaxationByTheBilliardHasTheLimitBesideIt) {
   EXPECT_EQ(At(time, "model_error").number_value(), 0);
   const Value& curve = At(answer, "points", 0, "curves", 0);
   EXPECT_EQ(At(curve, "name").string_value(), "energy_autocorrelation");
-  const int points = At(curve, "points").list_value().values_size();
+  const int points = Length(At(curve, "points"));
   EXPECT_GT(points, 10);
   for (int i = 0; i < points; ++i) {
     for (const char* field : {"time", "value", "standard_error", "limit"}) {
@@ -163,8 +154,9 @@ TEST_F(LadderTest, ABudgetEndsARunAndItSucceeds) {
   EXPECT_GT(At(Estimate(answer, "mean_hit_time"), "standard_error").number_value(), 0);
 }
 
-// How many samples a budget took is in the result, and asks for the same numbers again.
-TEST_F(LadderTest, WhatABudgetGaveIsGivenAgainForItsSamples) {
+// The result tells how many samples the budget allowed; a job of so many samples repeats its
+// numbers.
+TEST_F(LadderTest, TheSamplesOfABudgetGiveTheSameNumbersAgain) {
   const std::string question =
       std::string("run first-hit --delta 0.2 --epsilon 0.1 --exponent 1 --seed 4") + kRadius;
   const auto answer = Ask(question + " --budget 0.05");
@@ -176,11 +168,11 @@ TEST_F(LadderTest, WhatABudgetGaveIsGivenAgainForItsSamples) {
   EXPECT_NEAR(At(first, "value").number_value() / At(second, "value").number_value(), 1, 1e-12);
 }
 
-TEST_F(LadderTest, AToleranceBeyondTheBudgetFailsAndShowsWhatWasReached) {
+TEST_F(LadderTest, AToleranceBeyondTheBudgetFailsAndPrintsTheAccuracyReached) {
   const ProcessResult result = server_.Client(
-      Words("run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.1 --exponent 1 --tolerance 1e-6 "
+      Split("run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.1 --exponent 1 --tolerance 1e-6 "
             "--budget 0.3 --format json"));
-  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result, ExitsWith(4));
   EXPECT_THAT(result.err, HasSubstr("point 0: tolerance 1e-06 was not reached within the budget "
                                     "of 0.3 s: reached "));
   const auto answer = ParseJson(result.out);
@@ -194,13 +186,13 @@ TEST_F(LadderTest, AToleranceBeyondTheBudgetFailsAndShowsWhatWasReached) {
 }
 
 // The limit's error is established by a pilot, some seconds of it, and then the spectrum answers.
-TEST_F(LadderTest, AToleranceThatAPilotAllowsIsAnsweredByTheSpectrum) {
+TEST_F(LadderTest, APilotLetsTheSpectrumAnswerATolerance) {
   const std::string question = "energy-relaxation --rho 0.5296 --delta 0.005 --tolerance 0.02";
   const auto plan = Ask("plan " + question);
   EXPECT_THAT(ReasonOf(plan), HasSubstr("expected of a pilot"));
-  const std::vector<std::string> words = Words("run " + question + " --fresh --format json");
+  const Words words = Split("run " + question + " --fresh --format json");
   const ProcessResult first = server_.Client(words);
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  ASSERT_THAT(first, ExitsWith(0));
   const auto answer = ParseJson(first.out);
   EXPECT_EQ(ModelOf(answer), "SPECTRUM");
   EXPECT_THAT(ReasonOf(answer), HasSubstr("two sigma of a pilot at delta = "));
@@ -209,13 +201,13 @@ TEST_F(LadderTest, AToleranceThatAPilotAllowsIsAnsweredByTheSpectrum) {
   const double error = At(time, "model_error").number_value();
   EXPECT_GT(error, 0);
   EXPECT_LT(error, 0.02 * At(time, "value").number_value());
-  // Known now: no more than was asked for is computed again.
+  // The pilot is stored: no other one runs.
   EXPECT_THAT(ReasonOf(Ask("plan " + question)), HasSubstr("two sigma of a pilot at delta = "));
   const ProcessResult again = server_.Client(words);
   EXPECT_EQ(PointsOf(again.out), PointsOf(first.out));
   EXPECT_LT(At(ParseJson(again.out), "job", "work").number_value(),
             0.1 * At(answer, "job", "work").number_value());
-  // Whoever ran the pilot.
+  // Another server that runs the pilot itself gives the same bytes.
   const TestServer other(1);
   EXPECT_EQ(PointsOf(other.Client(words).out), PointsOf(first.out));
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "absl/strings/match.h"
-#include "tests/support/process.h"
+#include "tests/end_to_end/programs.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston {
@@ -16,10 +16,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string Output(std::vector<std::string> command) {
-  const ProcessResult result =
-      RunProgram({.command = std::move(command), .environment = {}, .input = ""});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+std::string Output(Words command) {
+  const ProcessResult result = RunProgram({.command = std::move(command)});
+  EXPECT_THAT(result, ExitsWith(0));
   return result.out;
 }
 
@@ -27,7 +26,7 @@ bool IsOfClientOrProto(const std::string& name) {
   return absl::StartsWith(name, "client::") || absl::StartsWith(name, "v1::");
 }
 
-// Symbols that mention a name of the project's that is neither the client's nor the protos'.
+// Symbols that contain a name of the project outside of the client and the protos.
 std::vector<std::string> ForeignSymbols(const std::string& binary) {
   const std::string prefix = "ballpiston::";
   std::istringstream symbols(Output({"nm", "--demangle", "--defined-only", binary}));

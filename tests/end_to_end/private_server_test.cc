@@ -1,4 +1,4 @@
-// The server that nobody has to start.
+// The server that the client starts by itself.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kRun = {"run", "equilibrium",  "--rho", "0.53",     "--delta",
-                                       "0.2", "--collisions", "1000",  "--format", "json"};
+const Words kRun = Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 1000 --format json");
+const Words kList = Split("list --format json");
 
 // An empty home; the private servers that were started there end with the test.
 class PrivateServerTest : public ::testing::Test {
@@ -32,10 +32,8 @@ class PrivateServerTest : public ::testing::Test {
     for (const int pid : Servers()) kill(pid, SIGKILL);
   }
 
-  ProcessOptions Client(std::vector<std::string> words) const {
-    words.insert(words.begin(), ClientProgram());
-    return {.command = std::move(words), .environment = CleanEnvironment(home_), .input = ""};
-  }
+  ProcessOptions Command(const Words& words) const { return ClientCommand(home_, words); }
+  ProcessResult Client(const Words& words) const { return RunProgram(Command(words)); }
   std::string State(const std::string& name) const {
     return home_.File(".local/state/ballpiston/" + name);
   }
@@ -51,9 +49,7 @@ class PrivateServerTest : public ::testing::Test {
   std::vector<int> Servers() const {
     std::vector<int> pids;
     for (const auto& entry : fs::directory_iterator("/proc")) {
-      std::ifstream file(entry.path() / "cmdline");
-      const std::string line((std::istreambuf_iterator<char>(file)),
-                             std::istreambuf_iterator<char>());
+      const std::string line = Contents(entry.path() / "cmdline");
       const bool is_server = line.find("ballpistond") != std::string::npos;
       if (is_server && line.find(home_.path()) != std::string::npos) {
         pids.push_back(std::atoi(entry.path().filename().c_str()));
@@ -66,100 +62,98 @@ class PrivateServerTest : public ::testing::Test {
 };
 
 TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
-  const ProcessResult result = RunProgram(Client(kRun));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = Client(kRun);
+  ASSERT_THAT(result, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(result.out), "job", "state").string_value(), "SUCCEEDED");
   EXPECT_TRUE(fs::exists(State("server.log")));
   EXPECT_EQ(fs::status(State("")).permissions(), fs::perms::owner_all);
   EXPECT_EQ(Servers().size(), 1u);
 }
 
-// By these a client tells that a server is on its way, or on its way out.
-TEST_F(PrivateServerTest, AServerHoldsItsFoldersLockAndTellsItsAddress) {
-  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+// From these a client knows that a server is starting or stopping.
+TEST_F(PrivateServerTest, AServerLocksItsFolderAndWritesItsAddressThere) {
+  ASSERT_THAT(Client(kRun), ExitsWith(0));
   const int lock = open(State("lock").c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(lock, 0);
   EXPECT_NE(flock(lock, LOCK_SH | LOCK_NB), 0);
   EXPECT_EQ(errno, EWOULDBLOCK);
   close(lock);
-  std::string address;
-  std::getline(std::ifstream(State("server.address")), address);
-  EXPECT_EQ(address, "unix:" + State("server.socket"));
+  EXPECT_EQ(Contents(State("server.address")), "unix:" + State("server.socket") + "\n");
 }
 
 TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {
-  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+  ASSERT_THAT(Client(kRun), ExitsWith(0));
   const std::vector<int> before = Servers();
-  const ProcessResult list = RunProgram(Client({"list", "--format", "json"}));
-  EXPECT_EQ(At(ParseJson(list.out), "jobs").list_value().values_size(), 1);
+  const ProcessResult list = Client(kList);
+  EXPECT_EQ(Length(At(ParseJson(list.out), "jobs")), 1);
   EXPECT_EQ(Servers(), before);
 }
 
 TEST_F(PrivateServerTest, ManyClientsAtOnceEndUpOnOneServer) {
-  std::vector<std::string> words = kRun;
-  words.push_back("--fresh");  // each wants an answer of its own
+  const ProcessOptions run = Command(Joined({kRun, {"--fresh"}}));  // each makes a job
   std::vector<std::unique_ptr<Process>> clients;
-  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(Client(words)));
+  for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(run));
   for (const auto& client : clients) {
     const ProcessResult result = client->Wait();
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result, ExitsWith(0));
   }
-  const ProcessResult list = RunProgram(Client({"list", "--format", "json"}));
-  EXPECT_EQ(At(ParseJson(list.out), "jobs").list_value().values_size(), 6);
-  EXPECT_EQ(CountInLog("listening on"), 1);  // the others may still be on their way out
+  const ProcessResult list = Client(kList);
+  EXPECT_EQ(Length(At(ParseJson(list.out), "jobs")), 6);
+  EXPECT_EQ(CountInLog("listening on"), 1);  // other servers may still be ending
 }
 
 // A dead server leaves its socket behind.
 TEST_F(PrivateServerTest, AKilledServerIsReplacedAndItsJobsAreThere) {
-  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
+  ASSERT_THAT(Client(kRun), ExitsWith(0));
   for (const int pid : Servers()) kill(pid, SIGKILL);
   EXPECT_TRUE(fs::exists(State("server.socket")));
-  const ProcessResult list = RunProgram(Client({"list", "--format", "json"}));
-  ASSERT_EQ(list.exit_code, 0) << list.err;
+  const ProcessResult list = Client(kList);
+  ASSERT_THAT(list, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(list.out), "jobs", 0, "state").string_value(), "SUCCEEDED");
 }
 
-// The watch starts the server again; what it had finished counts.
-TEST_F(PrivateServerTest, AKilledServerIsRevivedByTheClientThatWatches) {
-  Process run(Client({"run", "equilibrium", "--rho", "0.53", "--delta", "0.2,0.1", "--collisions",
-                      "300000", "--verify", "--progress", "json", "--format", "json"}));
+// The watch starts the server again, which goes on with the job.
+TEST_F(PrivateServerTest, TheWatchingClientStartsAKilledServerAgain) {
+  Process run(
+      Command(Split("run equilibrium --rho 0.53 --delta 0.2,0.1 --collisions 300000 "
+                    "--verify --progress json --format json")));
   const std::string line = run.WaitForErrLine([](const std::string& text) {
     return At(ParseJson(text), "progress", "samples").number_value() > 0;
   });
   ASSERT_NE(line, "");
   for (const int pid : Servers()) kill(pid, SIGKILL);
   const ProcessResult result = run.Wait();
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(At(ParseJson(result.out), "points").list_value().values_size(), 2);
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(Length(At(ParseJson(result.out), "points")), 2);
 }
 
 TEST_F(PrivateServerTest, AServerThatCannotStartIsExplained) {
-  ProcessOptions options = Client({"list"});
+  ProcessOptions options = Command({"list"});
   options.environment["BALLPISTON_SERVER_PROGRAM"] = "/bin/false";
   const ProcessResult result = RunProgram(options);
-  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result, ExitsWith(3));
   EXPECT_THAT(result.err, HasSubstr("/bin/false ended at once with exit status 1"));
   EXPECT_THAT(result.err, HasSubstr(State("server.log")));
 }
 
-TEST_F(PrivateServerTest, ALongHomeIsNoObstacle) {
-  ProcessOptions options = Client(kRun);
+TEST_F(PrivateServerTest, ALongHomeWorksToo) {
+  ProcessOptions options = Command(kRun);
   options.environment["HOME"] = home_.File(std::string(120, 'x'));
   options.environment["TMPDIR"] = home_.path();
   const ProcessResult result = RunProgram(options);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result, ExitsWith(0));
 }
 
-TEST_F(PrivateServerTest, StatusLooksAtTheServerThatRunsAndStartsNone) {
-  const ProcessResult none = RunProgram(Client({"status"}));
-  EXPECT_EQ(none.exit_code, 3);
+TEST_F(PrivateServerTest, StatusAsksTheRunningServerAndStartsNone) {
+  const ProcessResult none = Client({"status"});
+  EXPECT_THAT(none, ExitsWith(3));
   EXPECT_THAT(none.err, HasSubstr("no private server is running"));
   EXPECT_TRUE(Servers().empty());
   EXPECT_FALSE(fs::exists(State("server.log")));
 
-  ASSERT_EQ(RunProgram(Client(kRun)).exit_code, 0);
-  const ProcessResult one = RunProgram(Client({"status", "--format", "json"}));
-  EXPECT_EQ(one.exit_code, 0) << one.err;
+  ASSERT_THAT(Client(kRun), ExitsWith(0));
+  const ProcessResult one = Client({"status", "--format", "json"});
+  EXPECT_THAT(one, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(one.out), "stored_jobs").number_value(), 1);
 }
 

@@ -1,67 +1,53 @@
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
-#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <utility>
+
+#include "absl/strings/str_split.h"
+#include "tests/support/paths.h"
 
 namespace ballpiston {
 
-std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home) {
-  return {{"HOME", home.path()}, {"XDG_STATE_HOME", ""},
-          {"BALLPISTON_SERVER", ""},      {"BALLPISTON_CA", ""},
-          {"BALLPISTON_CERT", ""},        {"BALLPISTON_KEY", ""},
-          {"BALLPISTON_TLS", ""},         {"BALLPISTON_TOKEN", ""},
-          {"BALLPISTON_TOKEN_FILE", ""},  {"BALLPISTON_SERVER_PROGRAM", ""}};
+Words Split(const std::string& text) { return absl::StrSplit(text, ' ', absl::SkipEmpty()); }
+
+Words Joined(std::initializer_list<Words> parts) {
+  Words all;
+  for (const Words& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
-ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {
-  flags.insert(flags.begin(), ServerProgram());
-  return {.command = std::move(flags), .environment = CleanEnvironment(home), .input = ""};
-}
-
-void TestServer::Start() {
-  process_ = std::make_unique<Process>(ServerCommand(
-      folder_,
-      {"--listen", Address(), "--data_dir", DataDir(), "--workers", std::to_string(workers_)}));
-  if (!process_->WaitForErr("listening on")) {
-    ADD_FAILURE() << "the server did not start: " << process_->Wait().err;
-  }
-}
-
-void TestServer::KillHard() {
-  process_->Signal(SIGKILL);
-  process_->Wait();
-}
-
-ProcessResult TestServer::Stop() {
-  process_->Signal(SIGTERM);
-  return process_->Wait();
-}
-
-ProcessOptions TestServer::ClientOptions(std::vector<std::string> words) const {
+ProcessOptions ClientCommand(const TemporaryFolder& home, Words words) {
   words.insert(words.begin(), ClientProgram());
-  words.insert(words.end(), {"--server", Address()});
-  return {.command = std::move(words), .environment = CleanEnvironment(folder_), .input = ""};
+  return {.command = std::move(words), .environment = CleanEnvironment(home)};
 }
 
-ProcessResult TestServer::Client(std::vector<std::string> words, const std::string& input) const {
-  ProcessOptions options = ClientOptions(std::move(words));
+ProcessOptions TestServer::Command(Words words) const {
+  return ClientCommand(folder(), Joined({words, {"--server", address()}}));
+}
+
+ProcessResult TestServer::Client(Words words, const std::string& input) const {
+  ProcessOptions options = Command(std::move(words));
   options.input = input;
   return RunProgram(options);
 }
 
-std::unique_ptr<Process> TestServer::StartClient(std::vector<std::string> words) const {
-  return std::make_unique<Process>(ClientOptions(std::move(words)));
+std::unique_ptr<Process> TestServer::StartClient(Words words) const {
+  return std::make_unique<Process>(Command(std::move(words)));
 }
 
-std::string TestServer::Submit(std::vector<std::string> words) const {
-  words.insert(words.begin(), "submit");
-  const ProcessResult result = Client(std::move(words));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+google::protobuf::Struct TestServer::Json(Words words) const {
+  const ProcessResult result = Client(Joined({words, {"--format", "json"}}));
+  EXPECT_THAT(result, ExitsWith(0)) << testing::PrintToString(words);
+  return ParseJson(result.out);
+}
+
+std::string TestServer::Submit(Words words) const {
+  const ProcessResult result = Client(Joined({{"submit"}, words}));
+  EXPECT_THAT(result, ExitsWith(0));
   EXPECT_FALSE(result.out.empty());
   return result.out.substr(0, result.out.find('\n'));
 }
@@ -73,10 +59,17 @@ google::protobuf::Struct ParseJson(const std::string& text) {
   return object;
 }
 
+int Length(const google::protobuf::Value& list) { return list.list_value().values_size(); }
+
 std::string PointsOf(const std::string& document) {
   const size_t begin = document.find("\"points\": [");
   EXPECT_NE(begin, std::string::npos) << document.substr(0, 500);
   return begin == std::string::npos ? "" : document.substr(begin);
+}
+
+std::string Contents(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace ballpiston

@@ -1,48 +1,54 @@
-// A server of a test's own, and clients that talk to it.
+// What the tests say to the programs, and how they read the answers.
 #ifndef BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
 #define BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
 
 #include <google/protobuf/struct.pb.h>
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "gmock/gmock.h"
 #include "tests/support/process.h"
+#include "tests/support/server_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston {
 
-// A home of its own, so that nothing of the user's is touched, and no server from outside.
-std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home);
+using Words = std::vector<std::string>;
 
-class TestServer {
+Words Split(const std::string& text);  // at blanks
+Words Joined(std::initializer_list<Words> parts);
+
+// A question that takes a moment, answered by sampling, and one that takes years.
+inline const Words kQuickQuestion = Split(
+    "first-hit --rho 0.53 --delta 0.2,0.1 --epsilon 0.1 --exponent 1 --samples 2000 --seed 7");
+inline const Words kEndlessQuestion =
+    Split("equilibrium --rho 0.53 --delta 0.05 --collisions 1000000000000 --model billiard");
+
+// Of a ProcessResult; shows standard error if it is another code.
+MATCHER_P(ExitsWith, code, "") {
+  *result_listener << "whose exit code is " << arg.exit_code << " and standard error\n" << arg.err;
+  return arg.exit_code == code;
+}
+
+// `ballpiston WORDS...`
+ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
+
+// A server that has started, and clients of it: `ballpiston WORDS... --server ADDRESS`.
+class TestServer : public ServerProcess {
  public:
-  explicit TestServer(int workers = 2) : workers_(workers) { Start(); }
+  explicit TestServer(int workers = 2) : TestServer(ServerSetUp{.workers = workers}) {}
+  explicit TestServer(ServerSetUp set_up) : ServerProcess(std::move(set_up)) { Start(); }
 
-  void Start();  // returns when it listens
-  void KillHard();
-  ProcessResult Stop();  // SIGTERM
-
-  std::string Address() const { return "unix:" + folder_.File("socket"); }
-  std::string DataDir() const { return folder_.File("data"); }
-  const TemporaryFolder& folder() const { return folder_; }
-
-  // `ballpiston WORDS... --server ADDRESS`
-  ProcessResult Client(std::vector<std::string> words, const std::string& input = "") const;
-  std::unique_ptr<Process> StartClient(std::vector<std::string> words) const;
-  // The name `submit` prints.
-  std::string Submit(std::vector<std::string> words) const;
-
- private:
-  ProcessOptions ClientOptions(std::vector<std::string> words) const;
-
-  TemporaryFolder folder_;
-  int workers_;
-  std::unique_ptr<Process> process_;
+  ProcessOptions Command(Words words) const;
+  ProcessResult Client(Words words, const std::string& input = "") const;
+  std::unique_ptr<Process> StartClient(Words words) const;
+  // What the client prints with `--format json`; a test failure unless it exits with 0.
+  google::protobuf::Struct Json(Words words) const;
+  std::string Submit(Words words) const;  // the name that `submit` prints
 };
-
-ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags);
 
 // Strict JSON; a test failure, and an empty object, if it is not.
 google::protobuf::Struct ParseJson(const std::string& text);
@@ -74,8 +80,13 @@ const google::protobuf::Value& At(const google::protobuf::Value& value, int inde
   return At(value.list_value().values(index), rest...);
 }
 
+int Length(const google::protobuf::Value& list);
+
 // The bytes of "points" in a document of `result --format json`.
 std::string PointsOf(const std::string& document);
+
+// Of a file.
+std::string Contents(const std::string& path);
 
 }  // namespace ballpiston
 

@@ -1,20 +1,18 @@
-// The programs with TLS and tokens, as an operator and a user see them.
+// The programs with TLS and tokens, as an operator and a user use them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "tests/credentials/test_authority.h"
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -22,12 +20,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-using Words = std::vector<std::string>;
-
-void Append(Words& words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-}
 
 class Security : public ::testing::Test {
  protected:
@@ -45,18 +37,12 @@ class Security : public ::testing::Test {
     Write("server.pem", made.certificate);
     Write("server.key", made.key);
   }
-  std::string Read(const std::string& name) const {
-    std::ifstream in(home_.File(name));
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  ProcessResult Server(const Words& flags) { return RunProgram(ServerCommand(home_, flags)); }
 
   // A new token, which is also in the file `token_NAME`.
   std::string NewToken(const std::string& name, const std::string& request) {
     const ProcessResult made =
-        Server({"--access_file", home_.File("access"), "--new_token", request});
-    EXPECT_EQ(made.exit_code, 0) << made.err;
+        RunServer(home_, {"--access_file", home_.File("access"), "--new_token", request});
+    EXPECT_THAT(made, ExitsWith(0));
     EXPECT_EQ(made.err, "");
     Write("token_" + name, made.out);
     return made.out.substr(0, made.out.find('\n'));
@@ -67,60 +53,42 @@ class Security : public ::testing::Test {
             home_.File("server.key"), "--access_file",          home_.File("access")};
   }
 
-  void Start(const Words& more) {
-    Words flags = {"--listen", "127.0.0.1:0", "--data_dir", home_.File("data")};
-    Append(flags, more);
-    server_ = std::make_unique<Process>(ServerCommand(home_, flags));
-    const std::string line = server_->WaitForErrLine(
-        [](const std::string& text) { return text.find("listening on") != std::string::npos; });
-    ASSERT_NE(line, "") << server_->Wait().err;
-    address_ = line.substr(line.rfind(' ') + 1);
+  void Start(const Words& flags) {
+    server_.emplace(ServerSetUp{.flags = flags, .listen = "127.0.0.1:0"});
   }
 
-  ProcessResult Client(const Words& words, std::map<std::string, std::string> environment = {}) {
-    ProcessOptions options{
-        .command = {ClientProgram()}, .environment = CleanEnvironment(home_), .input = ""};
+  ProcessResult Client(const Words& words,
+                       const std::map<std::string, std::string>& environment = {}) {
+    ProcessOptions options = server_->Command(words);
     for (const auto& [name, value] : environment) options.environment[name] = value;
-    Append(options.command, words);
-    Append(options.command, {"--server", address_});
     ProcessResult result = RunProgram(options);
-    said_ += result.out + result.err;
+    client_output_ += result.out + result.err;
     return result;
   }
   Words Known(const std::string& name) const {
     return {"--ca", home_.File("ca.pem"), "--token-file", home_.File("token_" + name)};
   }
-  ProcessResult List(const Words& flags, std::map<std::string, std::string> environment = {}) {
-    Words words = {"list"};
-    Append(words, flags);
-    return Client(words, std::move(environment));
+  ProcessResult List(const Words& flags,
+                     const std::map<std::string, std::string>& environment = {}) {
+    return Client(Joined({{"list"}, flags}), environment);
   }
 
   const TemporaryFolder home_;
   const TestAuthority authority_{"authority"};
-  std::unique_ptr<Process> server_;
-  std::string address_;
-  std::string said_;  // by every client
+  std::optional<TestServer> server_;
+  std::string client_output_;  // of all clients
 };
 
-const Words kJob = {"first-hit", "--rho",      "0.53", "--delta",   "0.3", "--epsilon",
-                    "0.1",       "--exponent", "1",    "--samples", "4096"};
-
-TEST_F(Security, ATokenRunsAJobThatAnotherTokenDoesNotFind) {
+TEST_F(Security, AJobIsHiddenFromOtherTokens) {
   NewToken("alice", "alice:submit");
   NewToken("bob", "bob:submit:7");
   NewToken("reader", "alice:read");
   Start(TlsFlags());
-  Words submit = {"submit"};
-  Append(submit, kJob);
-  Append(submit, Known("alice"));
-  const ProcessResult submitted = Client(submit);
-  ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
+  const ProcessResult submitted = Client(Joined({{"submit"}, kQuickQuestion, Known("alice")}));
+  ASSERT_THAT(submitted, ExitsWith(0));
   const std::string job = submitted.out.substr(0, submitted.out.find('\n'));
   const auto exit_code_of = [&](const std::string& verb, const std::string& name) {
-    Words words = {verb, job};
-    Append(words, Known(name));
-    return Client(words).exit_code;
+    return Client(Joined({{verb, job}, Known(name)})).exit_code;
   };
   EXPECT_EQ(exit_code_of("watch", "alice"), 0);
   EXPECT_EQ(exit_code_of("result", "reader"), 0);
@@ -131,22 +99,21 @@ TEST_F(Security, ATokenRunsAJobThatAnotherTokenDoesNotFind) {
   EXPECT_EQ(exit_code_of("delete", "alice"), 0);
 }
 
-TEST_F(Security, TheEnvironmentServesAsWellAsFlags) {
+TEST_F(Security, TheEnvironmentReplacesFlags) {
   const std::string token = NewToken("alice", "alice:read");
   Start(TlsFlags());
   const std::string ca = home_.File("ca.pem");
-  EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN_FILE", home_.File("token_alice")}})
-                .exit_code,
-            0);
-  EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN", token}}).exit_code, 0);
-  // A flag wins over its variable, and the file over the token itself.
-  EXPECT_EQ(
-      List(Known("alice"), {{"BALLPISTON_CA", "/none"}, {"BALLPISTON_TOKEN", "wrong"}}).exit_code,
-      0);
-  EXPECT_EQ(List({}, {{"BALLPISTON_CA", ca}}).exit_code, 6);
+  EXPECT_THAT(
+      List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN_FILE", home_.File("token_alice")}}),
+      ExitsWith(0));
+  EXPECT_THAT(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN", token}}), ExitsWith(0));
+  // A flag has precedence over its variable, and the token file over the token.
+  EXPECT_THAT(List(Known("alice"), {{"BALLPISTON_CA", "/none"}, {"BALLPISTON_TOKEN", "wrong"}}),
+              ExitsWith(0));
+  EXPECT_THAT(List({}, {{"BALLPISTON_CA", ca}}), ExitsWith(6));
 }
 
-TEST_F(Security, WhatFailsSaysWhatToTry) {
+TEST_F(Security, ErrorsSayWhatToTry) {
   NewToken("alice", "alice:read");
   Start(TlsFlags());
   const TestAuthority other("other");
@@ -154,7 +121,7 @@ TEST_F(Security, WhatFailsSaysWhatToTry) {
   Write("token_wrong", "no-such-token");
   const auto expect = [&](const Words& flags, int code, const std::string& text) {
     const ProcessResult result = List(flags);
-    EXPECT_EQ(result.exit_code, code) << result.err;
+    EXPECT_THAT(result, ExitsWith(code));
     EXPECT_THAT(result.err, HasSubstr(text));
   };
   expect({}, 3, "if that server wants TLS: --ca FILE");
@@ -167,100 +134,83 @@ TEST_F(Security, WhatFailsSaysWhatToTry) {
   chmod(home_.File("token_alice").c_str(), 0644);
   expect(Known("alice"), 6, "chmod 600");
   WriteCertificate(authority_.IssueForHost("elsewhere.example.org"));
-  server_.reset();
   Start(TlsFlags());
   expect({"--ca", home_.File("ca.pem")}, 3, "is for another host");
 }
 
-TEST_F(Security, TlsToAServerWithoutItSaysSo) {
+TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   Start({});
   const ProcessResult result = List({"--ca", home_.File("ca.pem")});
-  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result, ExitsWith(3));
   EXPECT_THAT(result.err, HasSubstr("does not speak TLS"));
-  EXPECT_EQ(List({}).exit_code, 0);
+  EXPECT_THAT(List({}), ExitsWith(0));
 }
 
-TEST_F(Security, AClientsCertificateIsAskedForAndTaken) {
+TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
   Write("access", "certificate Ada alice read\n");
   const KeyAndCertificate own = authority_.Issue("Ada");
-  Words flags = TlsFlags();
-  Append(flags, {"--tls_client_ca", home_.File("ca.pem")});
-  Start(flags);
+  Start(Joined({TlsFlags(), {"--tls_client_ca", home_.File("ca.pem")}}));
   const Words ca = {"--ca", home_.File("ca.pem")};
-  Words known = ca;
-  Append(known, {"--cert", Write("ada.pem", own.certificate), "--key", Write("ada.key", own.key)});
-  const ProcessResult listed = List(known);
-  EXPECT_EQ(listed.exit_code, 0) << listed.err;
+  const Words known = {"--cert", Write("ada.pem", own.certificate), "--key",
+                       Write("ada.key", own.key)};
+  EXPECT_THAT(List(Joined({ca, known})), ExitsWith(0));
   const ProcessResult without = List(ca);
-  EXPECT_EQ(without.exit_code, 3);
+  EXPECT_THAT(without, ExitsWith(3));
   EXPECT_THAT(without.err, HasSubstr("--cert FILE --key FILE"));
 }
 
-TEST_F(Security, HangupReadsTheFilesAgainAndKeepsTheOldOnesIfTheyAreWrong) {
+TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresWrongOnes) {
   NewToken("alice", "alice:read");
   Start(TlsFlags());
   NewToken("bob", "bob:read");
-  EXPECT_EQ(List(Known("bob")).exit_code, 6);
+  EXPECT_THAT(List(Known("bob")), ExitsWith(6));
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->WaitForErr("read again: "));
-  EXPECT_EQ(List(Known("bob")).exit_code, 0);
+  ASSERT_TRUE(server_->AwaitLog("read again: "));
+  EXPECT_THAT(List(Known("bob")), ExitsWith(0));
   Write("access", "nonsense\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->WaitForErr("not read again, the old stays: --access_file="));
-  EXPECT_EQ(List(Known("bob")).exit_code, 0);
-  server_->Signal(SIGTERM);
-  EXPECT_EQ(server_->Wait().exit_code, 0);
+  ASSERT_TRUE(server_->AwaitLog("not read again, the old stays: --access_file="));
+  EXPECT_THAT(List(Known("bob")), ExitsWith(0));
+  EXPECT_EQ(server_->Stop(), 0);
 }
 
-TEST_F(Security, UnsafeCombinationsEndWithTwoAndOneLine) {
+TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
   NewToken("alice", "alice:read");
-  const Words data = {"--data_dir", home_.File("data")};
-  const auto expect = [&](Words flags, const std::string& text) {
-    Append(flags, data);
-    const ProcessResult result = Server(flags);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
+  const auto expect = [&](const Words& flags, const std::string& text) {
+    const ProcessResult result =
+        RunServer(home_, Joined({flags, {"--data_dir", home_.File("data")}}));
+    EXPECT_THAT(result, ExitsWith(2));
     EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   expect({"--listen", "0.0.0.0:0"}, "missing: --tls_certificate and --tls_key and --access_file");
   expect({"--listen", "127.0.0.1:0", "--access_file", home_.File("access")}, "readable for others");
-  Words over_socket = TlsFlags();
-  Append(over_socket, {"--listen", "unix:" + home_.File("s")});
-  expect(over_socket, "over a Unix socket");
+  expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}), "over a Unix socket");
   expect({"--new_token", "alice:read"}, "--access_file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
-  Words open_key = TlsFlags();
-  Append(open_key, {"--listen", "127.0.0.1:0"});
-  expect(open_key, "is open to others");
+  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to others");
 }
 
-TEST_F(Security, NoTokenIsInTheLogTheStoreOrWhatAClientSays) {
+TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   const std::string tokens[] = {NewToken("alice", "alice:submit"), NewToken("gone", "bob:submit"),
                                 NewToken("reader", "carol:read")};
   Start(TlsFlags());
-  Words run = {"run"};
-  Append(run, kJob);
-  Append(run, Known("alice"));
-  EXPECT_EQ(Client(run).exit_code, 0);
-  Words refused = {"submit"};
-  Append(refused, kJob);
-  Append(refused, Known("reader"));
-  EXPECT_EQ(Client(refused).exit_code, 6);
-  // One that the server no longer knows, and one in a file that it cannot read.
-  std::string access = Read("access");
+  EXPECT_THAT(Client(Joined({{"run"}, kQuickQuestion, Known("alice")})), ExitsWith(0));
+  EXPECT_THAT(Client(Joined({{"submit"}, kQuickQuestion, Known("reader")})), ExitsWith(6));
+  // A token that the server no longer knows, and one in a file that it cannot read.
+  const std::string access = Contents(home_.File("access"));
   Write("access", access.substr(0, access.find('\n') + 1));
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->WaitForErr("read again: "));
-  EXPECT_EQ(List(Known("gone")).exit_code, 6);
+  ASSERT_TRUE(server_->AwaitLog("read again: "));
+  EXPECT_THAT(List(Known("gone")), ExitsWith(6));
   Write("access", "token " + tokens[1] + " bob submit\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->WaitForErr("not read again"));
-  EXPECT_EQ(List({"--token-file", home_.File("token_gone")}).exit_code, 2);
-  server_->Signal(SIGTERM);
-  const ProcessResult ended = server_->Wait();
-  std::string all = said_ + ended.out + ended.err + access;
-  for (const auto& entry : std::filesystem::directory_iterator(home_.File("data"))) {
-    if (entry.is_regular_file()) all += Read("data/" + entry.path().filename().string());
+  ASSERT_TRUE(server_->AwaitLog("not read again"));
+  EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(2));
+  server_->Stop();
+  std::string all = client_output_ + server_->log() + access;
+  for (const auto& entry : std::filesystem::directory_iterator(server_->data_dir())) {
+    if (entry.is_regular_file()) all += Contents(entry.path());
   }
   EXPECT_GT(all.size(), 1000u);
   for (const std::string& token : tokens) {

@@ -1,15 +1,14 @@
-// What a server tells of itself.
+// The status of a server, and its log.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <string>
 
+#include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
@@ -18,58 +17,47 @@ using ::testing::HasSubstr;
 
 constexpr char kIdle[] = "workers   0 of 2 busy\n";
 
-// A worker that has handed in its last block, so that the job has ended, is busy for a moment more.
+// A worker whose last block ended the job is busy for a moment more.
 ProcessResult StatusOfIdle(const TestServer& server) {
   ProcessResult table;
-  for (int attempt = 0; attempt < 100; ++attempt) {
+  do {
     table = server.Client({"status"});
-    if (table.exit_code != 0 || table.out.find(kIdle) != std::string::npos) break;
-  }
+  } while (table.exit_code == 0 && table.out.find(kIdle) == std::string::npos);
   return table;
 }
 
-TEST(Status, TellsWhatWasAskedAndComputed) {
+TEST(Status, CountsJobsAndSamples) {
   const TestServer server(2);
-  ASSERT_EQ(server
-                .Client({"run", "equilibrium", "--rho", "0.53", "--delta", "0.2", "--collisions",
-                         "5000", "--verify", "--format", "json"})
-                .exit_code,
-            0);
+  server.Json(Split("run equilibrium --rho 0.53 --delta 0.2 --collisions 5000 --verify"));
   const ProcessResult table = StatusOfIdle(server);
-  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table, ExitsWith(0));
   EXPECT_THAT(table.out, HasSubstr("state     serving\n"));
   EXPECT_THAT(table.out, HasSubstr(kIdle));
   EXPECT_THAT(table.out, HasSubstr("0 queued, 0 running, 1 in the store\n"));
   EXPECT_THAT(table.out, HasSubstr("wall hits/s"));
   EXPECT_EQ(table.err, "");
 
-  const auto json = ParseJson(server.Client({"status", "--format", "json"}).out);
+  const auto json = server.Json({"status"});
   EXPECT_EQ(At(json, "state").string_value(), "SERVING");
   EXPECT_GE(At(json, "samples_computed").number_value(), 5000);
   EXPECT_GT(At(json, "rates", "wall_hit").number_value(), 0);
   EXPECT_EQ(At(json, "principal").string_value(), "local");
 }
 
-TEST(Status, LogLinesAreJsonWhereThatIsWanted) {
-  const TemporaryFolder home;
-  Process server(ServerCommand(
-      home, {"--listen", "unix:" + home.File("socket"), "--data_dir", home.File("data"),
-             "--log_format", "json", "--metrics_listen", "127.0.0.1:0"}));
-  ASSERT_TRUE(server.WaitForErr("listening on"));
-  server.Signal(SIGTERM);
-  const ProcessResult result = server.Wait();
-  EXPECT_EQ(result.exit_code, 0);
-  size_t begin = 0;
-  for (size_t end; (end = result.err.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const auto line = ParseJson(result.err.substr(begin, end - begin));
+TEST(Status, LogLinesAreJsonOnRequest) {
+  TestServer server({.flags = {"--log_format", "json", "--metrics_listen", "127.0.0.1:0"}});
+  EXPECT_EQ(server.Stop(), 0);
+  const std::string log = server.log();
+  EXPECT_TRUE(log.ends_with("\n"));
+  for (const auto text : absl::StrSplit(log, '\n', absl::SkipEmpty())) {
+    const auto line = ParseJson(std::string(text));
     EXPECT_EQ(At(line, "severity").string_value(), "INFO");
     EXPECT_NE(At(line, "message").string_value(), "");
   }
-  EXPECT_EQ(begin, result.err.size());
-  EXPECT_THAT(result.err, HasSubstr("metrics at http://127.0.0.1:"));
+  EXPECT_THAT(log, HasSubstr("metrics at http://127.0.0.1:"));
 }
 
-// As if whoever reads the log had stopped to.
+// A pipe that nobody reads any more.
 class FullPipe {
  public:
   explicit FullPipe(const std::string& path) {
@@ -84,35 +72,27 @@ class FullPipe {
   int descriptor_ = -1;
 };
 
-TEST(Status, ALogThatNobodyReadsStopsNothing) {
+TEST(Status, AServerWhoseLogNobodyReadsGoesOn) {
   const TemporaryFolder home;
   const FullPipe log(home.File("log"));
-  const std::string address = "unix:" + home.File("socket");
-  ProcessOptions command = ServerCommand(
-      home, {"--listen", address, "--data_dir", home.File("data"), "--drain_seconds", "1"});
-  command.command.insert(command.command.begin(),
-                         {"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", home.File("log")});
-  Process server(command);
-  const ProcessOptions status = {
-      {ClientProgram(), "status", "--server", address}, CleanEnvironment(home), ""};
-  while (RunProgram(status).exit_code != 0) continue;  // until it has begun
+  ServerProcess server({.flags = {"--drain_seconds", "1"},
+                        .launcher = {"sh", "-c", "exec \"$@\" 2>\"$0\"", home.File("log")}});
+  server.Spawn();
+  const auto ask = [&](const std::string& words) {
+    return RunProgram(ClientCommand(home, Split(words + " --server " + server.address())));
+  };
+  while (ask("status").exit_code != 0) continue;  // until the server listens
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(RunProgram({{ClientProgram(), "run", "equilibrium", "--rho", "0.53",
-                           "--delta", "0.2", "--collisions", "100", "--server", address},
-                          CleanEnvironment(home),
-                          ""})
-                  .exit_code,
-              0);
+    EXPECT_THAT(ask("run equilibrium --rho 0.53 --delta 0.2 --collisions 100"), ExitsWith(0));
   }
-  server.Signal(SIGTERM);
-  EXPECT_EQ(server.Wait().exit_code, 0);
+  EXPECT_EQ(server.Stop(), 0);
 }
 
-TEST(Status, MetricsForOtherMachinesAreRefused) {
+TEST(Status, MetricsForOtherMachinesAreRejected) {
   const TemporaryFolder home;
-  const ProcessResult result = RunProgram(
-      ServerCommand(home, {"--data_dir", home.File("data"), "--metrics_listen", "0.0.0.0:9090"}));
-  EXPECT_EQ(result.exit_code, 2);
+  const ProcessResult result =
+      RunServer(home, {"--data_dir", home.File("data"), "--metrics_listen", "0.0.0.0:9090"});
+  EXPECT_THAT(result, ExitsWith(2));
   EXPECT_THAT(result.err, HasSubstr("--metrics_listen=0.0.0.0:9090 is not a loopback address"));
 }
 

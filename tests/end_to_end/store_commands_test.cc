@@ -1,109 +1,88 @@
-// What an operator does with a store, and with the limits of a server.
+// Commands for a store, and limits of a server, as an operator uses them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "tests/end_to_end/programs.h"
-#include "tests/support/paths.h"
 
 namespace ballpiston {
 namespace {
 
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kQuestion = {"run",      "equilibrium", "--rho",        "0.53",
-                                            "--delta",  "0.2",         "--collisions", "2000",
-                                            "--verify", "--format",    "json",         "--fresh"};
-
-ProcessResult Server(const TestServer& server, std::vector<std::string> flags) {
-  flags.insert(flags.begin(), {"--data_dir", server.DataDir()});
-  return RunProgram(ServerCommand(server.folder(), std::move(flags)));
+// Beside the server, with its data folder.
+ProcessResult RunBeside(const TestServer& server, const Words& flags) {
+  return RunServer(server.folder(), Joined({{"--data_dir", server.data_dir()}, flags}));
 }
 
 TEST(StoreCommands, AStoreIsCheckedCopiedAndRestored) {
   TestServer server;
-  const ProcessResult before = server.Client(kQuestion);
-  ASSERT_EQ(before.exit_code, 0) << before.err;
+  const ProcessResult before = server.Client(Split(
+      "run equilibrium --rho 0.53 --delta 0.2 --collisions 2000 --verify --format json --fresh"));
+  ASSERT_THAT(before, ExitsWith(0));
   const std::string backup = server.folder().File("backup");
-  const ProcessResult checked = Server(server, {"--check"});  // while it runs
-  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  const ProcessResult checked = RunBeside(server, {"--check"});  // while it runs
+  EXPECT_THAT(checked, ExitsWith(0));
   EXPECT_THAT(checked.out, HasSubstr("1"));
-  const ProcessResult copied = Server(server, {"--backup", backup});
-  EXPECT_EQ(copied.exit_code, 0) << copied.err;
-  EXPECT_NE(Server(server, {"--backup", backup}).exit_code, 0);  // it is there already
+  const ProcessResult copied = RunBeside(server, {"--backup", backup});
+  EXPECT_THAT(copied, ExitsWith(0));
+  EXPECT_NE(RunBeside(server, {"--backup", backup}).exit_code, 0);  // the file exists
 
   server.Stop();
-  std::filesystem::remove_all(server.DataDir());
-  std::filesystem::create_directory(server.DataDir());
-  std::filesystem::copy_file(backup, server.DataDir() + "/store.sqlite3");
+  std::filesystem::remove_all(server.data_dir());
+  std::filesystem::create_directory(server.data_dir());
+  std::filesystem::copy_file(backup, server.data_dir() + "/store.sqlite3");
   server.Start();
   const std::string name = At(ParseJson(before.out), "job", "name").string_value();
   const ProcessResult after = server.Client({"result", name, "--format", "json"});
   EXPECT_EQ(PointsOf(after.out), PointsOf(before.out));
 }
 
-TEST(StoreCommands, WhatIsNoStoreIsToldWithExitCode2) {
+TEST(StoreCommands, AFileThatIsNoStoreIsRejectedWithExitCodeTwo) {
   TestServer server;
   server.Stop();
-  std::ofstream(server.DataDir() + "/store.sqlite3") << "no store at all";
+  std::ofstream(server.data_dir() + "/store.sqlite3") << "no store at all";
   for (const std::string flag : {"--check", "--backup=copy"}) {
-    const ProcessResult result = Server(server, {flag});
-    EXPECT_EQ(result.exit_code, 2);
+    const ProcessResult result = RunBeside(server, {flag});
+    EXPECT_THAT(result, ExitsWith(2));
     EXPECT_THAT(result.err, HasSubstr("store.sqlite3"));
     EXPECT_EQ(result.out, "");
   }
 }
 
-TEST(StoreCommands, OneIsDoneAtATime) {
+TEST(StoreCommands, ExcludeEachOther) {
   const TemporaryFolder home;
   const std::string access = home.File("access");
   const ProcessResult result =
-      RunProgram(ServerCommand(home, {"--data_dir", home.File("data"), "--check", "--backup=x",
-                                      "--access_file", access, "--new_token=a:submit"}));
-  EXPECT_EQ(result.exit_code, 2);
+      RunServer(home, {"--data_dir", home.File("data"), "--check", "--backup=x", "--access_file",
+                       access, "--new_token=a:submit"});
+  EXPECT_THAT(result, ExitsWith(2));
   EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new_token exclude each other"));
   EXPECT_EQ(result.out, "");
   EXPECT_FALSE(std::filesystem::exists(access));
 }
 
-TEST(Limits, AreFlagsAndNameThemselves) {
-  const TemporaryFolder home;
-  const std::string address = "unix:" + home.File("socket");
-  Process server(ServerCommand(home, {"--listen", address, "--data_dir", home.File("data"),
-                                      "--max_points_per_job=2", "--max_message_bytes=2048"}));
-  ASSERT_TRUE(server.WaitForErr("listening on"));
+TEST(Limits, ErrorsNameTheFlagOfTheLimit) {
+  const TestServer server({.flags = {"--max_points_per_job=2", "--max_message_bytes=2048"}});
   const auto ask = [&](const std::string& deltas) {
-    ProcessOptions options;
-    options.command = {ClientProgram(),
-                       "submit",
-                       "equilibrium",
-                       "--rho",
-                       "0.53",
-                       "--delta",
-                       deltas,
-                       "--server",
-                       address};
-    options.environment = CleanEnvironment(home);
-    return RunProgram(options);
+    return server.Client({"submit", "equilibrium", "--rho", "0.53", "--delta", deltas});
   };
-  EXPECT_EQ(ask("0.1,0.2").exit_code, 0);
+  EXPECT_THAT(ask("0.1,0.2"), ExitsWith(0));
   const ProcessResult points = ask("0.1,0.15,0.2");
   EXPECT_NE(points.exit_code, 0);
   EXPECT_THAT(points.err, HasSubstr("--max_points_per_job"));
   EXPECT_THAT(ask("0.1:0.2:1000").err, HasSubstr("2048"));  // gRPC's words
 }
 
-TEST(Limits, AreNotNegative) {
+TEST(Limits, NegativeOnesAreRejected) {
   const TemporaryFolder home;
   for (const std::string flag : {"--max_active_jobs=-1", "--max_samples_per_job=-2",
                                  "--max_message_bytes=0", "--max_streams=-1"}) {
-    const ProcessResult result =
-        RunProgram(ServerCommand(home, {"--data_dir", home.File("data"), flag}));
-    EXPECT_EQ(result.exit_code, 2);
+    const ProcessResult result = RunServer(home, {"--data_dir", home.File("data"), flag});
+    EXPECT_THAT(result, ExitsWith(2));
     EXPECT_THAT(result.err, HasSubstr(flag + " is out of range"));
   }
 }

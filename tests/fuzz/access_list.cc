@@ -56,7 +56,7 @@ void RequireSilence(const absl::Status& error, const std::string& text) {
   }
 }
 
-void Check(const std::string& text) {
+void CheckAccessList(const std::string& text) {
   const auto list = server::AccessList::Parse({"access_file", "FILE"}, text);
   if (list.ok()) {
     CheckCalls(*list, text);
@@ -72,7 +72,7 @@ void Check(const std::string& text) {
           "a token is somebody's");
 }
 
-const Registration registration({.name = "access_list", .check = Check});
+const Registration kAccessList({.name = "access_list", .check = CheckAccessList});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -21,7 +21,7 @@ void RequireRunnable(const MethodComparisonSpec& spec) {
   }
 }
 
-void Check(const std::string& bytes) {
+void CheckComparisonRequest(const std::string& bytes) {
   v1::CompareMethodsRequest request;
   if (!request.ParseFromString(bytes)) return;
   const server::CheckedComparison checked = server::CheckComparison(request);
@@ -30,9 +30,9 @@ void Check(const std::string& bytes) {
   RequireSendable(server::InvalidRequest(checked.violations), bytes);
 }
 
-const Registration registration({.name = "comparison_request",
-                                 .check = Check,
-                                 .message = &v1::CompareMethodsRequest::default_instance()});
+const Registration kComparisonRequest({.name = "comparison_request",
+                                       .check = CheckComparisonRequest,
+                                       .message = &v1::CompareMethodsRequest::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

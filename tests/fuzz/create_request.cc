@@ -18,7 +18,7 @@ void CheckRequestId(const std::string& request_id) {
   Require(server::RequestCheck().RequestId(id) == id, "an id is its own");
 }
 
-void Check(const std::string& bytes) {
+void CheckCreateRequest(const std::string& bytes) {
   v1::CreateEnsembleJobRequest request;
   if (!request.ParseFromString(bytes)) return;
   CheckRequestId(request.request_id());
@@ -28,9 +28,9 @@ void Check(const std::string& bytes) {
           "a question has a hash, unless it depends on the machine");
 }
 
-const Registration registration({.name = "create_request",
-                                 .check = Check,
-                                 .message = &v1::CreateEnsembleJobRequest::default_instance()});
+const Registration kCreateRequest({.name = "create_request",
+                                   .check = CheckCreateRequest,
+                                   .message = &v1::CreateEnsembleJobRequest::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

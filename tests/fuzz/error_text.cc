@@ -14,7 +14,7 @@ void RequireRead(grpc::StatusCode code, const std::string& message, const std::s
   Require(reason.size() <= details.size(), "a reason is the server's");
 }
 
-void Check(const std::string& bytes) {
+void CheckErrorText(const std::string& bytes) {
   constexpr int kCodes = 16;
   const auto code = static_cast<grpc::StatusCode>(1 + bytes.size() % kCodes);
   google::rpc::Status details;
@@ -23,9 +23,9 @@ void Check(const std::string& bytes) {
   RequireRead(grpc::StatusCode::RESOURCE_EXHAUSTED, bytes, "");
 }
 
-const Registration registration({.name = "error_text",
-                                 .check = Check,
-                                 .message = &google::rpc::Status::default_instance()});
+const Registration kErrorText({.name = "error_text",
+                               .check = CheckErrorText,
+                               .message = &google::rpc::Status::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -2,7 +2,7 @@
 // what has to hold of whatever they make of it.
 //
 // Each target has a file of its own, which ends in
-//   const Registration registration({.name = "stored_spec", .check = Check, ...});
+//   const Registration kStoredSpec({.name = "stored_spec", .check = CheckStoredSpec, ...});
 // The same file makes two programs: NAME_fuzz with libFuzzer (libfuzzer.cc), and a part of
 // fuzz_test (seeds_test.cc), which runs the seeds and some thousands of changed ones with any
 // compiler.

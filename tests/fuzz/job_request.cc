@@ -9,7 +9,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-void Check(const std::string& bytes) {
+void CheckJobRequest(const std::string& bytes) {
   v1::CancelEnsembleJobRequest request;
   if (!request.ParseFromString(bytes)) return;
   server::RequestCheck check;
@@ -25,9 +25,9 @@ void Check(const std::string& bytes) {
   RequireSendable(server::RequestIdReused(request_id), bytes);
 }
 
-const Registration registration({.name = "job_request",
-                                 .check = Check,
-                                 .message = &v1::CancelEnsembleJobRequest::default_instance()});
+const Registration kJobRequest({.name = "job_request",
+                                .check = CheckJobRequest,
+                                .message = &v1::CancelEnsembleJobRequest::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -29,7 +29,7 @@ void CheckPage(const v1::ListResultsRequest& request, const std::string& bytes,
   Require(other.ok() == request.page_token().empty(), "a token is good for its list alone");
 }
 
-void Check(const std::string& bytes) {
+void CheckListRequest(const std::string& bytes) {
   v1::ListResultsRequest request;
   if (!request.ParseFromString(bytes)) return;
   if (request.parent().empty()) {  // the other list: it has none
@@ -42,8 +42,8 @@ void Check(const std::string& bytes) {
   CheckPage(request, bytes, absl::StrCat("results:", id), 0);
 }
 
-const Registration registration({.name = "list_request",
-                                 .check = Check,
+const Registration kListRequest({.name = "list_request",
+                                 .check = CheckListRequest,
                                  .message = &v1::ListResultsRequest::default_instance()});
 
 }  // namespace

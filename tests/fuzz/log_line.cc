@@ -38,7 +38,7 @@ std::string Repeated(const std::string& text) {
   return repeated;
 }
 
-void Check(const std::string& text) {
+void CheckLogLine(const std::string& text) {
   const std::string message = IsOneIn(63, text) ? Repeated(text) : text;
   RequireOneLine(Line(LogFormat::kText, message));
   const std::string json = Line(LogFormat::kJson, message);
@@ -51,7 +51,7 @@ std::vector<std::string> Texts() {
           "\xe2\x80\xa8\xf0\x9f\x8e\xb1", "\xff\xfe\xc3(\x1b[2J", std::string(49, 'x')};
 }
 
-const Registration registration({.name = "log_line", .check = Check, .made_seeds = Texts});
+const Registration kLogLine({.name = "log_line", .check = CheckLogLine, .made_seeds = Texts});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -42,7 +42,7 @@ void CheckList(const std::string& text) {
   Require(counts->size() == list->size(), "every number is a count");
 }
 
-void Check(const std::string& text) {
+void CheckNumberList(const std::string& text) {
   const auto number = client::ParseNumber(kFlag, text);
   const auto count = client::ParseCount(kFlag, text);
   const auto seed = client::ParseSeed(kFlag, text);
@@ -53,7 +53,7 @@ void Check(const std::string& text) {
   if (!IsLong(text) || IsOneIn(256, text)) CheckList(text);
 }
 
-const Registration registration({.name = "number_list", .check = Check});
+const Registration kNumberList({.name = "number_list", .check = CheckNumberList});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

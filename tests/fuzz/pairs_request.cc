@@ -25,7 +25,7 @@ void RequireFinite(const v1::PairAnalytics& point) {
   }
 }
 
-void Check(const std::string& bytes) {
+void CheckPairsRequest(const std::string& bytes) {
   v1::EvaluatePairsRequest request;
   if (!request.ParseFromString(bytes)) return;
   if (request.rho_size() * request.delta_size() > kMostPairs) return;
@@ -39,9 +39,9 @@ void Check(const std::string& bytes) {
   }
 }
 
-const Registration registration({.name = "pairs_request",
-                                 .check = Check,
-                                 .message = &v1::EvaluatePairsRequest::default_instance()});
+const Registration kPairsRequest({.name = "pairs_request",
+                                  .check = CheckPairsRequest,
+                                  .message = &v1::EvaluatePairsRequest::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

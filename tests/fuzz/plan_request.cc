@@ -31,7 +31,7 @@ void RequirePlanned(const EnsembleSpec& spec, size_t index) {
   Require(plan.models_size() == static_cast<int>(ladder.rungs.size()), "every rung is told");
 }
 
-void Check(const std::string& bytes) {
+void CheckPlanRequest(const std::string& bytes) {
   v1::PlanEnsembleJobRequest request;
   if (!request.ParseFromString(bytes)) return;
   const server::CheckedSpec checked = server::CheckSpec(request.spec());
@@ -39,8 +39,8 @@ void Check(const std::string& bytes) {
   RequirePlanned(checked.spec, PointCount(checked.spec) - 1);
 }
 
-const Registration registration({.name = "plan_request",
-                                 .check = Check,
+const Registration kPlanRequest({.name = "plan_request",
+                                 .check = CheckPlanRequest,
                                  .message = &v1::PlanEnsembleJobRequest::default_instance()});
 
 }  // namespace

@@ -23,7 +23,7 @@ void RequirePrinted(const v1::ListResultsResponse& page, client::Format format) 
   Require(may_be_empty || printed.ends_with("\n"), "what is printed ends with its line");
 }
 
-void Check(const std::string& bytes) {
+void CheckPrintedResult(const std::string& bytes) {
   v1::ListResultsResponse page;
   if (!page.ParseFromString(bytes)) return;
   RequirePrinted(page, IsOneIn(2, bytes) ? client::Format::kTable : client::Format::kCsv);
@@ -31,9 +31,9 @@ void Check(const std::string& bytes) {
   RequirePrinted(page, bytes.size() % 2 == 0 ? client::Format::kJson : client::Format::kJsonl);
 }
 
-const Registration registration({.name = "printed_result",
-                                 .check = Check,
-                                 .message = &v1::ListResultsResponse::default_instance()});
+const Registration kPrintedResult({.name = "printed_result",
+                                   .check = CheckPrintedResult,
+                                   .message = &v1::ListResultsResponse::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

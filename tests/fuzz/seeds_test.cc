@@ -52,7 +52,7 @@ std::string Changed(Dice& dice, const FuzzTarget& target, const std::vector<std:
 
 class EveryTarget : public testing::TestWithParam<FuzzTarget> {};
 
-TEST_P(EveryTarget, TakesItsSeedsAndChangedOnes) {
+TEST_P(EveryTarget, HoldsForItsSeedsAndMutationsOfThem) {
   const google::protobuf::LogSilencer silence;
   const FuzzTarget& target = GetParam();
   const std::vector<std::string> seeds = SeedsOf(target, kSeeds);
@@ -64,7 +64,7 @@ TEST_P(EveryTarget, TakesItsSeedsAndChangedOnes) {
   }
 }
 
-TEST_P(EveryTarget, TakesNothingAtAll) { EXPECT_EQ(Fault(GetParam(), ""), ""); }
+TEST_P(EveryTarget, HoldsForAnEmptyInput) { EXPECT_EQ(Fault(GetParam(), ""), ""); }
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, EveryTarget, testing::ValuesIn(Targets()),
                          [](const auto& info) { return info.param.name; });

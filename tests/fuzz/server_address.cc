@@ -22,7 +22,7 @@ void CheckListening(const std::string& text) {
   Require(client::GrpcTarget(address->Text()).ok(), "the client can call the server");
 }
 
-void Check(const std::string& text) {
+void CheckServerAddress(const std::string& text) {
   if (text.find('\0') != std::string::npos) return;  // no argument of a program holds it
   const absl::StatusOr<std::string> target = client::GrpcTarget(text);
   if (target.ok()) {
@@ -34,7 +34,7 @@ void Check(const std::string& text) {
   CheckListening(text);
 }
 
-const Registration registration({.name = "server_address", .check = Check});
+const Registration kServerAddress({.name = "server_address", .check = CheckServerAddress});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -9,7 +9,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-void Check(const std::string& json) {
+void CheckSpecFile(const std::string& json) {
   const absl::StatusOr<v1::EnsembleSpec> spec = client::ParseSpec("FILE", json);
   if (!spec.ok()) {
     Require(absl::IsInvalidArgument(spec.status()), "what is wrong is the argument");
@@ -22,7 +22,7 @@ void Check(const std::string& json) {
   Require(server::SpecBytes(*again) == server::SpecBytes(*spec), "what is read was printed");
 }
 
-const Registration registration({.name = "spec_file", .check = Check});
+const Registration kSpecFile({.name = "spec_file", .check = CheckSpecFile});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

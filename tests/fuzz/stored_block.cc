@@ -62,7 +62,7 @@ void RequireStored(const BlockResult& block) {
   Require(again.ok() && server::BlockRecordBytes(*again) == stored, "stored bytes come back");
 }
 
-void Check(const std::string& bytes) {
+void CheckStoredBlock(const std::string& bytes) {
   const absl::StatusOr<BlockResult> block = server::BlockResultFromBytes(bytes);
   if (!block.ok()) return Require(absl::IsDataLoss(block.status()), "damage is DATA_LOSS");
   if (IsOneIn(4, bytes)) RequireStored(*block);
@@ -81,8 +81,8 @@ std::vector<std::string> BlocksOfEach() {
   return blocks;
 }
 
-const Registration registration({.name = "stored_block",
-                                 .check = Check,
+const Registration kStoredBlock({.name = "stored_block",
+                                 .check = CheckStoredBlock,
                                  .message = &v1::BlockRecord::default_instance(),
                                  .made_seeds = BlocksOfEach});
 

@@ -47,7 +47,7 @@ server::JobRecord RowOf(std::string_view bytes) {
   return row;
 }
 
-void Check(const std::string& bytes) {
+void CheckStoredJob(const std::string& bytes) {
   const v1::EnsembleJob job = server::JobMessage(RowOf(bytes));
   for (const auto& time : {job.create_time(), job.start_time(), job.end_time()}) {
     Require(time.nanos() >= 0 && time.nanos() < 1'000'000'000, "a time is one");
@@ -62,7 +62,7 @@ std::vector<std::string> Rows() {
   return {std::string(65, '\1'), std::string(80, '\0'), std::string(200, '\x08')};
 }
 
-const Registration registration({.name = "stored_job", .check = Check, .made_seeds = Rows});
+const Registration kStoredJob({.name = "stored_job", .check = CheckStoredJob, .made_seeds = Rows});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

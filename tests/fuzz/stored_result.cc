@@ -17,7 +17,7 @@ void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
   RequireSendable(server::ToleranceNotReached(spec, 0, reached), bytes);
 }
 
-void Check(const std::string& bytes) {
+void CheckStoredResult(const std::string& bytes) {
   absl::StatusOr<v1::PointResult> result = server::PointResultFromBytes(bytes);
   if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
   const std::string stored = server::PointResultBytes(*result);
@@ -29,9 +29,9 @@ void Check(const std::string& bytes) {
   Require(server::PointResultBytes(*result).size() <= stored.size(), "nothing is added");
 }
 
-const Registration registration({.name = "stored_result",
-                                 .check = Check,
-                                 .message = &v1::PointResult::default_instance()});
+const Registration kStoredResult({.name = "stored_result",
+                                  .check = CheckStoredResult,
+                                  .message = &v1::PointResult::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -6,7 +6,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-void Check(const std::string& bytes) {
+void CheckStoredSpec(const std::string& bytes) {
   const absl::StatusOr<v1::EnsembleSpec> spec = server::SpecFromBytes(bytes);
   if (!spec.ok()) return Require(absl::IsDataLoss(spec.status()), "damage is DATA_LOSS");
   const std::string stored = server::SpecBytes(*spec);
@@ -15,9 +15,9 @@ void Check(const std::string& bytes) {
   RequireJudged(*spec, bytes);
 }
 
-const Registration registration({.name = "stored_spec",
-                                 .check = Check,
-                                 .message = &v1::EnsembleSpec::default_instance()});
+const Registration kStoredSpec({.name = "stored_spec",
+                                .check = CheckStoredSpec,
+                                .message = &v1::EnsembleSpec::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

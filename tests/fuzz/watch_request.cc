@@ -8,7 +8,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-void Check(const std::string& bytes) {
+void CheckWatchRequest(const std::string& bytes) {
   v1::WatchEnsembleJobRequest request;
   if (!request.ParseFromString(bytes)) return;
   server::RequestCheck check;
@@ -31,10 +31,10 @@ std::vector<std::string> Tokens() {
   return {request.SerializeAsString()};
 }
 
-const Registration registration({.name = "watch_request",
-                                 .check = Check,
-                                 .message = &v1::WatchEnsembleJobRequest::default_instance(),
-                                 .made_seeds = Tokens});
+const Registration kWatchRequest({.name = "watch_request",
+                                  .check = CheckWatchRequest,
+                                  .message = &v1::WatchEnsembleJobRequest::default_instance(),
+                                  .made_seeds = Tokens});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

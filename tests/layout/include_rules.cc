@@ -14,7 +14,7 @@ using Prefixes = std::vector<std::string_view>;
 
 struct Rule {
   std::string_view folder;
-  Prefixes may_include;   // folders of the house, then libraries
+  Prefixes may_include;   // folders of the project, then libraries
   bool operating_system;  // threads and the headers of POSIX
 };
 
@@ -51,19 +51,32 @@ const std::vector<Rule>& Rules() {
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
        true},
       {"tools/", {"core/", "tools/", "Eigen/", "absl/", "hwy/"}, true},
-      {"tests/core/",
-       {"core/", "tests/core/", "tests/oracle/", "Eigen/", "absl/", "hwy/", "gtest/", "gmock/"},
+      {"tests/support/running_server",
+       {"server/", "tests/support/", "tests/server/fake_experiments.h", "ballpiston/v1/", "google/",
+        "absl/", "grpc/", "grpcpp/", "gtest/", "gmock/"},
        true},
-      {"tests/oracle/", {"core/", "tests/oracle/", "Eigen/", "absl/"}, true},
-      {"tests/benchmark/", {"core/", "server/execution/", "hwy/", "benchmark/"}, true},
-      {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
-      {"tests/tools/",
-       {"core/", "tools/", "tests/tools/", "tests/support/", "Eigen/", "absl/",
+      {"tests/support/", {"tests/support/", "absl/", "gtest/", "gmock/"}, true},
+      {"tests/core/",
+       {"core/", "tests/core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/",
         "gtest/", "gmock/"},
        true},
+      {"tests/statistical/",
+       {"core/", "tests/core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/",
+        "gtest/", "gmock/"},
+       true},
+      {"tests/oracle/",
+       {"core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/"},
+       true},
+      {"tests/benchmark/",
+       {"core/", "server/execution/", "tests/support/", "hwy/", "benchmark/"},
+       true},
+      {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
+      {"tests/tools/",
+       {"core/", "tools/", "tests/tools/", "tests/support/", "Eigen/", "absl/", "gtest/", "gmock/"},
+       true},
       {"tests/client/",
-       {"client/", "tests/client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/",
-        "CLI/", "gtest/", "gmock/"},
+       {"client/", "tests/client/", "tests/support/", "ballpiston/v1/", "google/", "absl/", "grpc/",
+        "grpcpp/", "CLI/", "gtest/", "gmock/"},
        true},
       {"tests/",
        {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "google/", "absl/", "grpc/",
@@ -94,7 +107,13 @@ bool IsOperatingSystemHeader(std::string_view include) {
          StartsWithAny(include, {"sys/", "arpa/", "netinet/"});
 }
 
+// A test of a layer that does not know the server may not start one in its process.
+bool BringsTheServer(std::string_view include) {
+  return include.starts_with("tests/support/running_server");
+}
+
 bool IsAllowed(const Rule& rule, std::string_view include) {
+  if (BringsTheServer(include) && !StartsWithAny("server/", rule.may_include)) return false;
   return IsStandardHeader(include) || StartsWithAny(include, rule.may_include) ||
          (rule.operating_system && IsOperatingSystemHeader(include));
 }

@@ -1,14 +1,16 @@
-// Which folder of the house may include what: the arrows between the layers, as a table.
+// Which folder of the project may include what, as a table.
 //
 //   core:    geometry <- closed_form, sampling <- billiard, markov <- experiment <-
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other.
-//   tools:   the core only. Nobody but their tests knows them.
-//   server/convert alone speaks of the core's physics and of the API's messages in one file.
+//   tools:   the core only. Only their tests know them.
+//   server/convert alone includes the core's physics and the API's messages in one file.
+//   tests:   of a layer know that layer, and tests/support; running_server.h there is for tests
+//            that know the server.
 //
-// A new folder needs a row of its own in the table: a file without one is a violation.
+// A new folder needs a row in the table: a file without one is a violation.
 #ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 #define BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 

@@ -26,7 +26,7 @@ std::string ReadFile(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Text by path, of all C++ files of the house.
+// Text by path, of all C++ files of the project.
 std::map<std::string, std::string> SourceFiles() {
   const std::filesystem::path root = SourcePath("");
   std::map<std::string, std::string> files;
@@ -50,7 +50,7 @@ void ExpectWrong(std::string_view path, const std::string& include) {
   EXPECT_THAT(WrongIncludes(path, "#include " + include + "\n"), SizeIs(1)) << path << include;
 }
 
-TEST(Layout, EveryIncludePointsTheRightWay) {
+TEST(Layout, EveryIncludeIsAllowed) {
   std::string wrong;
   for (const auto& [path, text] : SourceFiles()) {
     for (const std::string& sentence : WrongIncludes(path, text)) wrong += sentence + "\n";
@@ -58,7 +58,7 @@ TEST(Layout, EveryIncludePointsTheRightWay) {
   EXPECT_EQ(wrong, "");
 }
 
-TEST(Layout, TheWholeHouseIsRead) {
+TEST(Layout, SourcesOfAllFoldersAreRead) {
   const std::map<std::string, std::string> files = SourceFiles();
   EXPECT_TRUE(files.contains("core/geometry/pair_geometry.h"));
   EXPECT_TRUE(files.contains("tests/layout/layout_test.cc"));
@@ -67,11 +67,9 @@ TEST(Layout, TheWholeHouseIsRead) {
               Contains("core/geometry/pair_geometry.h"));
 }
 
-TEST(Layout, EveryTopFolderHasItsMap) {
-  for (const char* folder : {"core", "proto", "server", "client", "tests", "tools"}) {
-    EXPECT_TRUE(
-        std::filesystem::exists(SourcePath(folder) + "/README.md"))
-        << folder;
+TEST(Layout, EveryTopFolderHasAReadme) {
+  for (const std::string folder : {"core", "proto", "server", "client", "tests", "tools"}) {
+    EXPECT_TRUE(std::filesystem::exists(SourcePath(folder + "/README.md"))) << folder;
   }
 }
 
@@ -206,7 +204,36 @@ TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {
 TEST(IncludeRules, TestsOfALayerKnowNoLayerAboveIt) {
   ExpectWrong("tests/core/geometry/x.cc", "\"server/store/store.h\"");
   ExpectWrong("tests/core/geometry/x.cc", "\"ballpiston/v1/spec.pb.h\"");
+  ExpectWrong("tests/statistical/x.cc", "\"server/store/store.h\"");
   ExpectWrong("tests/client/x.cc", "\"core/geometry/pair_geometry.h\"");
+}
+
+TEST(IncludeRules, SupportOfTestsIsForTestsOfAllLayers) {
+  const std::string text =
+      "#include <unistd.h>\n#include \"absl/status/status.h\"\n#include \"gtest/gtest.h\"\n"
+      "#include \"tests/support/paths.h\"\n";
+  EXPECT_THAT(WrongIncludes("tests/support/process.cc", text), IsEmpty());
+  for (const char* include : {"\"core/geometry/pair_geometry.h\"", "\"server/ballpiston_server.h\"",
+                              "\"client/library/ensemble_client.h\"", "\"ballpiston/v1/spec.pb.h\"",
+                              "\"grpcpp/channel.h\"", "\"tests/core/geometries.h\""}) {
+    ExpectWrong("tests/support/process.cc", include);
+  }
+  for (const std::string folder : {"core", "statistical", "oracle", "client", "server", "layout"}) {
+    EXPECT_THAT(WrongIncludes("tests/" + folder + "/x.cc", "#include \"tests/support/paths.h\"\n"),
+                IsEmpty());
+  }
+}
+
+TEST(IncludeRules, ARunningServerIsForTestsThatKnowTheServer) {
+  const std::string text =
+      "#include \"server/ballpiston_server.h\"\n#include \"grpcpp/channel.h\"\n";
+  EXPECT_THAT(WrongIncludes("tests/support/running_server.h", text), IsEmpty());
+  const std::string include = "\"tests/support/running_server.h\"";
+  EXPECT_THAT(WrongIncludes("tests/server/x.cc", "#include " + include + "\n"), IsEmpty());
+  for (const char* path : {"tests/core/geometry/x.cc", "tests/statistical/x.cc", "tests/oracle/x.h",
+                           "tests/benchmark/x.cc", "tests/client/x.cc", "tests/support/paths.cc"}) {
+    ExpectWrong(path, include);
+  }
 }
 
 TEST(IncludeRules, AFolderWithoutARuleIsWrong) {

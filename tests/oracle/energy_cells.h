@@ -81,12 +81,13 @@ class EnergyCells {
 };
 
 // What `value` of the cells tends to, from n, 2 n and 4 n of them, at errors 1/n^2 and 1/n^3.
-template <typename Value>
-double FromEnergyCells(Eigen::Index n, Value value) {
-  const double coarse = value(EnergyCells(n)), middle = value(EnergyCells(2 * n)),
-               fine = value(EnergyCells(4 * n));
-  const double first = middle + (middle - coarse) / 3, second = fine + (fine - middle) / 3;
-  return second + (second - first) / 7;
+template <typename Function>
+auto FromEnergyCells(Eigen::Index n, Function value) {
+  using Value = decltype(value(EnergyCells(n)));
+  const Value coarse = value(EnergyCells(n)), middle = value(EnergyCells(2 * n)),
+              fine = value(EnergyCells(4 * n));
+  const Value first = middle + (middle - coarse) / 3, second = fine + (fine - middle) / 3;
+  return Value(second + (second - first) / 7);
 }
 
 }  // namespace ballpiston::oracle

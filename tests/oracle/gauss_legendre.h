@@ -55,6 +55,12 @@ Quad Integrate(Integrand integrand, Quad a, Quad b) {
   return sum * (b - a) / 2;
 }
 
+// From a to b where the integrand has powers of sqrt(b - x): with x = b - v^2 it is smooth.
+template <typename Integrand>
+Quad IntegrateToRoot(Integrand integrand, Quad a, Quad b) {
+  return Integrate([&](Quad v) { return 2 * v * integrand(b - v * v); }, 0, Sqrt(b - a));
+}
+
 }  // namespace ballpiston::oracle
 
 #endif  // BALLPISTON_TESTS_ORACLE_GAUSS_LEGENDRE_H_

@@ -11,10 +11,25 @@
 
 namespace ballpiston::server {
 
+inline constexpr char kListJobs[] = "/ballpiston.v1.EnsembleService/ListEnsembleJobs";
+inline constexpr char kGetJob[] = "/ballpiston.v1.EnsembleService/GetEnsembleJob";
+inline constexpr char kWatchJob[] = "/ballpiston.v1.EnsembleService/WatchEnsembleJob";
+inline constexpr char kCheckHealth[] = "/grpc.health.v1.Health/Check";
+inline constexpr char kWatchHealth[] = "/grpc.health.v1.Health/Watch";
+inline constexpr char kReflection[] =
+    "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+
+// A request of a watch of health, by hand: field 1, empty, asks for the whole server.
+inline const std::string kWholeServer("\x0a\0", 2);
+
+// A request of reflection, by hand: field 7 asks for the list of services.
+inline constexpr char kListServices[] = "\x3a\x01*";
+
 // Sends one request, `bytes` serialized, with such headers `authorization`; reads to the end. Ends
-// after 20 s with DEADLINE_EXCEEDED.
+// after 10 min with DEADLINE_EXCEEDED.
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-                        const std::string& bytes, const std::vector<std::string>& authorization);
+                        const std::string& bytes = "",
+                        const std::vector<std::string>& authorization = {});
 
 // One header, or none for an empty token.
 std::vector<std::string> Bearer(const std::string& token);

@@ -118,11 +118,33 @@ void Gate::AwaitWaiting(int count) {
   changed_.wait(lock, [&] { return waiting_ >= count; });
 }
 
+int Gate::waiting() {
+  std::lock_guard lock(mutex_);
+  return waiting_;
+}
+
 ExperimentFactory FakeExperiments(BeforeBlock before_block) {
   return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
                                                   const std::stop_token&) {
     return std::make_unique<const FakeExperiment>(spec, index, before_block);
   };
+}
+
+ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block) {
+  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
+                                                  const std::stop_token&) {
+    return std::make_unique<const FakeExperiment>(
+        spec, index,
+        [before_block, seed = spec.seed](size_t point, uint64_t block, std::stop_token stop) {
+          before_block(seed, point, block, stop);
+        });
+  };
+}
+
+ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block) {
+  return FakeExperiments([&gate, first_block](size_t, uint64_t block, std::stop_token stop) {
+    if (block >= first_block) gate.Pass(stop);
+  });
 }
 
 ExperimentFactory HeldUpExperiments(BeforeBlock before_block) {

@@ -21,6 +21,7 @@ class Gate {
   void Pass(std::stop_token stop);
   // Returns when that many wait at the closed gate.
   void AwaitWaiting(int count);
+  int waiting();
 
  private:
   std::mutex mutex_;
@@ -38,6 +39,14 @@ inline constexpr uint64_t kFakeSamplesPerBlock = 4;
 // and block alone. The spec's samples or collisions count blocks here; a tolerance has 1000 blocks
 // at most.
 ExperimentFactory FakeExperiments(BeforeBlock before_block = nullptr);
+
+// The same, told the seed of the specification: it tells one run from another.
+using BeforeBlockOfSeed =
+    std::function<void(uint64_t seed, size_t point, uint64_t block, std::stop_token stop)>;
+ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block);
+
+// Fake experiments whose blocks from number `first_block` on wait at the gate.
+ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block = 0);
 
 // The core's experiments, held up.
 ExperimentFactory HeldUpExperiments(BeforeBlock before_block);

@@ -4,10 +4,13 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -15,14 +18,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(ListenAddress, AddressesNamesAndUnixSocketsAreRead) {
+TEST(ListenAddress, AddressesNamesAndUnixSocketsAreParsed) {
   for (const char* text :
        {"127.0.0.1:0", "127.8.9.10:65535", "[::1]:50051", "localhost:50051", "0.0.0.0:50051",
         "[::]:50051", "192.168.1.1:50051", "[2001:db8::1]:1", "[fe80::1%eth0]:1",
         "node-7.lab.example.org:50051", "under_score:1", "unix:/tmp/x.socket", "unix:relative"}) {
-    const auto address = ParseListenAddress(text);
-    ASSERT_TRUE(address.ok()) << address.status();
-    EXPECT_EQ(address->Text(), text);
+    ASSERT_OK_AND_ASSIGN(const auto address, ParseListenAddress(text));
+    EXPECT_EQ(address.Text(), text);
   }
 }
 
@@ -40,7 +42,7 @@ TEST(ListenAddress, OnlyLoopbackIsLoopback) {
   }
 }
 
-TEST(ListenAddress, NonsenseIsRefusedWithTheFlagAndTheValue) {
+TEST(ListenAddress, ErrorsShowTheFlagAndTheValue) {
   for (const char* text : {"",
                            "50051",
                            "127.0.0.1",
@@ -65,28 +67,28 @@ TEST(ListenAddress, NonsenseIsRefusedWithTheFlagAndTheValue) {
                            "[::1%]:1",
                            "[::1%a/b]:1"}) {
     const auto address = ParseListenAddress(text);
-    EXPECT_TRUE(absl::IsInvalidArgument(address.status())) << text;
-    EXPECT_THAT(std::string(address.status().message()),
-                HasSubstr(std::string("--listen=") + text));
+    EXPECT_THAT(address, StatusIs(absl::StatusCode::kInvalidArgument,
+                                  HasSubstr(std::string("--listen=") + text)))
+        << text;
   }
 }
 
 TEST(ListenAddress, ASocketPathThatIsTooLongIsRefused) {
   const auto address = ParseListenAddress("unix:/" + std::string(107, 'x'));
   EXPECT_THAT(std::string(address.status().message()), HasSubstr("108 bytes"));
-  EXPECT_TRUE(ParseListenAddress("unix:/" + std::string(106, 'x')).ok());
+  EXPECT_OK(ParseListenAddress("unix:/" + std::string(106, 'x')));
 }
 
-TEST(ListenAddress, AFileThatIsNoSocketStays) {
+TEST(ListenAddress, AFileThatIsNotASocketStays) {
   TemporaryFolder folder;
   std::ofstream(folder.File("precious")) << "x";
   const auto address = ParseListenAddress("unix:" + folder.File("precious"));
-  EXPECT_TRUE(absl::IsFailedPrecondition(ClearSocketPath(*address)));
+  EXPECT_THAT(ClearSocketPath(*address), StatusIs(absl::StatusCode::kFailedPrecondition));
   EXPECT_TRUE(std::filesystem::exists(folder.File("precious")));
 }
 
-// Only one that nobody listens on may go; this one is of a kind that cannot be asked.
-TEST(ListenAddress, ASocketThatCannotBeAskedStays) {
+// Only a socket that nobody listens on is removed; of a datagram socket this cannot be known.
+TEST(ListenAddress, ADatagramSocketStays) {
   TemporaryFolder folder;
   const std::string path = folder.File("datagrams");
   const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -95,8 +97,7 @@ TEST(ListenAddress, ASocketThatCannotBeAskedStays) {
   path.copy(local.sun_path, sizeof(local.sun_path) - 1);
   ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)), 0);
   const absl::Status status = ClearSocketPath(*ParseListenAddress("unix:" + path));
-  EXPECT_TRUE(absl::IsFailedPrecondition(status)) << status;
-  EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be told"));
+  EXPECT_THAT(status, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("cannot be told")));
   EXPECT_TRUE(std::filesystem::exists(path));
   close(descriptor);
 }

@@ -1,11 +1,15 @@
+#include <atomic>
 #include <filesystem>
 #include <limits>
-#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/store_access.h"
 #include "tests/support/running_server.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,14 +18,10 @@ namespace {
 
 using v1::EnsembleJob;
 
-ServerOptions Options(const std::string& data_dir, int workers, ExperimentFactory factory) {
-  ServerOptions options;
-  options.data_dir = data_dir;
-  options.workers = workers;
-  options.factory = std::move(factory);
-  options.watch.snapshot = std::chrono::milliseconds(5);
-  options.store.delay = std::chrono::milliseconds(1);
-  return options;
+// A server that other servers take over from.
+TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,
+                           ExperimentFactory factory = FakeExperiments()) {
+  return {.data_dir = folder.path(), .workers = workers, .factory = std::move(factory)};
 }
 
 // The model is named in all of these: held up, an experiment does not tell why it was chosen.
@@ -32,9 +32,8 @@ v1::EnsembleSpec FirstHitByBilliard() {
 }
 
 v1::EnsembleSpec SmallEquilibrium() {
-  v1::EnsembleSpec spec = Equilibrium(3, 5000);
+  v1::EnsembleSpec spec = Equilibrium(3, 5000, 7);
   spec.set_model(v1::EnsembleSpec::BILLIARD);
-  spec.set_seed(7);
   return spec;
 }
 
@@ -68,14 +67,11 @@ std::vector<v1::EnsembleSpec> AllExperiments() {
           SmallRelaxation(v1::EnsembleSpec::BILLIARD), SmallMarkovProperty()};
 }
 
-// With the core's experiments, unless others are given.
+// Null: with the core's experiments.
 std::vector<std::string> BytesAt(int workers, const v1::EnsembleSpec& spec,
                                  ExperimentFactory factory = nullptr) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder.path(), workers, std::move(factory)));
-  const std::string name = server.Submit(spec);
-  EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
-  return server.ResultBytes(name);
+  RunningServer server({.workers = workers, .factory = std::move(factory)});
+  return server.ResultBytes(server.Succeeded(spec));
 }
 
 TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
@@ -102,7 +98,7 @@ TEST(Restart, TheSameBytesWithATolerance) {
   EXPECT_EQ(BytesAt(8, spec, FakeExperiments()), one);
 }
 
-// What the first process found out of point 0 decides how the second ends the job.
+// What the first process found at point 0 decides how the second ends the job.
 TEST(Restart, AToleranceMissedBeforeTheStopStaysMissed) {
   v1::EnsembleSpec spec = Equilibrium(2, 0);
   spec.mutable_target()->set_tolerance(1e-4);
@@ -111,14 +107,14 @@ TEST(Restart, AToleranceMissedBeforeTheStopStaysMissed) {
   std::string name;
   {
     Gate gate;
-    RunningServer server(Options(
-        folder.path(), 1, FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
-          if (point == 1) gate.Pass(stop);
-        })));
+    RunningServer server(
+        InFolder(folder, 1, FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
+                   if (point == 1) gate.Pass(stop);
+                 })));
     name = server.Submit(spec);
     gate.AwaitWaiting(1);
   }
-  RunningServer server(Options(folder.path(), 1, FakeExperiments()));
+  RunningServer server(InFolder(folder, 1));
   const EnsembleJob job = server.AwaitEnd(name);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(),
@@ -133,26 +129,26 @@ ExperimentFactory StuckInTheMiddle(Gate& gate) {
   });
 }
 
-TEST(Restart, AStoppedServerGoesOnToTheSameBytes) {
+TEST(Restart, AStoppedServerResumesToTheSameBytes) {
   for (const v1::EnsembleSpec& spec : AllExperiments()) {
     TemporaryFolder folder;
     std::string name;
     {
       Gate gate;
-      RunningServer server(Options(folder.path(), 2, StuckInTheMiddle(gate)));
+      RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate)));
       name = server.Submit(spec);
       gate.AwaitWaiting(2);
     }
     std::atomic<int> of_point_0 = 0;
     std::atomic<uint64_t> first_of_point_1 = std::numeric_limits<uint64_t>::max();
-    RunningServer server(Options(
-        folder.path(), 3, HeldUpExperiments([&](size_t point, uint64_t block, std::stop_token) {
-          of_point_0 += point == 0;
-          uint64_t seen = first_of_point_1;
-          while (point == 1 && block < seen &&
-                 !first_of_point_1.compare_exchange_weak(seen, block)) {
-          }
-        })));
+    RunningServer server(
+        InFolder(folder, 3, HeldUpExperiments([&](size_t point, uint64_t block, std::stop_token) {
+                   of_point_0 += point == 0;
+                   uint64_t seen = first_of_point_1;
+                   while (point == 1 && block < seen &&
+                          !first_of_point_1.compare_exchange_weak(seen, block)) {
+                   }
+                 })));
     EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
     EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
     EXPECT_EQ(of_point_0, 0);          // its result was stored
@@ -160,14 +156,14 @@ TEST(Restart, AStoppedServerGoesOnToTheSameBytes) {
   }
 }
 
-// What a kill or a power failure leaves: the files as they are at one moment, nothing said goodbye.
-TEST(Restart, ACopyTakenInTheMiddleGoesOnToTheSameBytes) {
+// What a kill or a power failure leaves: the files as they are at one moment.
+TEST(Restart, ACopyTakenInTheMiddleResumesToTheSameBytes) {
   TemporaryFolder folder, copy;
   const v1::EnsembleSpec spec = FirstHitByBilliard();
   std::string name;
   {
     Gate gate;
-    RunningServer server(Options(folder.path(), 2, StuckInTheMiddle(gate)));
+    RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate)));
     name = server.Submit(spec);
     gate.AwaitWaiting(2);
     server.Submit(SmallEquilibrium());  // its commit takes along all that was recorded before
@@ -175,58 +171,53 @@ TEST(Restart, ACopyTakenInTheMiddleGoesOnToTheSameBytes) {
       std::filesystem::copy_file(folder.File(file), copy.File(file));
     }
   }
-  RunningServer server(Options(copy.path(), 8, nullptr));
+  RunningServer server(InFolder(copy, 8, nullptr));
   const EnsembleJob job = server.AwaitEnd(name);
   EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(job.progress().samples(), 6 * 4096);
   EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
 }
 
-TEST(Restart, AnEndedJobStaysAsItWas) {
+TEST(Restart, AnEndedJobStaysUnchanged) {
   TemporaryFolder folder;
   std::string name;
   EnsembleJob before;
   std::vector<std::string> bytes;
   {
-    RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+    RunningServer server(InFolder(folder));
     name = server.Submit(Equilibrium(3, 5));
     before = server.AwaitEnd(name);
     bytes = server.ResultBytes(name);
   }
-  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  RunningServer server(InFolder(folder));
   EXPECT_EQ(server.Get(name).SerializeAsString(), before.SerializeAsString());
   EXPECT_EQ(server.ResultBytes(name), bytes);
 }
 
 TEST(Restart, ARequestIdIsRemembered) {
   TemporaryFolder folder;
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = Equilibrium(1, 5);
-  request.set_request_id("123e4567-e89b-12d3-a456-426614174000");
-  EnsembleJob first, again;
+  const auto request = CreateRequest(Equilibrium(1, 5), kUuid);
+  EnsembleJob first;
   {
-    RunningServer server(Options(folder.path(), 1, FakeExperiments()));
-    ASSERT_TRUE(server.Create(request, &first).ok());
+    RunningServer server(InFolder(folder));
+    first = server.Created(request);
   }
-  RunningServer server(Options(folder.path(), 1, FakeExperiments()));
-  ASSERT_TRUE(server.Create(request, &again).ok());
+  RunningServer server(InFolder(folder));
+  const EnsembleJob again = server.Created(request);
   EXPECT_EQ(again.name(), first.name());
 }
 
-// Runs `sql` on the store of a server that is not running.
 void Change(const TemporaryFolder& folder, const std::string& sql) {
-  auto database = OpenStoreFile(folder.File("store.sqlite3"));
-  ASSERT_TRUE(database.ok()) << database.status();
-  ASSERT_TRUE((*database)->Execute(sql).ok());
+  ChangeStore(folder.File("store.sqlite3"), sql);
 }
 
 // A job of the fake experiments, stopped with a finished point and some blocks of the second.
 std::string LeaveUnfinished(const TemporaryFolder& folder) {
   Gate gate;
-  RunningServer server(Options(
-      folder.path(), 2, FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
-        if (point == 1 && block >= 10) gate.Pass(stop);
-      })));
+  RunningServer server(
+      InFolder(folder, 2, FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
+                 if (point == 1 && block >= 10) gate.Pass(stop);
+               })));
   const std::string name = server.Submit(Equilibrium(2, 50));
   gate.AwaitWaiting(2);
   return name;
@@ -236,22 +227,22 @@ TEST(Restart, ACancellingJobBecomesCancelled) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
   Change(folder, "UPDATE jobs SET state = 3");
-  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  RunningServer server(InFolder(folder));
   const EnsembleJob job = server.Get(name);
   EXPECT_EQ(job.state(), EnsembleJob::CANCELLED);
   EXPECT_EQ(job.progress().points_done(), 1);
   EXPECT_EQ(server.ResultBytes(name).size(), 1u);
 }
 
-TEST(Restart, AnotherEngineComputesAllAnew) {
+TEST(Restart, AnotherEngineComputesAllAgain) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
   Change(folder,
          "UPDATE jobs SET engine_version = '0.0.1'; UPDATE results SET result = x'00';"
          "UPDATE blocks SET record = x'00'");
   std::atomic<int> computed = 0;
-  RunningServer server(Options(
-      folder.path(), 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
+  RunningServer server(
+      InFolder(folder, 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
   const EnsembleJob job = server.AwaitEnd(name);
   EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(job.engine_version(), EngineVersion());
@@ -263,23 +254,23 @@ TEST(Restart, AJobThatCannotBeReadFails) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
   Change(folder, "UPDATE jobs SET spec = x'ff'");
-  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  RunningServer server(InFolder(folder));
   const EnsembleJob job = server.Get(name);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("cannot be read"));
 }
 
-TEST(Restart, AJobWhoseBlocksAreDamagedFailsAndTheServerStays) {
+TEST(Restart, AJobWithDamagedBlocksFailsAndTheServerStays) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
   Change(folder, "UPDATE blocks SET record = x'ff'");
-  RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+  RunningServer server(InFolder(folder));
   EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::FAILED);
-  EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(1, 5))).state(), EnsembleJob::SUCCEEDED);
+  server.Succeeded(Equilibrium(1, 5));
 }
 
-// Even if what it says of itself would take all memory, or none at all.
-TEST(Restart, AJobWhoseRowsDoNotFitItFailsAndTheServerStays) {
+// Even if its number of points would take all memory.
+TEST(Restart, AJobWithImpossibleRowsFailsAndTheServerStays) {
   for (const char* damage :
        {"UPDATE jobs SET points = -1", "UPDATE jobs SET points = 1 << 60",
         "UPDATE jobs SET points = 1", "UPDATE results SET point = 7",
@@ -287,11 +278,11 @@ TEST(Restart, AJobWhoseRowsDoNotFitItFailsAndTheServerStays) {
     TemporaryFolder folder;
     const std::string name = LeaveUnfinished(folder);
     Change(folder, damage);
-    RunningServer server(Options(folder.path(), 2, FakeExperiments()));
+    RunningServer server(InFolder(folder));
     const EnsembleJob job = server.AwaitEnd(name);
     EXPECT_EQ(job.state(), EnsembleJob::FAILED) << damage;
     EXPECT_NE(job.error().message(), "") << damage;
-    EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(1, 5))).state(), EnsembleJob::SUCCEEDED);
+    server.Succeeded(Equilibrium(1, 5));
   }
 }
 

@@ -1,25 +1,36 @@
 #include "tests/server/secure_server.h"
 
-#include <openssl/bio.h>
-#include <openssl/ssl.h>
 #include <sys/stat.h>
 
 #include <fstream>
+#include <utility>
 
-#include "grpcpp/create_channel.h"
 #include "server/security/access_entry.h"
-#include "tests/server/fake_experiments.h"
-#include "tests/support/running_server.h"
 
 namespace ballpiston::server {
-namespace {
 
-std::string Line(const std::string& token, const Principal& principal,
-                 absl::Time expires = absl::InfiniteFuture()) {
+std::string TokenLine(const std::string& token, const Principal& principal, absl::Time expires) {
   return FormatAccessEntry({HashOf(token), principal, expires}) + "\n";
 }
 
-}  // namespace
+std::string LaboratoryTokens() {
+  const absl::Time past = absl::FromUnixSeconds(1'000'000'000);
+  return TokenLine(kAlice, {"alice", Role::kSubmit}) +
+         TokenLine(kAliceReads, {"alice", Role::kRead}) +
+         TokenLine(kAliceOnce, {"alice", Role::kAdmin}, past) +
+         TokenLine(kBob, {"bob", Role::kSubmit}) + TokenLine(kOps, {"ops", Role::kAdmin});
+}
+
+std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca,
+                                                         const KeyAndCertificate& own) {
+  grpc::SslCredentialsOptions options;
+  options.pem_root_certs = ca;
+  options.pem_cert_chain = own.certificate;
+  options.pem_private_key = own.key;
+  return grpc::SslCredentials(options);
+}
+
+// ---- LaboratoryFiles ----
 
 LaboratoryFiles::LaboratoryFiles(bool mutual) {
   options_.access_file = Path("access");
@@ -42,49 +53,35 @@ void LaboratoryFiles::WriteCertificate(const KeyAndCertificate& made) const {
   Write("server.key", made.key);
 }
 
-std::string LaboratoryTokens() {
-  const absl::Time past = absl::FromUnixSeconds(1'000'000'000);
-  return Line(kAlice, {"alice", Role::kSubmit}) + Line(kAliceReads, {"alice", Role::kRead}) +
-         Line(kAliceOnce, {"alice", Role::kAdmin}, past) + Line(kBob, {"bob", Role::kSubmit}) +
-         Line(kOps, {"ops", Role::kAdmin});
+std::shared_ptr<grpc::ChannelCredentials> LaboratoryFiles::Credentials(
+    const std::string& token, const KeyAndCertificate& own) const {
+  const auto tls = TlsCredentials(authority_.Pem(), own);
+  if (token.empty()) return tls;
+  return grpc::CompositeChannelCredentials(tls, grpc::AccessTokenCredentials(token));
 }
 
-ServerOptions SecureOptions(const SecurityOptions& security, const std::string& data_dir) {
-  ServerOptions options;
-  options.data_dir = data_dir;
-  options.listen = "127.0.0.1:0";
-  options.security = security;
-  options.factory = FakeExperiments();
-  options.store.stall = kNeverStalls;
+TestServerOptions Secure(const LaboratoryFiles& files, TestServerOptions options) {
+  if (options.listen.empty()) options.listen = "127.0.0.1:0";
+  options.security = files.options();
+  if (options.credentials == nullptr) options.credentials = files.Credentials();
   return options;
 }
 
-std::shared_ptr<grpc::Channel> SecureChannel(const std::string& address, const std::string& ca,
-                                             const KeyAndCertificate& own) {
-  grpc::SslCredentialsOptions options;
-  options.pem_root_certs = ca;
-  options.pem_cert_chain = own.certificate;
-  options.pem_private_key = own.key;
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-  return grpc::CreateCustomChannel(address, grpc::SslCredentials(options), arguments);
-}
+// ---- SilentTlsConnection ----
 
-std::string ServedCommonName(const std::string& address) {
-  const std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context(SSL_CTX_new(TLS_client_method()),
-                                                             &SSL_CTX_free);
-  const std::unique_ptr<BIO, void (*)(BIO*)> connection(BIO_new_ssl_connect(context.get()),
-                                                        &BIO_free_all);
-  BIO_set_conn_hostname(connection.get(), address.c_str());
+SilentTlsConnection::SilentTlsConnection(const std::string& address)
+    : context_(SSL_CTX_new(TLS_client_method()), &SSL_CTX_free),
+      connection_(BIO_new_ssl_connect(context_.get()), &BIO_free_all) {
+  BIO_set_conn_hostname(connection_.get(), address.c_str());
   SSL* ssl = nullptr;
-  BIO_get_ssl(connection.get(), &ssl);
+  BIO_get_ssl(connection_.get(), &ssl);
   const unsigned char alpn[] = "\x02h2";
   SSL_set_alpn_protos(ssl, alpn, 3);
-  if (BIO_do_connect(connection.get()) != 1) return "";
+  if (BIO_do_connect(connection_.get()) != 1) return;
   const std::unique_ptr<X509, void (*)(X509*)> shown(SSL_get1_peer_certificate(ssl), &X509_free);
   char name[256] = "";
   X509_NAME_get_text_by_NID(X509_get_subject_name(shown.get()), NID_commonName, name, sizeof(name));
-  return name;
+  served_common_name_ = name;
 }
 
 }  // namespace ballpiston::server

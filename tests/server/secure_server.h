@@ -1,14 +1,23 @@
-// A server behind TLS in this process, with the credentials of a small laboratory: alice, who
-// submits jobs and has a second token that may only read; bob, who submits too; ops, who may all.
+// The credentials of a small laboratory, for a server behind TLS: alice, who submits jobs and has a
+// second token that may only read; bob, who submits too; ops, an administrator.
+//
+//   LaboratoryFiles files;
+//   RunningServer server(Secure(files));
+//   TestClient alice(server.NewChannel(files.Credentials(kAlice)));
 #ifndef BALLPISTON_TESTS_SERVER_SECURE_SERVER_H_
 #define BALLPISTON_TESTS_SERVER_SECURE_SERVER_H_
+
+#include <openssl/bio.h>
+#include <openssl/ssl.h>
 
 #include <memory>
 #include <string>
 
-#include "grpcpp/channel.h"
-#include "server/ballpiston_server.h"
+#include "absl/time/time.h"
+#include "grpcpp/security/credentials.h"
+#include "server/security/principal.h"
 #include "tests/credentials/test_authority.h"
+#include "tests/support/running_server.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -18,6 +27,15 @@ inline constexpr char kAliceReads[] = "token-of-alice-that-reads";
 inline constexpr char kAliceOnce[] = "token-of-alice-that-expired";
 inline constexpr char kBob[] = "token-of-bob-0123456789";
 inline constexpr char kOps[] = "token-of-ops-0123456789";
+
+// Of an access file: one token, and all five.
+std::string TokenLine(const std::string& token, const Principal& principal,
+                      absl::Time expires = absl::InfiniteFuture());
+std::string LaboratoryTokens();
+
+// TLS to a server whose authority is `ca` (PEM). `own` is the client's certificate, if it has one.
+std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca,
+                                                         const KeyAndCertificate& own = {});
 
 // A folder with an access file of these tokens, and certificates of an authority of its own.
 class LaboratoryFiles {
@@ -33,25 +51,34 @@ class LaboratoryFiles {
   void WriteAccessFile(const std::string& text) const { Write("access", text); }
   void WriteCertificate(const KeyAndCertificate& made) const;
 
+  // Of a client that trusts the laboratory's authority and shows the token with each call; empty:
+  // none.
+  std::shared_ptr<grpc::ChannelCredentials> Credentials(const std::string& token = "",
+                                                        const KeyAndCertificate& own = {}) const;
+
  private:
   TemporaryFolder folder_;
   TestAuthority authority_{"the laboratory's authority"};
   SecurityOptions options_;
 };
 
-// The lines of all five tokens.
-std::string LaboratoryTokens();
+// These options at any free port of this machine, behind the laboratory's TLS. The server's own
+// client shows no token, unless the options have credentials.
+TestServerOptions Secure(const LaboratoryFiles& files, TestServerOptions options = {});
 
-// At any free port of this machine, with fake experiments.
-ServerOptions SecureOptions(const SecurityOptions& security, const std::string& data_dir);
+// A client that makes TLS and says nothing.
+class SilentTlsConnection {
+ public:
+  explicit SilentTlsConnection(const std::string& address);
 
-// TLS to a server whose authority is `ca` (PEM); a connection of its own. `own` is the client's
-// certificate, if it has one.
-std::shared_ptr<grpc::Channel> SecureChannel(const std::string& address, const std::string& ca,
-                                             const KeyAndCertificate& own = {});
+  // The common name in the certificate that the server showed; empty if they made no TLS.
+  const std::string& served_common_name() const { return served_common_name_; }
 
-// The common name in the certificate that the server shows a new client now; empty if none.
-std::string ServedCommonName(const std::string& address);
+ private:
+  const std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context_;
+  const std::unique_ptr<BIO, void (*)(BIO*)> connection_;
+  std::string served_common_name_;
+};
 
 }  // namespace ballpiston::server
 

@@ -5,11 +5,9 @@
 
 namespace ballpiston::server {
 
-UnreadCall::UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-                       const std::string& bearer)
+UnreadCall::UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
     : stub_(channel) {
   context_.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(10));
-  if (!bearer.empty()) context_.AddMetadata("authorization", "Bearer " + bearer);
   call_ = stub_.PrepareCall(&context_, method, &queue_);
   call_->StartCall(this);
   Next();

@@ -13,9 +13,7 @@ namespace ballpiston::server {
 
 class UnreadCall {
  public:
-  // `bearer`: a token; empty: none is shown.
-  UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
-             const std::string& bearer = "");
+  UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method);
   ~UnreadCall();  // cancels it, if it has not ended
   UnreadCall(const UnreadCall&) = delete;
   UnreadCall& operator=(const UnreadCall&) = delete;

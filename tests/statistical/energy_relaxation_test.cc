@@ -20,21 +20,16 @@
 
 #include "core/experiment/point_experiment.h"
 #include "core/model_choice/limit_error.h"
-#include "tests/statistical/run_point.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-
-EnsembleSpec SpecOf(Model model, double delta, int64_t orbits, std::optional<double> epsilon = {}) {
-  EnsembleSpec spec = {.experiment = Experiment::kEnergyRelaxation,
-                       .grid = {.rho = {kPaperRho}, .delta = {delta}},
-                       .target = {.samples = orbits},
-                       .seed = 2,
-                       .model = model};
-  if (epsilon) spec.grid.epsilon = {*epsilon};
-  return spec;
+EnsembleSpec SpecOfOrbits(Model model, double delta, int64_t orbits,
+                          std::optional<double> epsilon = {}) {
+  return SpecOf(Experiment::kEnergyRelaxation, PaperPoint(delta, epsilon), {.samples = orbits},
+                model, 2);
 }
 
 // Every other lag, from `first` on.
@@ -108,7 +103,7 @@ void Print(const Curve& curve) {
 // 160 million jumps. Scores: of the curve 3e-5, of a lag 33 * 6.8e-6, of the integral 6e-5: 3e-4
 // false alarms in all.
 TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
-  const auto point = PointExperiment::Create(SpecOf(Model::kMarkov, 0.1, 4'000'000), 0);
+  const auto point = PointExperiment::Create(SpecOfOrbits(Model::kMarkov, 0.1, 4'000'000), 0);
   const Blocks blocks = RunInBlocks(*point, 0);
   ASSERT_GT(blocks.curves.size(), 100u);
   const PointSummary summary = point->Summarize(blocks.merged);
@@ -137,7 +132,8 @@ TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
 // The same rates, twice. At lag 0 the energy is given.
 TEST(EnergyRelaxation, JumpProcessForgetsItsEnergyAsTheSpectrumSays) {
   for (const double epsilon : {0.01, 0.4}) {
-    const auto point = PointExperiment::Create(SpecOf(Model::kMarkov, 0.1, 4'000'000, epsilon), 0);
+    const auto point =
+        PointExperiment::Create(SpecOfOrbits(Model::kMarkov, 0.1, 4'000'000, epsilon), 0);
     const Blocks blocks = RunInBlocks(*point, 2);
     ASSERT_GT(blocks.curves.size(), 50u);
     const PointSummary summary = point->Summarize(blocks.merged);
@@ -173,7 +169,7 @@ void Print(const char* of, const Difference& difference) {
 // Slow pistons come back by the clock: 4.9 % +- 0.1 % was measured with 4 million orbits. Windows
 // of 4 errors of both: 6e-5.
 TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
-  const Difference large = FromLimit(RunPoint(SpecOf(Model::kBilliard, 0.2, 200'000)));
+  const Difference large = FromLimit(RunPoint(SpecOfOrbits(Model::kBilliard, 0.2, 200'000)));
   Print("delta = 0.2: ", large);
   EXPECT_GT(large.value, 10 * large.standard_error);
   EXPECT_NEAR(large.value, 0.049, 4 * std::hypot(large.standard_error, 0.001));
@@ -182,8 +178,8 @@ TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
 // What is expected of the limit's error bounds it, and a pilot at a larger delta does: 4 errors of
 // the billiard's, 6e-5.
 TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
-  const PointParameters point = {.rho = kPaperRho, .delta = 0.05};
-  const Difference small = FromLimit(RunPoint(SpecOf(Model::kBilliard, point.delta, 60'000)));
+  const PointParameters point = PaperPoint(0.05);
+  const Difference small = FromLimit(RunPoint(SpecOfOrbits(Model::kBilliard, point.delta, 60'000)));
   const PilotPlace place = PilotPlaceFor(point);
   const Pilot pilot = RunPilot(place, {}).value();
   Print("delta = 0.05: ", small);
@@ -191,7 +187,7 @@ TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
   EXPECT_LT(std::fabs(small.value), 2 * ExpectedLimitError(point) + 4 * small.standard_error);
   EXPECT_LT(std::fabs(small.value),
             LimitErrorBound(pilot, place, point) + 4 * small.standard_error);
-  const double at_place = ExpectedLimitError({kPaperRho, place.delta, {}, {}});
+  const double at_place = ExpectedLimitError(PaperPoint(place.delta));
   EXPECT_LT(std::fabs(pilot.difference), 2 * at_place + 4 * pilot.standard_error);
 }
 
@@ -202,9 +198,9 @@ double Score(const CurvePoint& a, const CurvePoint& b) {
 // In equilibrium C(0) is the energies' variance, 1/45 whatever delta. With it 36 scores below 4.5,
 // 2e-4 false alarms; orbits are independent.
 TEST(EnergyRelaxation, EnginesAgree) {
-  EnsembleSpec reference = SpecOf(Model::kBilliardReference, 0.2, 20'000);
+  EnsembleSpec reference = SpecOfOrbits(Model::kBilliardReference, 0.2, 20'000);
   reference.seed = 3;
-  const PointSummary lanes = RunPoint(SpecOf(Model::kBilliard, 0.2, 100'000));
+  const PointSummary lanes = RunPoint(SpecOfOrbits(Model::kBilliard, 0.2, 100'000));
   const PointSummary slow = RunPoint(reference);
   EXPECT_EQ(lanes.health.escapes + slow.health.escapes, 0u);
   EXPECT_EQ(lanes.samples, 100'000u);

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/statistical/run_point.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
@@ -19,10 +20,8 @@ using Estimates = std::map<std::string, Estimate>;
 constexpr double kDeltas[] = {0.3, 0.2, 0.1, 0.05};
 
 Estimates At(double delta, int64_t collisions) {
-  EnsembleSpec spec = {.experiment = Experiment::kMarkovProperty,
-                       .grid = {.rho = {0.529561127988977}, .delta = {delta}},
-                       .target = {.collisions = collisions}};
-  spec.seed = 30;
+  const EnsembleSpec spec = SpecOf(Experiment::kMarkovProperty, PaperPoint(delta),
+                                   {.collisions = collisions}, Model::kBilliard, 30);
   Estimates estimates;
   for (const Estimate& estimate : RunPoint(spec).estimates) estimates[estimate.name] = estimate;
   return estimates;

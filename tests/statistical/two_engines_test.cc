@@ -11,8 +11,10 @@
 #include "core/closed_form/ingoing_law.h"
 #include "core/experiment/return_orbits.h"
 #include "core/geometry/elementary_functions.h"
+#include "core/geometry/paper.h"
 #include "core/statistics/histogram.h"
 #include "core/statistics/moments.h"
+#include "tests/core/geometries.h"
 #include "tests/oracle/two_sample.h"
 
 namespace ballpiston {
@@ -72,8 +74,7 @@ class FirstHits {
 
 // The seed is the engine's, so that the two samples are independent.
 FirstHits Sample(Engine engine, const Point& point) {
-  const PairGeometry geometry =
-      *PairGeometry::Create(point.rho, point.share * PairDeltaBound(point.rho));
+  const PairGeometry geometry = GeometryAtShare(point.rho, point.share);
   FirstHits hits(point.epsilon);
   for (uint64_t first = 0; first < kSamples; first += kSamplesOfARun) {
     ReturnOrbits orbits(geometry, {point.epsilon, point.exponent},
@@ -111,20 +112,18 @@ TEST_P(TwoEngines, AgreeInMeansAndLaws) {
   EXPECT_LT(distance, 2.3);
 }
 
-INSTANTIATE_TEST_SUITE_P(FromCuspsToVanishingCells, TwoEngines,
-                         testing::Values(Point{0.500001, 1, 0.25, 1}, Point{0.501, 1, 0.125, 1},
-                                         Point{0.501, 0.7, 0.375, 10},
-                                         Point{0.505, 0.7, 0.46875, 1}, Point{0.505, 1, 0.03125, 5},
-                                         Point{0.51, 1, 0.125, 10}, Point{0.51, 0.5, 0.46875, 1},
-                                         Point{0.529561127988977, 1, 0.125, 1},
-                                         Point{0.529561127988977, 1, 0.03125, 0},
-                                         Point{0.529561127988977, 0.7, 0.25, 10},
-                                         Point{0.529561127988977, 0.5, 0.375, 0.5},
-                                         Point{0.529561127988977, 0.3, 0.46875, 5},
-                                         Point{0.56, 1, 0.03125, 1}, Point{0.56, 0.7, 0.375, 0},
-                                         Point{0.6, 1, 0.125, 5}, Point{0.6, 0.7, 0.46875, 2.5},
-                                         Point{0.65, 1, 0.25, 1}, Point{0.69, 1, 0.375, 5},
-                                         Point{0.7, 1, 0.46875, 1}, Point{0.705, 1, 0.499, 10}));
+INSTANTIATE_TEST_SUITE_P(
+    FromCuspsToVanishingCells, TwoEngines,
+    testing::Values(Point{0.500001, 1, 0.25, 1}, Point{0.501, 1, 0.125, 1},
+                    Point{0.501, 0.7, 0.375, 10}, Point{0.505, 0.7, 0.46875, 1},
+                    Point{0.505, 1, 0.03125, 5}, Point{0.51, 1, 0.125, 10},
+                    Point{0.51, 0.5, 0.46875, 1}, Point{kPaperRho, 1, 0.125, 1},
+                    Point{kPaperRho, 1, 0.03125, 0}, Point{kPaperRho, 0.7, 0.25, 10},
+                    Point{kPaperRho, 0.5, 0.375, 0.5}, Point{kPaperRho, 0.3, 0.46875, 5},
+                    Point{0.56, 1, 0.03125, 1}, Point{0.56, 0.7, 0.375, 0}, Point{0.6, 1, 0.125, 5},
+                    Point{0.6, 0.7, 0.46875, 2.5}, Point{0.65, 1, 0.25, 1},
+                    Point{0.69, 1, 0.375, 5}, Point{0.7, 1, 0.46875, 1},
+                    Point{0.705, 1, 0.499, 10}));
 
 }  // namespace
 }  // namespace ballpiston

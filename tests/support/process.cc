@@ -1,8 +1,10 @@
 #include "tests/support/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -62,11 +64,13 @@ Process::Process(const ProcessOptions& options) {
   posix_spawn_file_actions_adddup2(&actions, out.write, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
   const std::vector<std::string> environment = Environment(options.environment);
-  const int error = posix_spawnp(&pid_, options.command[0].c_str(), &actions, nullptr,
-                                 Pointers(options.command).data(), Pointers(environment).data());
+  std::vector<std::string> command = {"setpriv", "--pdeathsig", "KILL"};
+  command.insert(command.end(), options.command.begin(), options.command.end());
+  const int error = posix_spawnp(&pid_, command[0].c_str(), &actions, nullptr,
+                                 Pointers(command).data(), Pointers(environment).data());
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.read, out.write, err.write}) close(end);
-  if (error != 0) throw std::runtime_error("cannot start " + options.command[0]);
+  if (error != 0) throw std::runtime_error("cannot start " + command[0]);
   WriteAll(in.write, options.input);
   out_.descriptor = out.read;
   err_.descriptor = err.read;
@@ -94,13 +98,35 @@ void Process::Read(Stream& stream) {
   }
 }
 
-void Process::Signal(int signal) const { kill(pid_, signal); }
+void Process::Signal(int signal) const {
+  if (!waited_) kill(pid_, signal);
+}
+
+std::string Process::Output() const {
+  const std::lock_guard lock(mutex_);
+  return out_.text + err_.text;
+}
 
 bool Process::WaitForErr(const std::string& text) {
   std::unique_lock lock(mutex_);
   const auto found = [&] { return err_.text.find(text) != std::string::npos; };
   news_.wait(lock, [&] { return found() || err_.ended; });
   return found();
+}
+
+bool Process::WaitUntilStopped() const {
+  siginfo_t state = {};
+  if (!waited_) waitid(P_PID, static_cast<id_t>(pid_), &state, WSTOPPED | WEXITED | WNOWAIT);
+  return state.si_code == CLD_STOPPED;
+}
+
+bool Process::EndsWithin(std::chrono::milliseconds time) const {
+  if (waited_) return true;
+  pollfd end{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
+  if (end.fd < 0) throw std::runtime_error("pidfd_open failed");
+  const bool ended = poll(&end, 1, static_cast<int>(time.count())) > 0;
+  close(end.fd);
+  return ended;
 }
 
 ProcessResult Process::Wait() {

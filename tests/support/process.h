@@ -1,9 +1,13 @@
 // One running program: its output as it comes, its exit code at the end.
-#ifndef BALLPISTON_TESTS_END_TO_END_PROCESS_H_
-#define BALLPISTON_TESTS_END_TO_END_PROCESS_H_
+//
+// The program dies with the thread that started it (`setpriv --pdeathsig`), so that a test that
+// crashes or is killed leaves no process behind: start it in the test's main thread.
+#ifndef BALLPISTON_TESTS_SUPPORT_PROCESS_H_
+#define BALLPISTON_TESTS_SUPPORT_PROCESS_H_
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -14,9 +18,9 @@
 namespace ballpiston {
 
 struct ProcessOptions {
-  std::vector<std::string> command;                // path, arguments
-  std::map<std::string, std::string> environment;  // added to the test's own; empty value: removed
-  std::string input;                               // on standard input
+  std::vector<std::string> command;                     // path, arguments
+  std::map<std::string, std::string> environment = {};  // added to the test's own; empty: removed
+  std::string input = {};                               // on standard input
 };
 
 struct ProcessResult {
@@ -33,14 +37,21 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  void Signal(int signal) const;
+  void Signal(int signal) const;  // nothing if the program's end was waited for
+  pid_t pid() const { return pid_; }
+  std::string Output() const;  // standard output, then standard error, as far as they have come
+
   // Waits until standard error holds the text. False if the program ended without it.
   bool WaitForErr(const std::string& text);
   // Waits for a line of standard error for which `wanted` is true, and returns it; empty if the
   // program ended without one.
   template <typename Wanted>
   std::string WaitForErrLine(Wanted wanted);
-  ProcessResult Wait();
+  // Waits until SIGSTOP has stopped the program. False if it ended instead.
+  bool WaitUntilStopped() const;
+  // Waits until the program ends, but no longer than this. False if it still runs.
+  bool EndsWithin(std::chrono::milliseconds time) const;
+  ProcessResult Wait();  // until the program ends; later calls return the same
 
  private:
   struct Stream {
@@ -54,7 +65,7 @@ class Process {
   pid_t pid_ = 0;
   int exit_code_ = -1;
   bool waited_ = false;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable news_;
   Stream out_, err_;
 };
@@ -81,4 +92,4 @@ ProcessResult RunProgram(const ProcessOptions& options);
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_TESTS_END_TO_END_PROCESS_H_
+#endif  // BALLPISTON_TESTS_SUPPORT_PROCESS_H_

@@ -1,11 +1,12 @@
 #include "tests/support/running_server.h"
 
+#include <stdexcept>
 #include <utility>
 
-#include "google/rpc/status.pb.h"
 #include "grpc/grpc.h"
 #include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -17,66 +18,93 @@ namespace {
   return true;
 }();
 
-}  // namespace
+// A busy machine may take long for a commit, although no disk hangs.
+constexpr std::chrono::hours kNeverStalls(1);
 
-ErrorDetails DetailsOf(const grpc::Status& status) {
-  ErrorDetails details;
-  google::rpc::Status rpc;
-  rpc.ParseFromString(status.error_details());
-  for (const auto& any : rpc.details()) {
-    google::rpc::ErrorInfo info;
-    google::rpc::BadRequest request;
-    if (any.UnpackTo(&info)) details.reason = info.reason();
-    if (!any.UnpackTo(&request)) continue;
-    for (const auto& violation : request.field_violations()) {
-      details.fields.push_back(violation.field());
-    }
-  }
-  return details;
+ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& options) {
+  ServerOptions all;
+  all.data_dir = data_dir;
+  all.listen = options.listen;
+  all.security = options.security;
+  all.socket_users = options.socket_users;
+  all.workers = options.workers;
+  all.factory = options.factory;
+  all.compare = options.compare;
+  all.watch = options.watch;
+  all.connections = options.connections;
+  all.limits = options.limits;
+  all.metrics_listen = options.metrics_listen;
+  all.store = {.delay = std::chrono::milliseconds(1), .stall = kNeverStalls};
+  return all;
 }
 
-RunningServer::RunningServer(ServerOptions options) {
-  options.store.stall = kNeverStalls;
-  auto server = BallpistonServer::Start(std::move(options));
-  EXPECT_TRUE(server.ok()) << server.status();
-  server_ = *std::move(server);
-  // A pool of its own: a later server at the same path is a new one.
+// A connection of its own: gRPC shares one among channels to the same address otherwise, also with
+// a server that is gone.
+std::shared_ptr<grpc::Channel> ChannelTo(
+    const std::string& address, const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-  channel_ =
-      grpc::CreateCustomChannel(server_->address(), grpc::InsecureChannelCredentials(), arguments);
-  ensemble_ = v1::EnsembleService::NewStub(channel_);
-  analytic_ = v1::AnalyticService::NewStub(channel_);
-  method_ = v1::MethodService::NewStub(channel_);
+  return grpc::CreateCustomChannel(
+      address, credentials != nullptr ? credentials : grpc::InsecureChannelCredentials(),
+      arguments);
 }
 
-grpc::Status RunningServer::Create(const v1::CreateEnsembleJobRequest& request,
-                                   v1::EnsembleJob* job) {
+template <typename Response, typename Request, typename Fetch>
+std::vector<Response> AllPages(Request request, Fetch fetch) {
+  std::vector<Response> pages;
+  do {
+    pages.push_back(fetch(request));
+    request.set_page_token(pages.back().next_page_token());
+  } while (!request.page_token().empty());
+  return pages;
+}
+
+}  // namespace
+
+// ---- TestClient ----
+
+TestClient::TestClient(std::shared_ptr<grpc::Channel> channel)
+    : channel_(std::move(channel)),
+      ensemble_(v1::EnsembleService::NewStub(channel_)),
+      analytic_(v1::AnalyticService::NewStub(channel_)),
+      method_(v1::MethodService::NewStub(channel_)),
+      server_(v1::ServerService::NewStub(channel_)) {}
+
+grpc::Status TestClient::Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job) {
   grpc::ClientContext context;
-  return ensemble_->CreateEnsembleJob(&context, request, job);
+  v1::EnsembleJob unwanted;
+  return ensemble_->CreateEnsembleJob(&context, request, job != nullptr ? job : &unwanted);
 }
 
-std::string RunningServer::Submit(const v1::EnsembleSpec& spec) {
+v1::EnsembleJob TestClient::Created(const v1::CreateEnsembleJobRequest& request) {
+  v1::EnsembleJob job;
+  EXPECT_OK(Create(request, &job));
+  return job;
+}
+
+std::string TestClient::Submit(const v1::EnsembleSpec& spec) {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = spec;
   request.set_fresh(true);
-  v1::EnsembleJob job;
-  const grpc::Status status = Create(request, &job);
-  EXPECT_TRUE(status.ok()) << status.error_message();
-  return job.name();
+  return Created(request).name();
 }
 
-v1::EnsembleJob RunningServer::Get(const std::string& name) {
+std::string TestClient::Succeeded(const v1::EnsembleSpec& spec) {
+  const std::string name = Submit(spec);
+  EXPECT_EQ(AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
+  return name;
+}
+
+v1::EnsembleJob TestClient::Get(const std::string& name) {
   grpc::ClientContext context;
   v1::GetEnsembleJobRequest request;
   request.set_name(name);
   v1::EnsembleJob job;
-  const grpc::Status status = ensemble_->GetEnsembleJob(&context, request, &job);
-  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_OK(ensemble_->GetEnsembleJob(&context, request, &job));
   return job;
 }
 
-grpc::Status RunningServer::Cancel(const std::string& name, const std::string& request_id) {
+grpc::Status TestClient::Cancel(const std::string& name, const std::string& request_id) {
   grpc::ClientContext context;
   v1::CancelEnsembleJobRequest request;
   request.set_name(name);
@@ -85,7 +113,7 @@ grpc::Status RunningServer::Cancel(const std::string& name, const std::string& r
   return ensemble_->CancelEnsembleJob(&context, request, &job);
 }
 
-grpc::Status RunningServer::Delete(const std::string& name) {
+grpc::Status TestClient::Delete(const std::string& name) {
   grpc::ClientContext context;
   v1::DeleteEnsembleJobRequest request;
   request.set_name(name);
@@ -93,7 +121,7 @@ grpc::Status RunningServer::Delete(const std::string& name) {
   return ensemble_->DeleteEnsembleJob(&context, request, &empty);
 }
 
-v1::EnsembleJob RunningServer::AwaitEnd(const std::string& name) {
+v1::EnsembleJob TestClient::AwaitEnd(const std::string& name) {
   grpc::ClientContext context;
   v1::WatchEnsembleJobRequest request;
   request.set_name(name);
@@ -103,46 +131,83 @@ v1::EnsembleJob RunningServer::AwaitEnd(const std::string& name) {
   while (stream->Read(&message)) {
     if (message.has_job()) last = message.job();
   }
-  const grpc::Status status = stream->Finish();
-  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_OK(stream->Finish());
   return last;
 }
 
-std::vector<std::string> RunningServer::ResultBytes(const std::string& name) {
-  std::vector<std::string> bytes;
+v1::ServerStatus TestClient::Status() {
+  grpc::ClientContext context;
+  v1::ServerStatus status;
+  EXPECT_OK(server_->GetServerStatus(&context, {}, &status));
+  return status;
+}
+
+v1::ListEnsembleJobsResponse TestClient::List(const v1::ListEnsembleJobsRequest& request) {
+  grpc::ClientContext context;
+  v1::ListEnsembleJobsResponse response;
+  EXPECT_OK(ensemble_->ListEnsembleJobs(&context, request, &response));
+  return response;
+}
+
+v1::ListResultsResponse TestClient::Results(const v1::ListResultsRequest& request) {
+  grpc::ClientContext context;
+  v1::ListResultsResponse response;
+  EXPECT_OK(ensemble_->ListResults(&context, request, &response));
+  return response;
+}
+
+std::vector<v1::ListEnsembleJobsResponse> TestClient::Pages(v1::ListEnsembleJobsRequest request) {
+  return AllPages<v1::ListEnsembleJobsResponse>(std::move(request),
+                                                [this](const auto& page) { return List(page); });
+}
+
+std::vector<v1::ListResultsResponse> TestClient::Pages(v1::ListResultsRequest request) {
+  return AllPages<v1::ListResultsResponse>(std::move(request),
+                                           [this](const auto& page) { return Results(page); });
+}
+
+std::vector<std::string> TestClient::ResultBytes(const std::string& name) {
   v1::ListResultsRequest request;
   request.set_parent(name);
-  do {
-    grpc::ClientContext context;
-    v1::ListResultsResponse response;
-    const grpc::Status status = ensemble_->ListResults(&context, request, &response);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    for (const auto& point : response.points()) bytes.push_back(point.SerializeAsString());
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
+  std::vector<std::string> bytes;
+  for (const auto& page : Pages(request)) {
+    for (const auto& point : page.points()) bytes.push_back(point.SerializeAsString());
+  }
   return bytes;
 }
 
-v1::EnsembleSpec Equilibrium(int points, int64_t collisions) {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::EQUILIBRIUM);
-  spec.mutable_grid()->add_rho(0.53);
-  for (int i = 0; i < points; ++i) spec.mutable_grid()->add_delta(0.1 + 1e-6 * i);
-  spec.mutable_target()->set_collisions(collisions);
-  spec.set_seed(1);
-  return spec;
+// ---- RunningServer ----
+
+RunningServer::RunningServer(const TestServerOptions& options)
+    : RunningServer(Start(options), options.credentials) {}
+
+RunningServer::RunningServer(Started started,
+                             const std::shared_ptr<grpc::ChannelCredentials>& credentials)
+    : TestClient(ChannelTo(started.server->address(), credentials)),
+      folder_(std::move(started.folder)),
+      server_(std::move(started.server)) {}
+
+RunningServer::Started RunningServer::Start(const TestServerOptions& options) {
+  Started started;
+  if (options.data_dir.empty()) started.folder = std::make_unique<TemporaryFolder>();
+  auto server = BallpistonServer::Start(
+      OptionsIn(started.folder != nullptr ? started.folder->path() : options.data_dir, options));
+  EXPECT_OK(server);
+  if (!server.ok()) throw std::runtime_error("the server does not start");
+  started.server = *std::move(server);
+  return started;
 }
 
-v1::EnsembleSpec SmallFirstHit() {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::FIRST_HIT);
-  spec.mutable_grid()->add_rho(0.53);
-  for (const double delta : {0.3, 0.25, 0.2}) spec.mutable_grid()->add_delta(delta);
-  for (const double epsilon : {0.1, 0.4}) spec.mutable_grid()->add_epsilon(epsilon);
-  spec.mutable_grid()->add_exponent(1);
-  spec.mutable_target()->set_samples(4096);
-  spec.set_seed(42);
-  return spec;
+std::shared_ptr<grpc::Channel> RunningServer::NewChannel(
+    const std::shared_ptr<grpc::ChannelCredentials>& credentials) const {
+  return ChannelTo(address(), credentials);
+}
+
+absl::Status StartError(const TestServerOptions& options) {
+  const TemporaryFolder folder;
+  return BallpistonServer::Start(
+             OptionsIn(options.data_dir.empty() ? folder.path() : options.data_dir, options))
+      .status();
 }
 
 }  // namespace ballpiston::server

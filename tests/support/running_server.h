@@ -1,66 +1,113 @@
-// A server in this process, behind a Unix socket, and a client of it.
-#ifndef BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
-#define BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
+// A whole server in the test's process, and clients of it.
+//
+//   RunningServer server;  // fake experiments, a Unix socket in a temporary folder
+//   const std::string name = server.Submit(Equilibrium(2, 50));
+//   EXPECT_EQ(server.AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
+//
+//   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
+#ifndef BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_
+#define BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_
 
 #include <chrono>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/method.grpc.pb.h"
-#include "google/rpc/error_details.pb.h"
+#include "ballpiston/v1/server.grpc.pb.h"
 #include "grpcpp/channel.h"
+#include "grpcpp/security/credentials.h"
 #include "server/ballpiston_server.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 
-// What an error says of itself.
-struct ErrorDetails {
-  std::string reason;
-  std::vector<std::string> fields;  // of the violations
+// ServerOptions with the defaults that tests want.
+struct TestServerOptions {
+  std::string data_dir = {};  // empty: a temporary folder that ends with the server
+  std::string listen = {};    // empty: a Unix socket in the data folder
+  SecurityOptions security = {};
+  std::set<uid_t> socket_users = OwnUserAndRoot();
+  int workers = 2;
+  ExperimentFactory factory = FakeExperiments();  // null: the core's, by the chosen model
+  MethodComparer compare = nullptr;               // null: the core's
+  WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
+  ConnectionTiming connections = {};
+  Limits limits = {};
+  std::string metrics_listen = {};
+  std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // of its client; null: none
 };
 
-ErrorDetails DetailsOf(const grpc::Status& status);
-
-// A commit that takes long on a busy machine does not tell of a disk that hangs.
-inline constexpr std::chrono::hours kNeverStalls(1);
-
-class RunningServer {
+// A channel, and the calls that many tests make on it. Those that return no status expect OK.
+class TestClient {
  public:
-  explicit RunningServer(ServerOptions options);
+  explicit TestClient(std::shared_ptr<grpc::Channel> channel);
 
-  BallpistonServer& server() { return *server_; }
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
   v1::EnsembleService::Stub& ensemble() { return *ensemble_; }
   v1::AnalyticService::Stub& analytic() { return *analytic_; }
   v1::MethodService::Stub& method() { return *method_; }
 
-  grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job);
-  std::string Submit(const v1::EnsembleSpec& spec);  // a fresh job's name
+  grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job = nullptr);
+  v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request);
+  std::string Submit(const v1::EnsembleSpec& spec);     // a fresh job's name
+  std::string Succeeded(const v1::EnsembleSpec& spec);  // the same, when it has succeeded
   v1::EnsembleJob Get(const std::string& name);
   grpc::Status Cancel(const std::string& name, const std::string& request_id = "");
   grpc::Status Delete(const std::string& name);
   v1::EnsembleJob AwaitEnd(const std::string& name);  // by watching it
-  // All pages, each point serialized.
+  v1::ServerStatus Status();
+
+  v1::ListEnsembleJobsResponse List(const v1::ListEnsembleJobsRequest& request = {});
+  v1::ListResultsResponse Results(const v1::ListResultsRequest& request);
+  // All pages from that of `request` on.
+  std::vector<v1::ListEnsembleJobsResponse> Pages(v1::ListEnsembleJobsRequest request);
+  std::vector<v1::ListResultsResponse> Pages(v1::ListResultsRequest request);
+  // Of a job, all results, each serialized.
   std::vector<std::string> ResultBytes(const std::string& name);
 
  private:
-  std::unique_ptr<BallpistonServer> server_;
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::EnsembleService::Stub> ensemble_;
   std::unique_ptr<v1::AnalyticService::Stub> analytic_;
   std::unique_ptr<v1::MethodService::Stub> method_;
+  std::unique_ptr<v1::ServerService::Stub> server_;
 };
 
-// An equilibrium run that the fake experiments take (fake_experiments.h): so many points, so many
-// collisions, or fake blocks, each.
-v1::EnsembleSpec Equilibrium(int points, int64_t collisions);
+class RunningServer : public TestClient {
+ public:
+  // Throws, after a failed expectation, if the server does not start.
+  explicit RunningServer(const TestServerOptions& options = {});
 
-// All three experiments' worth of real work, small.
-v1::EnsembleSpec SmallFirstHit();
+  BallpistonServer& server() { return *server_; }
+  std::string address() const { return server_->address(); }
+  // A connection of its own; null: without credentials.
+  std::shared_ptr<grpc::Channel> NewChannel(
+      const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr) const;
+  void Shutdown(std::chrono::milliseconds drain = std::chrono::milliseconds(0)) {
+    server_->Shutdown(drain);
+  }
+
+ private:
+  struct Started {
+    std::unique_ptr<TemporaryFolder> folder;  // null: the test's
+    std::unique_ptr<BallpistonServer> server;
+  };
+  static Started Start(const TestServerOptions& options);
+  RunningServer(Started started, const std::shared_ptr<grpc::ChannelCredentials>& credentials);
+
+  std::unique_ptr<TemporaryFolder> folder_;
+  std::unique_ptr<BallpistonServer> server_;
+};
+
+// Why a server with these options does not start. OK: it starts.
+absl::Status StartError(const TestServerOptions& options);
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
+#endif  // BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_

@@ -22,8 +22,7 @@ namespace ballpiston {
 template <typename Result>
 absl::Status StatusOf(const Result& result) {
   if constexpr (requires { result.error_code(); }) {
-    return absl::Status(static_cast<absl::StatusCode>(result.error_code()),
-                        result.error_message());
+    return absl::Status(static_cast<absl::StatusCode>(result.error_code()), result.error_message());
   } else if constexpr (requires { result.status(); }) {
     return result.status();
   } else {
@@ -63,8 +62,9 @@ MATCHER_P(IsOkAndHolds, value, "") {
 #define ASSERT_OK(expression) ASSERT_THAT(expression, ::ballpiston::IsOk())
 
 // Declares or assigns the value of a StatusOr; ends the test if the StatusOr has none.
-#define ASSERT_OK_AND_ASSIGN(variable, expression) \
-  BALLPISTON_ASSERT_OK_AND_ASSIGN_(BALLPISTON_JOIN_(result_in_line_, __LINE__), variable, expression)
+#define ASSERT_OK_AND_ASSIGN(variable, expression)                                        \
+  BALLPISTON_ASSERT_OK_AND_ASSIGN_(BALLPISTON_JOIN_(result_in_line_, __LINE__), variable, \
+                                   expression)
 #define BALLPISTON_ASSERT_OK_AND_ASSIGN_(result, variable, expression) \
   auto result = (expression);                                          \
   ASSERT_OK(result);                                                   \

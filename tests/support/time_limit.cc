@@ -1,12 +1,9 @@
 #include "tests/support/time_limit.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <condition_variable>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <mutex>
 #include <string>
@@ -37,59 +34,61 @@ double TimeScale() {
   return scale == nullptr ? 1 : std::atof(scale);
 }
 
-void KillChildren() {
-  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
-    std::ifstream children(task.path() / "children");
-    for (pid_t child = 0; children >> child;) kill(child, SIGKILL);
-  }
-}
-
 [[noreturn]] void Fail(const std::string& test, double seconds) {
   std::cerr << absl::StrCat("[  HANGS   ] ", test, " has not ended after ", seconds,
-                            " s; the stacks of all threads:\n",
-                            ThreadStacks(), "[  FAILED  ] ", test, "\n")
+                            " s; the stacks of all threads:\n", ThreadStacks(), "[  FAILED  ] ",
+                            test, "\n")
             << std::flush;
-  KillChildren();
-  _exit(1);
+  _exit(1);  // child processes end with this one (process.h)
 }
 
-class TestClock : public testing::EmptyTestEventListener {
+// Watches the time of what the program does now. Lives until the process is gone.
+class Watchdog {
  public:
-  TestClock() { std::thread([this] { Watch(); }).detach(); }
-
-  void OnTestStart(const testing::TestInfo& test) override {
-    const std::string name = absl::StrCat(test.test_suite_name(), ".", test.name());
-    Start(name, TimeLimitOf(name));
-  }
-  void OnTestEnd(const testing::TestInfo&) override { Start("between two tests", kUsual); }
-  void OnTestProgramEnd(const testing::UnitTest&) override {
-    Start("the end of the program", kUsual);
+  Watchdog() {
+    Start("the beginning of the program", kUsual);
+    std::thread([this] { Watch(); }).detach();
   }
 
- private:
-  void Start(const std::string& name, std::chrono::seconds limit) {
+  void Start(const std::string& what, std::chrono::seconds limit) {
     const std::lock_guard lock(mutex_);
-    name_ = name;
+    what_ = what;
     seconds_ = TimeScale() * static_cast<double>(limit.count());
     deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                    std::chrono::duration<double>(seconds_));
     changed_.notify_one();
   }
 
+ private:
   void Watch() {
     std::unique_lock lock(mutex_);
     while (true) {
       const Clock::time_point deadline = deadline_;
       changed_.wait_until(lock, deadline);
-      if (deadline == deadline_ && Clock::now() >= deadline) Fail(name_, seconds_);
+      if (deadline == deadline_ && Clock::now() >= deadline) Fail(what_, seconds_);
     }
   }
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::string name_ = "the beginning of the program";
-  double seconds_ = static_cast<double>(kUsual.count());
-  Clock::time_point deadline_ = Clock::now() + kUsual;
+  std::string what_;
+  double seconds_ = 0;
+  Clock::time_point deadline_;
+};
+
+class WatchedTests : public testing::EmptyTestEventListener {
+ public:
+  void OnTestStart(const testing::TestInfo& test) override {
+    const std::string name = absl::StrCat(test.test_suite_name(), ".", test.name());
+    watchdog_.Start(name, TimeLimitOf(name));
+  }
+  void OnTestEnd(const testing::TestInfo&) override { watchdog_.Start("a set-up", kUsual); }
+  void OnTestProgramEnd(const testing::UnitTest&) override {
+    watchdog_.Start("the end of the program", kUsual);
+  }
+
+ private:
+  Watchdog& watchdog_ = *new Watchdog;
 };
 
 }  // namespace
@@ -103,7 +102,7 @@ std::chrono::seconds TimeLimitOf(std::string_view test) {
 
 void LimitTestTimes(const char* program) {
   absl::InitializeSymbolizer(program);
-  testing::UnitTest::GetInstance()->listeners().Append(new TestClock);  // gtest owns it
+  testing::UnitTest::GetInstance()->listeners().Append(new WatchedTests);  // gtest owns it
 }
 
 }  // namespace ballpiston

@@ -1,5 +1,5 @@
 // A test that hangs fails, and says where: at its time limit the program prints the test's name and
-// the stacks of all threads, ends its child processes, and exits with code 1.
+// the stacks of all threads, and exits with code 1.
 //
 // A test has 60 s. The few that need longer have a row in time_limit.cc. The environment variable
 // BALLPISTON_TEST_TIME_SCALE multiplies all limits: for slow sanitizers, emulators and debuggers.

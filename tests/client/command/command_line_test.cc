@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/client/fake_server.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 namespace {
@@ -38,25 +39,21 @@ Outcome Ballpiston(std::vector<std::string> words) {
 class PrivateHome {
  public:
   explicit PrivateHome(const std::string& address) {
-    namespace fs = std::filesystem;
-    std::string pattern = (fs::temp_directory_path() / "home_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    fs::create_directories(folder_ + "/ballpiston");
-    fs::create_symlink(address.substr(std::string("unix:").size()),
-                       folder_ + "/ballpiston/server.socket");
-    setenv("XDG_STATE_HOME", folder_.c_str(), 1);
+    std::filesystem::create_directory(folder_.File("ballpiston"));
+    std::filesystem::create_symlink(address.substr(std::string("unix:").size()),
+                                    folder_.File("ballpiston/server.socket"));
+    setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
     setenv("BALLPISTON_SERVER_PROGRAM", "/bin/false", 1);
   }
   ~PrivateHome() {
     unsetenv("XDG_STATE_HOME");
     unsetenv("BALLPISTON_SERVER_PROGRAM");
-    std::filesystem::remove_all(folder_);
   }
   PrivateHome(const PrivateHome&) = delete;
   PrivateHome& operator=(const PrivateHome&) = delete;
 
  private:
-  std::string folder_;
+  const TemporaryFolder folder_;
 };
 
 class CommandLineTest : public ::testing::Test {

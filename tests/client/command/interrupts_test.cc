@@ -1,75 +1,101 @@
 #include "client/command/interrupts.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
-#include <future>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <vector>
 
 namespace ballpiston::client {
 namespace {
 
-// gRPC's threads of other tests in this program inherit the mask; one that did not block SIGINT
-// would be killed by it. In the client itself Interrupts comes before them.
-class BlockSigint : public ::testing::Environment {
- public:
-  void SetUp() override {
-    sigset_t sigint;
-    sigemptyset(&sigint);
-    sigaddset(&sigint, SIGINT);
-    pthread_sigmask(SIG_BLOCK, &sigint, nullptr);
-  }
-};
-[[maybe_unused]] const auto* const kBlockSigint =
-    ::testing::AddGlobalTestEnvironment(new BlockSigint);
+using ::testing::ElementsAre;
+
+// A thread that does not block SIGINT would end the program. Every thread of this one inherits the
+// mask, the time limit's and gRPC's too: it is set before main. The client itself constructs
+// Interrupts before it starts a thread.
+[[maybe_unused]] const bool kSigintIsBlocked = [] {
+  sigset_t sigint;
+  sigemptyset(&sigint);
+  sigaddset(&sigint, SIGINT);
+  return pthread_sigmask(SIG_BLOCK, &sigint, nullptr) == 0;
+}();
 
 void PressCtrlC() { kill(getpid(), SIGINT); }
 
-struct Reactions {
-  std::promise<void> first, second, none;
-
-  InterruptReactions Get() {
-    return {.on_first = [this] { first.set_value(); },
-            .on_second = [this] { second.set_value(); },
-            .on_no_second = [this] { none.set_value(); }};
+// The reactions, in order.
+class Events {
+ public:
+  InterruptReactions Of(const std::string& scope) {
+    return {.on_first = [this, scope] { Add(scope + ": first"); },
+            .on_second = [this, scope] { Add(scope + ": second"); },
+            .on_no_second = [this, scope] { Add(scope + ": no second"); }};
   }
+
+  // All of them, when there are so many.
+  std::vector<std::string> Await(size_t count) {
+    std::unique_lock lock(mutex_);
+    news_.wait(lock, [&] { return events_.size() >= count; });
+    return events_;
+  }
+
+ private:
+  void Add(const std::string& event) {
+    const std::lock_guard lock(mutex_);
+    events_.push_back(event);
+    news_.notify_one();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable news_;
+  std::vector<std::string> events_;
 };
 
-TEST(Interrupts, ASecondPressInTimeIsASecondPress) {
+TEST(Interrupts, EverySecondPressIsASecondPress) {
   Interrupts interrupts(absl::Minutes(5));
-  Reactions reactions;
-  const Interrupts::Scope scope(interrupts, reactions.Get());
-  PressCtrlC();
-  reactions.first.get_future().wait();
-  PressCtrlC();
-  reactions.second.get_future().wait();
+  Events events;
+  const Interrupts::Scope scope(interrupts, events.Of("job"));
+  for (size_t presses = 1; presses <= 3; ++presses) {
+    PressCtrlC();
+    events.Await(presses);
+  }
+  EXPECT_THAT(events.Await(3), ElementsAre("job: first", "job: second", "job: first"));
 }
 
-TEST(Interrupts, WithoutASecondPressTheTimeRunsOut) {
+TEST(Interrupts, WithoutASecondPressTheTimeRunsOutAndTheNextPressIsAFirst) {
   Interrupts interrupts(absl::Milliseconds(10));
-  Reactions reactions;
-  const Interrupts::Scope scope(interrupts, reactions.Get());
-  PressCtrlC();
-  reactions.first.get_future().wait();
-  reactions.none.get_future().wait();
+  Events events;
+  const Interrupts::Scope scope(interrupts, events.Of("job"));
+  for (size_t presses = 1; presses <= 2; ++presses) {
+    PressCtrlC();
+    events.Await(2 * presses);
+  }
+  EXPECT_THAT(events.Await(4),
+              ElementsAre("job: first", "job: no second", "job: first", "job: no second"));
 }
 
 // A press that was meant for one job says nothing about the next.
 TEST(Interrupts, TheEndOfAScopeForgetsTheFirstPress) {
   Interrupts interrupts(absl::Minutes(5));
-  Reactions reactions[2];
-  for (Reactions& each : reactions) {
-    const Interrupts::Scope scope(interrupts, each.Get());
+  Events events;
+  for (const char* job : {"a", "b"}) {
+    const Interrupts::Scope scope(interrupts, events.Of(job));
     PressCtrlC();
-    each.first.get_future().wait();
+    events.Await(job[0] == 'a' ? 1 : 2);
   }
+  EXPECT_THAT(events.Await(2), ElementsAre("a: first", "b: first"));
 }
 
-TEST(InterruptsDeathTest, WithoutReactionsTheProgramEnds) {
+TEST(InterruptsDeathTest, OutsideOfScopesAPressEndsTheProgram) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
         Interrupts interrupts;
+        { const Interrupts::Scope ended(interrupts, {}); }
         PressCtrlC();
         pause();
       },

@@ -4,17 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::vector<double> List(const std::string& text) {
   const auto list = ParseNumberList("--rho", text);
-  EXPECT_TRUE(list.ok()) << list.status();
+  EXPECT_OK(list);
   return list.value_or(std::vector<double>());
 }
 
@@ -38,7 +43,7 @@ TEST(NumberList, CommasAndRangesMix) {
   EXPECT_THAT(List("0.1,0.2:0.3:3,7"), ElementsAre(0.1, 0.2, 0.25, 0.3, 7));
 }
 
-TEST(NumberList, RefusesWhatIsNotAListAndSaysWhy) {
+TEST(NumberList, RejectsWhatIsNotAListAndSaysWhy) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "'' is not a decimal number"},
       {",", "is not a decimal number"},
@@ -82,21 +87,21 @@ TEST(NumberList, RefusesWhatIsNotAListAndSaysWhy) {
       {"1e-300:1e300:3:log", "beyond 1e100"},
       {"0:1:100000,5", "'0:1:100000,5' has 100001 numbers; at most 100000 are permitted"}};
   for (const auto& [text, reason] : cases) {
-    const auto list = ParseNumberList("--rho", text);
-    EXPECT_EQ(list.status().code(), absl::StatusCode::kInvalidArgument) << text;
-    EXPECT_THAT(std::string(list.status().message()), HasSubstr(reason)) << text;
-    EXPECT_THAT(std::string(list.status().message()), HasSubstr("--rho: ")) << text;
+    EXPECT_THAT(ParseNumberList("--rho", text),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         AllOf(HasSubstr("--rho: "), HasSubstr(reason))))
+        << text;
   }
 }
 
-TEST(NumberList, EveryItemThatIsWrongHasItsLine) {
+TEST(NumberList, EveryWrongItemHasItsLine) {
   EXPECT_EQ(ParseNumberList("--rho", "nan,0.53,inf,0:1:0").status().message(),
             "--rho: 'nan' is not a decimal number such as 0.1 or 1e-3\n"
             "--rho: 'inf' is not a decimal number such as 0.1 or 1e-3\n"
             "--rho: '0:1:0' has a count that is not a whole number from 1 to 100000");
 }
 
-TEST(NumberList, OneThatIsTooLongIsCountedToItsEndWithoutBeingMade) {
+TEST(NumberList, ATooLongListIsCountedWithoutBeingMade) {
   std::string text = "0:1:100000";
   for (int i = 1; i < 1000; ++i) text += ",0:1:100000";
   EXPECT_EQ(ParseNumberList("--rho", text).status().message(),
@@ -104,29 +109,32 @@ TEST(NumberList, OneThatIsTooLongIsCountedToItsEndWithoutBeingMade) {
             "at most 100000 are permitted");
 }
 
-TEST(Count, IsWholeHoweverItIsWritten) {
-  EXPECT_EQ(*ParseCount("--samples", "10000"), 10000);
-  EXPECT_EQ(*ParseCount("--samples", "1e6"), 1'000'000);
-  EXPECT_EQ(*ParseCount("--samples", "2.5e3"), 2500);
-  EXPECT_EQ(*ParseCount("--samples", "-5"), -5);  // the server says what is permitted
-  EXPECT_EQ(*ParseCount("--samples", "9223372036854775807"), INT64_MAX);
+TEST(Count, IsAWholeNumberInAnyNotation) {
+  EXPECT_THAT(ParseCount("--samples", "10000"), IsOkAndHolds(10000));
+  EXPECT_THAT(ParseCount("--samples", "1e6"), IsOkAndHolds(1'000'000));
+  EXPECT_THAT(ParseCount("--samples", "2.5e3"), IsOkAndHolds(2500));
+  EXPECT_THAT(ParseCount("--samples", "-5"), IsOkAndHolds(-5));  // the server rejects it
+  EXPECT_THAT(ParseCount("--samples", "9223372036854775807"), IsOkAndHolds(INT64_MAX));
   for (const char* text : {"", "1.5", "1e-3", "1e30", "nan", "10k", " 1", "9223372036854775808"}) {
-    EXPECT_FALSE(ParseCount("--samples", text).ok()) << text;
+    EXPECT_THAT(ParseCount("--samples", text), StatusIs(absl::StatusCode::kInvalidArgument))
+        << text;
   }
 }
 
 TEST(Seed, HoldsAll64Bits) {
-  EXPECT_EQ(*ParseSeed("--seed", "0"), 0u);
-  EXPECT_EQ(*ParseSeed("--seed", "18446744073709551615"), UINT64_MAX);
+  EXPECT_THAT(ParseSeed("--seed", "0"), IsOkAndHolds(0u));
+  EXPECT_THAT(ParseSeed("--seed", "18446744073709551615"), IsOkAndHolds(UINT64_MAX));
   for (const char* text : {"", "-1", "1e3", "18446744073709551616", "0x1", " 1", "+1"}) {
-    EXPECT_FALSE(ParseSeed("--seed", text).ok()) << text;
+    EXPECT_THAT(ParseSeed("--seed", text), StatusIs(absl::StatusCode::kInvalidArgument)) << text;
   }
 }
 
 TEST(CountList, TakesWholeNumbersOnly) {
-  EXPECT_THAT(*ParseCountList("--cells", "4,8,10:30:3"), ElementsAre(4, 8, 10, 20, 30));
+  EXPECT_THAT(ParseCountList("--cells", "4,8,10:30:3"),
+              IsOkAndHolds(ElementsAre(4, 8, 10, 20, 30)));
   for (const char* text : {"4.5", "1:2:3", "3e9", "x"}) {
-    EXPECT_FALSE(ParseCountList("--cells", text).ok()) << text;
+    EXPECT_THAT(ParseCountList("--cells", text), StatusIs(absl::StatusCode::kInvalidArgument))
+        << text;
   }
 }
 

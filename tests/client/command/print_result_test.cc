@@ -1,5 +1,6 @@
 #include "client/command/print_result.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -8,20 +9,19 @@
 
 #include "absl/strings/str_split.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
-constexpr char kName[] = "ensembleJobs/abc";
-// As often as the channel itself tries a call before it fails.
+// So many attempts of one call does the channel make by itself.
 constexpr int kAttemptsOfChannel = 4;
 
-// A job of five points on three pages, of which the second is not to be had at once.
+// A job of five points on three pages; the first attempts to list the second page fail.
 class PrintResultTest : public ::testing::Test {
  protected:
   PrintResultTest() {
     server_.ensemble.jobs = {JobIn(v1::EnsembleJob::SUCCEEDED)};
-    server_.ensemble.jobs[0].set_name(kName);
     for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
     server_.ensemble.unavailable_later_pages = kAttemptsOfChannel;
     server_.Start();
@@ -31,7 +31,7 @@ class PrintResultTest : public ::testing::Test {
 
   absl::StatusOr<ExitCode> Print() {
     Terminal terminal{out_, err_};
-    return PrintResult(connection_, kName, Format::kJsonl, terminal);
+    return PrintResult(connection_, kJobName, Format::kJsonl, terminal);
   }
 
   FakeServer server_;
@@ -39,21 +39,19 @@ class PrintResultTest : public ::testing::Test {
   std::ostringstream out_, err_;
 };
 
-TEST_F(PrintResultTest, APageIsAskedForAgainOfAPrivateServerThatWasRevived) {
-  connection_.local = LocalServer{
-      .folder = "/", .socket = server_.Address().substr(5), .program = "not-to-be-started"};
-  const absl::StatusOr<ExitCode> printed = Print();
-  ASSERT_TRUE(printed.ok()) << printed.status();
-  EXPECT_EQ(*printed, ExitCode::kDone);
+TEST_F(PrintResultTest, RepeatsAPageAfterAPrivateServerWasRevived) {
+  connection_.local =
+      LocalServer{.folder = "/", .socket = server_.SocketPath(), .program = "never-started"};
+  EXPECT_THAT(Print(), IsOkAndHolds(ExitCode::kDone));
   const std::vector<std::string> lines = absl::StrSplit(out_.str(), '\n', absl::SkipEmpty());
   ASSERT_EQ(lines.size(), 5u) << out_.str();  // each point once
   for (size_t i = 0; i < lines.size(); ++i) {
-    EXPECT_NE(lines[i].find("\"index\":" + std::to_string(i)), std::string::npos) << lines[i];
+    EXPECT_THAT(lines[i], testing::HasSubstr("\"index\":" + std::to_string(i)));
   }
 }
 
-TEST_F(PrintResultTest, ANamedServerIsNotAskedAgain) {
-  EXPECT_EQ(Print().status().code(), absl::StatusCode::kUnavailable);
+TEST_F(PrintResultTest, DoesNotRepeatAPageOfANamedServer) {
+  EXPECT_THAT(Print(), StatusIs(absl::StatusCode::kUnavailable));
 }
 
 }  // namespace

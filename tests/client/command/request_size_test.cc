@@ -7,6 +7,7 @@
 
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
@@ -16,24 +17,24 @@ using ::testing::HasSubstr;
 TEST(RequestSize, AListOfAHundredThousandIsPermitted) {
   v1::EnsembleSpec spec;
   spec.mutable_grid()->mutable_rho()->Resize(100'000, 0.53);
-  EXPECT_TRUE(CheckSize(spec, "spec").ok());
+  EXPECT_OK(CheckSize(spec, "spec"));
 }
 
-TEST(RequestSize, EveryListThatIsLongerIsNamedWithItsLength) {
+TEST(RequestSize, EveryLongerListIsNamedWithItsLength) {
   v1::EnsembleSpec spec;
   spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
   spec.mutable_grid()->mutable_delta()->Resize(100'001, 0.1);
-  const absl::Status status = CheckSize(spec, "spec");
-  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_EQ(status.message(),
-            "spec.grid.rho: has 1000000 values; at most 100000 are permitted\n"
-            "spec.grid.delta: has 100001 values; at most 100000 are permitted");
+  EXPECT_THAT(CheckSize(spec, "spec"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       "spec.grid.rho: has 1000000 values; at most 100000 are permitted\n"
+                       "spec.grid.delta: has 100001 values; at most 100000 are permitted"));
 }
 
-TEST(RequestSize, AWholeRequestsFieldsAreNamedAlone) {
+TEST(RequestSize, WithoutAPrefixFieldsAreNamedAlone) {
   v1::EvaluatePairsRequest request;
   request.mutable_beta()->Resize(100'001, 1);
-  EXPECT_THAT(std::string(CheckSize(request, "").message()), HasSubstr("beta: has 100001 values"));
+  EXPECT_THAT(CheckSize(request, ""),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("beta: has 100001 values")));
 }
 
 // Negative whole numbers take ten bytes each.
@@ -48,18 +49,17 @@ v1::EnsembleSpec LargeSpec(int cells) {
   return spec;
 }
 
-TEST(RequestSize, AMessageThatIsTooLargeHasItsSizeNamed) {
-  const absl::Status status = CheckSize(LargeSpec(100'000), "spec");
-  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_EQ(status.message(), "spec: has 4200025 bytes; at most 4193280 are permitted");
+TEST(RequestSize, ErrorOfATooLargeMessageNamesItsSize) {
+  EXPECT_EQ(CheckSize(LargeSpec(100'000), "spec"),
+            absl::InvalidArgumentError("spec: has 4200025 bytes; at most 4193280 are permitted"));
 }
 
-// What is sent with the specification does not push it over the server's limit.
-TEST(RequestSize, TheLargestThatIsPermittedFitsWithItsRequestId) {
+// The fields of the request beside the specification fit into the server's limit, too.
+TEST(RequestSize, TheLargestPermittedSpecFitsWithARequestId) {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = LargeSpec(99'300);
-  ASSERT_TRUE(CheckSize(request.spec(), "spec").ok());
-  EXPECT_FALSE(CheckSize(LargeSpec(99'400), "spec").ok());
+  ASSERT_OK(CheckSize(request.spec(), "spec"));
+  EXPECT_THAT(CheckSize(LargeSpec(99'400), "spec"), StatusIs(absl::StatusCode::kInvalidArgument));
   request.set_request_id("01234567-89ab-4def-8123-456789abcdef");
   EXPECT_LE(request.ByteSizeLong(), size_t{4} << 20);
 }

@@ -1,18 +1,18 @@
 #include "client/command/spec_flags.h"
 
 #include <gmock/gmock.h>
-#include <google/protobuf/text_format.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/command/spec_file.h"
+#include "tests/client/message_text.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
@@ -20,28 +20,24 @@ namespace {
 using ::testing::HasSubstr;
 
 void ExpectSpec(const SpecFlags& flags, const std::string& text) {
-  const auto spec = SpecOf(flags);
-  ASSERT_TRUE(spec.ok()) << spec.status();
-  v1::EnsembleSpec expected;
-  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &expected));
-  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(*spec, expected))
-      << spec->DebugString();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, SpecOf(flags));
+  EXPECT_TRUE(
+      google::protobuf::util::MessageDifferencer::Equals(spec, FromText<v1::EnsembleSpec>(text)))
+      << spec.DebugString();
 }
 
 void ExpectError(const SpecFlags& flags, const std::string& part) {
-  const auto spec = SpecOf(flags);
-  EXPECT_EQ(spec.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(spec.status().message()), HasSubstr(part));
+  EXPECT_THAT(SpecOf(flags), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(part)));
 }
 
-SpecFlags FirstHit() {
+SpecFlags FirstHitFlags() {
   SpecFlags flags;
   flags.experiment = "first-hit";
   return flags;
 }
 
 TEST(SpecFlags, EveryFlagReachesItsField) {
-  SpecFlags flags = FirstHit();
+  SpecFlags flags = FirstHitFlags();
   flags.rho = "0.53";
   flags.delta = "0.1,0.2";
   flags.epsilon = "0.25";
@@ -59,10 +55,12 @@ TEST(SpecFlags, EveryFlagReachesItsField) {
              "verify: true");
 }
 
-TEST(SpecFlags, WhatIsNotGivenIsNotSet) { ExpectSpec(FirstHit(), "experiment: FIRST_HIT grid {}"); }
+TEST(SpecFlags, AnAbsentFlagLeavesItsFieldUnset) {
+  ExpectSpec(FirstHitFlags(), "experiment: FIRST_HIT grid {}");
+}
 
-TEST(SpecFlags, TargetsOfEachKind) {
-  SpecFlags flags = FirstHit();
+TEST(SpecFlags, ReadsTargetsOfEachKind) {
+  SpecFlags flags = FirstHitFlags();
   flags.collisions = "5";
   ExpectSpec(flags, "experiment: FIRST_HIT grid {} target { collisions: 5 }");
   flags.collisions.reset();
@@ -74,8 +72,8 @@ TEST(SpecFlags, TargetsOfEachKind) {
              "experiment: FIRST_HIT grid {} target { budget { seconds: 90 nanos: 500000000 } }");
 }
 
-TEST(SpecFlags, ABudgetMayStandBesideATolerance) {
-  SpecFlags flags = FirstHit();
+TEST(SpecFlags, ABudgetIsPermittedBesideATolerance) {
+  SpecFlags flags = FirstHitFlags();
   flags.tolerance = "1e-3";
   flags.budget = "10";
   ExpectSpec(flags,
@@ -83,7 +81,7 @@ TEST(SpecFlags, ABudgetMayStandBesideATolerance) {
 }
 
 TEST(SpecFlags, OtherTargetsExcludeEachOther) {
-  SpecFlags flags = FirstHit();
+  SpecFlags flags = FirstHitFlags();
   flags.samples = "10";
   flags.tolerance = "0.1";
   ExpectError(flags,
@@ -116,13 +114,13 @@ TEST(SpecFlags, EveryModelOfTheLadderHasItsName) {
                                     {"spectrum", "SPECTRUM"},
                                     {"markov", "MARKOV"},
                                     {"billiard", "BILLIARD"}}) {
-    SpecFlags flags = FirstHit();
+    SpecFlags flags = FirstHitFlags();
     flags.model = name;
     ExpectSpec(flags, std::string("experiment: FIRST_HIT grid {} model: ") + field);
   }
 }
 
-TEST(SpecFlags, UnknownNamesListWhatThereIs) {
+TEST(SpecFlags, ErrorOfAnUnknownNameListsTheKnownOnes) {
   SpecFlags flags;
   flags.experiment = "brownian";
   ExpectError(flags, "experiment 'brownian' is unknown; it offers equilibrium, ");
@@ -132,27 +130,27 @@ TEST(SpecFlags, UnknownNamesListWhatThereIs) {
   ExpectError(flags, "is unknown");
   flags.experiment.reset();
   ExpectError(flags, "name an EXPERIMENT");
-  flags = FirstHit();
+  flags = FirstHitFlags();
   flags.model = "guess";
   ExpectError(flags, "--model: 'guess' is not one of auto, closed-form, markov, billiard, ");
-  flags = FirstHit();
+  flags = FirstHitFlags();
   flags.precision = "half";
   ExpectError(flags, "--precision: 'half' is not one of double, single");
 }
 
 TEST(SpecFlags, BadNumbersNameTheirFlag) {
-  SpecFlags flags = FirstHit();
+  SpecFlags flags = FirstHitFlags();
   flags.delta = "nan";
   ExpectError(flags, "--delta: 'nan'");
-  flags = FirstHit();
+  flags = FirstHitFlags();
   flags.budget = "1e300";
   ExpectError(flags, "--budget: '1e300'");
-  flags = FirstHit();
+  flags = FirstHitFlags();
   flags.samples = "many";
   ExpectError(flags, "--samples: 'many'");
 }
 
-TEST(SpecFlags, EveryFlagThatDoesNotParseHasItsLine) {
+TEST(SpecFlags, EveryWrongFlagHasItsLine) {
   SpecFlags flags;
   flags.experiment = "brownian";
   flags.rho = "0.53,nan";
@@ -171,14 +169,14 @@ TEST(SpecFlags, EveryFlagThatDoesNotParseHasItsLine) {
   }
 }
 
-TEST(SpecFlags, WhatIsTooLargeToBeSentIsRefused) {
-  SpecFlags flags = FirstHit();
+TEST(SpecFlags, ATooLargeSpecificationIsRejected) {
+  SpecFlags flags = FirstHitFlags();
   flags.rho = flags.delta = flags.epsilon = flags.exponent = "0:1:100000";
   flags.cells = "-100000:-1:100000";
   ExpectError(flags, "spec: has 42000");
 }
 
-TEST(SpecFlags, AFileComesAlone) {
+TEST(SpecFlags, AFileExcludesOtherFlags) {
   SpecFlags flags;
   flags.file = "spec.json";
   flags.rho = "0.53";
@@ -192,21 +190,21 @@ TEST(SpecFlags, AFileComesAlone) {
 }
 
 TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
-  const auto spec = ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
-                                            "target": {"samples": "100"}, "seed": 7})");
-  ASSERT_TRUE(spec.ok()) << spec.status();
-  EXPECT_EQ(spec->target().samples(), 100);
-  EXPECT_EQ(spec->seed(), 7u);
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
+                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
+                              "target": {"samples": "100"}, "seed": 7})"));
+  EXPECT_EQ(spec.target().samples(), 100);
+  EXPECT_EQ(spec.seed(), 7u);
 }
 
-TEST(SpecFile, ZeroHasNoSignHoweverItIsWritten) {
+TEST(SpecFile, ZeroHasNoSignInAnyNotation) {
   for (const char* zero : {"-0", "-0.0", "-.0", "-0e5", "0"}) {
-    const auto spec =
+    ASSERT_OK_AND_ASSIGN(
+        const v1::EnsembleSpec spec,
         ParseSpec("s.json", absl::StrCat(R"({"grid": {"epsilon": [0.1, )", zero,
-                                         R"(]}, "target": {"tolerance": )", zero, "}}"));
-    ASSERT_TRUE(spec.ok()) << spec.status();
-    EXPECT_EQ(spec->grid().epsilon(0), 0.1);
-    for (const double number : {spec->grid().epsilon(1), spec->target().tolerance()}) {
+                                         R"(]}, "target": {"tolerance": )", zero, "}}")));
+    EXPECT_EQ(spec.grid().epsilon(0), 0.1);
+    for (const double number : {spec.grid().epsilon(1), spec.target().tolerance()}) {
       EXPECT_EQ(number, 0);
       EXPECT_FALSE(std::signbit(number)) << zero;
     }
@@ -214,24 +212,24 @@ TEST(SpecFile, ZeroHasNoSignHoweverItIsWritten) {
   EXPECT_FALSE(ParseSpec("s.json", "{}")->has_grid());
 }
 
-TEST(SpecFile, RefusesWhatIsNotASpecification) {
+TEST(SpecFile, RejectsWhatIsNotASpecification) {
   for (const char* text :
        {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",
         "{\"grid\": {\"rho\": [\"x\"]}}", "{\"experiment\": \"NO_SUCH\"}",
         "{\"target\": {\"samples\": 1, \"tolerance\": 0.1}}", "{\"seed\": -1}", "{} {}"}) {
-    const auto spec = ParseSpec("s.json", text);
-    EXPECT_EQ(spec.status().code(), absl::StatusCode::kInvalidArgument) << text;
-    EXPECT_THAT(std::string(spec.status().message()), HasSubstr("--spec s.json: ")) << text;
+    EXPECT_THAT(ParseSpec("s.json", text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--spec s.json: ")))
+        << text;
   }
 }
 
 TEST(SpecFile, NamesTheUnknownField) {
-  const auto spec = ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})");
-  EXPECT_THAT(std::string(spec.status().message()), HasSubstr("sed"));
+  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
 }
 
-// The parser's words would repeat it whole.
-TEST(SpecFile, AWrongValueIsToldShortened) {
+// The message of the JSON parser repeats the whole value.
+TEST(SpecFile, ErrorShortensALongValue) {
   const std::string name = "HEAD" + std::string(300'000, 'X') + "TAIL";
   const auto spec = ParseSpec("s.json", R"({"experiment": ")" + name + "\"}");
   const std::string message(spec.status().message());
@@ -243,11 +241,11 @@ TEST(SpecFile, AWrongValueIsToldShortened) {
   EXPECT_LT(SpecOf(flags).status().message().size(), 500u);
 }
 
-TEST(SpecFile, AFileThatCannotBeReadIsNamed) {
-  const auto absent = ReadSpecFile("/no/such/file.json");
-  EXPECT_EQ(absent.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(absent.status().message()), HasSubstr("/no/such/file.json: No such"));
-  EXPECT_FALSE(ReadSpecFile("/").ok());
+TEST(SpecFile, ErrorNamesAFileThatCannotBeRead) {
+  EXPECT_THAT(
+      ReadSpecFile("/no/such/file.json"),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("/no/such/file.json: No such")));
+  EXPECT_THAT(ReadSpecFile("/"), StatusIs(absl::StatusCode::kInvalidArgument));
 }
 
 }  // namespace

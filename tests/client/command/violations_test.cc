@@ -5,48 +5,51 @@
 
 #include <string>
 
+#include "tests/support/status_matchers.h"
+
 namespace ballpiston::client {
 namespace {
 
 using ::testing::EndsWith;
 using ::testing::StartsWith;
 
-absl::Status Bad(const std::string& text) { return absl::InvalidArgumentError(text); }
+absl::Status Invalid(const std::string& text) { return absl::InvalidArgumentError(text); }
 
-TEST(Violations, NoneIsOk) {
+TEST(Violations, WithoutOneTheReportIsOk) {
   const Violations none({absl::OkStatus(), absl::OkStatus()});
-  EXPECT_TRUE(none.Lines().ok());
-  EXPECT_TRUE(none.Report().ok());
+  EXPECT_OK(none.Lines());
+  EXPECT_OK(none.Report());
 }
 
-TEST(Violations, OneSpeaksForItself) {
-  EXPECT_EQ(Violations({absl::OkStatus(), Bad("--rho: x")}).Report(), Bad("--rho: x"));
+TEST(Violations, OneIsReportedUnchanged) {
+  EXPECT_EQ(Violations({absl::OkStatus(), Invalid("--rho: x")}).Report(), Invalid("--rho: x"));
 }
 
 TEST(Violations, SeveralAreCountedAndListed) {
-  EXPECT_EQ(Violations({Bad("--rho: x"), Bad("--delta: y")}).Report().message(),
+  EXPECT_EQ(Violations({Invalid("--rho: x"), Invalid("--delta: y")}).Report().message(),
             "not valid, 2 violations:\n  --rho: x\n  --delta: y");
 }
 
-TEST(Violations, ThoseOfAListAreCountedOneByOne) {
-  const absl::Status list = Violations({Bad("--rho: x"), Bad("--rho: y")}).Lines();
+TEST(Violations, EachLineOfAListCounts) {
+  const absl::Status list = Violations({Invalid("--rho: x"), Invalid("--rho: y")}).Lines();
   EXPECT_EQ(list.message(), "--rho: x\n--rho: y");
-  EXPECT_EQ(Violations({list, Bad("--delta: z")}).Report().message(),
+  EXPECT_EQ(Violations({list, Invalid("--delta: z")}).Report().message(),
             "not valid, 3 violations:\n  --rho: x\n  --rho: y\n  --delta: z");
 }
 
-TEST(Violations, TheSameOneAgainIsNotAnother) {
-  EXPECT_EQ(Violations({Bad("--rho: ''"), Bad("--rho: ''")}).Report(), Bad("--rho: ''"));
+TEST(Violations, ARepeatedOneCountsOnce) {
+  EXPECT_EQ(Violations({Invalid("--rho: ''"), Invalid("--rho: ''")}).Report(),
+            Invalid("--rho: ''"));
 }
 
-// As a JSON parser's, which quotes the place.
+// As from a JSON parser, which quotes the place.
 TEST(Violations, ATextOfSeveralLinesIsOneViolation) {
-  EXPECT_EQ(Violations({Bad("no value\n{\n ^")}).Report(), Bad("no value\n{\n ^"));
+  EXPECT_EQ(Violations({Invalid("no value\n{\n ^")}).Report(), Invalid("no value\n{\n ^"));
 }
 
-TEST(Violations, WhatIsTooMuchToReadIsCounted) {
+TEST(Violations, ALongListIsCutAndTheRestCounted) {
   Violations violations;
-  for (int i = 0; i < 60; ++i) violations.Add(Bad("--rho: " + std::to_string(i)));
+  for (int i = 0; i < 60; ++i) violations.Add(Invalid("--rho: " + std::to_string(i)));
   const std::string text(violations.Report().message());
   EXPECT_THAT(text, StartsWith("not valid, 60 violations:\n"));
   EXPECT_THAT(text, EndsWith("\n  and 10 more"));

@@ -3,27 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/client/figure/measurements.h"
+
 namespace ballpiston::client {
 namespace {
 
 using ::testing::IsEmpty;
 using v1::MethodMeasurement;
 
-MethodMeasurement Measured(MethodMeasurement::Method method, double delta, uint64_t samples,
-                           double work, double value, double error) {
-  MethodMeasurement measurement;
-  measurement.set_method(method);
-  measurement.set_quantity(MethodMeasurement::RELAXATION_TIME);
-  measurement.set_delta(delta);
-  measurement.set_samples(samples);
-  measurement.set_work(work);
-  measurement.set_value(value);
-  measurement.set_statistical_error(error);
-  return measurement;
-}
-
 MethodMeasurement Spectrum(double delta, double value, double error) {
-  return Measured(MethodMeasurement::SPECTRUM, delta, 0, 1e-6, value, error);
+  return RelaxationTime(MethodMeasurement::SPECTRUM, delta, 0, 1e-6, value, error);
 }
 
 TEST(LimitFloor, ABiasIsResolvedFromTwoStandardErrorsOn) {
@@ -35,7 +24,7 @@ TEST(LimitFloor, ABiasIsResolvedFromTwoStandardErrorsOn) {
   EXPECT_EQ(bound.Height(), 0.4375 + 2 * 0.25);
 }
 
-TEST(LimitFloor, ThereIsOneADeltaFromTheLargestDown) {
+TEST(LimitFloor, EachDeltaHasOneFromTheLargestDown) {
   const std::vector<LimitFloor> floors =
       FloorsOf({Spectrum(0.05, 0.01, 0), Spectrum(0.2, 0.05, 0), Spectrum(0.05, 0.01, 0)});
   ASSERT_EQ(floors.size(), 2u);
@@ -49,30 +38,33 @@ TEST(LimitFloor, OtherQuantitiesHaveNone) {
   MethodMeasurement other = Spectrum(0.2, 0.5, 0.25);
   other.set_quantity(MethodMeasurement::MEAN_FREE_TIME);
   EXPECT_THAT(FloorsOf({other}), IsEmpty());
-  EXPECT_THAT(FloorsOf({Measured(MethodMeasurement::BILLIARD, 0.2, 1024, 1, 0.1, 0.1)}), IsEmpty());
+  EXPECT_THAT(FloorsOf({RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 1024, 1, 0.1, 0.1)}),
+              IsEmpty());
 }
 
 // Nine times the work of the longest run, whose own error is three times the floor.
 TEST(LimitFloor, TheBilliardsErrorFallsWithTheRootOfWork) {
   const std::vector<LimitFloor> floors = FloorsOf(
-      {Measured(MethodMeasurement::BILLIARD, 0.2, 256, 0.5, 0.1, 1),
-       Measured(MethodMeasurement::BILLIARD, 0.2, 1024, 2, 0.1, 0.375),
-       Measured(MethodMeasurement::BILLIARD, 0.1, 1024, 7, 0.1, 0.5),
-       Measured(MethodMeasurement::MARKOV, 0.2, 4096, 5, 0.1, 0.5), Spectrum(0.2, 0.125, 0)});
+      {RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 256, 0.5, 0.1, 1),
+       RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 1024, 2, 0.1, 0.375),
+       RelaxationTime(MethodMeasurement::BILLIARD, 0.1, 1024, 7, 0.1, 0.5),
+       RelaxationTime(MethodMeasurement::MARKOV, 0.2, 4096, 5, 0.1, 0.5), Spectrum(0.2, 0.125, 0)});
   ASSERT_TRUE(floors.front().crossing_work);
   EXPECT_EQ(*floors.front().crossing_work, 18);
 }
 
 TEST(LimitFloor, TooFewOrbitsTellNoCrossing) {
-  const auto billiard = Measured(MethodMeasurement::BILLIARD, 0.2, kFewestOrbits - 1, 1, 0.1, 0.5);
+  const auto billiard =
+      RelaxationTime(MethodMeasurement::BILLIARD, 0.2, kFewestOrbits - 1, 1, 0.1, 0.5);
   EXPECT_FALSE(FloorsOf({billiard, Spectrum(0.2, 0.5, 0.25)}).front().crossing_work);
 }
 
-// What is measured has its own scatter and the truth's; of the spectrum it is the truth's alone.
-TEST(LimitFloor, TheTruthsErrorIsTakenOffARuns) {
+// The error of a run is its own scatter and that of the truth; the spectrum has that of the truth
+// alone.
+TEST(LimitFloor, TheErrorOfTheTruthIsSubtracted) {
   const LimitFloor floor = FloorsOf({Spectrum(0.2, 0.5, 3)}).front();
-  EXPECT_EQ(OwnError(Measured(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 5), floor), 4);
-  EXPECT_EQ(OwnError(Measured(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 2.9), floor), 0);
+  EXPECT_EQ(OwnError(RelaxationTime(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 5), floor), 4);
+  EXPECT_EQ(OwnError(RelaxationTime(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 2.9), floor), 0);
 }
 
 }  // namespace

@@ -8,13 +8,14 @@
 #include <set>
 
 #include "client/figure/mean_free_time_script.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
 using ::testing::HasSubstr;
 
-TEST(PaperEnergies, AreTheFiftyNine) {
+TEST(PaperEnergies, AreFiftyNine) {
   const std::vector<double> energies = PaperEnergies();
   EXPECT_EQ(energies.size(), 59u);
   EXPECT_TRUE(std::is_sorted(energies.begin(), energies.end()));
@@ -41,7 +42,7 @@ TEST(MeanFreeTimeFigure, AsksForThePapersSweep) {
   EXPECT_EQ(equilibrium.target().collisions(), 100'000);
 }
 
-// Left to choose, the service would answer with the closed forms that the figure is to test.
+// Without a model the service would answer with the closed forms, which the figure is to test.
 TEST(MeanFreeTimeFigure, AsksForTheBilliardByName) {
   EXPECT_EQ(ConditionalSpec({}).model(), v1::EnsembleSpec::BILLIARD);
   EXPECT_EQ(EquilibriumSpec({}).model(), v1::EnsembleSpec::BILLIARD);
@@ -86,23 +87,23 @@ MeanFreeTimeAnswers Answers() {
 }
 
 TEST(MeanFreeTimeFigure, WritesRatesWithTheirErrors) {
-  const auto files = MakeFiles({.rho = 0.53, .delta = {0.1}}, Answers());
-  ASSERT_TRUE(files.ok()) << files.status();
-  EXPECT_EQ(files->measured_csv,
+  ASSERT_OK_AND_ASSIGN(const MeanFreeTimeFiles files,
+                       MakeFiles({.rho = 0.53, .delta = {0.1}}, Answers()));
+  EXPECT_EQ(files.measured_csv,
             "rho,delta,epsilon,samples,mean_free_time_conditional,standard_error,exact,z_score,"
             "scaled_rate,scaled_rate_error\n"
             "0.53,0.1,0.25,100,8,0.5,8,-2.5,0.5,0.03125\n");
-  EXPECT_EQ(files->inset_csv,
+  EXPECT_EQ(files.inset_csv,
             "rho,delta,collisions,mean_free_time_ball_piston,standard_error,exact,z_score,rate,"
             "rate_error\n"
             "0.53,0.1,100,4,0.5,4,1,0.25,0.03125\n");
-  EXPECT_EQ(files->exact_csv, "curve,x,y\nphi,0.25,0.5\nrate,0.1,0.25\n");
+  EXPECT_EQ(files.exact_csv, "curve,x,y\nphi,0.25,0.5\nrate,0.1,0.25\n");
 }
 
-TEST(MeanFreeTimeFigure, AnAnswerThatLacksItsEstimateIsAnError) {
+TEST(MeanFreeTimeFigure, AnAnswerWithoutItsEstimateIsAnError) {
   MeanFreeTimeAnswers answers = Answers();
   answers.equilibrium[0].mutable_estimates(0)->set_name("other");
-  EXPECT_EQ(MakeFiles({.delta = {0.1}}, answers).status().code(), absl::StatusCode::kInternal);
+  EXPECT_THAT(MakeFiles({.delta = {0.1}}, answers), StatusIs(absl::StatusCode::kInternal));
 }
 
 TEST(MeanFreeTimeFigure, FindsTheLargestDeviationOfAll) {
@@ -111,7 +112,7 @@ TEST(MeanFreeTimeFigure, FindsTheLargestDeviationOfAll) {
   EXPECT_EQ(largest.estimates, 2);
 }
 
-// Can be moved and run again: no path but names of files beside it.
+// A script can be moved and run again: it holds no path but the names of files beside it.
 TEST(MeanFreeTimeScript, NamesFilesBesideIt) {
   const std::string script = MeanFreeTimeScript({0.2, 0.05});
   EXPECT_THAT(script, HasSubstr("deltas = \"0.2 0.05\""));

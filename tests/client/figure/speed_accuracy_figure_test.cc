@@ -3,37 +3,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/client/figure/measurements.h"
+#include "tests/support/status_matchers.h"
+
 namespace ballpiston::client {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using v1::MethodMeasurement;
 
-MethodMeasurement Measured(MethodMeasurement::Method method, MethodMeasurement::Quantity quantity,
-                           uint64_t samples, double work, double value, double error) {
-  MethodMeasurement measurement;
-  measurement.set_method(method);
-  measurement.set_quantity(quantity);
-  measurement.set_samples(samples);
-  measurement.set_wall_hits(100 * samples);
-  measurement.set_work(work);
-  measurement.set_value(value);
-  measurement.set_statistical_error(error);
-  return measurement;
-}
-
 MethodMeasurement FixedStep(double time_step, MethodMeasurement measurement) {
   measurement.set_method(MethodMeasurement::FIXED_STEP);
   measurement.set_time_step(time_step);
-  return measurement;
-}
-
-MethodMeasurement AtDelta(double delta, MethodMeasurement measurement) {
-  measurement.set_delta(delta);
-  if (measurement.quantity() == MethodMeasurement::RELAXATION_TIME) measurement.set_wall_hits(0);
   return measurement;
 }
 
@@ -49,11 +34,11 @@ std::vector<MethodMeasurement> Measurements() {
       FixedStep(0.01, Measured(M::FIXED_STEP, M::TRAJECTORY, 64, 0.00064, 2.5, 0.25)),
       Measured(M::BILLIARD, M::TRAJECTORY, 64, 1.6e-5, 31.5, 0.25),
       // The bias is 1/16 at delta = 0.2, and less than 2^-7 + 2 * 2^-6 = 5/128 at 0.1.
-      AtDelta(0.2, Measured(M::BILLIARD, M::RELAXATION_TIME, 256, 0.25, 0.03125, 0.125)),
-      AtDelta(0.2, Measured(M::MARKOV, M::RELAXATION_TIME, 256, 0.015625, 0.125, 0.0625)),
-      AtDelta(0.2, Measured(M::SPECTRUM, M::RELAXATION_TIME, 0, 1e-6, 0.0625, 0)),
-      AtDelta(0.1, Measured(M::BILLIARD, M::RELAXATION_TIME, 256, 0.5, 0.03125, 0.078125)),
-      AtDelta(0.1, Measured(M::SPECTRUM, M::RELAXATION_TIME, 0, 1e-6, 0.0078125, 0.015625)),
+      RelaxationTime(M::BILLIARD, 0.2, 256, 0.25, 0.03125, 0.125),
+      RelaxationTime(M::MARKOV, 0.2, 256, 0.015625, 0.125, 0.0625),
+      RelaxationTime(M::SPECTRUM, 0.2, 0, 1e-6, 0.0625, 0),
+      RelaxationTime(M::BILLIARD, 0.1, 256, 0.5, 0.03125, 0.078125),
+      RelaxationTime(M::SPECTRUM, 0.1, 0, 1e-6, 0.0078125, 0.015625),
   };
 }
 
@@ -73,10 +58,9 @@ TEST(SpeedAccuracyFigure, AsksForOneComparison) {
   EXPECT_THAT(ComparisonRequest({}).relaxation_delta(), IsEmpty());  // the server's
 }
 
-TEST(SpeedAccuracyFigure, WritesEveryMeasurementAndTellsBiasFromChance) {
-  const auto files = MakeFiles({}, Measurements());
-  ASSERT_TRUE(files.ok()) << files.status();
-  EXPECT_EQ(files->csv,
+TEST(SpeedAccuracyFigure, CsvHasEveryMeasurementAndTellsBiasFromChance) {
+  ASSERT_OK_AND_ASSIGN(const SpeedAccuracyFiles files, MakeFiles({}, Measurements()));
+  EXPECT_EQ(files.csv,
             "method,time_step,quantity,delta,samples,wall_hits,work_seconds,value,"
             "statistical_error,bias_resolved\n"
             "fixed-step,0.01,mean-free-time,0,100,10000,0.001,0.4,0.2,0\n"
@@ -102,15 +86,14 @@ TEST(SpeedAccuracyFigure, ABiasIsMoreThanThreeStatisticalErrors) {
   EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::TRAJECTORY, 100, 1, 31, 0.25)));
 }
 
-TEST(SpeedAccuracyFigure, APanelWithoutRunsSaysHowToGetThem) {
+TEST(SpeedAccuracyFigure, ErrorOfAPanelWithoutRunsNamesTheFlag) {
   std::vector<MethodMeasurement> measurements = Measurements();
   for (MethodMeasurement& m : measurements) {
     if (m.quantity() == MethodMeasurement::INGOING_LAW) m.set_samples(16);
   }
-  const absl::Status status = MakeFiles({}, measurements).status();
-  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
-  EXPECT_THAT(std::string(status.message()), HasSubstr("ingoing-law"));
-  EXPECT_THAT(std::string(status.message()), HasSubstr("--seconds"));
+  EXPECT_THAT(MakeFiles({}, measurements),
+              StatusIs(absl::StatusCode::kFailedPrecondition,
+                       AllOf(HasSubstr("ingoing-law"), HasSubstr("--seconds"))));
 }
 
 class SpeedAccuracyScriptTest : public testing::Test {
@@ -129,7 +112,7 @@ TEST_F(SpeedAccuracyScriptTest, HasEveryPanel) {
   EXPECT_THAT(script_, Not(HasSubstr("$NAME")));
 }
 
-TEST_F(SpeedAccuracyScriptTest, HasACurveAMethodAndOneLegend) {
+TEST_F(SpeedAccuracyScriptTest, HasOneCurveAndOneLegendEntryForEachMethod) {
   EXPECT_THAT(script_, HasSubstr("methods = \"fixed-step billiard closed-form\""));
   EXPECT_THAT(script_, HasSubstr("array step = [0.01, 0, 0]"));
   for (const char* title : {"fixed time step Δt", "vector lanes, double", "closed form"}) {
@@ -140,29 +123,29 @@ TEST_F(SpeedAccuracyScriptTest, HasACurveAMethodAndOneLegend) {
 }
 
 // The longest run of the first curve resolves 0.5; both its runs had a smaller statistical error.
-TEST_F(SpeedAccuracyScriptTest, DrawsABiasThatIsResolvedFromWhereChanceIsSmaller) {
+TEST_F(SpeedAccuracyScriptTest, AResolvedBiasIsALineFromWhereChanceIsSmaller) {
   EXPECT_THAT(script_, HasSubstr("curve,x,y\n1,0.001,0.5\n1,0.0064,0.5\n"));
   EXPECT_THAT(script_, HasSubstr("curve,x,y\nEOD"));  // none in panel b
 }
 
-TEST_F(SpeedAccuracyScriptTest, DrawsWhatIsTooSmallAtTheEdgeAndSaysHowSmall) {
+TEST_F(SpeedAccuracyScriptTest, AValueBelowTheEdgeIsDrawnThereWithItsNumber) {
   EXPECT_THAT(script_, HasSubstr("1e-07,0.0125,≤ 6×10^{-15}\n"));  // 0.4 of 0.03125
   EXPECT_THAT(script_, HasSubstr("edge = 0.0125\n"));
 }
 
 // 64 hits a run of 1.6e-5 s at 6400 hits: 2.5 ns.
-TEST_F(SpeedAccuracyScriptTest, AnOrbitsCostIsTheTimeOfAHit) {
+TEST_F(SpeedAccuracyScriptTest, TheCostOfAnOrbitIsTheTimeOfAHit) {
   EXPECT_THAT(script_, HasSubstr("2,2.5,31.5,0.25\n"));
 }
 
-TEST_F(SpeedAccuracyScriptTest, RelaxationTimesAreNoCurvesOfTheOtherPanels) {
+TEST_F(SpeedAccuracyScriptTest, RelaxationTimesAreInPanelDOnly) {
   EXPECT_THAT(script_, HasSubstr("methods = \"fixed-step billiard closed-form\""));
   EXPECT_THAT(script_, HasSubstr("{/:Bold d}  relaxation time"));
   EXPECT_THAT(script_, HasSubstr("deltas = \"0.2 0.1\"\n"));
 }
 
 // To 2.2 times 1.92 s, where the last ring stands.
-TEST_F(SpeedAccuracyScriptTest, TheBiasOfTheLimitIsALineAndWhereChanceMayExplainItABound) {
+TEST_F(SpeedAccuracyScriptTest, TheBiasOfTheLimitIsALineOrABound) {
   EXPECT_THAT(script_, HasSubstr("delta,resolved,x,y\n"
                                  "0.2,1,1e-06,0.0625\n0.2,1,4.224,0.0625\n\n"
                                  "0.1,0,1e-06,0.0390625\n0.1,0,4.224,0.0390625\n\n"));
@@ -181,7 +164,8 @@ TEST_F(SpeedAccuracyScriptTest, RingsStandWhereTheBilliardIsAsExactAsTheLimit) {
 TEST_F(SpeedAccuracyScriptTest, EachOfEightDeltasHasItsColour) {
   std::vector<MethodMeasurement> measurements = Measurements();
   for (const double delta : {0.3, 0.25, 0.15, 0.05, 0.02, 0.01}) {
-    measurements.push_back(AtDelta(delta, measurements.back()));
+    measurements.push_back(measurements.back());
+    measurements.back().set_delta(delta);
   }
   const std::string script = MakeFiles({}, measurements)->script;
   EXPECT_THAT(script, HasSubstr("deltas = \"0.3 0.25 0.2 0.15 0.1 0.05 0.02 0.01\"\n"));
@@ -189,19 +173,18 @@ TEST_F(SpeedAccuracyScriptTest, EachOfEightDeltasHasItsColour) {
                                 "#22a884 #3bbb75\"\n"));
 }
 
-TEST_F(SpeedAccuracyScriptTest, WithoutRelaxationTimesTheirPanelIsLeftOut) {
+TEST_F(SpeedAccuracyScriptTest, WithoutRelaxationTimesThereIsNoPanelD) {
   std::vector<MethodMeasurement> measurements = Measurements();
   std::erase_if(measurements, [](const MethodMeasurement& m) {
     return m.quantity() == MethodMeasurement::RELAXATION_TIME;
   });
-  const auto files = MakeFiles({}, measurements);
-  ASSERT_TRUE(files.ok()) << files.status();
-  EXPECT_THAT(files->script, Not(HasSubstr("{/:Bold d}")));
-  EXPECT_THAT(files->script, Not(HasSubstr("legend of d")));
-  EXPECT_TRUE(files->script.ends_with("unset multiplot\n"));
+  ASSERT_OK_AND_ASSIGN(const SpeedAccuracyFiles files, MakeFiles({}, measurements));
+  EXPECT_THAT(files.script, Not(HasSubstr("{/:Bold d}")));
+  EXPECT_THAT(files.script, Not(HasSubstr("legend of d")));
+  EXPECT_TRUE(files.script.ends_with("unset multiplot\n"));
 }
 
-// Can be moved and run again: no path but names of files beside it.
+// A script can be moved and run again: it holds no path but the names of files beside it.
 TEST_F(SpeedAccuracyScriptTest, NamesFilesBesideIt) {
   EXPECT_THAT(script_, HasSubstr("\"speed-accuracy.csv\""));
   EXPECT_THAT(script_, Not(HasSubstr("/speed-accuracy")));

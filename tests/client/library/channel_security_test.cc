@@ -4,17 +4,22 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "client/library/connection_hint.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+constexpr auto kDenied = absl::StatusCode::kPermissionDenied;
 
 constexpr char kSecret[] = "hunter2hunter2";
 constexpr char kPem[] = "-----BEGIN CERTIFICATE-----\n";
@@ -22,89 +27,77 @@ constexpr char kKeyPem[] = "-----BEGIN PRIVATE KEY-----\n";
 
 TEST(ChannelSecurity, ATokenIsNotSentWithoutTls) {
   for (const char* address : {"localhost:1", "127.0.0.1:1", "example.org:1"}) {
-    const absl::Status status = CheckSecurity({.token = kSecret}, address);
-    EXPECT_TRUE(absl::IsInvalidArgument(status));
-    EXPECT_THAT(std::string(status.message()), HasSubstr("others can read"));
-    EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kSecret)));
-    EXPECT_FALSE(CheckSecurity({.token_file = "f"}, address).ok());
-    EXPECT_TRUE(CheckSecurity({.tls = true, .token = kSecret}, address).ok());
-    EXPECT_TRUE(CheckSecurity({.ca = "f", .token_file = "f"}, address).ok());
-    EXPECT_TRUE(CheckSecurity({}, address).ok());
+    EXPECT_THAT(CheckSecurity({.token = kSecret}, address),
+                StatusIs(kInvalid, AllOf(HasSubstr("others can read"), Not(HasSubstr(kSecret)))));
+    EXPECT_THAT(CheckSecurity({.token_file = "f"}, address), StatusIs(kInvalid));
+    EXPECT_OK(CheckSecurity({.tls = true, .token = kSecret}, address));
+    EXPECT_OK(CheckSecurity({.ca = "f", .token_file = "f"}, address));
+    EXPECT_OK(CheckSecurity({}, address));
   }
 }
 
-TEST(ChannelSecurity, ASocketHasNone) {
-  EXPECT_TRUE(CheckSecurity({}, "unix:x").ok());
-  EXPECT_FALSE(CheckSecurity({.tls = true}, "unix:x").ok());
-  EXPECT_FALSE(CheckSecurity({.token_file = "f"}, "unix:x").ok());
+TEST(ChannelSecurity, IsRejectedForASocket) {
+  EXPECT_OK(CheckSecurity({}, "unix:x"));
+  EXPECT_THAT(CheckSecurity({.tls = true}, "unix:x"), StatusIs(kInvalid));
+  EXPECT_THAT(CheckSecurity({.token_file = "f"}, "unix:x"), StatusIs(kInvalid));
 }
 
 TEST(ChannelSecurity, ACertificateNeedsItsKey) {
-  EXPECT_FALSE(CheckSecurity({.certificate = "f"}, "a:1").ok());
-  EXPECT_FALSE(CheckSecurity({.key = "f"}, "a:1").ok());
-  EXPECT_TRUE(CheckSecurity({.certificate = "f", .key = "f"}, "a:1").ok());
+  EXPECT_THAT(CheckSecurity({.certificate = "f"}, "a:1"), StatusIs(kInvalid));
+  EXPECT_THAT(CheckSecurity({.key = "f"}, "a:1"), StatusIs(kInvalid));
+  EXPECT_OK(CheckSecurity({.certificate = "f", .key = "f"}, "a:1"));
 }
 
 class SecurityFiles : public ::testing::Test {
  protected:
-  SecurityFiles() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "channel_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~SecurityFiles() override { std::filesystem::remove_all(folder_); }
-
   std::string Write(const std::string& name, const std::string& text, mode_t mode = 0600) {
-    const std::string path = folder_ + "/" + name;
+    const std::string path = folder_.File(name);
     std::ofstream(path) << text;
     chmod(path.c_str(), mode);
     return path;
   }
-  absl::Status StatusOf(const ChannelSecurity& security) {
-    const absl::Status status = CredentialsOf(security).status();
+  // Never shows the secret.
+  absl::Status Check(const ChannelSecurity& security) {
+    absl::Status status = CredentialsOf(security).status();
     EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kSecret)));
     return status;
   }
   absl::Status WithToken(const std::string& text, mode_t mode = 0600) {
-    return StatusOf({.tls = true, .token_file = Write("token", text, mode)});
+    return Check({.tls = true, .token_file = Write("token", text, mode)});
   }
 
-  std::string folder_;
+  const TemporaryFolder folder_;
 };
 
-TEST_F(SecurityFiles, ATokenFileIsOneWord) {
-  EXPECT_TRUE(WithToken(kSecret).ok());
-  EXPECT_TRUE(WithToken(std::string(kSecret) + "\r\n").ok());
+TEST_F(SecurityFiles, ATokenFileHoldsOneWord) {
+  EXPECT_OK(WithToken(kSecret));
+  EXPECT_OK(WithToken(std::string(kSecret) + "\r\n"));
   for (const std::string& text :
        {std::string(), std::string("\n"), std::string("two ") + kSecret,
         std::string(kSecret) + "\nnext", std::string(kSecret) + "\x01", std::string(257, 'x')}) {
-    EXPECT_TRUE(absl::IsInvalidArgument(WithToken(text))) << text;
+    EXPECT_THAT(WithToken(text), StatusIs(kInvalid)) << text;
   }
 }
 
-TEST_F(SecurityFiles, ATokenFileThatOthersMayReadIsRefused) {
+TEST_F(SecurityFiles, ATokenFileThatOthersCanReadIsRejected) {
   for (const mode_t mode : {0640, 0604, 0644, 0660, 0666}) {
-    const absl::Status status = WithToken(kSecret, mode);
-    EXPECT_TRUE(absl::IsPermissionDenied(status));
-    EXPECT_THAT(std::string(status.message()), HasSubstr("chmod 600"));
+    EXPECT_THAT(WithToken(kSecret, mode), StatusIs(kDenied, HasSubstr("chmod 600")));
   }
 }
 
-TEST_F(SecurityFiles, AKeyFileThatOthersMayReadIsRefused) {
+TEST_F(SecurityFiles, AKeyFileThatOthersCanReadIsRejected) {
   ChannelSecurity security;
   security.certificate = Write("cert", kPem, 0644);
   security.key = Write("key", std::string(kKeyPem) + kSecret);
-  EXPECT_TRUE(StatusOf(security).ok());
+  EXPECT_OK(Check(security));
   security.key = Write("key", std::string(kKeyPem) + kSecret, 0644);
-  EXPECT_TRUE(absl::IsPermissionDenied(StatusOf(security)));
+  EXPECT_THAT(Check(security), StatusIs(kDenied));
 }
 
-TEST_F(SecurityFiles, WhatCannotBeReadOrIsNoPemIsNamed) {
-  ChannelSecurity missing{.ca = folder_ + "/none"};
-  EXPECT_THAT(std::string(StatusOf(missing).message()), HasSubstr("none cannot be opened"));
-  ChannelSecurity folder{.ca = folder_};
-  EXPECT_THAT(std::string(StatusOf(folder).message()), HasSubstr("cannot be read"));
-  ChannelSecurity wrong{.ca = Write("ca", kSecret)};
-  EXPECT_THAT(std::string(StatusOf(wrong).message()), HasSubstr("PEM is wanted"));
+TEST_F(SecurityFiles, ErrorsNameTheFileAndTheFault) {
+  EXPECT_THAT(Check({.ca = folder_.File("none")}).message(), HasSubstr("none cannot be opened"));
+  EXPECT_THAT(Check({.ca = folder_.path()}).message(), HasSubstr("cannot be read"));
+  EXPECT_THAT(Check({.ca = Write("ca", kSecret)}).message(), HasSubstr("PEM is wanted"));
 }
 
 TEST(ConnectionHint, SaysWhatToTry) {

@@ -8,35 +8,28 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
 namespace ballpiston::client {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string Contents(const fs::path& path) {
-  std::ifstream in(path);
-  return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-}
-
 class ChildProcessTest : public ::testing::Test {
  protected:
-  ChildProcessTest() {
-    std::string pattern = (fs::temp_directory_path() / "child_test_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ChildProcessTest() override { fs::remove_all(folder_); }
-
   int RunShell(const std::string& script) const {
     const auto status = RunChild({.command = {"sh", "-c", script},
-                                  .folder = folder_.string(),
-                                  .output = Output().string(),
+                                  .folder = folder_.path(),
+                                  .output = folder_.File("output"),
                                   .detached = false});
-    EXPECT_TRUE(status.ok()) << status.status();
+    EXPECT_OK(status);
     return status.value_or(-1);
   }
-  fs::path Output() const { return folder_ / "output"; }
+  std::string Output() const {
+    std::ifstream in(folder_.File("output"));
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(ChildProcessTest, ReturnsTheExitStatus) {
@@ -48,7 +41,7 @@ TEST_F(ChildProcessTest, ReturnsTheExitStatus) {
 TEST_F(ChildProcessTest, RunsInItsFolderAndAppendsItsOutput) {
   RunShell("pwd; echo error >&2");
   RunShell("echo again");
-  EXPECT_EQ(Contents(Output()), fs::canonical(folder_).string() + "\nerror\nagain\n");
+  EXPECT_EQ(Output(), std::filesystem::canonical(folder_.path()).string() + "\nerror\nagain\n");
 }
 
 TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
@@ -60,10 +53,10 @@ TEST_F(ChildProcessTest, StartsWithNoSignalBlocked) {
   pthread_sigmask(SIG_SETMASK, &old, nullptr);
 }
 
-TEST_F(ChildProcessTest, AProgramThatDoesNotExistIsNotFound) {
-  const auto status =
-      RunChild({.command = {"no-such-program"}, .folder = "", .output = "", .detached = false});
-  EXPECT_EQ(status.status().code(), absl::StatusCode::kNotFound);
+TEST_F(ChildProcessTest, AMissingProgramIsNotFound) {
+  EXPECT_THAT(
+      RunChild({.command = {"no-such-program"}, .folder = "", .output = "", .detached = false}),
+      StatusIs(absl::StatusCode::kNotFound));
 }
 
 }  // namespace

@@ -9,15 +9,14 @@
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
-v1::EnsembleJob Named(const std::string& name) {
-  v1::EnsembleJob job;
-  job.set_name(name);
-  return job;
-}
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(RequestId, IsARandomUuid) {
   constexpr char kUuid[] = "[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}";
@@ -29,43 +28,44 @@ TEST(RequestId, IsARandomUuid) {
   EXPECT_EQ(ids.size(), 1000u);
 }
 
-// The channel repeats the call; the server can tell that it is the same one.
-TEST(EnsembleClient, CreateIsRepeatedWithTheSameRequestId) {
-  FakeServer server;
-  server.ensemble.jobs = {Named("ensembleJobs/a")};
-  server.ensemble.unavailable_attempts = 2;
-  server.Start();
+class EnsembleClientTest : public ::testing::Test {
+ protected:
+  EnsembleClientTest() { server_.ensemble.jobs = {JobIn(v1::EnsembleJob::QUEUED)}; }
+
+  EnsembleClient StartServer() {
+    server_.Start();
+    return EnsembleClient(server_.Channel());
+  }
+
+  FakeServer server_;
+};
+
+// The channel repeats the call; by its request id the server recognises it.
+TEST_F(EnsembleClientTest, CreateIsRepeatedWithTheSameRequestId) {
+  server_.ensemble.unavailable_attempts = 2;
   v1::EnsembleSpec spec;
   spec.set_seed(7);
-  const auto job = EnsembleClient(server.Channel()).Create(spec);
-  ASSERT_TRUE(job.ok()) << job.status();
-  EXPECT_EQ(job->name(), "ensembleJobs/a");
-  const auto requests = server.ensemble.Asked().create;
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Create(spec));
+  EXPECT_EQ(job.name(), kJobName);
+  const auto requests = server_.ensemble.Asked().create;
   ASSERT_EQ(requests.size(), 3u);
   EXPECT_EQ(requests[0].request_id(), requests[2].request_id());
   EXPECT_EQ(requests[2].spec().seed(), 7u);
 }
 
-TEST(EnsembleClient, EachCreateHasAnIdOfItsOwn) {
-  FakeServer server;
-  server.ensemble.jobs = {Named("ensembleJobs/a")};
-  server.Start();
-  const EnsembleClient client(server.Channel());
-  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
-  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
-  EXPECT_NE(server.ensemble.Asked().create[0].request_id(),
-            server.ensemble.Asked().create[1].request_id());
+TEST_F(EnsembleClientTest, EachCreateHasANewRequestId) {
+  const EnsembleClient client = StartServer();
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  EXPECT_NE(server_.ensemble.Asked().create[0].request_id(),
+            server_.ensemble.Asked().create[1].request_id());
 }
 
-TEST(EnsembleClient, CreateCarriesItsOptions) {
-  FakeServer server;
-  server.ensemble.jobs = {Named("ensembleJobs/a")};
-  server.Start();
-  const EnsembleClient client(server.Channel());
-  ASSERT_TRUE(client.Create(v1::EnsembleSpec()).ok());
-  ASSERT_TRUE(
-      client.Create(v1::EnsembleSpec(), {.request_id = "id", .fresh = true, .priority = -7}).ok());
-  const auto asked = server.ensemble.Asked().create;
+TEST_F(EnsembleClientTest, CreateSendsItsOptions) {
+  const EnsembleClient client = StartServer();
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  ASSERT_OK(client.Create(v1::EnsembleSpec(), {.request_id = "id", .fresh = true, .priority = -7}));
+  const auto asked = server_.ensemble.Asked().create;
   EXPECT_FALSE(asked[0].fresh());
   EXPECT_EQ(asked[0].priority(), 0);
   EXPECT_EQ(asked[1].request_id(), "id");
@@ -73,82 +73,68 @@ TEST(EnsembleClient, CreateCarriesItsOptions) {
   EXPECT_EQ(asked[1].priority(), -7);
 }
 
-TEST(EnsembleClient, ListGathersAllPages) {
-  FakeServer server;
-  for (int i = 0; i < 5; ++i) server.ensemble.jobs.push_back(Named(std::to_string(i)));
-  server.Start();
-  const auto jobs = EnsembleClient(server.Channel()).List();
-  ASSERT_TRUE(jobs.ok()) << jobs.status();
-  ASSERT_EQ(jobs->size(), 5u);
-  for (size_t i = 0; i < 5; ++i) EXPECT_EQ((*jobs)[i].name(), std::to_string(i));
+TEST_F(EnsembleClientTest, ListGathersAllPages) {
+  for (int i = 1; i < 5; ++i) server_.ensemble.jobs.push_back(JobIn(v1::EnsembleJob::QUEUED));
+  for (size_t i = 0; i < 5; ++i) server_.ensemble.jobs[i].set_name(std::to_string(i));
+  ASSERT_OK_AND_ASSIGN(const auto jobs, StartServer().List());
+  ASSERT_EQ(jobs.size(), 5u);
+  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(jobs[i].name(), std::to_string(i));
 }
 
-TEST(EnsembleClient, ResultsGathersAllPagesOfTheViewAskedFor) {
-  FakeServer server;
-  for (int i = 0; i < 5; ++i) server.ensemble.points.emplace_back().set_index(i);
-  server.Start();
-  const auto points =
-      EnsembleClient(server.Channel()).Results("ensembleJobs/a", v1::ListResultsRequest::BASIC);
-  ASSERT_TRUE(points.ok()) << points.status();
-  ASSERT_EQ(points->size(), 5u);
-  for (int i = 0; i < 5; ++i) EXPECT_EQ((*points)[static_cast<size_t>(i)].index(), i);
-  ASSERT_EQ(server.ensemble.Asked().results.size(), 3u);
-  const auto asked = server.ensemble.Asked();
-  for (const auto& request : asked.results) {
+TEST_F(EnsembleClientTest, ResultsGathersAllPagesInTheRequestedView) {
+  for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
+  ASSERT_OK_AND_ASSIGN(const auto points,
+                       StartServer().Results("ensembleJobs/a", v1::ListResultsRequest::BASIC));
+  ASSERT_EQ(points.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(points[static_cast<size_t>(i)].index(), i);
+  const auto asked = server_.ensemble.Asked().results;
+  ASSERT_EQ(asked.size(), 3u);
+  for (const auto& request : asked) {
     EXPECT_EQ(request.parent(), "ensembleJobs/a");
     EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
   }
 }
 
-TEST(EnsembleClient, ErrorsKeepCodeAndReason) {
-  FakeServer server;
-  server.Start();
-  const auto job = EnsembleClient(server.Channel()).Get("ensembleJobs/none");
-  EXPECT_EQ(job.status().code(), absl::StatusCode::kNotFound);
-  EXPECT_EQ(job.status().message(), "no such job: ensembleJobs/none (JOB_NOT_FOUND)");
+TEST_F(EnsembleClientTest, ErrorsKeepCodeAndReason) {
+  const auto job = StartServer().Get("ensembleJobs/none");
+  EXPECT_THAT(
+      job, StatusIs(absl::StatusCode::kNotFound, "no such job: ensembleJobs/none (JOB_NOT_FOUND)"));
   EXPECT_EQ(ErrorReason(job.status()), "JOB_NOT_FOUND");
 }
 
-TEST(EnsembleClient, WithoutAServerIsUnavailable) {
-  const FakeServer server;  // not started
-  const EnsembleClient client(server.Channel());
-  EXPECT_EQ(client.List().status().code(), absl::StatusCode::kUnavailable);
-  EXPECT_EQ(client.Delete("ensembleJobs/a").code(), absl::StatusCode::kUnavailable);
+TEST_F(EnsembleClientTest, WithoutAServerIsUnavailable) {
+  const EnsembleClient client(server_.Channel());  // not started
+  EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
 }
 
-TEST(EnsembleClient, CancelCarriesARequestId) {
-  FakeServer server;
-  server.Start();
-  ASSERT_TRUE(EnsembleClient(server.Channel()).Cancel("ensembleJobs/a").ok());
-  ASSERT_EQ(server.ensemble.Asked().cancel.size(), 1u);
-  EXPECT_EQ(server.ensemble.Asked().cancel[0].name(), "ensembleJobs/a");
-  EXPECT_FALSE(server.ensemble.Asked().cancel[0].request_id().empty());
+TEST_F(EnsembleClientTest, CancelSendsARequestId) {
+  ASSERT_OK(StartServer().Cancel("ensembleJobs/a"));
+  const auto asked = server_.ensemble.Asked().cancel;
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].name(), "ensembleJobs/a");
+  EXPECT_NE(asked[0].request_id(), "");
 }
 
-TEST(EnsembleClient, ACancelThatIsAskedAgainCarriesTheSameId) {
-  FakeServer server;
-  server.Start();
-  const EnsembleClient client(server.Channel());
+TEST_F(EnsembleClientTest, ARepeatedCancelSendsTheSameRequestId) {
+  const EnsembleClient client = StartServer();
   const std::string id = "123e4567-e89b-12d3-a456-426614174000";
-  ASSERT_TRUE(client.Cancel("ensembleJobs/a", id).ok());
+  ASSERT_OK(client.Cancel("ensembleJobs/a", id));
   client.Cancel("ensembleJobs/a", id).status().IgnoreError();
-  const auto asked = server.ensemble.Asked().cancel;
+  const auto asked = server_.ensemble.Asked().cancel;
   ASSERT_EQ(asked.size(), 2u);
   EXPECT_EQ(asked[0].request_id(), id);
   EXPECT_EQ(asked[1].request_id(), id);
 }
 
-// The words are gRPC's own; a server takes 4 MiB if nobody tells it otherwise.
-TEST(EnsembleClient, ASpecificationThatIsTooLargeIsToldInPlainWords) {
-  FakeServer server;
-  server.Start();
+// By default a gRPC server takes 4 MiB.
+TEST_F(EnsembleClientTest, ErrorOfATooLargeSpecificationHasPlainWords) {
   v1::EnsembleSpec spec;
   spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
-  const absl::Status status = EnsembleClient(server.Channel()).Create(spec).status();
-  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
-  EXPECT_EQ(status.message().find("the request or its answer is too large to be sent: 80000"), 0u)
-      << status;
-  EXPECT_NE(status.message().find(" bytes; at most 4194304 are permitted"), std::string::npos);
+  EXPECT_THAT(StartServer().Create(spec),
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       AllOf(StartsWith("the request or its answer is too large to be sent: 80000"),
+                             HasSubstr(" bytes; at most 4194304 are permitted"))));
 }
 
 }  // namespace

@@ -6,13 +6,15 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
 using Violation = std::pair<std::string, std::string>;
 
-grpc::Status Invalid(const std::vector<Violation>& violations, int left_out = 0) {
+grpc::Status InvalidWith(const std::vector<Violation>& violations, int left_out = 0) {
   google::rpc::ErrorInfo info;
   info.set_reason("INVALID_SPEC");
   if (left_out > 0) (*info.mutable_metadata())["violations_left_out"] = std::to_string(left_out);
@@ -28,9 +30,9 @@ grpc::Status Invalid(const std::vector<Violation>& violations, int left_out = 0)
   return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "summary", details.SerializeAsString());
 }
 
-TEST(ErrorText, OkIsOk) { EXPECT_TRUE(FromGrpc(grpc::Status::OK).ok()); }
+TEST(ErrorText, OkIsOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
 
-TEST(ErrorText, WithoutDetailsIsTheMessage) {
+TEST(ErrorText, WithoutDetailsItIsTheMessage) {
   const absl::Status status =
       FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
   EXPECT_EQ(status, absl::UnavailableError("connection refused"));
@@ -38,23 +40,23 @@ TEST(ErrorText, WithoutDetailsIsTheMessage) {
 }
 
 TEST(ErrorText, OneViolationTakesOneLine) {
-  const absl::Status status = FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}}));
-  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_EQ(status.message(), "spec.grid.rho[0]: is 0.9 (INVALID_SPEC)");
+  const absl::Status status = FromGrpc(InvalidWith({{"spec.grid.rho[0]", "is 0.9"}}));
+  EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
+                               "spec.grid.rho[0]: is 0.9 (INVALID_SPEC)"));
   EXPECT_EQ(ErrorReason(status), "INVALID_SPEC");
 }
 
 TEST(ErrorText, EveryViolationHasItsLine) {
   const absl::Status status =
-      FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}, {"spec.target.samples", "is 0"}}));
+      FromGrpc(InvalidWith({{"spec.grid.rho[0]", "is 0.9"}, {"spec.target.samples", "is 0"}}));
   EXPECT_EQ(status.message(),
             "not valid, 2 violations (INVALID_SPEC):\n"
             "  spec.grid.rho[0]: is 0.9\n"
             "  spec.target.samples: is 0");
 }
 
-TEST(ErrorText, SaysHowManyViolationsTheServerLeftOut) {
-  const absl::Status status = FromGrpc(Invalid({{"spec.grid.rho[0]", "is 0.9"}}, 41));
+TEST(ErrorText, CountsTheViolationsThatTheServerLeftOut) {
+  const absl::Status status = FromGrpc(InvalidWith({{"spec.grid.rho[0]", "is 0.9"}}, 41));
   EXPECT_EQ(status.message(),
             "not valid, 42 violations (INVALID_SPEC):\n"
             "  spec.grid.rho[0]: is 0.9\n"
@@ -62,44 +64,34 @@ TEST(ErrorText, SaysHowManyViolationsTheServerLeftOut) {
 }
 
 TEST(ErrorText, AReasonAloneFollowsTheMessage) {
-  google::rpc::ErrorInfo info;
-  info.set_reason("JOB_NOT_FOUND");
-  google::rpc::Status details;
-  details.add_details()->PackFrom(info);
-  const absl::Status status = FromGrpc(
-      grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job", details.SerializeAsString()));
-  EXPECT_EQ(status.message(), "no such job (JOB_NOT_FOUND)");
+  EXPECT_EQ(FromGrpc(JobNotFound("a")).message(), "no such job: a (JOB_NOT_FOUND)");
 }
 
-TEST(ErrorText, AMessageThatIsTooLargeIsToldInPlainWords) {
+TEST(ErrorText, ATooLargeMessageIsReportedInPlainWords) {
   for (const char* text : {"Sent message larger than max (8000051 vs. 4194304)",
                            "SERVER: Received message larger than max (8000051 vs. 4194304)"}) {
-    const absl::Status status = FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, text));
-    EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
-    EXPECT_EQ(status.message(),
-              "the request or its answer is too large to be sent: 8000051 bytes; at most 4194304 "
-              "are permitted");
+    EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, text)),
+              absl::ResourceExhaustedError("the request or its answer is too large to be sent: "
+                                           "8000051 bytes; at most 4194304 are permitted"));
   }
 }
 
-TEST(ErrorText, OtherExhaustionKeepsItsWords) {
-  const absl::Status status =
-      FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many watchers"));
-  EXPECT_EQ(status, absl::ResourceExhaustedError("too many watchers"));
+TEST(ErrorText, OtherExhaustionKeepsItsMessage) {
+  EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many watchers")),
+            absl::ResourceExhaustedError("too many watchers"));
 }
 
-TEST(ErrorText, AMethodThatTheServerLacksIsToldInPlainWords) {
-  const absl::Status status = FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, ""));
-  EXPECT_EQ(status, absl::UnimplementedError(
-                        "the server is of an earlier version, which does not offer this"));
+TEST(ErrorText, AMissingMethodIsReportedInPlainWords) {
+  EXPECT_EQ(
+      FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "")),
+      absl::UnimplementedError("the server is of an earlier version, which does not offer this"));
   EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "not by Slurm")).message(),
             "not by Slurm");
 }
 
-TEST(ErrorText, DetailsThatAreNoStatusDoNotHideTheMessage) {
-  const absl::Status status =
-      FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff"));
-  EXPECT_EQ(status.message(), "went wrong");
+TEST(ErrorText, MalformedDetailsDoNotHideTheMessage) {
+  EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::INTERNAL, "went wrong", "\xff\xff\xff")),
+            absl::InternalError("went wrong"));
 }
 
 }  // namespace

@@ -3,251 +3,201 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/library/ensemble_client.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::Ge;
 using ::testing::HasSubstr;
+using ::testing::Le;
+using ::testing::SizeIs;
 
-constexpr char kName[] = "ensembleJobs/abc";
+using Job = v1::EnsembleJob;
 
 const grpc::Status kUnavailable(grpc::StatusCode::UNAVAILABLE, "connection reset");
 
-WatchOptions Quick() {
-  WatchOptions options;
-  options.initial_backoff = absl::Milliseconds(1);
-  options.max_backoff = absl::Milliseconds(4);
-  options.give_up_after = absl::Minutes(10);
-  return options;
+WatchScript Unavailable(std::vector<v1::WatchEnsembleJobResponse> messages = {}) {
+  return {std::move(messages), kUnavailable};
 }
 
-// Watches with everything that was shown noted down.
-struct Watcher {
-  std::vector<v1::EnsembleJob::State> states;
-  std::vector<double> samples;
-  int disconnects = 0;
+WatchScript Succeeded(const std::string& token = "t") {
+  return {{JobMessage(JobIn(Job::SUCCEEDED), token)}, grpc::Status::OK};
+}
 
-  absl::StatusOr<v1::EnsembleJob> Watch(const FakeServer& server, const WatchOptions& options,
-                                        std::stop_token stop = {}) {
-    WatchCallbacks callbacks;
-    callbacks.on_job = [this](const auto& job) { states.push_back(job.state()); };
-    callbacks.on_snapshot = [this](const auto& snapshot) {
-      samples.push_back(snapshot.progress().samples());
-    };
-    callbacks.on_disconnect = [this](const absl::Status&, absl::Duration) { ++disconnects; };
-    return EnsembleClient(server.Channel()).Watch(kName, callbacks, options, stop);
+// A watch whose callbacks are recorded.
+class JobWatch : public ::testing::Test {
+ protected:
+  JobWatch() {
+    options_.initial_backoff = absl::Milliseconds(1);
+    options_.max_backoff = absl::Milliseconds(4);
+    options_.give_up_after = absl::Minutes(10);
   }
+
+  void Start(std::vector<WatchScript> watches) {
+    server_.ensemble.watches = std::move(watches);
+    server_.Start();
+  }
+
+  absl::StatusOr<Job> Watch() {
+    WatchCallbacks callbacks;
+    callbacks.on_job = [this](const auto& job) { states_.push_back(job.state()); };
+    callbacks.on_snapshot = [this](const auto& snapshot) {
+      samples_.push_back(snapshot.progress().samples());
+      after_snapshot_();
+    };
+    callbacks.on_disconnect = [this](const absl::Status&, absl::Duration pause) {
+      pauses_.push_back(absl::ToDoubleMilliseconds(pause));
+      after_disconnect_();
+    };
+    return EnsembleClient(server_.Channel())
+        .Watch(kJobName, callbacks, options_, stop_.get_token());
+  }
+
+  std::vector<std::string> Tokens() const {
+    std::vector<std::string> tokens;
+    const auto asked = server_.ensemble.Asked();
+    for (const auto& request : asked.watch) tokens.push_back(request.resume_token());
+    return tokens;
+  }
+
+  FakeServer server_;
+  WatchOptions options_;
+  std::stop_source stop_;
+  std::function<void()> after_snapshot_ = [] {}, after_disconnect_ = [] {};
+  std::vector<Job::State> states_;
+  std::vector<double> samples_;
+  std::vector<double> pauses_;  // in milliseconds, one for each disconnection
 };
 
-std::vector<std::string> TokensOf(const FakeServer& server) {
-  std::vector<std::string> tokens;
-  const auto asked = server.ensemble.Asked();
-  for (const auto& request : asked.watch) {
-    tokens.push_back(request.resume_token());
-  }
-  return tokens;
+TEST_F(JobWatch, ReportsSnapshotsAndEndsWithTheJob) {
+  Start({{{JobMessage(JobIn(Job::RUNNING), "t1"), SnapshotMessage(10, "t2"),
+           SnapshotMessage(20, "t3"), JobMessage(JobIn(Job::SUCCEEDED), "t4")},
+          grpc::Status::OK}});
+  ASSERT_OK_AND_ASSIGN(const Job job, Watch());
+  EXPECT_EQ(job.state(), Job::SUCCEEDED);
+  EXPECT_THAT(states_, ElementsAre(Job::RUNNING, Job::SUCCEEDED));
+  EXPECT_THAT(samples_, ElementsAre(10, 20));
 }
 
-TEST(JobWatch, ShowsSnapshotsAndEndsWithTheJob) {
-  FakeServer server;
-  server.ensemble.watches = {
-      {{JobMessage(JobIn(v1::EnsembleJob::RUNNING), "t1"), SnapshotMessage(10, "t2"),
-        SnapshotMessage(20, "t3"), JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t4")},
-       grpc::Status::OK}};
-  server.Start();
-  Watcher watcher;
-  const auto job = watcher.Watch(server, Quick());
-  ASSERT_TRUE(job.ok()) << job.status();
-  EXPECT_EQ(job->state(), v1::EnsembleJob::SUCCEEDED);
-  EXPECT_THAT(watcher.states, ElementsAre(v1::EnsembleJob::RUNNING, v1::EnsembleJob::SUCCEEDED));
-  EXPECT_THAT(watcher.samples, ElementsAre(10, 20));
+TEST_F(JobWatch, PassesTheLastResumeTokenOn) {
+  Start({Unavailable({JobMessage(JobIn(Job::RUNNING), "t1"), SnapshotMessage(10, "t2")}),
+         Unavailable(), Unavailable({SnapshotMessage(20, "t3")}), Succeeded("t4")});
+  EXPECT_OK(Watch());
+  EXPECT_THAT(Tokens(), ElementsAre("", "t2", "t2", "t3"));
+  EXPECT_THAT(samples_, ElementsAre(10, 20));
+  EXPECT_THAT(pauses_, SizeIs(3));
 }
 
-TEST(JobWatch, PassesTheLastResumeTokenOn) {
-  FakeServer server;
-  server.ensemble.watches = {
-      {{JobMessage(JobIn(v1::EnsembleJob::RUNNING), "t1"), SnapshotMessage(10, "t2")},
-       kUnavailable},
-      {{}, kUnavailable},
-      {{SnapshotMessage(20, "t3")}, kUnavailable},
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t4")}, grpc::Status::OK}};
-  server.Start();
-  Watcher watcher;
-  const auto job = watcher.Watch(server, Quick());
-  ASSERT_TRUE(job.ok()) << job.status();
-  EXPECT_THAT(TokensOf(server), ElementsAre("", "t2", "t2", "t3"));
-  EXPECT_THAT(watcher.samples, ElementsAre(10, 20));
-  EXPECT_EQ(watcher.disconnects, 3);
+// The stream breaks after the terminal state, and the server repeats it: the callback gets one.
+TEST_F(JobWatch, ShowsTheTerminalStateOnce) {
+  const auto last = JobMessage(JobIn(Job::CANCELLED), "t1");
+  Start({Unavailable({last, last}), {{last}, grpc::Status::OK}});
+  ASSERT_OK_AND_ASSIGN(const Job job, Watch());
+  EXPECT_EQ(job.state(), Job::CANCELLED);
+  EXPECT_THAT(states_, ElementsAre(Job::CANCELLED));
+  EXPECT_THAT(Tokens(), SizeIs(1));
 }
 
-// The stream breaks after the terminal state, and the server repeats it: one is shown.
-TEST(JobWatch, ShowsTheTerminalStateOnce) {
-  FakeServer server;
-  const auto last = JobMessage(JobIn(v1::EnsembleJob::CANCELLED), "t1");
-  server.ensemble.watches = {{{last, last}, kUnavailable}, {{last}, grpc::Status::OK}};
-  server.Start();
-  Watcher watcher;
-  const auto job = watcher.Watch(server, Quick());
-  ASSERT_TRUE(job.ok()) << job.status();
-  EXPECT_EQ(job->state(), v1::EnsembleJob::CANCELLED);
-  EXPECT_THAT(watcher.states, ElementsAre(v1::EnsembleJob::CANCELLED));
-  EXPECT_EQ(server.ensemble.Asked().watch.size(), 1u);
+TEST_F(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
+  Start({{{SnapshotMessage(10, "t1")}, grpc::Status::OK}, Succeeded()});
+  EXPECT_OK(Watch());
+  EXPECT_THAT(Tokens(), ElementsAre("", "t1"));
 }
 
-TEST(JobWatch, AnEndWithoutTheTerminalStateIsADisconnection) {
-  FakeServer server;
-  server.ensemble.watches = {
-      {{SnapshotMessage(10, "t1")}, grpc::Status::OK},
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t2")}, grpc::Status::OK}};
-  server.Start();
-  Watcher watcher;
-  EXPECT_TRUE(watcher.Watch(server, Quick()).ok());
-  EXPECT_THAT(TokensOf(server), ElementsAre("", "t1"));
+class ErrorOfWatch : public JobWatch, public ::testing::WithParamInterface<grpc::StatusCode> {};
+
+TEST_P(ErrorOfWatch, EndsTheWatch) {
+  Start({Unavailable({SnapshotMessage(10, "t1")}), {{}, grpc::Status(GetParam(), "text")}});
+  EXPECT_THAT(Watch(), StatusIs(GetParam()));
+  EXPECT_THAT(Tokens(), SizeIs(2));
 }
 
-TEST(JobWatch, OtherErrorsEndTheWatch) {
-  for (const grpc::Status& end :
-       {JobNotFound(kName), grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "who is this?"),
-        grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many")}) {
-    FakeServer server;
-    server.ensemble.watches = {{{SnapshotMessage(10, "t1")}, kUnavailable}, {{}, end}};
-    server.Start();
-    Watcher watcher;
-    const auto job = watcher.Watch(server, Quick());
-    EXPECT_EQ(static_cast<int>(job.status().code()), static_cast<int>(end.error_code()));
-    EXPECT_EQ(server.ensemble.Asked().watch.size(), 2u);
-  }
-}
+INSTANTIATE_TEST_SUITE_P(JobWatch, ErrorOfWatch,
+                         ::testing::Values(grpc::StatusCode::NOT_FOUND,
+                                           grpc::StatusCode::UNAUTHENTICATED,
+                                           grpc::StatusCode::RESOURCE_EXHAUSTED));
 
-// As after a restart: nobody listens at the address for a while.
-TEST(JobWatch, AServerThatIsNotThereIsWaitedFor) {
-  FakeServer server;
-  server.ensemble.watches = {
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t1")}, grpc::Status::OK}};
-  int disconnects = 0;
-  WatchCallbacks callbacks;
-  callbacks.on_disconnect = [&](const absl::Status&, absl::Duration) {
-    if (++disconnects == 3) server.Start();
+// As during a restart: no server listens at the address for a while.
+TEST_F(JobWatch, WaitsForAnAbsentServer) {
+  server_.ensemble.watches = {Succeeded()};
+  after_disconnect_ = [this] {
+    if (pauses_.size() == 3) server_.Start();
   };
-  const auto job = EnsembleClient(server.Channel()).Watch(kName, callbacks, Quick());
-  ASSERT_TRUE(job.ok()) << job.status();
-  EXPECT_GE(disconnects, 3);
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, SizeIs(Ge(3)));
 }
 
-// How many attempts fit into the time is the machine's affair: that there are more, if it is long
-// enough, other tests show.
-TEST(JobWatch, GivesUpAfterTheConfiguredTime) {
-  FakeServer server;
-  server.ensemble.watches = {{{}, kUnavailable}};
-  server.Start();
-  WatchOptions options = Quick();
-  options.give_up_after = absl::Milliseconds(50);
-  Watcher watcher;
-  const auto job = watcher.Watch(server, options);
-  EXPECT_EQ(job.status().code(), absl::StatusCode::kUnavailable);
-  EXPECT_THAT(std::string(job.status().message()),
-              HasSubstr("gave up watching after 50ms without the server: connection reset"));
+// The number of attempts within the time depends on the machine; other tests count attempts.
+TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
+  Start({Unavailable()});
+  options_.give_up_after = absl::Milliseconds(50);
+  EXPECT_THAT(Watch(),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("gave up watching after 50ms without the server: connection "
+                                 "reset")));
 }
 
-TEST(JobWatch, AnUnavailableServerIsAskedAgain) {
-  FakeServer server;
-  server.ensemble.watches.assign(3, {{}, kUnavailable});
-  server.ensemble.watches.push_back(
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK});
-  server.Start();
-  Watcher watcher;
-  EXPECT_TRUE(watcher.Watch(server, Quick()).ok());
-  EXPECT_EQ(watcher.disconnects, 3);
-  EXPECT_EQ(server.ensemble.Asked().watch.size(), 4u);
+TEST_F(JobWatch, AttachesAgainToAnUnavailableServer) {
+  Start({Unavailable(), Unavailable(), Unavailable(), Succeeded()});
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, SizeIs(3));
+  EXPECT_THAT(Tokens(), SizeIs(4));
 }
 
-// Each attempt fails, but each brings news: the server is not gone. The time to give up starts
-// again together with the pauses (reattach_pace_test.cc).
-TEST(JobWatch, ThePaceStartsAgainWithEveryMessage) {
-  FakeServer server;
-  server.ensemble.watches.assign(100, {{SnapshotMessage(1, "t")}, kUnavailable});
-  server.ensemble.watches.push_back(
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK});
-  server.Start();
-  const WatchOptions options = Quick();
-  std::vector<absl::Duration> pauses;
-  WatchCallbacks callbacks;
-  callbacks.on_disconnect = [&](const absl::Status&, absl::Duration pause) {
-    pauses.push_back(pause);
-  };
-  EXPECT_TRUE(EnsembleClient(server.Channel()).Watch(kName, callbacks, options).ok());
-  ASSERT_EQ(pauses.size(), 100u);
-  for (const absl::Duration pause : pauses) EXPECT_LE(pause, 1.25 * options.initial_backoff);
+// Each attempt fails after a message: the server is alive. The time to give up starts again
+// together with the pauses (reattach_pace_test.cc).
+TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
+  std::vector<WatchScript> watches(100, Unavailable({SnapshotMessage(1, "t")}));
+  watches.push_back(Succeeded());
+  Start(watches);
+  EXPECT_OK(Watch());
+  EXPECT_THAT(pauses_, AllOf(SizeIs(100), Each(Le(1.25))));
 }
 
-TEST(JobWatch, PausesDoubleUpToTheirMaximum) {
-  FakeServer server;
-  server.ensemble.watches.assign(8, {{}, kUnavailable});
-  server.ensemble.watches.push_back(
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK});
-  server.Start();
-  std::vector<double> pauses;
-  WatchCallbacks callbacks;
-  callbacks.on_disconnect = [&](const absl::Status&, absl::Duration pause) {
-    pauses.push_back(absl::ToDoubleMilliseconds(pause));
-  };
-  EXPECT_TRUE(EnsembleClient(server.Channel()).Watch(kName, callbacks, Quick()).ok());
+TEST_F(JobWatch, PausesDoubleUpToTheirMaximum) {
+  std::vector<WatchScript> watches(8, Unavailable());
+  watches.push_back(Succeeded());
+  Start(watches);
+  EXPECT_OK(Watch());
   const double expected[] = {1, 2, 4, 4, 4, 4, 4, 4};
-  ASSERT_EQ(pauses.size(), std::size(expected));
-  for (size_t i = 0; i < pauses.size(); ++i) {
-    EXPECT_GE(pauses[i], expected[i] * 0.999);
-    EXPECT_LE(pauses[i], expected[i] * 1.251);
+  ASSERT_EQ(pauses_.size(), std::size(expected));
+  for (size_t i = 0; i < pauses_.size(); ++i) {
+    EXPECT_THAT(pauses_[i], AllOf(Ge(expected[i] * 0.999), Le(expected[i] * 1.251)));
   }
 }
 
-TEST(JobWatch, RunsTheHookBeforeEachNewAttempt) {
-  FakeServer server;
-  server.ensemble.watches = {
-      {{}, kUnavailable},
-      {{}, kUnavailable},
-      {{JobMessage(JobIn(v1::EnsembleJob::SUCCEEDED), "t")}, grpc::Status::OK}};
-  server.Start();
-  WatchOptions options = Quick();
+TEST_F(JobWatch, RunsTheHookBeforeEachNewAttempt) {
+  Start({Unavailable(), Unavailable(), Succeeded()});
   int revivals = 0;
-  options.before_reattach = [&revivals] { ++revivals; };
-  EXPECT_TRUE(Watcher().Watch(server, options).ok());
+  options_.before_reattach = [&revivals] { ++revivals; };
+  EXPECT_OK(Watch());
   EXPECT_EQ(revivals, 2);
 }
 
-TEST(JobWatch, AStopEndsTheWatchAtOnce) {
-  FakeServer server;
-  WatchScript hanging{{SnapshotMessage(1, "t1")}, grpc::Status::OK};
-  hanging.hangs = true;
-  server.ensemble.watches = {hanging};
-  server.Start();
-  std::stop_source stop;
-  WatchCallbacks callbacks;
-  callbacks.on_snapshot = [&stop](const auto&) { stop.request_stop(); };
-  const auto job =
-      EnsembleClient(server.Channel()).Watch(kName, callbacks, Quick(), stop.get_token());
-  EXPECT_EQ(job.status().code(), absl::StatusCode::kCancelled);
+TEST_F(JobWatch, AStopEndsTheWatchAtOnce) {
+  Start({{.messages = {SnapshotMessage(1, "t1")}, .end = grpc::Status::OK, .hangs = true}});
+  after_snapshot_ = [this] { stop_.request_stop(); };
+  EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kCancelled));
 }
 
-TEST(JobWatch, AStopEndsThePauseBetweenAttempts) {
-  FakeServer server;
-  server.ensemble.watches = {{{}, kUnavailable}};
-  server.Start();
-  WatchOptions options;
-  options.initial_backoff = absl::Hours(1);
-  options.give_up_after = absl::InfiniteDuration();
-  std::stop_source stop;
-  WatchCallbacks callbacks;
-  callbacks.on_disconnect = [&](const absl::Status&, absl::Duration) { stop.request_stop(); };
-  const auto job =
-      EnsembleClient(server.Channel()).Watch(kName, callbacks, options, stop.get_token());
-  EXPECT_EQ(job.status().code(), absl::StatusCode::kCancelled);
+TEST_F(JobWatch, AStopEndsThePauseBetweenAttempts) {
+  Start({Unavailable()});
+  options_.initial_backoff = absl::Hours(1);
+  options_.give_up_after = absl::InfiniteDuration();
+  after_disconnect_ = [this] { stop_.request_stop(); };
+  EXPECT_THAT(Watch(), StatusIs(absl::StatusCode::kCancelled));
 }
 
 }  // namespace

@@ -19,6 +19,8 @@
 #include "absl/time/time.h"
 #include "client/library/server_address.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 namespace {
@@ -28,18 +30,15 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// A HOME of its own, and the variables that matter as the test wants them.
+// An empty HOME, and none of the variables that choose the server.
 class LocalServerTest : public ::testing::Test {
  protected:
   LocalServerTest() {
-    std::string pattern = (fs::temp_directory_path() / "local_XXXXXX").string();
-    home_ = mkdtemp(pattern.data());
     setenv("HOME", home_.c_str(), 1);
     unsetenv("XDG_STATE_HOME");
     unsetenv("BALLPISTON_SERVER_PROGRAM");
   }
   ~LocalServerTest() override {
-    fs::remove_all(home_);
     unsetenv("TMPDIR");
     unsetenv("BALLPISTON_SERVER_PROGRAM");
   }
@@ -58,15 +57,15 @@ class LocalServerTest : public ::testing::Test {
     return status.st_mode & 0777;
   }
 
-  fs::path home_;
+  const TemporaryFolder folder_;
+  const fs::path home_ = folder_.path();
 };
 
-TEST_F(LocalServerTest, LivesInTheUsersStateFolder) {
-  const auto server = FindLocalServer();
-  ASSERT_TRUE(server.ok()) << server.status();
-  EXPECT_EQ(server->folder, home_.string() + "/.local/state/ballpiston");
-  EXPECT_EQ(server->socket, server->folder + "/server.socket");
-  EXPECT_EQ(ModeOf(server->folder), 0700u);
+TEST_F(LocalServerTest, IsInTheStateFolderOfTheUser) {
+  ASSERT_OK_AND_ASSIGN(const LocalServer server, FindLocalServer());
+  EXPECT_EQ(server.folder, home_.string() + "/.local/state/ballpiston");
+  EXPECT_EQ(server.socket, server.folder + "/server.socket");
+  EXPECT_EQ(ModeOf(server.folder), 0700u);
 }
 
 TEST_F(LocalServerTest, FollowsXdgStateHome) {
@@ -80,28 +79,26 @@ TEST_F(LocalServerTest, FollowsXdgStateHome) {
 TEST_F(LocalServerTest, ALongPathHasItsSocketInAPrivateFolderElsewhere) {
   setenv("HOME", (home_ / std::string(100, 'x')).c_str(), 1);
   setenv("TMPDIR", home_.c_str(), 1);
-  const auto server = FindLocalServer();
-  ASSERT_TRUE(server.ok()) << server.status();
-  EXPECT_THAT(server->socket, StartsWith(home_.string() + "/ballpiston-"));
-  EXPECT_LE(server->socket.size(), kMaxSocketPath);
-  EXPECT_EQ(ModeOf(fs::path(server->socket).parent_path()), 0700u);
-  EXPECT_EQ(FindLocalServer()->socket, server->socket);
+  ASSERT_OK_AND_ASSIGN(const LocalServer server, FindLocalServer());
+  EXPECT_THAT(server.socket, StartsWith(home_.string() + "/ballpiston-"));
+  EXPECT_LE(server.socket.size(), kMaxSocketPath);
+  EXPECT_EQ(ModeOf(fs::path(server.socket).parent_path()), 0700u);
+  EXPECT_EQ(FindLocalServer()->socket, server.socket);
 }
 
-TEST_F(LocalServerTest, RefusesASocketFolderThatOthersMayEnter) {
+TEST_F(LocalServerTest, RejectsASocketFolderThatOthersCanEnter) {
   setenv("HOME", (home_ / std::string(100, 'x')).c_str(), 1);
   setenv("TMPDIR", home_.c_str(), 1);
   const fs::path folder = fs::path(FindLocalServer()->socket).parent_path();
   fs::permissions(folder, fs::perms::all);
-  EXPECT_EQ(FindLocalServer().status().code(), absl::StatusCode::kPermissionDenied);
+  EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied));
 }
 
-TEST_F(LocalServerTest, AStateFolderThatCannotBeMadeIsAClearError) {
+TEST_F(LocalServerTest, ErrorNamesAStateFolderThatCannotBeMade) {
   std::ofstream(home_ / "file") << "not a folder";
   setenv("HOME", (home_ / "file").c_str(), 1);
-  const auto server = FindLocalServer();
-  EXPECT_EQ(server.status().code(), absl::StatusCode::kPermissionDenied);
-  EXPECT_THAT(std::string(server.status().message()), HasSubstr(home_.string() + "/file/.local"));
+  EXPECT_THAT(FindLocalServer(), StatusIs(absl::StatusCode::kPermissionDenied,
+                                          HasSubstr(home_.string() + "/file/.local")));
 }
 
 TEST_F(LocalServerTest, TheProgramMayBeChosen) {
@@ -112,33 +109,30 @@ TEST_F(LocalServerTest, TheProgramMayBeChosen) {
   EXPECT_EQ(FindLocalServer()->program, (fs::current_path() / "bin/server").string());
 }
 
-TEST_F(LocalServerTest, OneThatAnswersIsUsedAsItIs) {
+TEST_F(LocalServerTest, UsesAServerThatAnswers) {
   FakeServer running;
   running.Start();
-  const LocalServer server{.folder = home_.string(),
-                           .socket = running.Address().substr(5),
-                           .program = Program("exit 1")};
-  EXPECT_TRUE(ConnectToLocalServer(server).ok());
-  EXPECT_FALSE(fs::exists(server.Log()));  // nothing was started
+  const LocalServer server{
+      .folder = home_.string(), .socket = running.SocketPath(), .program = Program("exit 1")};
+  EXPECT_OK(ConnectToLocalServer(server));
+  EXPECT_FALSE(fs::exists(server.Log()));  // no program was started
 }
 
-TEST_F(LocalServerTest, OneThatExitsIsQuoted) {
+TEST_F(LocalServerTest, ErrorQuotesAProgramThatExits) {
   setenv("BALLPISTON_SERVER_PROGRAM", Program("echo first; echo the disk is full; exit 9").c_str(),
          1);
-  const auto channel = ConnectToLocalServer(*FindLocalServer());
-  EXPECT_EQ(channel.status().code(), absl::StatusCode::kUnavailable);
-  EXPECT_THAT(std::string(channel.status().message()),
-              HasSubstr("exit status 9: the disk is full\n  log: " + home_.string()));
+  EXPECT_THAT(ConnectToLocalServer(*FindLocalServer()),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("exit status 9: the disk is full\n  log: " + home_.string())));
 }
 
-TEST_F(LocalServerTest, OneThatIsNotInstalledIsNamed) {
+TEST_F(LocalServerTest, ErrorNamesAMissingProgram) {
   setenv("BALLPISTON_SERVER_PROGRAM", "no-such-server", 1);
-  const auto channel = ConnectToLocalServer(*FindLocalServer());
-  EXPECT_EQ(channel.status().code(), absl::StatusCode::kUnavailable);
-  EXPECT_THAT(std::string(channel.status().message()), HasSubstr("cannot start no-such-server"));
+  EXPECT_THAT(ConnectToLocalServer(*FindLocalServer()),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start no-such-server")));
 }
 
-// The folder as another client's server holds it.
+// Holds the lock of the folder, as a server of another client does.
 class FolderInUse {
  public:
   explicit FolderInUse(const fs::path& folder)
@@ -158,20 +152,20 @@ class FolderInUse {
   int lock_;
 };
 
-// Not longer than a client that gives up.
+// Until the file exists, or the client has given up.
 void Await(const fs::path& file, const std::stop_token& stop) {
   while (!fs::exists(file) && !stop.stop_requested()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
-// The own program exits, because the other server holds the folder; that one comes up a second
-// later, which is more than the first pause. There is nothing to be started meanwhile.
+// The started program exits, because another server holds the folder; that server listens a second
+// later, after more than the first pause. No second program is started meanwhile.
 TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   FakeServer other;
   const FolderInUse in_use(home_);
   const LocalServer server{.folder = home_.string(),
-                           .socket = other.Address().substr(5),
+                           .socket = other.SocketPath(),
                            .program = Program("cd " + home_.string() +
                                               "; [ -e once ] && touch twice; touch once; exit 1")};
   std::jthread starter([&](const std::stop_token& stop) {
@@ -179,7 +173,7 @@ TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
     std::this_thread::sleep_for(std::chrono::seconds(1));
     other.Start();
   });
-  EXPECT_EQ(ConnectToLocalServer(server).status(), absl::OkStatus());
+  EXPECT_OK(ConnectToLocalServer(server));
   starter.request_stop();
   EXPECT_FALSE(fs::exists(home_ / "twice"));
   starter.join();
@@ -187,28 +181,27 @@ TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
 
 absl::Duration TimeToFail(const LocalServer& server) {
   const absl::Time start = absl::Now();
-  EXPECT_THAT(std::string(ConnectToLocalServer(server).status().message()),
-              HasSubstr("exit status 2: why"));
+  EXPECT_THAT(ConnectToLocalServer(server),
+              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("exit status 2: why")));
   return absl::Now() - start;
 }
 
-// To wait for it, a minute, would take 15 times as long as it takes where nobody is.
-TEST_F(LocalServerTest, OneThatListensElsewhereIsNotWaitedFor) {
+// To wait a minute for it would take 15 times as long as without that server.
+TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
   const LocalServer server{
       .folder = home_.string(), .socket = home_ / "socket", .program = Program("echo why; exit 2")};
-  const absl::Duration where_nobody_is = TimeToFail(server);
+  const absl::Duration without_server = TimeToFail(server);
   const FolderInUse in_use(home_);
   std::ofstream(home_ / "server.address") << "127.0.0.1:50051\n";
-  EXPECT_LT(TimeToFail(server), 5 * where_nobody_is);
+  EXPECT_LT(TimeToFail(server), 5 * without_server);
 }
 
-// The other server was on its way out: the program is started again, and lives until the test's
-// folder goes.
-TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
+// The other server ends: the program is started again, and runs until the test's folder is removed.
+TEST_F(LocalServerTest, StartsAServerWhenAnotherLeavesTheFolder) {
   FakeServer second;
   FolderInUse in_use(home_);
   const LocalServer server{.folder = home_.string(),
-                           .socket = second.Address().substr(5),
+                           .socket = second.SocketPath(),
                            .program = Program("cd " + home_.string() +
                                               "; if [ -e once ]; then touch twice;"
                                               " while [ -e once ]; do sleep 0.01; done; exit 1; fi;"
@@ -219,7 +212,7 @@ TEST_F(LocalServerTest, OneThatLeavesTheFolderIsReplaced) {
     Await(home_ / "twice", stop);
     second.Start();
   });
-  EXPECT_EQ(ConnectToLocalServer(server).status(), absl::OkStatus());
+  EXPECT_OK(ConnectToLocalServer(server));
   starter.request_stop();
   starter.join();
 }

@@ -3,30 +3,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "client/library/error_text.h"
 #include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
-v1::MethodMeasurement Measured(uint64_t samples) {
+v1::MethodMeasurement WithSamples(uint64_t samples) {
   v1::MethodMeasurement measurement;
   measurement.set_samples(samples);
   return measurement;
 }
 
-TEST(MethodClient, TellsEachMeasurementInOrder) {
+TEST(MethodClient, ReportsTheMeasurementsInOrder) {
   FakeServer server;
-  server.method.measurements = {Measured(1), Measured(4), Measured(16)};
+  server.method.measurements = {WithSamples(1), WithSamples(4), WithSamples(16)};
   server.Start();
   v1::CompareMethodsRequest request;
   request.set_epsilon(0.125);
   std::vector<uint64_t> told;
-  const absl::Status status =
-      MethodClient(server.Channel()).CompareMethods(request, [&](const auto& measurement) {
-        told.push_back(measurement.samples());
-      });
-  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_OK(MethodClient(server.Channel()).CompareMethods(request, [&](const auto& measurement) {
+    told.push_back(measurement.samples());
+  }));
   EXPECT_THAT(told, testing::ElementsAre(1, 4, 16));
   ASSERT_EQ(server.method.asked.size(), 1u);
   EXPECT_EQ(server.method.asked[0].epsilon(), 0.125);
@@ -34,24 +32,22 @@ TEST(MethodClient, TellsEachMeasurementInOrder) {
 
 TEST(MethodClient, AStopEndsTheComparison) {
   FakeServer server;
-  server.method.measurements = {Measured(1)};
+  server.method.measurements = {WithSamples(1)};
   server.method.hangs = true;  // until the client has left
   server.Start();
   std::stop_source stop;
-  const absl::Status status =
-      MethodClient(server.Channel())
-          .CompareMethods(
-              {}, [&](const auto&) { stop.request_stop(); }, stop.get_token());
-  EXPECT_TRUE(absl::IsCancelled(status)) << status;
+  const auto request_stop = [&](const auto&) { stop.request_stop(); };
+  EXPECT_THAT(MethodClient(server.Channel()).CompareMethods({}, request_stop, stop.get_token()),
+              StatusIs(absl::StatusCode::kCancelled));
 }
 
-// It might find its own first attempt still running.
-TEST(MethodClient, AComparisonIsAskedForOnce) {
+// A second attempt could be rejected because the first one is still running.
+TEST(MethodClient, AComparisonIsNotRepeated) {
   FakeServer server;
   server.method.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "not now");
   server.Start();
-  const absl::Status status = MethodClient(server.Channel()).CompareMethods({}, [](const auto&) {});
-  EXPECT_TRUE(absl::IsUnavailable(status)) << status;
+  EXPECT_THAT(MethodClient(server.Channel()).CompareMethods({}, [](const auto&) {}),
+              StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_EQ(server.method.asked.size(), 1u);
 }
 

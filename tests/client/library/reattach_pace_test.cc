@@ -33,7 +33,7 @@ TEST(ReattachPace, PausesDoubleUpToTheirMaximum) {
   }
 }
 
-TEST(ReattachPace, PausesStartAgainWhenSomethingIsHeard) {
+TEST(ReattachPace, PausesStartAgainAfterAMessage) {
   const WatchOptions options = ThreeMinutes();
   ReattachPace pace(options, kStart);
   for (int i = 0; i < 5; ++i) pace.NextPause(kStart);
@@ -43,14 +43,14 @@ TEST(ReattachPace, PausesStartAgainWhenSomethingIsHeard) {
   EXPECT_LE(*pause, absl::Seconds(1.251));
 }
 
-// A pause of 1 s to 1.25 s has room before 3 min, or has not.
+// A pause of 1 s to 1.25 s fits into 3 min after 178 s, not after 180 s.
 TEST(ReattachPace, GivesUpWhenTheNextAttemptWouldComeTooLate) {
   const WatchOptions options = ThreeMinutes();
   EXPECT_TRUE(ReattachPace(options, kStart).NextPause(kStart + seconds(178)));
   EXPECT_FALSE(ReattachPace(options, kStart).NextPause(kStart + seconds(180)));
 }
 
-TEST(ReattachPace, TheTimeToGiveUpStartsAgainWithEveryWordHeard) {
+TEST(ReattachPace, TheTimeToGiveUpStartsAgainWithEveryMessage) {
   const WatchOptions options = ThreeMinutes();
   ReattachPace pace(options, kStart);
   ReattachPace::Time now = kStart;

@@ -3,29 +3,31 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "tests/support/status_matchers.h"
+
 namespace ballpiston::client {
 namespace {
 
 using ::testing::HasSubstr;
 
 TEST(ServerAddress, IsHostAndPortOrASocket) {
-  EXPECT_EQ(*GrpcTarget("localhost:50051"), "dns:///localhost:50051");
-  EXPECT_EQ(*GrpcTarget("10.0.0.7:1"), "dns:///10.0.0.7:1");
-  EXPECT_EQ(*GrpcTarget("[::1]:65535"), "dns:///[::1]:65535");
-  EXPECT_EQ(*GrpcTarget("unix:/run/ballpiston.socket"), "unix:/run/ballpiston.socket");
-  EXPECT_EQ(*GrpcTarget("unix:relative"), "unix:relative");
+  EXPECT_THAT(GrpcTarget("localhost:50051"), IsOkAndHolds("dns:///localhost:50051"));
+  EXPECT_THAT(GrpcTarget("10.0.0.7:1"), IsOkAndHolds("dns:///10.0.0.7:1"));
+  EXPECT_THAT(GrpcTarget("[::1]:65535"), IsOkAndHolds("dns:///[::1]:65535"));
+  EXPECT_THAT(GrpcTarget("unix:/run/a.socket"), IsOkAndHolds("unix:/run/a.socket"));
+  EXPECT_THAT(GrpcTarget("unix:relative"), IsOkAndHolds("unix:relative"));
 }
 
-TEST(ServerAddress, RefusesAnythingElse) {
-  const std::string long_path(kMaxSocketPath + 1, 'x');
-  for (const std::string& text :
-       {std::string(), std::string("localhost"), std::string(":50051"), std::string("localhost:"),
-        std::string("localhost:0"), std::string("localhost:65536"), std::string("localhost:x"),
-        std::string("http://localhost:1"), std::string("::1:50051"), std::string("[]:1"),
-        std::string("a b:1"), std::string("unix:"), "unix:" + long_path}) {
-    const auto target = GrpcTarget(text);
-    EXPECT_EQ(target.status().code(), absl::StatusCode::kInvalidArgument) << text;
-    EXPECT_THAT(std::string(target.status().message()), HasSubstr("host:port or unix:PATH"));
+TEST(ServerAddress, RejectsAnythingElse) {
+  const std::string long_socket = "unix:" + std::string(kMaxSocketPath + 1, 'x');
+  for (const std::string text :
+       {"", "localhost", ":50051", "localhost:", "localhost:0", "localhost:65536", "localhost:x",
+        "http://localhost:1", "::1:50051", "[]:1", "a b:1", "unix:", long_socket.c_str()}) {
+    EXPECT_THAT(GrpcTarget(text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("host:port or unix:PATH")))
+        << text;
   }
 }
 

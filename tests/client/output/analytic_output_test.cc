@@ -1,24 +1,23 @@
 #include "client/output/analytic_output.h"
 
-#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
+#include "tests/client/message_text.h"
+
 namespace ballpiston::client {
 namespace {
 
-std::string Printed(Format format, const std::string& energies = R"(
+std::string PrintedPairs(Format format, const std::string& energies = R"(
       energies { epsilon: 0 phi: 0.9 f: 0.2 j: 0.07 h: 0.03 mean_free_time_conditional: 24 kernel: 0.25 }
       energies { epsilon: 0.1 phi: 0.8 f: 0.3 j: 0.06 h: 0.04 mean_free_time_conditional: 27 kernel: 0.5 })") {
-  v1::EvaluatePairsResponse response;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+  const auto response = FromText<v1::EvaluatePairsResponse>(
       "points { rho: 0.529561127988977 delta: 0.1 lambda: 0.3489125293076058 eta: 1 cell_area: 2 "
       "volume: 3 area_ball_piston: 4 area_ball_wall: 5 area_piston_wall: 6 tau_ball_piston: 7 "
       "tau_ball_wall: 8 tau_piston_wall: 9 pair_delta_bound: 0.3255 gas_delta_bound: 0.2 "
       "rare_limit_rate: 10 " +
-          energies + "}",
-      &response));
+      energies + "}");
   std::ostringstream out;
   PrintAnalytics(response, {0.2}, format, out);
   return out.str();
@@ -26,7 +25,7 @@ std::string Printed(Format format, const std::string& energies = R"(
 
 TEST(AnalyticCsv, HasTheReferenceColumnsFirst) {
   EXPECT_EQ(
-      Printed(Format::kCsv),
+      PrintedPairs(Format::kCsv),
       R"(rho,delta,lambda,eta,cell_area,volume,area_ball_piston,area_ball_wall,area_piston_wall,tau_ball_piston,tau_ball_wall,tau_piston_wall,epsilon,phi,f,j,h,mean_free_time_conditional,pair_delta_bound,gas_delta_bound,rare_limit_rate
 0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0,0.9,0.2,0.07,0.03,24,0.3255,0.2,10
 0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.1,0.8,0.3,0.06,0.04,27,0.3255,0.2,10
@@ -34,13 +33,13 @@ TEST(AnalyticCsv, HasTheReferenceColumnsFirst) {
 }
 
 TEST(AnalyticCsv, WithoutEnergiesHasARowForThePair) {
-  const std::string text = Printed(Format::kCsv, "");
+  const std::string text = PrintedPairs(Format::kCsv, "");
   EXPECT_EQ(text.substr(text.find('\n') + 1),
             "0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,,,,,,,0.3255,0.2,10\n");
 }
 
 TEST(AnalyticJson, HasTheProtosNamesAtFullPrecision) {
-  EXPECT_EQ(Printed(Format::kJson),
+  EXPECT_EQ(PrintedPairs(Format::kJson),
             R"({"points": [
 {"rho":0.529561127988977,"delta":0.1,"lambda":0.3489125293076058,"eta":1,"cell_area":2,"volume":3,"area_ball_piston":4,"area_ball_wall":5,"area_piston_wall":6,"tau_ball_piston":7,"tau_ball_wall":8,"tau_piston_wall":9,"pair_delta_bound":0.3255,"gas_delta_bound":0.2,"rare_limit_rate":10,"energies":[{"epsilon":0,"phi":0.9,"f":0.2,"j":0.07,"h":0.03,"mean_free_time_conditional":24,"kernel":[0.25]},{"epsilon":0.1,"phi":0.8,"f":0.3,"j":0.06,"h":0.04,"mean_free_time_conditional":27,"kernel":[0.5]}],"canonical":[]}
 ]}
@@ -48,7 +47,7 @@ TEST(AnalyticJson, HasTheProtosNamesAtFullPrecision) {
 }
 
 TEST(AnalyticTable, ListsQuantitiesThenEnergies) {
-  EXPECT_EQ(Printed(Format::kTable), R"(quantity          value
+  EXPECT_EQ(PrintedPairs(Format::kTable), R"(quantity          value
 rho               0.529561127988977
 delta             0.1
 lambda            0.348912529307606

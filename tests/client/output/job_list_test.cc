@@ -1,25 +1,29 @@
 #include "client/output/job_list.h"
 
-#include <google/protobuf/text_format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
+
+#include "tests/client/message_text.h"
 
 namespace ballpiston::client {
 namespace {
 
-std::string Printed(Format format, const std::string& principal = "", int priority = 0) {
-  v1::EnsembleJob running;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+std::string PrintedJobs(Format format, const std::string& principal = "", int priority = 0) {
+  auto running = FromText<v1::EnsembleJob>(
       R"(name: "ensembleJobs/b" state: RUNNING principal: "ann" spec { experiment: EQUILIBRIUM }
          create_time { seconds: 1700000000 }
-         progress { points: 10 points_done: 3 samples: 1234567 })",
-      &running));
-  v1::EnsembleJob ended;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+         progress { points: 10 points_done: 3 samples: 1234567 })");
+  auto ended = FromText<v1::EnsembleJob>(
       R"(name: "ensembleJobs/a" state: SUCCEEDED principal: "ann" spec { experiment: FIRST_HIT }
-         create_time { seconds: 0 } end_time { seconds: 60 } progress { points: 1 points_done: 1 })",
-      &ended));
+         create_time { seconds: 0 } end_time { seconds: 60 } progress { points: 1 points_done: 1 })");
   running.set_priority(priority);
   if (!principal.empty()) ended.set_principal(principal);
   std::ostringstream out;
@@ -29,7 +33,7 @@ std::string Printed(Format format, const std::string& principal = "", int priori
 
 TEST(JobList, TableIsAligned) {
   EXPECT_EQ(
-      Printed(Format::kTable),
+      PrintedJobs(Format::kTable),
       R"(name            experiment   state      done  points  samples  created               ended
 ensembleJobs/b  equilibrium  running       3      10  1234567  2023-11-14T22:13:20Z
 ensembleJobs/a  first-hit    succeeded     1       1        0  1970-01-01T00:00:00Z  1970-01-01T00:01:00Z
@@ -38,44 +42,44 @@ ensembleJobs/a  first-hit    succeeded     1       1        0  1970-01-01T00:00:
 
 TEST(JobList, CsvHasARowForEachJob) {
   EXPECT_EQ(
-      Printed(Format::kCsv),
+      PrintedJobs(Format::kCsv),
       R"(name,experiment,state,points_done,points,samples,create_time,end_time,principal,priority
 ensembleJobs/b,equilibrium,running,3,10,1234567,2023-11-14T22:13:20Z,,ann,0
 ensembleJobs/a,first-hit,succeeded,1,1,0,1970-01-01T00:00:00Z,1970-01-01T00:01:00Z,ann,0
 )");
 }
 
-TEST(JobList, TheTableTellsWhoseAJobIsIfThereAreSeveralPrincipals) {
-  const std::string table = Printed(Format::kTable, "bob");
-  EXPECT_NE(table.find("  ended                 principal\n"), std::string::npos) << table;
-  EXPECT_NE(table.find("Z                        ann\n"), std::string::npos) << table;
-  EXPECT_NE(table.find("Z  bob\n"), std::string::npos) << table;
+TEST(JobList, TheTableHasPrincipalsIfThereAreSeveral) {
+  const std::string table = PrintedJobs(Format::kTable, "bob");
+  EXPECT_THAT(table, HasSubstr("  ended                 principal\n"));
+  EXPECT_THAT(table, HasSubstr("Z                        ann\n"));
+  EXPECT_THAT(table, HasSubstr("Z  bob\n"));
 }
 
-TEST(JobList, TheTableTellsPrioritiesIfThereAreAny) {
-  const std::string table = Printed(Format::kTable, "", -7);
-  EXPECT_NE(table.find("  ended                 priority\n"), std::string::npos) << table;
-  EXPECT_NE(table.find("-7\n"), std::string::npos) << table;
-  EXPECT_EQ(table.find("ann"), std::string::npos) << table;
+TEST(JobList, TheTableHasPrioritiesIfThereAreAny) {
+  const std::string table = PrintedJobs(Format::kTable, "", -7);
+  EXPECT_THAT(table, HasSubstr("  ended                 priority\n"));
+  EXPECT_THAT(table, HasSubstr("-7\n"));
+  EXPECT_THAT(table, Not(HasSubstr("ann")));
 }
 
-TEST(JobList, CsvQuotesAPrincipalsNameWhereItHasTo) {
-  const std::string csv = Printed(Format::kCsv, "Lab 3, \"the old one\"", 5);
-  EXPECT_NE(csv.find("Z,,ann,5\n"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("Z,\"Lab 3, \"\"the old one\"\"\",0\n"), std::string::npos) << csv;
+TEST(JobList, CsvQuotesTheNameOfAPrincipal) {
+  const std::string csv = PrintedJobs(Format::kCsv, "Lab 3, \"the old one\"", 5);
+  EXPECT_THAT(csv, HasSubstr("Z,,ann,5\n"));
+  EXPECT_THAT(csv, HasSubstr("Z,\"Lab 3, \"\"the old one\"\"\",0\n"));
 }
 
 TEST(JobList, JsonIsOneDocument) {
-  const std::string text = Printed(Format::kJson);
-  EXPECT_EQ(text.rfind("{\"jobs\": [\n{\"name\":\"ensembleJobs/b\"", 0), 0u);
-  EXPECT_NE(text.find(",\n{\"name\":\"ensembleJobs/a\""), std::string::npos);
-  EXPECT_EQ(text.substr(text.size() - 4), "\n]}\n");
+  const std::string text = PrintedJobs(Format::kJson);
+  EXPECT_THAT(text, StartsWith("{\"jobs\": [\n{\"name\":\"ensembleJobs/b\""));
+  EXPECT_THAT(text, HasSubstr(",\n{\"name\":\"ensembleJobs/a\""));
+  EXPECT_THAT(text, EndsWith("\n]}\n"));
 }
 
-TEST(JobList, JsonlHasAJobALine) {
-  const std::string text = Printed(Format::kJsonl);
+TEST(JobList, JsonlHasALineForEachJob) {
+  const std::string text = PrintedJobs(Format::kJsonl);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
-  EXPECT_EQ(text.rfind("{\"name\":\"ensembleJobs/b\"", 0), 0u);
+  EXPECT_THAT(text, StartsWith("{\"name\":\"ensembleJobs/b\""));
 }
 
 }  // namespace

@@ -16,19 +16,19 @@ v1::PointParameters At(double delta) {
   return parameters;
 }
 
-std::string Printed(const ModelReasons& reasons) {
+std::string PrintedReasons(const ModelReasons& reasons) {
   std::ostringstream out;
   reasons.Print(out);
   return out.str();
 }
 
-TEST(ModelReasons, WhatAllPointsShareIsSaidOnce) {
+TEST(ModelReasons, OneForAllPointsIsPrintedOnce) {
   ModelReasons reasons;
   for (const double delta : {0.1, 0.2}) reasons.Add(At(delta), Spec::CLOSED_FORM, "exact");
-  EXPECT_EQ(Printed(reasons), "closed-form: exact\n");
+  EXPECT_EQ(PrintedReasons(reasons), "closed-form: exact\n");
 }
 
-TEST(ModelReasons, SeveralNameTheirFirstPointAndCountTheOthers) {
+TEST(ModelReasons, SeveralNameTheFirstPointAndCountTheOthers) {
   ModelReasons reasons;
   reasons.Add(At(0.0125), Spec::MARKOV, "off by 1e-3");
   reasons.Add(At(0.05), Spec::BILLIARD, "the limit is too far");
@@ -36,31 +36,31 @@ TEST(ModelReasons, SeveralNameTheirFirstPointAndCountTheOthers) {
   reasons.Add(At(0.025), Spec::MARKOV, "off by 2e-3");
   reasons.Add(At(0.2), Spec::BILLIARD, "the limit is too far");
   reasons.Add(At(0.021), Spec::MARKOV, "off by 2e-3");
-  EXPECT_EQ(Printed(reasons),
+  EXPECT_EQ(PrintedReasons(reasons),
             "markov (rho 0.53, delta 0.0125): off by 1e-3\n"
             "billiard (rho 0.53, delta 0.05 and 2 more points): the limit is too far\n"
             "markov (rho 0.53, delta 0.025 and 1 more point): off by 2e-3\n");
 }
 
-TEST(ModelReasons, TheSameWordsForTwoModelsAreTwoReasons) {
+TEST(ModelReasons, TheSameTextForTwoModelsMakesTwoReasons) {
   ModelReasons reasons;
   reasons.Add(At(0.1), Spec::MARKOV, "cheapest");
   reasons.Add(At(0.2), Spec::BILLIARD, "cheapest");
-  EXPECT_EQ(Printed(reasons),
+  EXPECT_EQ(PrintedReasons(reasons),
             "markov (rho 0.53, delta 0.1): cheapest\n"
             "billiard (rho 0.53, delta 0.2): cheapest\n");
 }
 
-TEST(ModelReasons, WithoutAReasonNothingIsSaid) {
+TEST(ModelReasons, AnEmptyReasonIsNotPrinted) {
   ModelReasons reasons;
   reasons.Add(At(0.1), Spec::BILLIARD, "");
-  EXPECT_EQ(Printed(reasons), "");
+  EXPECT_EQ(PrintedReasons(reasons), "");
 }
 
-TEST(ModelReasons, NoModelIsCalledNone) {
+TEST(ModelReasons, AnUnspecifiedModelIsCalledNone) {
   ModelReasons reasons;
   reasons.Add(At(0.1), Spec::MODEL_UNSPECIFIED, "out of reach");
-  EXPECT_EQ(Printed(reasons), "none: out of reach\n");
+  EXPECT_EQ(PrintedReasons(reasons), "none: out of reach\n");
 }
 
 }  // namespace

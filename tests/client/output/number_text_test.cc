@@ -30,7 +30,7 @@ void ExpectMeasured(double value, double error, const std::string& value_text,
   EXPECT_EQ(text.error, error_text);
 }
 
-TEST(Measured, ShowsTheDigitsTheErrorSupports) {
+TEST(Measured, HasTheDigitsThatTheErrorSupports) {
   ExpectMeasured(21.63214, 0.1234, "21.63", "0.12");
   ExpectMeasured(21.63214, 0.01234, "21.632", "0.012");
   ExpectMeasured(0.0012345678, 0.0000045, "0.0012346", "0.0000045");
@@ -45,13 +45,13 @@ TEST(Measured, VeryLargeAndVerySmallNumbersHaveExponents) {
   ExpectMeasured(6.54321e9, 1.2e6, "6.5432e+09", "1.2e+06");
 }
 
-TEST(Measured, TheExactValueStandsInTheSamePlaces) {
+TEST(Measured, TheExactValueHasTheSameDigits) {
   EXPECT_EQ(Measured(21.63214, 0.1234, 21.62257).exact, "21.62");
   EXPECT_EQ(Measured(21.63214, 0.1234).exact, "");
 }
 
-// The limit may be beyond all numbers where the estimate is small.
-TEST(Measured, WhatIsNotFiniteHasNoDigits) {
+// The limit may be infinite where the estimate is small.
+TEST(Measured, AnInfiniteExactValueHasNoDigits) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(Measured(1e-8, 1e-12, infinity).exact, "inf");
   EXPECT_EQ(Measured(1e-8, 1e-12, -infinity).exact, "-inf");
@@ -59,13 +59,13 @@ TEST(Measured, WhatIsNotFiniteHasNoDigits) {
   EXPECT_EQ(Measured(0.5, 0.25, infinity).exact, "inf");
 }
 
-TEST(Measured, WithoutAnErrorSixDigits) {
+TEST(Measured, HasSixDigitsWithoutAnError) {
   EXPECT_EQ(Measured(1.0 / 3, std::nullopt).value, "0.333333");
   EXPECT_EQ(Measured(1.0 / 3, std::nullopt).error, "");
   EXPECT_EQ(Measured(1.0 / 3, 0.0).error, "0");
 }
 
-TEST(TwoDigits, IsAnErrorAsItStandsBesideAValue) {
+TEST(TwoDigits, RoundsAsTheErrorBesideAValue) {
   EXPECT_EQ(TwoDigits(0.1234), "0.12");
   EXPECT_EQ(TwoDigits(123.4), "123");
   EXPECT_EQ(TwoDigits(1.234e-5), "1.2e-05");
@@ -85,7 +85,7 @@ TEST(DurationText, HasTheUnitThatSuits) {
   EXPECT_EQ(DurationText(1e9), "32 y");
 }
 
-// No 1000 µs, and no digit more than its neighbours have.
+// Never 1000 µs, and as many digits as the durations beside it.
 TEST(DurationText, RoundsUpIntoTheNextUnit) {
   EXPECT_EQ(DurationText(999.4e-6), "999 µs");
   EXPECT_EQ(DurationText(999.6e-6), "1.0 ms");

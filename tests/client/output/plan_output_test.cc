@@ -1,6 +1,6 @@
 #include "client/output/plan_output.h"
 
-#include <google/protobuf/text_format.h>
+#include <gmock/gmock.h>
 #include <google/protobuf/util/json_util.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
@@ -9,15 +9,15 @@
 #include <sstream>
 #include <string>
 
+#include "tests/client/message_text.h"
+
 namespace ballpiston::client {
 namespace {
 
-template <typename Message>
-Message FromText(const std::string& text) {
-  Message message;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message));
-  return message;
-}
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 v1::EnsembleSpec Question(const std::string& target = "tolerance: 1e-2 budget { seconds: 90 }") {
   return FromText<v1::EnsembleSpec>("experiment: ENERGY_RELAXATION target {" + target + "}");
@@ -47,16 +47,16 @@ constexpr char kLadders[] = R"(
 
 v1::PlanEnsembleJobResponse Plan() { return FromText<v1::PlanEnsembleJobResponse>(kLadders); }
 
-std::string Printed(Format format, const v1::PlanEnsembleJobResponse& plan = Plan(),
-                    const v1::EnsembleSpec& spec = Question()) {
+std::string PrintedPlan(Format format, const v1::PlanEnsembleJobResponse& plan = Plan(),
+                        const v1::EnsembleSpec& spec = Question()) {
   std::ostringstream out;
   PrintPlan(spec, plan, format, out);
   return out.str();
 }
 
-TEST(PlanTable, ShowsTheLadderOfEachPointAndMarksTheChoice) {
+TEST(PlanTable, PrintsTheLadderOfEachPointAndMarksTheChoice) {
   EXPECT_EQ(
-      Printed(Format::kTable),
+      PrintedPlan(Format::kTable),
       R"(energy-relaxation, tolerance 0.01, budget 90 s, 2 points  (work of one core, relative errors)
 
 rho 0.529561128, delta 0.0125
@@ -77,9 +77,9 @@ rho 0.529561128, delta 0.2, epsilon 0.1
 )");
 }
 
-TEST(PlanTable, NamesTheTargetThatWasGiven) {
+TEST(PlanTable, NamesTheTarget) {
   const auto heading = [](const std::string& target) {
-    const std::string text = Printed(Format::kTable, {}, Question(target));
+    const std::string text = PrintedPlan(Format::kTable, {}, Question(target));
     return text.substr(0, text.find("  ("));
   };
   EXPECT_EQ(heading(""), "energy-relaxation, 0 points");
@@ -88,15 +88,13 @@ TEST(PlanTable, NamesTheTargetThatWasGiven) {
   EXPECT_EQ(heading("budget { nanos: 500000000 }"), "energy-relaxation, budget 0.5 s, 0 points");
 }
 
-TEST(PlanTable, WhereNoModelAnswersItSaysSo) {
+TEST(PlanTable, SaysThatNoModelAnswers) {
   const std::string text =
-      Printed(Format::kTable, FromText<v1::PlanEnsembleJobResponse>(
-                                  R"(points { models { model: MARKOV } reason: "out of reach" }
+      PrintedPlan(Format::kTable, FromText<v1::PlanEnsembleJobResponse>(
+                                      R"(points { models { model: MARKOV } reason: "out of reach" }
                              point_count: 1 workers: 1)"));
-  EXPECT_NE(text.find("\n   markov  no\n > none: out of reach\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("\n1 point: 0 s of one core, 0 s with this server's 1 worker\n"),
-            std::string::npos)
-      << text;
+  EXPECT_THAT(text, HasSubstr("\n   markov  no\n > none: out of reach\n"));
+  EXPECT_THAT(text, HasSubstr("\n1 point: 0 s of one core, 0 s with this server's 1 worker\n"));
 }
 
 v1::PlanEnsembleJobResponse PlanOfMany(int points) {
@@ -108,40 +106,34 @@ v1::PlanEnsembleJobResponse PlanOfMany(int points) {
   return plan;
 }
 
-TEST(PlanTable, ManyPointsHaveARowEach) {
-  const std::string text = Printed(Format::kTable, PlanOfMany(kMostLadders + 1));
-  EXPECT_EQ(
-      text.rfind(
+TEST(PlanTable, ManyPointsHaveOneRowEach) {
+  const std::string text = PrintedPlan(Format::kTable, PlanOfMany(kMostLadders + 1));
+  EXPECT_THAT(
+      text,
+      StartsWith(
           R"(energy-relaxation, tolerance 0.01, budget 90 s, 9 points  (work of one core, relative errors)
 
         rho   delta  epsilon  model     samples   work  stat. error  model error
 0.529561128  0.0125           spectrum           12 ms            0      2.1e-03
 0.529561128     0.2      0.1  billiard  4.0e+08   15 s      1.0e-02            0
-)",
-          0),
-      0u)
-      << text;
-  EXPECT_NE(text.find("\nspectrum (rho 0.529561128, delta 0.0125): cheapest within the tolerance\n"
+)"));
+  EXPECT_THAT(
+      text, HasSubstr("\nspectrum (rho 0.529561128, delta 0.0125): cheapest within the tolerance\n"
                       "billiard (rho 0.529561128, delta 0.2, epsilon 0.1 and 7 more points): the "
-                      "billiard itself\n"),
-            std::string::npos)
-      << text;
-  EXPECT_EQ(Printed(Format::kTable, PlanOfMany(kMostLadders)).find("more points"),
-            std::string::npos);
+                      "billiard itself\n"));
+  EXPECT_THAT(PrintedPlan(Format::kTable, PlanOfMany(kMostLadders)), Not(HasSubstr("more points")));
 }
 
-TEST(PlanTable, SaysWhenTheServerShowsOnlySomePoints) {
+TEST(PlanTable, SaysThatItShowsOnlySomePoints) {
   v1::PlanEnsembleJobResponse plan = Plan();
   plan.set_point_count(5000);
-  const std::string text = Printed(Format::kTable, plan);
-  EXPECT_NE(text.find("\nShown: 2 points, evenly spread over the grid.\n5000 points: "),
-            std::string::npos)
-      << text;
+  const std::string text = PrintedPlan(Format::kTable, plan);
+  EXPECT_THAT(text, HasSubstr("\nShown: 2 points, evenly spread over the grid.\n5000 points: "));
 }
 
 TEST(PlanCsv, HasARowForEachPointAndModel) {
   EXPECT_EQ(
-      Printed(Format::kCsv),
+      PrintedPlan(Format::kCsv),
       R"(rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,model_error,reason
 0.529561127988977,0.0125,,,closed-form,false,false,,,,,no closed form is known
 0.529561127988977,0.0125,,,spectrum,true,true,,0.0123,0,0.0021,"cheapest within the tolerance; pilot, 3.0e-04"
@@ -153,22 +145,20 @@ TEST(PlanCsv, HasARowForEachPointAndModel) {
 }
 
 TEST(PlanJson, IsTheResponseWithTheProtosNames) {
-  const std::string text = Printed(Format::kJson);
+  const std::string text = PrintedPlan(Format::kJson);
   v1::PlanEnsembleJobResponse read;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text, &read).ok()) << text;
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(read, Plan())) << text;
-  EXPECT_NE(text.find("\"statistical_error\":0.01"), std::string::npos) << text;
-  EXPECT_NE(text.find("\"point_count\":2"), std::string::npos) << text;
-  EXPECT_EQ(text.back(), '\n');
+  EXPECT_THAT(text, HasSubstr("\"statistical_error\":0.01"));
+  EXPECT_THAT(text, HasSubstr("\"point_count\":2"));
+  EXPECT_THAT(text, EndsWith("\n"));
 }
 
-TEST(PlanJsonl, HasAPointALine) {
-  const std::string text = Printed(Format::kJsonl);
+TEST(PlanJsonl, HasALineForEachPoint) {
+  const std::string text = PrintedPlan(Format::kJsonl);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
-  EXPECT_EQ(text.rfind("{\"parameters\":{\"rho\":0.529561127988977,", 0), 0u);
-  EXPECT_NE(text.find("\"model\":\"BILLIARD\",\"reason\":\"the billiard itself\"}\n"),
-            std::string::npos)
-      << text;
+  EXPECT_THAT(text, StartsWith("{\"parameters\":{\"rho\":0.529561127988977,"));
+  EXPECT_THAT(text, EndsWith("\"model\":\"BILLIARD\",\"reason\":\"the billiard itself\"}\n"));
 }
 
 }  // namespace

@@ -1,30 +1,29 @@
 #include "client/output/result_writer.h"
 
-#include <google/protobuf/text_format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/client/message_text.h"
+
 namespace ballpiston::client {
 namespace {
 
-template <typename Message>
-Message FromText(const std::string& text) {
-  Message message;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message));
-  return message;
-}
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
-v1::EnsembleJob Job() {
+v1::EnsembleJob FirstHitJob() {
   return FromText<v1::EnsembleJob>(R"(
     name: "ensembleJobs/abc" state: SUCCEEDED engine_version: "1"
     spec { experiment: FIRST_HIT seed: 7 target { samples: 10000 } }
     progress { points: 2 points_done: 2 samples: 20000 fraction: 1 })");
 }
 
-std::vector<v1::PointResult> Points() {
+std::vector<v1::PointResult> TwoPoints() {
   return {FromText<v1::PointResult>(R"(
             index: 0 parameters { rho: 0.53 delta: 0.2 epsilon: 0 exponent: 1 }
             model: BILLIARD_REFERENCE samples: 10000
@@ -40,16 +39,16 @@ std::vector<v1::PointResult> Points() {
             estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
 }
 
-std::string Written(Format format, const std::vector<v1::PointResult>& points = Points()) {
+std::string Written(Format format, const std::vector<v1::PointResult>& points = TwoPoints()) {
   std::ostringstream out;
   const auto writer = NewResultWriter(format, out);
-  writer->Begin(Job());
+  writer->Begin(FirstHitJob());
   for (const v1::PointResult& point : points) writer->Add(point);
   writer->End();
   return out.str();
 }
 
-// Two models, and all that an estimate can have.
+// Two models, and every field of an estimate.
 std::vector<v1::PointResult> PointsOfTheLadder() {
   return {FromText<v1::PointResult>(R"(
             index: 0 parameters { rho: 0.53 delta: 0.1 } model: BILLIARD samples: 1e6
@@ -79,7 +78,7 @@ TEST(ResultTable, AlignsAndRounds) {
 )");
 }
 
-TEST(ResultTable, HasColumnsForWhatTheLadderTells) {
+TEST(ResultTable, HasColumnsForTheLadder) {
   EXPECT_EQ(
       Written(Format::kTable, PointsOfTheLadder()),
       R"(first-hit, model billiard, markov, seed 7, engine 1  (ensembleJobs/abc, succeeded, 2 of 2 points)
@@ -92,10 +91,10 @@ markov (rho 0.53, delta 0.0125): the limit is off by 7.3e-04
 )");
 }
 
-TEST(ResultTable, WithoutPointsIsAHeading) {
+TEST(ResultTable, HasAHeadingWithoutPoints) {
   std::ostringstream out;
   const auto writer = NewResultWriter(Format::kTable, out);
-  v1::EnsembleJob job = Job();
+  v1::EnsembleJob job = FirstHitJob();
   job.set_state(v1::EnsembleJob::RUNNING);
   job.mutable_progress()->set_points_done(0);
   writer->Begin(job);
@@ -117,7 +116,7 @@ TEST(ResultCsv, HasARowForEachPointAndEstimate) {
 )");
 }
 
-TEST(ResultCsv, HasWhatTheLadderTellsInItsLastColumns) {
+TEST(ResultCsv, HasTheLadderInItsLastColumns) {
   EXPECT_EQ(
       Written(Format::kCsv, PointsOfTheLadder()),
       R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
@@ -129,11 +128,9 @@ TEST(ResultCsv, HasWhatTheLadderTellsInItsLastColumns) {
 
 TEST(ResultJson, HasReasonsAndCurves) {
   const std::string text = Written(Format::kJsonl, PointsOfTheLadder());
-  EXPECT_NE(text.find(R"("reason":"the limit is off by 2.1e-02","curves":[{"name":)"
-                      R"("energy_autocorrelation","points":[{"time":0,"value":1}]}])"),
-            std::string::npos)
-      << text;
-  EXPECT_NE(text.find(R"("model_error":0,"limit":3.14159)"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr(R"("reason":"the limit is off by 2.1e-02","curves":[{"name":)"
+                              R"("energy_autocorrelation","points":[{"time":0,"value":1}]}])"));
+  EXPECT_THAT(text, HasSubstr(R"("model_error":0,"limit":3.14159)"));
 }
 
 TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
@@ -147,7 +144,7 @@ TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
 )");
 }
 
-TEST(ResultJson, WithoutPointsIsStillADocument) {
+TEST(ResultJson, IsADocumentWithoutPoints) {
   std::ostringstream out;
   const auto writer = NewResultWriter(Format::kJson, out);
   writer->Begin(v1::EnsembleJob());
@@ -159,14 +156,14 @@ TEST(ResultJson, WithoutPointsIsStillADocument) {
             "\"points\": [\n]}\n");
 }
 
-TEST(ResultJsonl, HasAPointALine) {
+TEST(ResultJsonl, HasALineForEachPoint) {
   const std::string text = Written(Format::kJsonl);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
-  EXPECT_EQ(text.rfind("{\"index\":0,", 0), 0u);
-  EXPECT_NE(text.find("\n{\"index\":1,"), std::string::npos);
+  EXPECT_THAT(text, StartsWith("{\"index\":0,"));
+  EXPECT_THAT(text, HasSubstr("\n{\"index\":1,"));
 }
 
-TEST(ResultWriter, HistogramsAndCurvesAreFetchedForJsonAlone) {
+TEST(ResultWriter, OnlyJsonNeedsHistogramsAndCurves) {
   EXPECT_EQ(ViewFor(Format::kJson), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kJsonl), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kTable), v1::ListResultsRequest::BASIC);

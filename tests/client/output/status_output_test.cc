@@ -1,11 +1,12 @@
 #include "client/output/status_output.h"
 
 #include <gmock/gmock.h>
-#include <google/protobuf/text_format.h>
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
+
+#include "tests/client/message_text.h"
 
 namespace ballpiston::client {
 namespace {
@@ -13,9 +14,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-v1::ServerStatus Busy() {
-  v1::ServerStatus status;
-  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
+v1::ServerStatus BusyServer() {
+  return FromText<v1::ServerStatus>(
       R"(state: SERVING version: "0.1.0" engine_version: "0.3.0" start_time { seconds: 1700000000 }
          workers: 2 busy_workers: 1 queued_jobs: 3 running_jobs: 1 streams: 4 store_bytes: 70048
          stored_jobs: 1024 blocks_computed: 5000 samples_computed: 1.28e9
@@ -26,19 +26,17 @@ v1::ServerStatus Busy() {
                   max_active_points: 20000000 max_active_points_per_principal: 5000000
                   max_calls_per_principal: 1024 max_call_bytes_per_principal: 134217728 }
          principal: "alice" role: "submit"
-         principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 })",
-      &status));
-  return status;
+         principals { principal: "alice" queued_jobs: 3 running_jobs: 1 streams: 4 })");
 }
 
-std::string Printed(const v1::ServerStatus& status, Format format = Format::kTable) {
+std::string PrintedStatus(const v1::ServerStatus& status, Format format = Format::kTable) {
   std::ostringstream out;
   PrintStatus(status, absl::FromUnixSeconds(1700000000 + 7200), format, out);
   return out.str();
 }
 
-TEST(StatusOutput, TheTableTellsAllAtAGlance) {
-  EXPECT_EQ(Printed(Busy()),
+TEST(StatusOutput, TheTableHasEverything) {
+  EXPECT_EQ(PrintedStatus(BusyServer()),
             R"(server    0.1.0
 engine    0.3.0
 state     serving
@@ -68,39 +66,39 @@ message  4.0 MiB
 )");
 }
 
-TEST(StatusOutput, ALimitOfZeroIsNone) {
-  v1::ServerStatus status = Busy();
+TEST(StatusOutput, ZeroMeansUnlimited) {
+  v1::ServerStatus status = BusyServer();
   status.mutable_limits()->Clear();
-  const std::string table = Printed(status);
+  const std::string table = PrintedStatus(status);
   EXPECT_THAT(table, HasSubstr("active jobs   no limit     no limit\n"));
   EXPECT_THAT(table, HasSubstr("message  no limit\n"));
 }
 
-TEST(StatusOutput, StoppingAndAFailingStoreAreSaid) {
-  v1::ServerStatus status = Busy();
+TEST(StatusOutput, NamesOtherStatesThanServing) {
+  v1::ServerStatus status = BusyServer();
   status.set_state(v1::ServerStatus::STORE_FAILING);
-  EXPECT_THAT(Printed(status), HasSubstr("state     store-failing\n"));
+  EXPECT_THAT(PrintedStatus(status), HasSubstr("state     store-failing\n"));
   status.set_state(v1::ServerStatus::DRAINING);
-  EXPECT_THAT(Printed(status), HasSubstr("state     draining\n"));
+  EXPECT_THAT(PrintedStatus(status), HasSubstr("state     draining\n"));
 }
 
-TEST(StatusOutput, NobodyActiveIsNoTable) {
-  v1::ServerStatus status = Busy();
+TEST(StatusOutput, WithoutActivePrincipalsTheirTableIsLeftOut) {
+  v1::ServerStatus status = BusyServer();
   status.clear_principals();
-  EXPECT_THAT(Printed(status), Not(HasSubstr("principal  queued")));
+  EXPECT_THAT(PrintedStatus(status), Not(HasSubstr("principal  queued")));
 }
 
-TEST(StatusOutput, AServersClockAheadIsNoNegativeTime) {
-  v1::ServerStatus status = Busy();
+TEST(StatusOutput, ATimeInTheFutureIsZeroSecondsAgo) {
+  v1::ServerStatus status = BusyServer();
   status.mutable_start_time()->set_seconds(1700000000 + 9999);
-  EXPECT_THAT(Printed(status), HasSubstr(", 0 s ago"));
+  EXPECT_THAT(PrintedStatus(status), HasSubstr(", 0 s ago"));
 }
 
 TEST(StatusOutput, JsonIsTheMessage) {
-  const std::string text = Printed(Busy(), Format::kJson);
+  const std::string text = PrintedStatus(BusyServer(), Format::kJson);
   v1::ServerStatus read;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text, &read).ok()) << text;
-  EXPECT_EQ(read.SerializeAsString(), Busy().SerializeAsString());
+  EXPECT_EQ(read.SerializeAsString(), BusyServer().SerializeAsString());
   EXPECT_THAT(text, HasSubstr("\"queued_jobs\":3,"));
 }
 

@@ -7,7 +7,7 @@
 namespace ballpiston::client {
 namespace {
 
-std::string Printed(const TextTable& table) {
+std::string PrintedTable(const TextTable& table) {
   std::ostringstream out;
   table.Print(out, 1);
   return out.str();
@@ -18,7 +18,7 @@ TEST(TextTable, AlignsNumbersRightAndTextLeft) {
   table.AddRow({"a", "1"});
   table.AddRow({"longer", "22.5"});
   table.AddRow({"b"});
-  EXPECT_EQ(Printed(table),
+  EXPECT_EQ(PrintedTable(table),
             " name    value\n"
             " a           1\n"
             " longer   22.5\n"
@@ -30,7 +30,7 @@ TEST(TextTable, CountsCharactersNotBytes) {
   TextTable table({{"work"}, {"n"}});
   table.AddRow({"120 µs", "1"});
   table.AddRow({"3.2 min", "2"});
-  EXPECT_EQ(Printed(table),
+  EXPECT_EQ(PrintedTable(table),
             "    work  n\n"
             "  120 µs  1\n"
             " 3.2 min  2\n");

@@ -29,6 +29,17 @@ inline void ForEachTarget(const std::function<void(int64_t target)>& test) {
   hwy::GetChosenTarget().DeInit();
 }
 
+// The same under those with fused multiply-add, of which each has to give the same bits.
+inline void ForEachFusedTarget(const std::function<void()>& test) {
+  int targets = 0;
+  ForEachTarget([&](int64_t target) {
+    if (!HasFusedMultiplyAdd(target)) return;
+    ++targets;
+    test();
+  });
+  if (targets == 0) GTEST_SKIP() << "no fused multiply-add here";
+}
+
 }  // namespace ballpiston
 
 #endif  // BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_

@@ -1,5 +1,6 @@
 // What the orbits and experiments of golden_test.cc gave when their bits were last meant to change.
-// The lines are what `core_test --gtest_filter='*Golden*' | grep '^{'` prints after a difference.
+// The lines are what `statistical_test --gtest_filter='*Golden*' | grep '^{'` prints after a
+// difference.
 #ifndef BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
 #define BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
 

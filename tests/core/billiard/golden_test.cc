@@ -2,8 +2,8 @@
 // any number of threads, in any order of the blocks, and as the last time.
 //
 // When bits change on purpose: raise kEngineVersion in core/engine_version.h, so that nobody merges
-// blocks of the two, run `core_test --gtest_filter='*Golden*'`, and put the lines that it prints
-// into golden_bits.h. A change that nobody meant is a defect.
+// blocks of the two, run `statistical_test --gtest_filter='*Golden*'`, and put the lines that it
+// prints into golden_bits.h. A change that nobody meant is a defect.
 //
 // Of a summary, the closed forms beside the estimates and the relative entropy are not looked at:
 // their sines and logarithms are the C library's. Nor is that of the experiments that are compared
@@ -26,9 +26,11 @@
 #include "absl/strings/str_cat.h"
 #include "core/experiment/answering_models.h"
 #include "core/experiment/point_experiment.h"
+#include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/golden_bits.h"
 #include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
@@ -94,16 +96,8 @@ void ExpectGolden(const std::string& of, const Fingerprint& fingerprint) {
   ADD_FAILURE() << "other bits than in golden_bits.h: " << line.str();
 }
 
-// What the lanes do has to be the same under every target with fused multiply-add.
-void ForEachFusedTarget(Engine engine, const std::function<void()>& test) {
-  if (engine == Engine::kReference) return test();
-  int targets = 0;
-  ForEachTarget([&](int64_t target) {
-    if (!HasFusedMultiplyAdd(target)) return;
-    ++targets;
-    test();
-  });
-  if (targets == 0) GTEST_SKIP() << "no fused multiply-add here";
+void ForEachTargetOf(Engine engine, const std::function<void()>& test) {
+  engine == Engine::kReference ? test() : ForEachFusedTarget(test);
 }
 
 const char* Name(Engine engine) {
@@ -116,9 +110,9 @@ class Golden : public testing::TestWithParam<Engine> {};
 
 TEST_P(Golden, Orbits) {
   const Engine engine = GetParam();
-  ForEachFusedTarget(engine, [engine] {
-    for (const double rho : {0.501, 0.529561127988977, 0.7}) {
-      const PairGeometry geometry = *PairGeometry::Create(rho, 0.4 * PairDeltaBound(rho));
+  ForEachTargetOf(engine, [engine] {
+    for (const double rho : {0.501, kPaperRho, 0.7}) {
+      const PairGeometry geometry = GeometryAtShare(rho, 0.4);
       const RecordedContacts recorded = Recorded(engine, geometry, 200, 4);
       Fingerprint fingerprint;
       for (const auto& orbit : recorded.by_orbit()) {
@@ -130,7 +124,7 @@ TEST_P(Golden, Orbits) {
 }
 
 std::vector<EnsembleSpec> SpecsOf(Engine engine) {
-  const Grid pair = {.rho = {0.529561127988977}, .delta = {0.2}};
+  const Grid pair = {.rho = {kPaperRho}, .delta = {0.2}};
   Grid energy = pair, whole = pair, fraction = pair, slow = pair;
   energy.epsilon = whole.epsilon = fraction.epsilon = {0.125};
   whole.exponent = {5}, fraction.exponent = {2.5};
@@ -209,19 +203,18 @@ void ExpectGoldenInThreads(const EnsembleSpec& spec, absl::string_view made_by) 
 
 TEST_P(Golden, BlocksAndSummaries) {
   const Engine engine = GetParam();
-  ForEachFusedTarget(engine, [engine] {
+  ForEachTargetOf(engine, [engine] {
     for (const EnsembleSpec& spec : SpecsOf(engine)) ExpectGoldenInThreads(spec, Name(engine));
   });
 }
 
 TEST(GoldenJumpProcess, Blocks) {
-  ForEachFusedTarget(Engine::kLanes, [] {
+  ForEachFusedTarget([] {
     for (const EnsembleSpec& spec : SpecsOfJumpProcess()) ExpectGoldenInThreads(spec, "markov");
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Engines, Golden,
-                         testing::Values(Engine::kReference, Engine::kLanes, Engine::kLanesSingle),
+INSTANTIATE_TEST_SUITE_P(Engines, Golden, testing::ValuesIn(kEngines),
                          [](const auto& test) -> std::string {
                            return test.param == Engine::kReference ? "Reference"
                                   : test.param == Engine::kLanes   ? "Lanes"

@@ -21,7 +21,9 @@
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
@@ -138,7 +140,7 @@ class Horizon : public testing::TestWithParam<double> {};
 
 TEST_P(Horizon, IsThatOfAnExactOrbitOffByTheUnitOfRounding) {
   const double rho = GetParam();
-  const PairGeometry geometry = *PairGeometry::Create(rho, 0.1 * PairDeltaBound(rho));
+  const PairGeometry geometry = GeometryAtShare(rho, 0.1);
   const std::vector<PairState> starts = StartsOnWall(geometry);
   std::vector<Places> exact;
   for (const PairState& start : starts) {
@@ -156,7 +158,7 @@ TEST_P(Horizon, IsThatOfAnExactOrbitOffByTheUnitOfRounding) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rho, Horizon, testing::Values(0.501, 0.51, 0.529561127988977, 0.6));
+INSTANTIATE_TEST_SUITE_P(Rho, Horizon, testing::Values(0.501, 0.51, kPaperRho, 0.6));
 
 }  // namespace
 }  // namespace ballpiston

@@ -5,15 +5,17 @@
 #include <cmath>
 
 #include "core/billiard/reference_flow.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
 
 // Every wall hit of an orbit, so all discs and directions: there and back to some ulps.
 TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
-  for (const double rho : {0.501, 0.529561127988977, 0.7}) {
-    const PairGeometry geometry = *PairGeometry::Create(rho, 0.3 * PairDeltaBound(rho));
+  for (const double rho : {0.501, kPaperRho, 0.7}) {
+    const PairGeometry geometry = GeometryAtShare(rho, 0.3);
     CounterRandom random(1, 2, 3);
     ReferenceFlow flow(geometry, DrawFromCollisionMeasure(geometry, random));
     for (int i = 0; i < 10'000; ++i) {
@@ -34,7 +36,7 @@ TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
 // Where two discs meet, a ball reflected by one may lie in the quadrant of the other by rounding.
 // To take it for a ball that leaves the other would be to let it fly through that disc.
 TEST(LaneFrame, OnATipIsThatOfTheDiscWhichTheBallLeaves) {
-  for (const double rho : {0.5 + 1e-12, 0.501, 0.529561127988977, 0.7}) {
+  for (const double rho : {0.5 + 1e-12, 0.501, kPaperRho, 0.7}) {
     const double tip = PairDeltaBound(rho);
     for (const double offset : {-1e-16, -1e-17, -0.0, 0.0, 1e-17, 1e-16}) {
       for (const double side : {-1.0, 1.0}) {

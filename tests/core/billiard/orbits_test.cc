@@ -6,18 +6,18 @@
 #include <functional>
 #include <vector>
 
-#include "core/statistics/moments.h"
+#include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/geometries.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-
 TEST(Orbits, EveryOrbitComesToItsEnd) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
-  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  for (const Engine engine : kEngines) {
     for (const uint64_t orbits : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 1000}) {
       const RecordedContacts recorded = Recorded(engine, geometry, orbits, 3);
       for (const auto& contacts : recorded.by_orbit()) ASSERT_EQ(contacts.size(), 3u);
@@ -27,8 +27,7 @@ TEST(Orbits, EveryOrbitComesToItsEnd) {
 
 TEST(Orbits, ContactsAreOnTheCollisionSurfaceAndApproaching) {
   for (const double share : {1.0, 0.3, 0.03}) {
-    const PairGeometry geometry =
-        *PairGeometry::Create(kPaperRho, share * PairDeltaBound(kPaperRho));
+    const PairGeometry geometry = GeometryAtShare(kPaperRho, share);
     const RecordedContacts recorded = Recorded(Engine::kLanes, geometry, 500, 4);
     for (const auto& contacts : recorded.by_orbit()) {
       for (const Contact& contact : contacts) {
@@ -43,39 +42,11 @@ TEST(Orbits, ContactsAreOnTheCollisionSurfaceAndApproaching) {
   }
 }
 
-// Times and counts of the two engines: 5 combined standard errors of 20,000 flights each, 6e-7
-// false alarms a comparison at most: starts are the same, so the two differ by less than
-// independent ones.
-TEST(Orbits, LanesAndReferenceAgreeInLaw) {
-  for (const double rho : {0.501, kPaperRho, 0.7}) {
-    const PairGeometry geometry = *PairGeometry::Create(rho, 0.5 * PairDeltaBound(rho));
-    Moments time[2], ball[2], piston[2], speed[2];
-    const Engine engines[] = {Engine::kReference, Engine::kLanes};
-    for (size_t i = 0; i < 2; ++i) {
-      const RecordedContacts recorded = Recorded(engines[i], geometry, 5000, 4);
-      for (const auto& contacts : recorded.by_orbit()) {
-        for (const Contact& contact : contacts) {
-          time[i].Add(contact.time);
-          ball[i].Add(static_cast<double>(contact.ball_wall_hits));
-          piston[i].Add(static_cast<double>(contact.piston_wall_hits));
-          speed[i].Add(contact.state.ball_speed);
-        }
-      }
-    }
-    for (const Moments* m : {time, ball, piston, speed}) {
-      const double error = std::hypot(*m[0].StandardError(), *m[1].StandardError());
-      EXPECT_NEAR(m[0].mean, m[1].mean, 5 * error) << "rho " << rho;
-    }
-  }
-}
-
 TEST(Orbits, StopEndsThem) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 1e-7);
-  std::stop_source stop;
-  stop.request_stop();
-  for (const Engine engine : {Engine::kReference, Engine::kLanes}) {
+  const PairGeometry geometry = PaperGeometry(1e-7);
+  for (const Engine engine : kEngines) {
     RecordedContacts recorded(geometry, 10, 1);
-    EXPECT_FALSE(RunOrbits(engine, geometry, 10, recorded, stop.get_token()));
+    EXPECT_FALSE(RunOrbits(engine, geometry, 10, recorded, Stopped()));
   }
 }
 
@@ -96,12 +67,10 @@ class RestingBall : public OrbitSource {
 };
 
 TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
-  std::stop_source stop;
-  stop.request_stop();
-  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  for (const Engine engine : kEngines) {
     RestingBall source(geometry);
-    EXPECT_FALSE(RunOrbits(engine, geometry, 3, source, stop.get_token()));
+    EXPECT_FALSE(RunOrbits(engine, geometry, 3, source, Stopped()));
   }
 }
 
@@ -146,9 +115,9 @@ std::vector<PairState> PairsApart(const PairGeometry& geometry) {
 }
 
 TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  const PairGeometry geometry = PaperGeometry(0.1);
   constexpr double kLimit = 1000;
-  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+  for (const Engine engine : kEngines) {
     for (const PairState& pair : PairsApart(geometry)) {
       for (const uint64_t orbits : {1, 70}) {
         WithTimeLimit source(pair, kLimit, orbits);
@@ -193,13 +162,12 @@ void ExpectSameBits(const Contact& first, const Contact& second) {
 TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   constexpr uint64_t kOrbits = 300;
   constexpr size_t kCollisions = 6;
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
-  for (const Engine engine : {Engine::kReference, Engine::kLanes, Engine::kLanesSingle}) {
+  const PairGeometry geometry = PaperGeometry(0.1);
+  for (const Engine engine : kEngines) {
     const RecordedContacts free = Recorded(engine, geometry, kOrbits, kCollisions);
     // The mean free time is 97 here. At 1e-9 every orbit ends at once.
     for (const double limit : {1e-9, 20.0, 100.0, 300.0, 1e9}) {
-      ForEachTarget([&](int64_t target) {
-        if (!HasFusedMultiplyAdd(target)) return;
+      ForEachFusedTarget([&] {
         ContactsWithin limited(limit, geometry, kOrbits, kCollisions);
         ASSERT_TRUE(RunOrbits(engine, geometry, kOrbits, limited, {}));
         uint64_t expired = 0;

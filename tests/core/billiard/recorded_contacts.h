@@ -13,6 +13,8 @@
 
 namespace ballpiston {
 
+inline constexpr Engine kEngines[] = {Engine::kReference, Engine::kLanes, Engine::kLanesSingle};
+
 class RecordedContacts : public OrbitSource {
  public:
   RecordedContacts(const PairGeometry& geometry, uint64_t orbits, size_t collisions)

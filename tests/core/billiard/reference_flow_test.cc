@@ -9,25 +9,27 @@
 
 #include "core/billiard/precise_flow.h"
 #include "core/geometry/pair_state.h"
+#include "core/geometry/paper.h"
 #include "core/sampling/collision_surface.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/geometries.h"
 #include "tests/oracle/naive_flow.h"
 
 namespace ballpiston {
 namespace {
 
 // From cusps over the paper's cell to a nearly vanished one, from the deepest piston to a rare one.
-std::vector<PairGeometry> Geometries() {
+std::vector<PairGeometry> GeometriesOfFlows() {
   std::vector<PairGeometry> geometries;
-  for (const double rho : {0.5 + 1e-9, 0.5 + 1e-4, 0.501, 0.529561127988977, 0.6, 0.7, 0.7071}) {
+  for (const double rho : {0.5 + 1e-9, 0.5 + 1e-4, 0.501, kPaperRho, 0.6, 0.7, 0.7071}) {
     for (const double share : {1.0, 0.3, 1e-2, 1e-5}) {
-      geometries.push_back(*PairGeometry::Create(rho, share * PairDeltaBound(rho)));
+      geometries.push_back(GeometryAtShare(rho, share));
     }
   }
   return geometries;
 }
 
-PairState Start(const PairGeometry& geometry, uint64_t sample) {
+PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
   CounterRandom random(17, 0, sample);
   return DrawFromFlowMeasure(geometry, random);
 }
@@ -44,8 +46,8 @@ Event StepAndExchange(ReferenceFlow& flow) {
 }
 
 TEST(ReferenceFlow, EnergyStaysExact) {
-  for (const PairGeometry& geometry : Geometries()) {
-    ReferenceFlow flow(geometry, Start(geometry, 1));
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
+    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 1));
     // Speeds carry an ulp each, the squared length of the direction a few: bounded, no drift.
     for (int i = 0; i < 100'000; ++i) {
       StepAndExchange(flow);
@@ -55,8 +57,8 @@ TEST(ReferenceFlow, EnergyStaysExact) {
 }
 
 TEST(ReferenceFlow, BallStaysInCell) {
-  for (const PairGeometry& geometry : Geometries()) {
-    ReferenceFlow flow(geometry, Start(geometry, 2));
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
+    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 2));
     for (int i = 0; i < 100'000; ++i) {
       const Event event = StepAndExchange(flow);
       ASSERT_NE(event.kind, EventKind::kEscape) << "rho " << geometry.rho() << " event " << i;
@@ -67,8 +69,8 @@ TEST(ReferenceFlow, BallStaysInCell) {
 }
 
 TEST(ReferenceFlow, PistonStaysRightOfBall) {
-  for (const PairGeometry& geometry : Geometries()) {
-    ReferenceFlow flow(geometry, Start(geometry, 3));
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
+    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 3));
     for (int i = 0; i < 100'000; ++i) {
       StepAndExchange(flow);
       ASSERT_LE(flow.state().position.x(), flow.state().piston + 1e-15) << "event " << i;
@@ -81,8 +83,8 @@ TEST(ReferenceFlow, PistonStaysRightOfBall) {
 // The wedge between tip and piston is where orbits get stuck: a zero-time event may follow another
 // only as long as a corner is worked off.
 TEST(ReferenceFlow, NoOrbitStandsStill) {
-  for (const PairGeometry& geometry : Geometries()) {
-    ReferenceFlow flow(geometry, Start(geometry, 4));
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
+    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 4));
     int standing = 0;
     for (int i = 0; i < 100'000; ++i) {
       standing = StepAndExchange(flow).duration > 0 ? 0 : standing + 1;
@@ -92,7 +94,7 @@ TEST(ReferenceFlow, NoOrbitStandsStill) {
 }
 
 TEST(ReferenceFlow, TipsAimedAtLetNoBallThrough) {
-  for (const PairGeometry& geometry : Geometries()) {
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
     for (const double offset : {0.0, 1e-17, 1e-16, 1e-14, 1e-10, 1e-6, 1e-3}) {
       for (const double sign : {-1.0, 1.0}) {
         const double angle = sign * offset;
@@ -114,9 +116,9 @@ TEST(ReferenceFlow, TipsAimedAtLetNoBallThrough) {
 // is good to some ulps of a length 1 over the sine of the grazing angle: the root of rho^2 - c^2
 // loses what c^2 cancels. States within 1e-5 of grazing are held to the looser bound.
 TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
-  for (const PairGeometry& geometry : Geometries()) {
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
     if (geometry.rho() < 0.5001) continue;  // cusps: two discs at one point, the order is arbitrary
-    ReferenceFlow flow(geometry, Start(geometry, 5));
+    ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 5));
     for (int i = 0; i < 20'000; ++i) {
       const PairState before = flow.state();
       ReferenceFlow fresh(geometry, before);
@@ -153,13 +155,12 @@ TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
 template <typename Real>
 double MeanErrorOverRounding() {
   constexpr int kOrbits = 50, kFlights = 8;
-  const PairGeometry geometry = *PairGeometry::Create(0.529561127988977, 0.2);
   double sum = 0;
   for (uint64_t sample = 0; sample < kOrbits; ++sample) {
-    PairStateOf<TwinNumber> start = RoundedTo<TwinNumber>(Start(geometry, sample));
+    PairStateOf<TwinNumber> start = RoundedTo<TwinNumber>(StartInEquilibrium(kPaperPair, sample));
     start.direction /= TwinNumber(start.direction.norm());
-    EventFlow<Real> flow(geometry, RoundedTo<Real>(start));
-    EventFlow<TwinNumber> twin(geometry, start);
+    EventFlow<Real> flow(kPaperPair, RoundedTo<Real>(start));
+    EventFlow<TwinNumber> twin(kPaperPair, start);
     for (int i = 0; i < kFlights; ++i) {
       if (flow.Step().kind == EventKind::kBallPiston) flow.ExchangeComponents();
       if (twin.Step().kind == EventKind::kBallPiston) twin.ExchangeComponents();
@@ -186,7 +187,7 @@ TEST(ReferenceFlow, ErrorsShrinkWithThePrecision) {
 // soon as it has forgotten that it began as doubles.
 template <typename Real>
 void ExpectHealthy(const PairGeometry& geometry, int events) {
-  EventFlow<Real> flow(geometry, RoundedTo<Real>(Start(geometry, 6)));
+  EventFlow<Real> flow(geometry, RoundedTo<Real>(StartInEquilibrium(geometry, 6)));
   const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const Real rho = static_cast<Real>(geometry.rho()), half = static_cast<Real>(0.5);
   for (int i = 0; i < events; ++i) {
@@ -207,7 +208,7 @@ void ExpectHealthy(const PairGeometry& geometry, int events) {
 }
 
 TEST(ReferenceFlow, OtherPrecisionsStayHealthyToo) {
-  for (const PairGeometry& geometry : Geometries()) {
+  for (const PairGeometry& geometry : GeometriesOfFlows()) {
     if (geometry.rho() < 0.5001) continue;  // a cusp narrower than single precision resolves
     ExpectHealthy<float>(geometry, 20'000);
     ExpectHealthy<long double>(geometry, 20'000);
@@ -221,8 +222,7 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
   constexpr int kEvents = 10;
   int compared = 0;
   for (uint64_t sample = 0; sample < 200; ++sample) {
-    const PairGeometry geometry = *PairGeometry::Create(0.529561127988977, 0.2);
-    ReferenceFlow flow(geometry, Start(geometry, sample));
+    ReferenceFlow flow(kPaperPair, StartInEquilibrium(kPaperPair, sample));
     std::vector<PairState> states;
     for (int i = 0; i < kEvents; ++i) {
       StepAndExchange(flow);
@@ -232,7 +232,7 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
     reversed.direction = -reversed.direction;
     reversed.piston_velocity = -reversed.piston_velocity;
     if (reversed.ball_speed < 0.1) continue;  // a slow ball's error is large on its own scale
-    ReferenceFlow back(geometry, reversed);
+    ReferenceFlow back(kPaperPair, reversed);
     ASSERT_NEAR(StepAndExchange(back).duration, 0, 1e-12);  // undoes the event it stands at
     for (int i = kEvents - 2; i >= 0; --i) {
       StepAndExchange(back);
@@ -246,12 +246,11 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
 }
 
 TEST(ReferenceFlow, RestingPistonIsHitWhereItStands) {
-  const PairGeometry geometry = *PairGeometry::Create(0.529561127988977, 0.2);
-  ReferenceFlow flow(geometry, {.position = {0, 0},
-                                .direction = {1, 0},
-                                .ball_speed = 1,
-                                .piston = 0.2,
-                                .piston_velocity = 0});
+  ReferenceFlow flow(kPaperPair, {.position = {0, 0},
+                                  .direction = {1, 0},
+                                  .ball_speed = 1,
+                                  .piston = 0.2,
+                                  .piston_velocity = 0});
   const Event event = flow.Step();
   EXPECT_EQ(event.kind, EventKind::kBallPiston);
   EXPECT_DOUBLE_EQ(event.duration, 0.2);
@@ -261,16 +260,15 @@ TEST(ReferenceFlow, RestingPistonIsHitWhereItStands) {
 }
 
 TEST(ReferenceFlow, RestingBallWaitsForThePiston) {
-  const PairGeometry geometry = *PairGeometry::Create(0.529561127988977, 0.2);
-  ReferenceFlow flow(geometry, {.position = {0.2, 0},
-                                .direction = {0, 1},
-                                .ball_speed = 0,
-                                .piston = 0.25,
-                                .piston_velocity = 1});
+  ReferenceFlow flow(kPaperPair, {.position = {0.2, 0},
+                                  .direction = {0, 1},
+                                  .ball_speed = 0,
+                                  .piston = 0.25,
+                                  .piston_velocity = 1});
   EXPECT_EQ(flow.Step().kind, EventKind::kPistonWall);
   const Event event = flow.Step();
   EXPECT_EQ(event.kind, EventKind::kBallPiston);
-  EXPECT_DOUBLE_EQ(event.duration, geometry.piston_right() - 0.2);
+  EXPECT_DOUBLE_EQ(event.duration, kPaperPair.piston_right() - 0.2);
   flow.ExchangeComponents();
   EXPECT_EQ(flow.state().ball_speed, 1);
   EXPECT_EQ(flow.state().direction.x(), -1);
@@ -278,7 +276,7 @@ TEST(ReferenceFlow, RestingBallWaitsForThePiston) {
 }
 
 TEST(ReferenceFlow, WallAndPistonAtTheSameInstantAreBothResolved) {
-  const PairGeometry geometry = *PairGeometry::Create(0.6, 0.05);
+  const PairGeometry geometry = GeometryOf(0.6, 0.05);
   // A ball flying straight into the right tip, and a piston that arrives there with it.
   const double gap = geometry.tip();
   ReferenceFlow flow(geometry, {.position = {0, 0},

@@ -11,27 +11,20 @@ namespace ballpiston {
 namespace {
 
 using oracle::Integrate;
+using oracle::IntegrateToRoot;
 
 // Integral of g(eb, ep) over the canonical density, in the total energy E and u = sqrt(ep/E):
-// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2 that
-// u = cut - v^2 makes smooth. E runs to 50/beta in five pieces, beyond which is exp(-50).
+// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2. E runs to
+// 50/beta in five pieces, beyond which is exp(-50).
 template <typename Function>
 double CanonicalAverage(double beta, Function g) {
-  const double cut = std::numbers::sqrt2 / 2;
-  const auto integrand = [&](double e, double u) {
-    const double ep = e * u * u;
-    const double eb = e * (1 - u * u);
-    return CanonicalDensity(beta, eb, ep) * g(eb, ep) * 2 * e * u;
-  };
   const auto at_energy = [&](Quad energy) {
     const double e = static_cast<double>(energy);
-    const Quad below = Integrate(
-        [&](Quad v) {
-          const double w = static_cast<double>(v);
-          return 2 * w * integrand(e, cut - w * w);
-        },
-        0, std::sqrt(cut));
-    return below + Integrate([&](Quad u) { return integrand(e, static_cast<double>(u)); }, cut, 1);
+    const auto integrand = [&](Quad q) {
+      const double u = static_cast<double>(q), ep = e * u * u, eb = e * (1 - u * u);
+      return CanonicalDensity(beta, eb, ep) * g(eb, ep) * 2 * e * u;
+    };
+    return IntegrateToRoot(integrand, 0, M_SQRT1_2) + Integrate(integrand, M_SQRT1_2, 1);
   };
   Quad sum = 0;
   for (int piece = 0; piece < 5; ++piece) {

@@ -8,6 +8,7 @@
 #include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
+#include "tests/core/geometries.h"
 #include "tests/oracle/gauss_legendre.h"
 
 namespace ballpiston {
@@ -46,27 +47,20 @@ TEST(ConditionalRate, PhiIsContinuousAndIncreasing) {
 }
 
 // Eq. intcnuep. With ep = u^2/2 the weight becomes du; the cut at ep = 1/4 lies at u = 1/sqrt(2),
-// where phi has a kink (d^(3/2)) that u = u* - v^2 makes smooth.
+// where phi has a kink (d^(3/2)).
 TEST(ConditionalRate, AveragesToTheUnconditionalRate) {
-  const double cut = std::sqrt(0.5);
-  const auto phi = [](double u) { return Phi(u * u / 2); };
-  const Quad below = oracle::Integrate(
-      [&](Quad v) {
-        const double w = static_cast<double>(v);
-        return 2 * w * phi(cut - w * w);
-      },
-      0, std::sqrt(cut));
-  const Quad above = oracle::Integrate([&](Quad u) { return phi(static_cast<double>(u)); }, cut, 1);
+  const auto phi = [](Quad u) { return Phi(std::pow(static_cast<double>(u), 2) / 2); };
+  const Quad below = oracle::IntegrateToRoot(phi, 0, M_SQRT1_2);
+  const Quad above = oracle::Integrate(phi, M_SQRT1_2, 1);
   // Rounding of phi in double is all that is left.
   EXPECT_NEAR(static_cast<double>(below + above), 1, 1e-14);
 }
 
 TEST(ConditionalRate, ConditionalMeanFreeTimeIsTauOverPhi) {
-  const auto geometry = PairGeometry::Create(0.529561127988977, 0.1);
-  ASSERT_TRUE(geometry.ok());
-  const double tau = MeanFreeTimesOf(*geometry).ball_piston;
+  const PairGeometry geometry = PaperGeometry(0.1);
+  const double tau = MeanFreeTimesOf(geometry).ball_piston;
   for (double ep : {1e-300, 0.125, 0.25, 0.375, 0.5 - 1e-16}) {
-    EXPECT_DOUBLE_EQ(ConditionalMeanFreeTime(*geometry, ep) * Phi(ep), tau);
+    EXPECT_DOUBLE_EQ(ConditionalMeanFreeTime(geometry, ep) * Phi(ep), tau);
   }
 }
 
@@ -75,12 +69,11 @@ TEST(ConditionalRate, ConditionalMeanFreeTimeIsTauOverPhi) {
 // delta) at speed 1. Both to first order in delta.
 TEST(ConditionalRate, AtRestOnlyWhatIsVisitedCounts) {
   const double delta = 1e-6;
-  const auto geometry = PairGeometry::Create(0.529561127988977, delta);
-  ASSERT_TRUE(geometry.ok());
-  const double tau = MeanFreeTimesOf(*geometry).ball_piston, lambda = geometry->lambda();
-  EXPECT_NEAR(ConditionalMeanFreeTime(*geometry, 0) * Phi(0) / tau, delta / (lambda + 2 * delta),
+  const PairGeometry geometry = PaperGeometry(delta);
+  const double tau = MeanFreeTimesOf(geometry).ball_piston, lambda = geometry.lambda();
+  EXPECT_NEAR(ConditionalMeanFreeTime(geometry, 0) * Phi(0) / tau, delta / (lambda + 2 * delta),
               10 * delta * delta);
-  EXPECT_NEAR(ConditionalMeanFreeTime(*geometry, 0.5), 2 * lambda, 10 * delta);
+  EXPECT_NEAR(ConditionalMeanFreeTime(geometry, 0.5), 2 * lambda, 10 * delta);
 }
 
 }  // namespace

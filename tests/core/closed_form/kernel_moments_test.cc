@@ -17,12 +17,12 @@ double WorstError(double f, double j, double h, Quad eb, Quad ep) {
                    RelativeError(h, SquaredTransferAsPrinted(eb, ep, QuadPi()))});
 }
 
-double ErrorAt(double eb, double ep) {
+double ErrorOfMoments(double eb, double ep) {
   return WorstError(CollisionRate(eb, ep), EnergyCurrent(eb, ep), SquaredEnergyTransfer(eb, ep), eb,
                     ep);
 }
 
-double PairErrorAt(double ep) {
+double ErrorOfPairMoments(double ep) {
   return WorstError(PairCollisionRate(ep), PairEnergyCurrent(ep), PairSquaredEnergyTransfer(ep),
                     Quad{1} / 2 - Quad{ep}, ep);
 }
@@ -58,9 +58,9 @@ TEST(KernelMoments, AccurateAtRandomEnergies) {
   for (int i = 0; i < 2000; ++i) {
     const double small = 0.5 * std::pow(10, exponent(random));
     for (double ep : {small, 0.5 - small, 0.25 + small / 2, 0.25 - small / 2}) {
-      worst = std::max(worst, PairErrorAt(ep));
-      worst = std::max(worst, ErrorAt(0.5 - ep, ep));
-      worst = std::max(worst, ErrorAt(800 * (0.5 - ep), 800 * ep));
+      worst = std::max(worst, ErrorOfPairMoments(ep));
+      worst = std::max(worst, ErrorOfMoments(0.5 - ep, ep));
+      worst = std::max(worst, ErrorOfMoments(800 * (0.5 - ep), 800 * ep));
     }
   }
   EXPECT_LE(worst, kKernelMomentsRelativeError);
@@ -68,14 +68,14 @@ TEST(KernelMoments, AccurateAtRandomEnergies) {
 
 TEST(KernelMoments, AccurateOverTheWholeRange) {
   double worst = 0;
-  for (int i = 1; i < 4000; ++i) worst = std::max(worst, PairErrorAt(i / 8000.0));
+  for (int i = 1; i < 4000; ++i) worst = std::max(worst, ErrorOfPairMoments(i / 8000.0));
   EXPECT_LE(worst, kKernelMomentsRelativeError);
 }
 
 TEST(KernelMoments, AccurateAtTheEnds) {
   for (double ep : {0.0, 1e-300, 0.25, 0.5}) {
-    EXPECT_LE(PairErrorAt(ep), kKernelMomentsRelativeError) << ep;
-    EXPECT_LE(ErrorAt(0.5 - ep, ep), kKernelMomentsRelativeError) << ep;
+    EXPECT_LE(ErrorOfPairMoments(ep), kKernelMomentsRelativeError) << ep;
+    EXPECT_LE(ErrorOfMoments(0.5 - ep, ep), kKernelMomentsRelativeError) << ep;
   }
 }
 
@@ -89,14 +89,14 @@ TEST(KernelMoments, CurrentIsAccurateThroughItsZero) {
   for (int i = 0; i < 2000; ++i) {
     const double offset = std::pow(10, exponent(random)) * (i % 2 == 0 ? 1 : -1);
     const double ep = static_cast<double>(zero * (1 + Quad{offset}) / 2);
-    worst = std::max(worst, PairErrorAt(ep));
+    worst = std::max(worst, ErrorOfPairMoments(ep));
     worst_printed =
         std::max(worst_printed,
                  RelativeError(EnergyCurrentAsPrinted(0.5 - ep, ep, M_PI),
                                EnergyCurrentAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi())));
     const double eb = std::pow(10, energy_exponent(random));
-    worst = std::max(
-        worst, ErrorAt(eb, static_cast<double>(zero / (1 - zero) * (1 + Quad{offset}) * Quad{eb})));
+    worst = std::max(worst, ErrorOfMoments(eb, static_cast<double>(zero / (1 - zero) *
+                                                                   (1 + Quad{offset}) * Quad{eb})));
   }
   EXPECT_LE(worst, kKernelMomentsRelativeError);
   EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails
@@ -105,7 +105,7 @@ TEST(KernelMoments, CurrentIsAccurateThroughItsZero) {
 TEST(KernelMoments, CurrentIsAccurateOneUlpFromItsZero) {
   const double nearest = static_cast<double>(CurrentZero() / 2);
   for (double ep : {std::nextafter(nearest, 0.0), nearest, std::nextafter(nearest, 1.0)}) {
-    EXPECT_LE(PairErrorAt(ep), kKernelMomentsRelativeError);
+    EXPECT_LE(ErrorOfPairMoments(ep), kKernelMomentsRelativeError);
   }
 }
 
@@ -145,7 +145,7 @@ TEST(KernelMoments, AccurateWhereThePrintedArcsineIsSteep) {
   double worst_printed = 0;
   for (double gap = 1e-16; gap < 1e-2; gap *= 3) {
     const double ep = 0.25 - gap;
-    EXPECT_LE(PairErrorAt(ep), kKernelMomentsRelativeError) << gap;
+    EXPECT_LE(ErrorOfPairMoments(ep), kKernelMomentsRelativeError) << gap;
     const Quad exact = CollisionRateAsPrinted(Quad{1} / 2 - Quad{ep}, Quad{ep}, QuadPi());
     const double printed = CollisionRateAsPrinted(0.5 - ep, ep, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));

@@ -5,7 +5,9 @@
 #include <random>
 
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 #include "gtest/gtest.h"
+#include "tests/core/geometries.h"
 #include "tests/oracle/measures_by_quadrature.h"
 
 namespace ballpiston {
@@ -14,12 +16,6 @@ namespace {
 using std::numbers::pi;
 using std::numbers::sqrt2;
 
-PairGeometry Geometry(double rho, double delta) {
-  const auto geometry = PairGeometry::Create(rho, delta);
-  EXPECT_TRUE(geometry.ok()) << geometry.status();
-  return *geometry;
-}
-
 TEST(MeanFreeTime, AccurateAtRandomGeometries) {
   std::mt19937_64 random(20240603);
   std::uniform_real_distribution<double> rho_exponent(-10, -0.01);
@@ -27,7 +23,7 @@ TEST(MeanFreeTime, AccurateAtRandomGeometries) {
   for (int i = 0; i < 100; ++i) {
     const double rho = 0.5 + (kMaxRho - 0.5) * std::pow(10, rho_exponent(random));
     const double delta = PairDeltaBound(rho) * std::pow(10, delta_exponent(random));
-    const MeanFreeTimes tau = MeanFreeTimesOf(Geometry(rho, delta));
+    const MeanFreeTimes tau = MeanFreeTimesOf(GeometryOf(rho, delta));
     const auto exact = oracle::MeasuresByQuadrature(rho, delta);
     EXPECT_LE(RelativeError(tau.ball_piston, 4 * exact.volume / exact.area_ball_piston),
               kMeanFreeTimeRelativeError);
@@ -39,10 +35,10 @@ TEST(MeanFreeTime, AccurateAtRandomGeometries) {
 }
 
 TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
-  for (double rho : {0.501, 0.529561127988977, 0.6, 0.65, 0.7}) {
+  for (double rho : {0.501, kPaperRho, 0.6, 0.65, 0.7}) {
     for (double fraction : {1e-3, 1e-6, 1e-9}) {
       const double delta = fraction * PairDeltaBound(rho);
-      const double rate = 1 / (MeanFreeTimesOf(Geometry(rho, delta)).ball_piston * delta * delta);
+      const double rate = 1 / (MeanFreeTimesOf(GeometryOf(rho, delta)).ball_piston * delta * delta);
       // Leading correction: a few delta/lambda, the reason of the tolerance's second term.
       EXPECT_NEAR(rate / RareLimitRate(rho), 1, 1e-13 + 4 * delta / Lambda(rho)) << rho;
     }
@@ -62,7 +58,7 @@ TEST(MeanFreeTime, RareLimitRateIsOneOverTheCell) {
 TEST(MeanFreeTime, DeltaFirstThenRhoGivesTheWedge) {
   for (double gap : {1e-4, 1e-6, 1e-8}) {
     const double rho = 0.5 + gap;
-    const double ratio = ScaledVolumeRatio(Geometry(rho, 1e-6 * Lambda(rho)));
+    const double ratio = ScaledVolumeRatio(GeometryOf(rho, 1e-6 * Lambda(rho)));
     // The cell at rho = 1/2 + gap is smaller by 4 gap/(1 - pi/4) in relative terms.
     EXPECT_NEAR(ratio / kDeltaFirstScaledVolumeRatio, 1, 1e-5 + 20 * gap) << gap;
   }
@@ -72,7 +68,7 @@ TEST(MeanFreeTime, DeltaFirstThenRhoGivesTheWedge) {
 TEST(MeanFreeTime, RhoFirstThenDeltaGivesTheCusp) {
   const double rho = 0.5 + 1e-14;  // lambda = 2e-7
   for (double delta : {0.1, 0.01, 1e-3}) {
-    const double ratio = ScaledVolumeRatio(Geometry(rho, delta));
+    const double ratio = ScaledVolumeRatio(GeometryOf(rho, delta));
     // Corrections: the wedge's lambda/delta, and delta^2 from the volume and the arc's curvature.
     const double tolerance = 2 * Lambda(rho) / delta + delta * delta;
     EXPECT_NEAR(ratio / kRhoFirstScaledVolumeRatio, 1, tolerance) << delta;

@@ -8,8 +8,10 @@
 
 #include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/paper.h"
 #include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
+#include "tests/core/geometries.h"
 #include "tests/oracle/measures_by_quadrature.h"
 
 namespace ballpiston {
@@ -17,14 +19,8 @@ namespace {
 
 using std::numbers::sqrt2;
 
-constexpr double kRadii[] = {0.5 + 1e-12, 0.5 + 1e-6, 0.501, 0.529561127988977,
+constexpr double kRadii[] = {0.5 + 1e-12, 0.5 + 1e-6, 0.501, kPaperRho,
                              0.6,         0.65,       0.7,   kMaxRho - 1e-7};
-
-PairGeometry Geometry(double rho, double delta) {
-  const auto geometry = PairGeometry::Create(rho, delta);
-  EXPECT_TRUE(geometry.ok()) << geometry.status();
-  return *geometry;
-}
 
 double WorstError(const PairMeasures& m, const PrintedMeasures<Quad>& exact) {
   return std::max({RelativeError(m.eta, exact.eta), RelativeError(m.cell_area, exact.cell_area),
@@ -34,13 +30,13 @@ double WorstError(const PairMeasures& m, const PrintedMeasures<Quad>& exact) {
                    RelativeError(m.area_piston_wall, exact.area_piston_wall)});
 }
 
-double ErrorAt(double rho, double delta) {
-  return WorstError(Measures(Geometry(rho, delta)), oracle::MeasuresByQuadrature(rho, delta));
+double ErrorOfMeasures(double rho, double delta) {
+  return WorstError(Measures(GeometryOf(rho, delta)), oracle::MeasuresByQuadrature(rho, delta));
 }
 
 // The oracle is itself checked: where the printed formulas keep their digits, they agree.
 TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
-  for (double rho : {0.51, 0.529561127988977, 0.6, 0.69}) {
+  for (double rho : {0.51, kPaperRho, 0.6, 0.69}) {
     const double delta = 0.3 * PairDeltaBound(rho);
     const auto printed = MeasuresAsPrinted(Quad{rho}, Quad{delta}, QuadPi());
     const auto quadrature = oracle::MeasuresByQuadrature(rho, delta);
@@ -63,7 +59,7 @@ TEST(PairMeasures, AccurateAtRandomGeometries) {
   for (int i = 0; i < 300; ++i) {
     const double rho = 0.5 + (kMaxRho - 0.5) * std::pow(10, rho_exponent(random));
     const double delta = PairDeltaBound(rho) * std::pow(10, delta_exponent(random));
-    worst = std::max(worst, ErrorAt(rho, delta));
+    worst = std::max(worst, ErrorOfMeasures(rho, delta));
   }
   RecordProperty("worst_relative_error", std::to_string(worst * 1e15) + "e-15");
   EXPECT_LE(worst, kPairMeasuresRelativeError);
@@ -73,7 +69,7 @@ TEST(PairMeasures, AccurateWhereTheCellVanishes) {
   for (double gap : {1e-2, 1e-3, 1e-5, 1e-7, 1e-10}) {
     for (double fraction : {1.0, 0.9, 1e-3, 1e-6}) {
       const double rho = kMaxRho - gap;
-      EXPECT_LE(ErrorAt(rho, fraction * PairDeltaBound(rho)), kPairMeasuresRelativeError)
+      EXPECT_LE(ErrorOfMeasures(rho, fraction * PairDeltaBound(rho)), kPairMeasuresRelativeError)
           << gap << " " << fraction;
     }
   }
@@ -85,20 +81,21 @@ TEST(PairMeasures, AccurateAtTheBound) {
   for (int i = 0; i < 100; ++i) {
     const double rho = 0.5 + (kMaxRho - 0.5) * std::pow(10, rho_exponent(random));
     if (rho == 0.5) continue;
-    EXPECT_LE(ErrorAt(rho, PairDeltaBound(rho)), kPairMeasuresRelativeError) << rho - 0.5;
+    EXPECT_LE(ErrorOfMeasures(rho, PairDeltaBound(rho)), kPairMeasuresRelativeError) << rho - 0.5;
   }
 }
 
 TEST(PairMeasures, AccurateAtTheSmallestRadius) {
   const double rho = std::nextafter(0.5, 1.0);
   for (double fraction : {1.0, 1 - 0x1p-53, 1 - 1e-12, 0.5, 1e-6, 1e-12}) {
-    EXPECT_LE(ErrorAt(rho, fraction * PairDeltaBound(rho)), kPairMeasuresRelativeError) << fraction;
+    EXPECT_LE(ErrorOfMeasures(rho, fraction * PairDeltaBound(rho)), kPairMeasuresRelativeError)
+        << fraction;
   }
 }
 
 TEST(PairMeasures, PistonAtTheBoundHalvesTheCell) {
   for (double rho : kRadii) {
-    const PairMeasures m = Measures(Geometry(rho, PairDeltaBound(rho)));
+    const PairMeasures m = Measures(GeometryOf(rho, PairDeltaBound(rho)));
     EXPECT_NEAR(m.area_ball_piston / sqrt2 / m.cell_area, 0.5, kPairMeasuresRelativeError) << rho;
     EXPECT_NEAR(m.eta / PairDeltaBound(rho), 2, 1e-9) << rho;  // slope 1/lambda at lambda -> 0
   }
@@ -106,28 +103,28 @@ TEST(PairMeasures, PistonAtTheBoundHalvesTheCell) {
 
 TEST(PairMeasures, PistonWallAreaIsTheCellTwiceLessTheProjection) {
   for (double rho : kRadii) {
-    const PairMeasures m = Measures(Geometry(rho, 0.7 * PairDeltaBound(rho)));
+    const PairMeasures m = Measures(GeometryOf(rho, 0.7 * PairDeltaBound(rho)));
     EXPECT_NEAR((m.area_piston_wall + m.area_ball_piston / sqrt2) / m.cell_area, 2,
                 2 * kPairMeasuresRelativeError);
   }
 }
 
 TEST(PairMeasures, VolumeGrowsByThePistonWallArea) {
-  for (double rho : {0.501, 0.529561127988977, 0.6, 0.7}) {
+  for (double rho : {0.501, kPaperRho, 0.6, 0.7}) {
     const double delta = 0.6 * PairDeltaBound(rho);
     const double step = 1e-4 * delta;
-    const double slope = (Measures(Geometry(rho, delta + step)).volume -
-                          Measures(Geometry(rho, delta - step)).volume) /
+    const double slope = (Measures(GeometryOf(rho, delta + step)).volume -
+                          Measures(GeometryOf(rho, delta - step)).volume) /
                          (2 * step);
     // Central difference: third derivative times step^2 is 1e-8, rounding 1e-16/1e-4.
-    EXPECT_NEAR(slope / Measures(Geometry(rho, delta)).area_piston_wall, 1, 1e-7) << rho;
+    EXPECT_NEAR(slope / Measures(GeometryOf(rho, delta)).area_piston_wall, 1, 1e-7) << rho;
   }
 }
 
 TEST(PairMeasures, RareCollisionsSeeAWedge) {
-  for (double rho : {0.501, 0.529561127988977, 0.6, 0.7}) {
+  for (double rho : {0.501, kPaperRho, 0.6, 0.7}) {
     for (double delta : {1e-8, 1e-12, 1e-100}) {
-      const double area = Measures(Geometry(rho, delta)).area_ball_piston;
+      const double area = Measures(GeometryOf(rho, delta)).area_ball_piston;
       // The next order is delta/lambda, of which lambda >= 0.06 here.
       EXPECT_NEAR(area / delta / delta / (sqrt2 * Lambda(rho)), 1, 1e-14 + 40 * delta);
     }
@@ -136,7 +133,7 @@ TEST(PairMeasures, RareCollisionsSeeAWedge) {
 
 TEST(PairMeasures, CellAreaIsThatOfMeasures) {
   for (double rho : kRadii) {
-    EXPECT_EQ(CellArea(rho), Measures(Geometry(rho, 0.5 * PairDeltaBound(rho))).cell_area);
+    EXPECT_EQ(CellArea(rho), Measures(GeometryOf(rho, 0.5 * PairDeltaBound(rho))).cell_area);
   }
 }
 

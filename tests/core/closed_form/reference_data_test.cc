@@ -12,7 +12,7 @@
 #include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "gtest/gtest.h"
-#include "tests/core/closed_form/reference_table.h"
+#include "tests/oracle/reference_table.h"
 
 namespace ballpiston {
 namespace {

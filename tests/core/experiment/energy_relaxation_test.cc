@@ -3,54 +3,46 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/billiard/reference_flow.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/point_stream.h"
+#include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/geometries.h"
+#include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-
-PairGeometry Paper(double delta) { return *PairGeometry::Create(kPaperRho, delta); }
-
-PointParameters At(double delta, std::optional<double> epsilon) {
-  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon};
-}
-
-EnsembleSpec SpecOf(const PointParameters& point, Model model, int64_t samples) {
-  EnsembleSpec spec = {.experiment = Experiment::kEnergyRelaxation,
-                       .grid = {.rho = {point.rho}, .delta = {point.delta}},
-                       .target = {.samples = samples},
-                       .model = model};
-  if (point.epsilon) spec.grid.epsilon = {*point.epsilon};
-  return spec;
+EnsembleSpec SpecOfOrbits(const PointParameters& point, Model model, int64_t samples) {
+  return SpecOf(Experiment::kEnergyRelaxation, point, {.samples = samples}, model);
 }
 
 TEST(EnergyRelaxation, OrbitsLastAsLongAsWhatIsMeasured) {
-  const double tau = MeanFreeTimesOf(Paper(0.1)).ball_piston;
-  const EnergyRelaxation decay(Paper(0.1), At(0.1, 0.01));
-  const EnergyRelaxation equilibrium(Paper(0.1), At(0.1, {}));
+  const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
+  const EnergyRelaxation decay(PaperGeometry(0.1), PaperPoint(0.1, 0.01));
+  const EnergyRelaxation equilibrium(PaperGeometry(0.1), PaperPoint(0.1, {}));
   EXPECT_NEAR(decay.orbit_time() / tau, kWindowTimes, 1e-8);
   EXPECT_NEAR(equilibrium.orbit_time() / tau, kOriginTimes + kWindowTimes, 1e-8);
-  EXPECT_EQ(CollisionsPerOrbit(At(0.1, 0.01)), kWindowTimes);
-  EXPECT_EQ(CollisionsPerOrbit(At(0.1, {})), kOriginTimes + kWindowTimes);
+  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1, 0.01)), kWindowTimes);
+  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1, {})), kOriginTimes + kWindowTimes);
 }
 
 // Of an orbit that stays at its energy: the curve is flat, and the integral the window times it.
 TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
   constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
-  const double tau = MeanFreeTimesOf(Paper(0.1)).ball_piston;
+  const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
   const std::vector<double> decay =
-      EnergyRelaxation(Paper(0.1), At(0.1, kEnergy)).Measure(StepFunction(kEnergy));
+      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, kEnergy)).Measure(StepFunction(kEnergy));
   ASSERT_EQ(decay.size(), 1 + kLags);
   EXPECT_NEAR(decay[0], kOff * kWindowTimes * tau, 1e-8 * tau);
   for (size_t i = 0; i < kLags; ++i) EXPECT_EQ(decay[1 + i], kEnergy);
   const std::vector<double> equilibrium =
-      EnergyRelaxation(Paper(0.1), At(0.1, {})).Measure(StepFunction(kEnergy));
+      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, {})).Measure(StepFunction(kEnergy));
   ASSERT_EQ(equilibrium.size(), 1 + kLags);
   EXPECT_NEAR(equilibrium[0], 45 * kOff * kOff * kWindowTimes * tau, 1e-7 * tau);
   for (size_t i = 0; i < kLags; ++i) EXPECT_NEAR(equilibrium[1 + i], 45 * kOff * kOff, 1e-12);
@@ -61,7 +53,7 @@ TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
 TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
   constexpr double kOff = 0.1;
   constexpr size_t kJumpAtLag = 64;  // of the 128 steps of origins
-  const EnergyRelaxation relaxation(Paper(0.1), At(0.1, {}));
+  const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, {}));
   const double lag = 4 * relaxation.unit() * kWindowTimes / (kLags - 1);
   StepFunction energy(kMeanPistonEnergy + kOff);
   // Half a lag more, so that rounding does not decide on which side a sample lies.
@@ -81,12 +73,14 @@ TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
 // Followed by hand with the reference flow, at the times of the curve.
 TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
-    const PointParameters point = At(0.2, epsilon);
-    const EnsembleSpec spec = SpecOf(point, Model::kBilliardReference, 1);
+    const PointParameters point = PaperPoint(0.2, epsilon);
+    const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
     const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
     CounterRandom random(spec.seed, PointStream(spec.experiment, point), 0);
-    ReferenceFlow flow(Paper(0.2), DrawFromFlowMeasureAt(Paper(0.2), epsilon, random));
-    const double lag = 4 * EnergyRelaxation(Paper(0.2), point).unit() * kWindowTimes / (kLags - 1);
+    ReferenceFlow flow(PaperGeometry(0.2),
+                       DrawFromFlowMeasureAt(PaperGeometry(0.2), epsilon, random));
+    const double lag =
+        4 * EnergyRelaxation(PaperGeometry(0.2), point).unit() * kWindowTimes / (kLags - 1);
     double time = 0, integral = 0;
     double energy = std::pow(flow.state().piston_velocity, 2) / 2;
     for (size_t i = 0; i < kLags;) {
@@ -106,34 +100,45 @@ TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
   }
 }
 
-// Walkers too: from the jumps that they make alone.
-TEST(EnergyRelaxation, AWalkOfTheJumpProcessDoesNotDependOnTheBlock) {
-  for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
-    const EnsembleSpec few = SpecOf(At(0.2, epsilon), Model::kMarkov, 1);
-    const EnsembleSpec many = SpecOf(At(0.2, epsilon), Model::kMarkov, 16 * 1024);
-    const auto one = PointExperiment::Create(few, 0), all = PointExperiment::Create(many, 0);
-    const uint64_t size = all->plan().block_size;
-    ASSERT_GT(size, 256u);  // more than walk in step
-    BlockResult sum;
-    for (uint64_t i = 0; i < 3; ++i) {
-      const BlockResult block = *all->RunBlock(i, {});
-      EXPECT_EQ(block.samples, size);
-      sum.Merge(block);
-    }
-    EXPECT_EQ(sum.samples, 3 * size);
-    // The first orbit alone lies within the first block's.
-    const BlockResult first = *one->RunBlock(0, {});
-    EXPECT_EQ(first.samples, 1u);
-    EXPECT_NE(first.moments[0].mean, sum.moments[0].mean);
+// Followed by hand, too: from the walker of the first sample, in a stream that no billiard uses.
+TEST(EnergyRelaxation, AWalkIsThatOfTheJumpProcess) {
+  constexpr double kEpsilon = 0.01;
+  const PointParameters point = PaperPoint(0.2, kEpsilon);
+  const EnsembleSpec spec = SpecOfOrbits(point, Model::kMarkov, 1);
+  const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
+  const EnergyRelaxation relaxation(PaperGeometry(0.2), point);
+  const uint64_t stream = ~PointStream(spec.experiment, point);
+  JumpWalkers walker(spec.seed, stream, 0, {std::sqrt(2 * kEpsilon)});
+  StepFunction energy(kEpsilon);
+  while (energy.last_jump() < relaxation.orbit_time()) {
+    walker.Jump();
+    energy.Add(relaxation.unit() * walker.waiting_times()[0], std::pow(walker.u()[0], 2) / 2);
+  }
+  const std::vector<double> expected = relaxation.Measure(energy);
+  for (size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(block.moments[i].mean, expected[i], 1e-13 * std::fabs(expected[i])) << i;
   }
 }
 
-TEST(EnergyRelaxation, StopEndsABlock) {
-  std::stop_source stop;
-  stop.request_stop();
-  for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
-    const EnsembleSpec spec = SpecOf(At(0.001, {}), model, 10'000'000);
-    EXPECT_FALSE(PointExperiment::Create(spec, 0)->RunBlock(0, stop.get_token()));
+// The same 2048 walks in blocks of fewer and of more than walk in step.
+TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
+  for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
+    const auto merged_of = [epsilon](int64_t samples) {
+      const EnsembleSpec spec = SpecOfOrbits(PaperPoint(0.2, epsilon), Model::kMarkov, samples);
+      const auto point = PointExperiment::Create(spec, 0);
+      BlockResult merged;
+      for (uint64_t i = 0; merged.samples < 2048; ++i) merged.Merge(*point->RunBlock(i, {}));
+      return std::pair(point->plan().block_size, merged);
+    };
+    const auto [small, of_small] = merged_of(2048);
+    const auto [large, of_large] = merged_of(16 * 1024);
+    EXPECT_LT(small, 256u);
+    EXPECT_GT(large, 256u);
+    ASSERT_EQ(of_small.samples, of_large.samples);
+    for (size_t i = 0; i < of_small.moments.size(); ++i) {
+      EXPECT_NEAR(of_small.moments[i].mean, of_large.moments[i].mean,
+                  1e-12 * std::fabs(of_small.moments[i].mean));
+    }
   }
 }
 
@@ -141,7 +146,7 @@ TEST(EnergyRelaxation, StopEndsABlock) {
 TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
   for (const std::optional<double> epsilon :
        {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
-    const EnergyRelaxation relaxation(Paper(0.1), At(0.1, epsilon));
+    const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, epsilon));
     EXPECT_TRUE(HasRelaxationTime(epsilon));
     const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
     EXPECT_EQ(limit[0].name, "relaxation_time");
@@ -152,7 +157,7 @@ TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
     EXPECT_NEAR(limit[1].value, limit[0].value * (*epsilon - kMeanPistonEnergy), 1e-9);
   }
   for (const double epsilon : {0.121, 1.0 / 6, 0.199}) {
-    const EnergyRelaxation relaxation(Paper(0.1), At(0.1, epsilon));
+    const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, epsilon));
     EXPECT_FALSE(HasRelaxationTime(epsilon));
     const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
     ASSERT_EQ(limit.size(), 1u);
@@ -166,7 +171,7 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
   for (const double delta : {0.2, 0.01}) {
     for (const std::optional<double> epsilon :
          {std::optional<double>(), std::optional(0.01), std::optional(0.4)}) {
-      const EnergyRelaxation relaxation(Paper(delta), At(delta, epsilon));
+      const EnergyRelaxation relaxation(PaperGeometry(delta), PaperPoint(delta, epsilon));
       BlockResult nothing_but_the_remainder;
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
@@ -179,9 +184,10 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
 
 TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
-  const double unit = MeanFreeTimesOf(Paper(0.1)).ball_piston / 4;
-  const Curve correlation = EnergyRelaxation(Paper(0.1), At(0.1, {})).CurveOfLimit();
-  const Curve decay = EnergyRelaxation(Paper(0.1), At(0.1, 0.4)).CurveOfLimit();
+  const double unit = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston / 4;
+  const Curve correlation =
+      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, {})).CurveOfLimit();
+  const Curve decay = EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, 0.4)).CurveOfLimit();
   EXPECT_EQ(correlation.name, "energy_autocorrelation");
   EXPECT_EQ(decay.name, "mean_energy");
   ASSERT_EQ(correlation.points.size(), kLags);

@@ -22,10 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-EnsembleSpec FirstHit() {
+EnsembleSpec ValidFirstHit() {
   return {.experiment = Experiment::kFirstHit,
           .grid = {.rho = {0.55, 0.6}, .delta = {0.1}, .epsilon = {0, 0.5}, .exponent = {0, 1, 5}},
           .target = {.samples = 1000}};
@@ -37,14 +34,14 @@ auto Names(const std::string& field, const std::string& text) {
 }
 
 TEST(EnsembleSpec, ValidOnesHaveNoViolations) {
-  EXPECT_THAT(Violations(FirstHit()), IsEmpty());
+  EXPECT_THAT(Violations(ValidFirstHit()), IsEmpty());
   EXPECT_THAT(Violations({.experiment = Experiment::kEquilibrium,
                           .grid = {.rho = {0.6}, .delta = {PairDeltaBound(0.6)}}}),
               IsEmpty());
 }
 
 TEST(EnsembleSpec, GridIsTheProductWithRhoOutermost) {
-  const EnsembleSpec spec = FirstHit();
+  const EnsembleSpec spec = ValidFirstHit();
   ASSERT_EQ(PointCount(spec), 12u);
   EXPECT_EQ(PointAt(spec, 0),
             (PointParameters{.rho = 0.55, .delta = 0.1, .epsilon = 0, .exponent = 0}));
@@ -55,7 +52,7 @@ TEST(EnsembleSpec, GridIsTheProductWithRhoOutermost) {
 }
 
 TEST(EnsembleSpec, OnePointOfItHasItsShareOfABudget) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.target = {.budget_seconds = 6};
   spec.seed = 5;
   spec.precision = Precision::kSingle;
@@ -74,10 +71,10 @@ TEST(EnsembleSpec, OnePointOfItHasItsShareOfABudget) {
 }
 
 TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
-  EnsembleSpec spec = FirstHit();
-  spec.grid.rho = {0.6, 0.5, kNaN};
+  EnsembleSpec spec = ValidFirstHit();
+  spec.grid.rho = {0.6, 0.5, std::nan("")};
   spec.grid.delta = {0.3, -1};
-  spec.grid.epsilon = {0.6, -kInfinity};
+  spec.grid.epsilon = {0.6, -HUGE_VAL};
   spec.grid.exponent = {-1, 1001};
   spec.grid.cells = {4};
   spec.target = {.samples = 0, .tolerance = 0};
@@ -96,7 +93,7 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
 }
 
 TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.grid.delta = {0.2};  // legal at 0.55, not at 0.6, where the bound is 0.1683
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]",
                                                   "rho = 0.6: 0 < delta <= (1 - "
@@ -104,7 +101,7 @@ TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
 }
 
 TEST(EnsembleSpec, AbsurdGridsAreRefusedWithoutBeingExpanded) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.grid.delta.assign(1000, 0.01);
   spec.grid.epsilon.assign(1000, 0.1);
   spec.grid.exponent.assign(1000, 1);
@@ -120,37 +117,37 @@ TEST(EnsembleSpec, ListsThatTheExperimentLacksOrDoesNotUseAreNamed) {
 }
 
 TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.target = {.collisions = 10};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.collisions", "use target.samples")));
   spec.target = {.samples = kMaxSamples + 1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.samples", "permitted: 1 to")));
   spec.grid.epsilon = {0.5};
-  for (const double tolerance : {0.0, -0.1, 1.0, kNaN, kInfinity}) {
+  for (const double tolerance : {0.0, -0.1, 1.0, std::nan(""), HUGE_VAL}) {
     spec.target = {.tolerance = tolerance};
     EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "0 < tolerance < 1")));
   }
 }
 
 TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.grid.delta = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
                                             Names("grid.delta[2]", "too small")));
 }
 
 TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
 }
 
-EnsembleSpec Relaxation() {
+EnsembleSpec ValidRelaxation() {
   return {.experiment = Experiment::kEnergyRelaxation, .grid = {.rho = {0.55}, .delta = {0.1}}};
 }
 
 TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
-  EnsembleSpec spec = Relaxation();
+  EnsembleSpec spec = ValidRelaxation();
   EXPECT_THAT(Violations(spec), IsEmpty());
   EXPECT_EQ(PointAt(spec, 0), (PointParameters{.rho = 0.55, .delta = 0.1}));
   spec.grid.epsilon = {0, 0.01, 0.5};
@@ -161,7 +158,7 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
     spec.target = target;
     EXPECT_THAT(Violations(spec), IsEmpty());
   }
-  spec.grid.epsilon = {-0.1, 0.51, kNaN};
+  spec.grid.epsilon = {-0.1, 0.51, std::nan("")};
   EXPECT_THAT(Violations(spec), UnorderedElementsAre(Names("grid.epsilon[0]", "[0, 0.5]"),
                                                      Names("grid.epsilon[1]", "[0, 0.5]"),
                                                      Names("grid.epsilon[2]", "[0, 0.5]")));
@@ -171,7 +168,7 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
 
 // Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
 TEST(EnsembleSpec, ToleranceOfARelaxationTimeThatIsNotToldIsRefused) {
-  EnsembleSpec spec = Relaxation();
+  EnsembleSpec spec = ValidRelaxation();
   spec.grid.epsilon = {0.12, 0.121, 1.0 / 6, 0.199, 0.2};
   spec.target = {.samples = 100};
   EXPECT_THAT(Violations(spec), IsEmpty());
@@ -180,7 +177,7 @@ TEST(EnsembleSpec, ToleranceOfARelaxationTimeThatIsNotToldIsRefused) {
                                             Names("grid.epsilon[2]", "no relaxation time"),
                                             Names("grid.epsilon[3]", "0.199")));
   // As anything else may.
-  EnsembleSpec first_hit = FirstHit();
+  EnsembleSpec first_hit = ValidFirstHit();
   first_hit.grid.epsilon = {1.0 / 6};
   EXPECT_THAT(Violations(first_hit), IsEmpty());
 }
@@ -206,8 +203,8 @@ TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
       {.experiment = Experiment::kEquilibrium, .grid = {.rho = {0.55}, .delta = {0.1}}},
       {.experiment = Experiment::kConditionalMeanFreeTime,
        .grid = {.rho = {0.55}, .delta = {0.1}, .epsilon = {0.1}}},
-      FirstHit(),
-      Relaxation(),
+      ValidFirstHit(),
+      ValidRelaxation(),
       {.experiment = Experiment::kMarkovProperty, .grid = {.rho = {0.55}, .delta = {0.1}}}};
   // Of closed_form, spectrum, markov.
   const std::vector<std::vector<bool>> answered = {{true, false, false},
@@ -233,14 +230,14 @@ TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
       EXPECT_THAT(Violations(spec), IsEmpty());
     }
   }
-  EnsembleSpec spec = FirstHit();
+  EnsembleSpec spec = ValidFirstHit();
   spec.model = Model::kMarkov;
   EXPECT_THAT(Violations(spec),
               ElementsAre(Names("model", "permitted: auto, billiard, billiard_reference")));
 }
 
 TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
-  EnsembleSpec spec = Relaxation();
+  EnsembleSpec spec = ValidRelaxation();
   spec.precision = Precision::kSingle;
   for (const Model model : {Model::kAuto, Model::kBilliard}) {
     spec.model = model;
@@ -253,14 +250,14 @@ TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
 }
 
 TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
-  EnsembleSpec spec = Relaxation();
+  EnsembleSpec spec = ValidRelaxation();
   for (const double seconds : {1e-3, 1.0, kMaxBudgetSeconds}) {
     spec.target = {.budget_seconds = seconds};
     EXPECT_THAT(Violations(spec), IsEmpty());
     spec.target.tolerance = 0.01;
     EXPECT_THAT(Violations(spec), IsEmpty());
   }
-  for (const double seconds : {0.0, -1.0, 1.1 * kMaxBudgetSeconds, kNaN, kInfinity}) {
+  for (const double seconds : {0.0, -1.0, 1.1 * kMaxBudgetSeconds, std::nan(""), HUGE_VAL}) {
     spec.target = {.budget_seconds = seconds};
     EXPECT_THAT(Violations(spec), ElementsAre(Names("target.budget", "0 < budget <= 1")));
   }
@@ -298,7 +295,7 @@ TEST(EnsembleSpec, ToleranceAtARestingPistonIsForTheClosedForm) {
   spec.verify = true;
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
   // Relaxation from rest ends with the window.
-  EnsembleSpec relaxation = Relaxation();
+  EnsembleSpec relaxation = ValidRelaxation();
   relaxation.grid.epsilon = {0};
   relaxation.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(relaxation), IsEmpty());

@@ -5,39 +5,23 @@
 #include <cmath>
 
 #include "core/billiard/orbits.h"
+#include "core/closed_form/mean_free_time.h"
 #include "core/experiment/return_orbits.h"
-#include "core/sampling/invariant_measure.h"
+#include "core/geometry/paper.h"
 #include "core/statistics/moments.h"
+#include "tests/core/billiard/recorded_contacts.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr double kPaperRho = 0.529561127988977;
-
 struct Counted {
-  Moments ball_wall, piston_wall;
+  Moments time, ball_wall, piston_wall;
   void Add(const Contact& contact) {
+    time.Add(contact.time);
     ball_wall.Add(static_cast<double>(contact.ball_wall_hits));
     piston_wall.Add(static_cast<double>(contact.piston_wall_hits));
   }
-};
-
-// To the first collision.
-class InEquilibrium : public OrbitSource {
- public:
-  explicit InEquilibrium(const PairGeometry& geometry) : geometry_(geometry) {}
-  PairState Start(uint64_t orbit) override {
-    CounterRandom random(3, 4, orbit);
-    return DrawFromCollisionMeasure(geometry_, random);
-  }
-  AfterContact Meet(uint64_t, const Contact& contact) override {
-    counted.Add(contact);
-    return AfterContact::kEnd;
-  }
-  Counted counted;
-
- private:
-  PairGeometry geometry_;
 };
 
 class CountedReturns : public ReturnOrbits {
@@ -61,20 +45,27 @@ void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
 
 TEST(PredictedHits, AreThoseOfOrbitsInEquilibrium) {
   for (const double rho : {0.501, kPaperRho, 0.65}) {
-    const PairGeometry geometry = *PairGeometry::Create(rho, 0.6 * PairDeltaBound(rho));
-    InEquilibrium source(geometry);
-    ASSERT_TRUE(RunOrbits(Engine::kReference, geometry, 20'000, source, {}));
-    ExpectCounted(HitsPerCollision(geometry), source.counted);
+    const PairGeometry geometry = GeometryAtShare(rho, 0.6);
+    for (const Engine engine : kEngines) {
+      Counted counted;
+      const RecordedContacts recorded = Recorded(engine, geometry, 20'000, 1);
+      for (const auto& contacts : recorded.by_orbit()) counted.Add(contacts.front());
+      ExpectCounted(HitsPerCollision(geometry), counted);
+      EXPECT_NEAR(counted.time.mean, MeanFreeTimesOf(geometry).ball_piston,
+                  5 * *counted.time.StandardError());
+    }
   }
 }
 
 // From the law that is its own: exponent 1.
 TEST(PredictedHits, AreThoseOfReturnsAtAnEnergy) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.25);
+  const PairGeometry geometry = PaperGeometry(0.25);
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
-    CountedReturns returns(geometry, {epsilon, 1}, {.seed = 1, .stream = 2}, 0, 20'000);
-    ASSERT_TRUE(RunOrbits(Engine::kReference, geometry, 20'000, returns, {}));
-    ExpectCounted(HitsPerReturn(geometry, epsilon), returns.counted);
+    for (const Engine engine : kEngines) {
+      CountedReturns returns(geometry, {epsilon, 1}, {.seed = 1, .stream = 2}, 0, 20'000);
+      ASSERT_TRUE(RunOrbits(engine, geometry, 20'000, returns, {}));
+      ExpectCounted(HitsPerReturn(geometry, epsilon), returns.counted);
+    }
   }
 }
 

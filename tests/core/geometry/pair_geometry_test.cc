@@ -5,18 +5,16 @@
 #include <string>
 
 #include "core/geometry/number_text.h"
+#include "core/geometry/paper.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPaperRho = 0.529561127988977;
 
 std::string Message(double rho, double delta) {
   const auto geometry = PairGeometry::Create(rho, delta);
@@ -25,15 +23,14 @@ std::string Message(double rho, double delta) {
 }
 
 TEST(PairGeometry, DerivedLengthsAreThoseOfTheCell) {
-  const auto g = PairGeometry::Create(kPaperRho, 0.175);
-  ASSERT_TRUE(g.ok());
-  EXPECT_EQ(g->rho(), kPaperRho);
-  EXPECT_EQ(g->delta(), 0.175);
+  ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(kPaperRho, 0.175));
+  EXPECT_EQ(g.rho(), kPaperRho);
+  EXPECT_EQ(g.delta(), 0.175);
   // Tolerances: two ulps of numbers of order one.
-  EXPECT_NEAR(g->lambda() * g->lambda(), 4 * kPaperRho * kPaperRho - 1, 4e-16);
-  EXPECT_NEAR(g->tip(), 0.5 - g->lambda() / 2, 2e-16);
-  EXPECT_NEAR(g->piston_left(), g->tip() - 0.175, 2e-16);
-  EXPECT_NEAR(g->piston_right() - g->piston_left(), g->lambda() + 0.35, 4e-16);
+  EXPECT_NEAR(g.lambda() * g.lambda(), 4 * kPaperRho * kPaperRho - 1, 4e-16);
+  EXPECT_NEAR(g.tip(), 0.5 - g.lambda() / 2, 2e-16);
+  EXPECT_NEAR(g.piston_left(), g.tip() - 0.175, 2e-16);
+  EXPECT_NEAR(g.piston_right() - g.piston_left(), g.lambda() + 0.35, 4e-16);
 }
 
 TEST(PairGeometry, TipLiesOnTheDisc) {
@@ -59,19 +56,19 @@ TEST(PairGeometry, GasBoundIsTheTighterOne) {
 TEST(PairGeometry, DeltaExactlyAtTheBoundIsAccepted) {
   for (double rho : {std::nextafter(0.5, 1.0), 0.501, kPaperRho, 0.6, 0.7, kMaxRho - 1e-7}) {
     const double bound = PairDeltaBound(rho);
-    const auto g = PairGeometry::Create(rho, bound);
-    ASSERT_TRUE(g.ok()) << g.status();
-    EXPECT_EQ(g->piston_left(), 0);
-    EXPECT_FALSE(PairGeometry::Create(rho, bound * (1 + 1e-15)).ok()) << rho;
+    ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(rho, bound));
+    EXPECT_EQ(g.piston_left(), 0);
+    EXPECT_THAT(PairGeometry::Create(rho, bound * (1 + 1e-15)),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("delta")));
   }
 }
 
 TEST(PairGeometry, SmallestDeltaIsAccepted) {
-  EXPECT_TRUE(PairGeometry::Create(0.6, std::numeric_limits<double>::denorm_min()).ok());
+  EXPECT_OK(PairGeometry::Create(0.6, std::numeric_limits<double>::denorm_min()));
 }
 
 TEST(PairGeometry, RhoOutsideOfItsOpenIntervalIsNamed) {
-  for (double rho : {0.5, kMaxRho, 0.0, -0.6, 1.0, kInfinity, -kInfinity, kNaN}) {
+  for (double rho : {0.5, kMaxRho, 0.0, -0.6, 1.0, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
     EXPECT_THAT(Message(rho, 0.1),
                 AllOf(HasSubstr("rho is " + NumberText(rho)), HasSubstr("1/2 < rho < 1/sqrt(2)"),
                       HasSubstr(NumberText(kMaxRho))));
@@ -79,7 +76,7 @@ TEST(PairGeometry, RhoOutsideOfItsOpenIntervalIsNamed) {
 }
 
 TEST(PairGeometry, DeltaOutsideOfItsIntervalIsNamedWithTheBound) {
-  for (double delta : {0.0, -0.0, -0.1, 0.33, 1.0, kInfinity, -kInfinity, kNaN}) {
+  for (double delta : {0.0, -0.0, -0.1, 0.33, 1.0, HUGE_VAL, -HUGE_VAL, std::nan("")}) {
     EXPECT_THAT(Message(kPaperRho, delta),
                 AllOf(HasSubstr("delta is " + NumberText(delta)), HasSubstr("(1 - lambda)/2"),
                       HasSubstr(NumberText(PairDeltaBound(kPaperRho)))));
@@ -91,8 +88,8 @@ TEST(PairGeometry, InvalidRhoIsReportedBeforeDelta) {
 }
 
 TEST(PairGeometry, ValidatorsAgreeWithCreate) {
-  EXPECT_TRUE(ValidateRho(kPaperRho).ok());
-  EXPECT_TRUE(ValidatePairDelta(kPaperRho, 0.325).ok());
+  EXPECT_OK(ValidateRho(kPaperRho));
+  EXPECT_OK(ValidatePairDelta(kPaperRho, 0.325));
   EXPECT_EQ(std::string(ValidateRho(0.5).message()), Message(0.5, 0.1));
   EXPECT_EQ(std::string(ValidatePairDelta(0.6, 0.3).message()), Message(0.6, 0.3));
 }

@@ -75,13 +75,12 @@ TEST(RelaxationSpectrum, CorrelationTimeIsThatOfEnergyCells) {
   EXPECT_NEAR(Spectrum().CorrelationTime(kForEver).value, 2.165550673728, 1e-11);
 }
 
-// <h> over the stationary law, uniform in u; the substitution takes the root at 1/sqrt(2) out.
+// <h> over the stationary law, uniform in u; h has powers of a root at 1/sqrt(2).
 double MeanSquaredTransfer() {
   const auto h = [](Quad u) {
     return PairSquaredEnergyTransfer(std::pow(static_cast<double>(u), 2) / 2);
   };
-  const auto slower = [&](Quad t) { return 2 * t * h(Quad{M_SQRT1_2} - t * t); };
-  return static_cast<double>(oracle::Integrate(slower, 0, std::sqrt(M_SQRT1_2)) +
+  return static_cast<double>(oracle::IntegrateToRoot(h, 0, M_SQRT1_2) +
                              oracle::Integrate(h, Quad{M_SQRT1_2}, 1));
 }
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/markov/relaxation_spectrum.h"
+#include "tests/core/geometries.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
-
-PairGeometry GeometryAt(double delta) { return *PairGeometry::Create(0.529561127988977, delta); }
 
 bool Overlap(const SampleRange& a, const SampleRange& b) {
   return a.first < b.first + b.count && b.first < a.first + a.count;
@@ -31,7 +31,7 @@ TEST(EnergyRelaxationRuns, RunsHaveNoSampleInCommon) {
 }
 
 TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValue) {
-  const EnergyRelaxationRuns runs(GeometryAt(0.2), 5);
+  const EnergyRelaxationRuns runs(PaperGeometry(0.2), 5);
   for (const Method method : {Method::kLanes, Method::kMarkov}) {
     const auto run = runs.Run(method, RunOf(64), {});
     const auto again = runs.Run(method, RunOf(64), {});
@@ -49,7 +49,7 @@ TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValu
 // False alarms: one in 15,000 seeds, and the seed is fixed.
 TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   for (const double delta : {0.2, 0.0125}) {
-    const EnergyRelaxationRuns runs(GeometryAt(delta), 6);
+    const EnergyRelaxationRuns runs(PaperGeometry(delta), 6);
     const RelaxationTime limit = runs.BySpectrum();
     const auto measured = runs.Run(Method::kMarkov, RunOf(4096), {});
     ASSERT_TRUE(measured);
@@ -60,7 +60,7 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
 
 // The spectrum needs no samples, and its error is that of its discretisation.
 TEST(EnergyRelaxationRuns, TheSpectrumCostsAMicrosecondOrSo) {
-  const EnergyRelaxationRuns runs(GeometryAt(0.1), 0);
+  const EnergyRelaxationRuns runs(PaperGeometry(0.1), 0);
   runs.BySpectrum();  // the first call may have to fetch code and tables
   const RelaxationTime limit = runs.BySpectrum();
   EXPECT_EQ(limit.samples, 0u);
@@ -70,16 +70,14 @@ TEST(EnergyRelaxationRuns, TheSpectrumCostsAMicrosecondOrSo) {
 }
 
 TEST(EnergyRelaxationRuns, RarerCollisionsCostMore) {
-  const double seconds = EnergyRelaxationRuns(GeometryAt(0.025), 0).PredictedSecondsPerOrbit();
-  EXPECT_GT(seconds, 5 * EnergyRelaxationRuns(GeometryAt(0.2), 0).PredictedSecondsPerOrbit());
+  const double seconds = EnergyRelaxationRuns(PaperGeometry(0.025), 0).PredictedSecondsPerOrbit();
+  EXPECT_GT(seconds, 5 * EnergyRelaxationRuns(PaperGeometry(0.2), 0).PredictedSecondsPerOrbit());
 }
 
 TEST(EnergyRelaxationRuns, StopEndsARun) {
-  std::stop_source stop;
-  stop.request_stop();
-  const EnergyRelaxationRuns runs(GeometryAt(0.2), 5);
-  EXPECT_FALSE(runs.Run(Method::kLanes, RunOf(64), stop.get_token()));
-  EXPECT_FALSE(runs.Run(Method::kMarkov, RunOf(64), stop.get_token()));
+  const EnergyRelaxationRuns runs(PaperGeometry(0.2), 5);
+  EXPECT_FALSE(runs.Run(Method::kLanes, RunOf(64), Stopped()));
+  EXPECT_FALSE(runs.Run(Method::kMarkov, RunOf(64), Stopped()));
 }
 
 }  // namespace

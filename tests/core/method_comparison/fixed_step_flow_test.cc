@@ -7,15 +7,14 @@
 #include "core/closed_form/conditional_rate.h"
 #include "core/method_comparison/returns.h"
 #include "core/sampling/invariant_measure.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
 
-const PairGeometry kGeometry = *PairGeometry::Create(0.529561127988977, 0.2);
-
 TEST(FixedStepFlow, EnergyStaysExact) {
   CounterRandom random(3, 0, 0);
-  FixedStepFlow flow(kGeometry, DrawFromFlowMeasure(kGeometry, random), 1e-3);
+  FixedStepFlow flow(kPaperPair, DrawFromFlowMeasure(kPaperPair, random), 1e-3);
   for (int i = 0; i < 30'000; ++i) {
     const FixedSteps done = flow.Advance(1000);
     ASSERT_FALSE(done.lost);
@@ -26,12 +25,12 @@ TEST(FixedStepFlow, EnergyStaysExact) {
 }
 
 TEST(FixedStepFlow, ABallInADiscIsPushedOutAndReflected) {
-  const double rho = kGeometry.rho(), at_wall = 0.5 - rho * M_SQRT1_2;
-  FixedStepFlow flow(kGeometry,
+  const double rho = kPaperPair.rho(), at_wall = 0.5 - rho * M_SQRT1_2;
+  FixedStepFlow flow(kPaperPair,
                      {.position = {at_wall - 0.01, at_wall - 0.01},
                       .direction = {M_SQRT1_2, M_SQRT1_2},
                       .ball_speed = 1,
-                      .piston = kGeometry.piston_right()},
+                      .piston = kPaperPair.piston_right()},
                      0.02);
   const FixedSteps done = flow.Advance(1);
   EXPECT_TRUE(done.ball_wall);
@@ -40,16 +39,17 @@ TEST(FixedStepFlow, ABallInADiscIsPushedOutAndReflected) {
 }
 
 TEST(FixedStepFlow, APistonBeyondItsWallIsFoldedBack) {
-  FixedStepFlow flow(
-      kGeometry, {.ball_speed = 0, .piston = kGeometry.piston_right(), .piston_velocity = 1}, 0.01);
+  FixedStepFlow flow(kPaperPair,
+                     {.ball_speed = 0, .piston = kPaperPair.piston_right(), .piston_velocity = 1},
+                     0.01);
   EXPECT_TRUE(flow.Advance(1).piston_wall);
-  EXPECT_DOUBLE_EQ(flow.state().piston, kGeometry.piston_right() - 0.01);
+  EXPECT_DOUBLE_EQ(flow.state().piston, kPaperPair.piston_right() - 0.01);
   EXPECT_EQ(flow.state().piston_velocity, -1);
 }
 
 TEST(FixedStepFlow, ABallThatHasPassedThePistonMeetsIt) {
   FixedStepFlow flow(
-      kGeometry, {.position = {0.1, 0}, .ball_speed = 0.8, .piston = 0.2, .piston_velocity = -0.6},
+      kPaperPair, {.position = {0.1, 0}, .ball_speed = 0.8, .piston = 0.2, .piston_velocity = -0.6},
       0.02);
   const FixedSteps done = flow.Advance(1000);
   EXPECT_TRUE(done.ball_piston);
@@ -62,7 +62,7 @@ TEST(FixedStepFlow, ABallThatHasPassedThePistonMeetsIt) {
 }
 
 TEST(FixedStepFlow, ABallBeyondATipIsLost) {
-  const PairGeometry cusps = *PairGeometry::Create(0.5001, 0.2);
+  const PairGeometry cusps = GeometryOf(0.5001, 0.2);
   FixedStepFlow flow(
       cusps,
       {.position = {0, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = cusps.piston_right()},
@@ -76,10 +76,10 @@ TEST(FixedStepFlow, ABallBeyondATipIsLost) {
 // coarser steps still, the ball leaves the cell through the tips.
 TEST(FixedStepFlow, TimeIsBiasedToFirstOrderInTheStep) {
   constexpr double kEpsilon = 0.125;
-  const double exact = ConditionalMeanFreeTime(kGeometry, kEpsilon);
+  const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilon);
   const auto bias = [&](double step, uint64_t samples) {
     const auto returns =
-        RunReturns({Method::kFixedStep, step}, kGeometry, kEpsilon, {5, 6}, samples, {});
+        RunReturns({Method::kFixedStep, step}, kPaperPair, kEpsilon, {5, 6}, samples, {});
     EXPECT_EQ(returns->times.count, samples);
     return std::fabs(returns->times.mean - exact) / exact;
   };

@@ -10,18 +10,23 @@
 #include <tuple>
 #include <vector>
 
+#include "core/geometry/paper.h"
+#include "tests/core/stopped.h"
+#include "tests/support/status_matchers.h"
+
 namespace ballpiston {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 // The smallest comparison: some tenths of a second in all.
-const MethodComparisonSpec kSpec = {.rho = 0.529561127988977,
-                                    .delta = 0.2,
-                                    .epsilon = 0.125,
-                                    .seconds_per_curve = 0.01,
-                                    .seed = 4,
-                                    .relaxation_deltas = {0.2, 0.3}};
+const MethodComparisonSpec kSmallestComparison = {.rho = kPaperRho,
+                                                  .delta = 0.2,
+                                                  .epsilon = 0.125,
+                                                  .seconds_per_curve = 0.01,
+                                                  .seed = 4,
+                                                  .relaxation_deltas = {0.2, 0.3}};
 
 // Neither has samples.
 bool IsComputed(Method method) {
@@ -30,31 +35,31 @@ bool IsComputed(Method method) {
 
 std::vector<MethodMeasurement> Compare(const MethodComparisonSpec& spec) {
   std::vector<MethodMeasurement> measurements;
-  EXPECT_TRUE(CompareMethods(spec, {}, [&](const MethodMeasurement& m) {
-                measurements.push_back(m);
-              }).ok());
+  EXPECT_OK(
+      CompareMethods(spec, {}, [&](const MethodMeasurement& m) { measurements.push_back(m); }));
   return measurements;
 }
 
 const std::vector<MethodMeasurement>& Measurements() {
-  static const auto* const measurements = new std::vector<MethodMeasurement>(Compare(kSpec));
+  static const auto* const measurements =
+      new std::vector<MethodMeasurement>(Compare(kSmallestComparison));
   return *measurements;
 }
 
-auto Curve(const MethodMeasurement& m) {
+auto KeyOf(const MethodMeasurement& m) {
   return std::tuple(m.quantity, m.delta, m.method, -m.time_step);
 }
 
-using CurveName = decltype(Curve({}));
+using CurveKey = decltype(KeyOf({}));
 
 TEST(MethodComparison, EveryMethodAnswersWhatItCan) {
-  std::set<CurveName> curves;
-  for (const MethodMeasurement& m : Measurements()) curves.insert(Curve(m));
+  std::set<CurveKey> curves;
+  for (const MethodMeasurement& m : Measurements()) curves.insert(KeyOf(m));
   // Four time steps and six engines for each of the three, the closed form for two; the billiard
   // and the two of the limit at each of two delta.
   EXPECT_EQ(curves.size(), 3 * 10 + 2 + 2 * 3);
   EXPECT_FALSE(curves.contains({Quantity::kTrajectory, 0.2, Method::kClosedForm, -0.0}));
-  for (const double delta : kSpec.relaxation_deltas) {
+  for (const double delta : kSmallestComparison.relaxation_deltas) {
     for (const Method method : {Method::kLanes, Method::kMarkov, Method::kSpectrum}) {
       EXPECT_TRUE(curves.contains({Quantity::kRelaxationTime, delta, method, -0.0})) << delta;
     }
@@ -64,7 +69,7 @@ TEST(MethodComparison, EveryMethodAnswersWhatItCan) {
 TEST(MethodComparison, CurvesComeOneAfterTheOtherWithMoreAndMoreSamples) {
   const std::vector<MethodMeasurement>& all = Measurements();
   for (size_t i = 1; i < all.size(); ++i) {
-    const auto before = Curve(all[i - 1]), now = Curve(all[i]);
+    const auto before = KeyOf(all[i - 1]), now = KeyOf(all[i]);
     ASSERT_LE(before, now) << i;
     if (before == now) {
       ASSERT_GT(all[i].samples, all[i - 1].samples) << i;
@@ -96,11 +101,11 @@ TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
 
 // How many rungs there are depends on the processor's mood; what is on them does not.
 TEST(MethodComparison, ValuesFollowFromTheSpec) {
-  std::map<std::tuple<CurveName, uint64_t>, MethodMeasurement> first;
-  for (const MethodMeasurement& m : Measurements()) first[{Curve(m), m.samples}] = m;
+  std::map<std::tuple<CurveKey, uint64_t>, MethodMeasurement> first;
+  for (const MethodMeasurement& m : Measurements()) first[{KeyOf(m), m.samples}] = m;
   int compared = 0;
-  for (const MethodMeasurement& m : Compare(kSpec)) {
-    const auto same = first.find({Curve(m), m.samples});
+  for (const MethodMeasurement& m : Compare(kSmallestComparison)) {
+    const auto same = first.find({KeyOf(m), m.samples});
     if (same == first.end()) continue;
     ++compared;
     EXPECT_EQ(m.value, same->second.value);
@@ -153,7 +158,7 @@ TEST(MethodComparison, TheJumpProcessHasTheBiasOfTheSpectrum) {
 }
 
 TEST(MethodComparison, NoDeltaAsksForNoRelaxationTimes) {
-  MethodComparisonSpec spec = kSpec;
+  MethodComparisonSpec spec = kSmallestComparison;
   spec.relaxation_deltas = {};
   for (const MethodMeasurement& m : Compare(spec)) {
     EXPECT_NE(m.quantity, Quantity::kRelaxationTime);
@@ -164,41 +169,39 @@ TEST(MethodComparison, NoDeltaAsksForNoRelaxationTimes) {
 void ExpectInvalid(const MethodComparisonSpec& spec, const std::string& name,
                    const std::string& value, const std::string& range) {
   int told = 0;
-  const absl::Status status = CompareMethods(spec, {}, [&](const MethodMeasurement&) { ++told; });
-  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(status.message()), HasSubstr(name + " is " + value));
-  EXPECT_THAT(std::string(status.message()), HasSubstr(range));
+  EXPECT_THAT(CompareMethods(spec, {}, [&](const MethodMeasurement&) { ++told; }),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr(name + " is " + value), HasSubstr(range))));
   EXPECT_EQ(told, 0);
 }
 
-MethodComparisonSpec With(double MethodComparisonSpec::*field, double value) {
-  MethodComparisonSpec spec = kSpec;
+MethodComparisonSpec WithField(double MethodComparisonSpec::*field, double value) {
+  MethodComparisonSpec spec = kSmallestComparison;
   spec.*field = value;
   return spec;
 }
 
 TEST(MethodComparison, InvalidSpecsAreRefusedByFieldValueAndRange) {
-  ExpectInvalid(With(&MethodComparisonSpec::rho, 0.3), "rho", "0.3", "1/2 < rho < 1/sqrt(2)");
-  ExpectInvalid(With(&MethodComparisonSpec::delta, 0.4), "delta", "0.4", "0 < delta <=");
-  ExpectInvalid(With(&MethodComparisonSpec::delta, 0), "delta", "0", "0 < delta <=");
+  ExpectInvalid(WithField(&MethodComparisonSpec::rho, 0.3), "rho", "0.3", "1/2 < rho < 1/sqrt(2)");
+  ExpectInvalid(WithField(&MethodComparisonSpec::delta, 0.4), "delta", "0.4", "0 < delta <=");
+  ExpectInvalid(WithField(&MethodComparisonSpec::delta, 0), "delta", "0", "0 < delta <=");
   for (const double epsilon : {0.0, 0.5, -1.0}) {
-    ExpectInvalid(With(&MethodComparisonSpec::epsilon, epsilon), "epsilon", "",
+    ExpectInvalid(WithField(&MethodComparisonSpec::epsilon, epsilon), "epsilon", "",
                   "0 < epsilon < 1/2");
   }
-  ExpectInvalid(With(&MethodComparisonSpec::epsilon, std::nan("")), "epsilon", "nan",
+  ExpectInvalid(WithField(&MethodComparisonSpec::epsilon, std::nan("")), "epsilon", "nan",
                 "0 < epsilon < 1/2");
-  ExpectInvalid(With(&MethodComparisonSpec::seconds_per_curve, 0.009), "seconds_per_curve", "0.009",
+  ExpectInvalid(WithField(&MethodComparisonSpec::seconds_per_curve, 0.009), "seconds_per_curve",
+                "0.009", "[0.01, 60]");
+  ExpectInvalid(WithField(&MethodComparisonSpec::seconds_per_curve, 61), "seconds_per_curve", "61",
                 "[0.01, 60]");
-  ExpectInvalid(With(&MethodComparisonSpec::seconds_per_curve, 61), "seconds_per_curve", "61",
-                "[0.01, 60]");
-  MethodComparisonSpec spec = kSpec;
+  MethodComparisonSpec spec = kSmallestComparison;
   spec.relaxation_deltas = {0.1, 0.5};
   ExpectInvalid(spec, "delta", "0.5", "0 < delta <=");
   spec.relaxation_deltas = std::vector<double>(kMaxRelaxationDeltas + 1, 0.1);
-  const absl::Status many = CompareMethods(spec, {}, [](const MethodMeasurement&) {});
-  EXPECT_EQ(many.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(many.message()), HasSubstr("relaxation_deltas has 9"));
-  EXPECT_THAT(std::string(many.message()), HasSubstr("at most 8"));
+  EXPECT_THAT(CompareMethods(spec, {}, [](const MethodMeasurement&) {}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr("relaxation_deltas has 9"), HasSubstr("at most 8"))));
 }
 
 // How much is told before a quantity's turn comes depends on the machine, so the stop comes with
@@ -209,28 +212,26 @@ TEST(MethodComparison, StopCancels) {
     std::stop_source stop;
     int told_after = 0;
     const absl::Status status =
-        CompareMethods(kSpec, stop.get_token(), [&](const MethodMeasurement& m) {
+        CompareMethods(kSmallestComparison, stop.get_token(), [&](const MethodMeasurement& m) {
           told_after += stop.stop_requested() ? 1 : 0;
           if (m.quantity == last) stop.request_stop();
         });
-    EXPECT_EQ(status.code(), absl::StatusCode::kCancelled) << status;
+    EXPECT_THAT(status, StatusIs(absl::StatusCode::kCancelled));
     EXPECT_EQ(told_after, 0) << static_cast<int>(last);
   }
 }
 
 TEST(MethodComparison, StoppedBeforeItBeginsItTellsNothing) {
-  std::stop_source stop;
-  stop.request_stop();
   int told = 0;
-  const absl::Status status =
-      CompareMethods(kSpec, stop.get_token(), [&](const MethodMeasurement&) { ++told; });
-  EXPECT_EQ(status.code(), absl::StatusCode::kCancelled) << status;
+  EXPECT_THAT(
+      CompareMethods(kSmallestComparison, Stopped(), [&](const MethodMeasurement&) { ++told; }),
+      StatusIs(absl::StatusCode::kCancelled));
   EXPECT_EQ(told, 0);
 }
 
 // The mean free time grows as 1/delta^2: what cannot be done in time is left out at once.
 TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
-  MethodComparisonSpec spec = kSpec;
+  MethodComparisonSpec spec = kSmallestComparison;
   spec.relaxation_deltas = {1e-9, 0.2};
   std::set<double> deltas;
   for (const MethodMeasurement& m : Compare(spec)) {
@@ -241,7 +242,7 @@ TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
 
 TEST(MethodComparison, ARareCollisionLeavesOutWhatTakesTooLong) {
   std::set<Method> methods;
-  for (const MethodMeasurement& m : Compare(With(&MethodComparisonSpec::delta, 1e-9))) {
+  for (const MethodMeasurement& m : Compare(WithField(&MethodComparisonSpec::delta, 1e-9))) {
     if (m.quantity == Quantity::kMeanFreeTime) methods.insert(m.method);
   }
   EXPECT_EQ(methods, std::set<Method>{Method::kClosedForm});

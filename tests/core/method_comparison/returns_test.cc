@@ -6,15 +6,17 @@
 
 #include "core/closed_form/conditional_rate.h"
 #include "core/statistics/kl_divergence.h"
+#include "tests/core/geometries.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
 
-struct Engine {
+struct MethodAndSamples {
   Method method;
   uint64_t samples;
 };
-constexpr Engine kEngines[] = {
+constexpr MethodAndSamples kEnginesAndSamples[] = {
     {Method::kReferenceSingle, 16384},
     {Method::kReference, 16384},
     {Method::kReferenceLongDouble, 8192},
@@ -23,18 +25,17 @@ constexpr Engine kEngines[] = {
     {Method::kLanesSingle, 65536},
 };
 
-const PairGeometry kGeometry = *PairGeometry::Create(0.529561127988977, 0.2);
-constexpr double kEpsilon = 0.125;
+constexpr double kEpsilonOfReturns = 0.125;
 
 // 12 comparisons at 4.5 standard errors: one false alarm in 1e4 seeds, and the seed is fixed. The
 // bias of single precision is far below the 0.4% that these samples tell.
 TEST(Returns, EnginesShowNoBias) {
-  const double exact = ConditionalMeanFreeTime(kGeometry, kEpsilon);
-  const std::vector<double> probabilities = IngoingProbabilities(kEpsilon);
-  for (const Engine& engine : kEngines) {
+  const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
+  const std::vector<double> probabilities = IngoingProbabilities(kEpsilonOfReturns);
+  for (const auto& engine : kEnginesAndSamples) {
     SCOPED_TRACE(static_cast<int>(engine.method));
     const auto returns =
-        RunReturns({engine.method}, kGeometry, kEpsilon, {21, 1}, engine.samples, {});
+        RunReturns({engine.method}, kPaperPair, kEpsilonOfReturns, {21, 1}, engine.samples, {});
     ASSERT_EQ(returns->times.count, engine.samples) << "some orbits were lost";
     EXPECT_GT(returns->wall_hits, engine.samples);
     EXPECT_NEAR(returns->times.mean, exact, 4.5 * *returns->times.StandardError());
@@ -45,10 +46,10 @@ TEST(Returns, EnginesShowNoBias) {
 }
 
 TEST(Returns, CoarseStepsShowABias) {
-  const double exact = ConditionalMeanFreeTime(kGeometry, kEpsilon);
-  const std::vector<double> probabilities = IngoingProbabilities(kEpsilon);
+  const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
+  const std::vector<double> probabilities = IngoingProbabilities(kEpsilonOfReturns);
   const auto returns =
-      RunReturns({Method::kFixedStep, 0.1}, kGeometry, kEpsilon, {21, 1}, 16384, {});
+      RunReturns({Method::kFixedStep, 0.1}, kPaperPair, kEpsilonOfReturns, {21, 1}, 16384, {});
   EXPECT_GT(std::fabs(returns->times.mean - exact), 10 * *returns->times.StandardError());
   const DivergenceNoise noise = NoiseOfDivergence(returns->times.count, probabilities);
   EXPECT_GT(RelativeEntropy(returns->ingoing.Counts(), probabilities).value,
@@ -58,22 +59,22 @@ TEST(Returns, CoarseStepsShowABias) {
 // A short orbit is the same to all precisions.
 TEST(Returns, AllMethodsStartFromTheSameStates) {
   constexpr RandomStream kShort = {21, 15};
-  const auto reference = RunReturns({Method::kReference}, kGeometry, kEpsilon, kShort, 1, {});
+  const auto reference =
+      RunReturns({Method::kReference}, kPaperPair, kEpsilonOfReturns, kShort, 1, {});
   ASSERT_GT(reference->wall_hits, 0) << "choose another stream";
   ASSERT_LT(reference->wall_hits, 8) << "choose another stream";
-  for (const Engine& engine : kEngines) {
-    const auto one = RunReturns({engine.method}, kGeometry, kEpsilon, kShort, 1, {});
+  for (const auto& engine : kEnginesAndSamples) {
+    const auto one = RunReturns({engine.method}, kPaperPair, kEpsilonOfReturns, kShort, 1, {});
     EXPECT_NEAR(one->times.mean, reference->times.mean, 1e-3) << static_cast<int>(engine.method);
     EXPECT_EQ(one->wall_hits, reference->wall_hits) << static_cast<int>(engine.method);
   }
 }
 
 TEST(Returns, StopEndsThem) {
-  std::stop_source stop;
-  stop.request_stop();
   for (const Method method : {Method::kFixedStep, Method::kReferenceQuadruple, Method::kLanes}) {
     const MethodVariant variant = {method, method == Method::kFixedStep ? 1e-3 : 0};
-    EXPECT_FALSE(RunReturns(variant, kGeometry, kEpsilon, {1, 1}, 100'000'000, stop.get_token()));
+    EXPECT_FALSE(
+        RunReturns(variant, kPaperPair, kEpsilonOfReturns, {1, 1}, 100'000'000, Stopped()));
   }
 }
 

@@ -5,25 +5,25 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/core/geometries.h"
+
 namespace ballpiston {
 namespace {
 
-constexpr RandomStream kRandom = {31, 7};
-constexpr size_t kOrbits = 64;
-
-const PairGeometry kGeometry = *PairGeometry::Create(0.529561127988977, 0.2);
+constexpr RandomStream kStreamOfTwins = {31, 7};
+constexpr size_t kTwins = 64;
 
 // Of the ball, a hit: growth of a displacement of 1e-60, which stays small.
 Moments LyapunovExponents() {
   constexpr int kHits = 60;
-  const TwinOrbits twins(kGeometry, {32, 7}, kOrbits);
+  const TwinOrbits twins(kPaperPair, {32, 7}, kTwins);
   Moments exponents;
-  for (size_t i = 0; i < kOrbits; ++i) {
+  for (size_t i = 0; i < kTwins; ++i) {
     TwinOrbits::State displaced = twins.Start(i);
     const TwinNumber angle("1e-60");
     const TwinNumber x = displaced.direction.x(), y = displaced.direction.y();
     displaced.direction = {TwinNumber(x - angle * y), TwinNumber(y + angle * x)};
-    EventFlow<TwinNumber> one(kGeometry, twins.Start(i)), other(kGeometry, displaced);
+    EventFlow<TwinNumber> one(kPaperPair, twins.Start(i)), other(kPaperPair, displaced);
     for (int hit = 0; hit < kHits; ++hit) {
       one.Step();
       other.Step();
@@ -35,9 +35,9 @@ Moments LyapunovExponents() {
   return exponents;
 }
 
-TrajectoryHorizon Horizon(Method method, double time_step = 0) {
-  TwinOrbits twins(kGeometry, kRandom, kOrbits);
-  return HorizonOf({method, time_step}, kGeometry, twins, {});
+TrajectoryHorizon HorizonOfMethod(Method method, double time_step = 0) {
+  TwinOrbits twins(kPaperPair, kStreamOfTwins, kTwins);
+  return HorizonOf({method, time_step}, kPaperPair, twins, {});
 }
 
 double CombinedError(const Moments& a, const Moments& b) {
@@ -49,12 +49,12 @@ double CombinedError(const Moments& a, const Moments& b) {
 TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
   const Moments exponents = LyapunovExponents();
   const double error_of_exponent = *exponents.StandardError() / exponents.mean;
-  Moments before = Horizon(Method::kReferenceSingle).hits;
+  Moments before = HorizonOfMethod(Method::kReferenceSingle).hits;
   int bits_before = 24;
   for (const auto& [method, bits] : {std::pair{Method::kReference, 53},
                                      {Method::kReferenceLongDouble, 64},
                                      {Method::kReferenceQuadruple, 113}}) {
-    const Moments now = Horizon(method).hits;
+    const Moments now = HorizonOfMethod(method).hits;
     const double expected = (bits - bits_before) * std::numbers::ln2 / exponents.mean;
     EXPECT_NEAR(now.mean - before.mean, expected,
                 4.5 * std::hypot(CombinedError(now, before), expected * error_of_exponent))
@@ -66,18 +66,19 @@ TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
 
 // From a relative error of 1e-16, some 32 hits.
 TEST(TrajectoryHorizon, LanesPartWhenTheReferenceDoes) {
-  const Moments reference = Horizon(Method::kReference).hits, lanes = Horizon(Method::kLanes).hits;
+  const Moments reference = HorizonOfMethod(Method::kReference).hits,
+                lanes = HorizonOfMethod(Method::kLanes).hits;
   EXPECT_NEAR(reference.mean, 32, 2);
   EXPECT_NEAR(lanes.mean, reference.mean, 1 + 4.5 * CombinedError(lanes, reference));
-  const Moments single = Horizon(Method::kReferenceSingle).hits,
-                lanes_single = Horizon(Method::kLanesSingle).hits;
+  const Moments single = HorizonOfMethod(Method::kReferenceSingle).hits,
+                lanes_single = HorizonOfMethod(Method::kLanesSingle).hits;
   EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
 }
 
 TEST(TrajectoryHorizon, SmallerStepsFollowLonger) {
   double before = -1;
   for (const double step : {1e-1, 1e-2, 1e-3, 1e-4}) {
-    const double hits = Horizon(Method::kFixedStep, step).hits.mean;
+    const double hits = HorizonOfMethod(Method::kFixedStep, step).hits.mean;
     EXPECT_GT(hits, before) << step;
     before = hits;
   }
@@ -86,16 +87,16 @@ TEST(TrajectoryHorizon, SmallerStepsFollowLonger) {
 }
 
 TEST(TrajectoryHorizon, HitsFlownAreCounted) {
-  const TrajectoryHorizon horizon = Horizon(Method::kLanes);
-  EXPECT_EQ(horizon.hits.count, kOrbits);
-  EXPECT_EQ(horizon.wall_hits % kOrbits, 0);
-  EXPECT_GT(static_cast<double>(horizon.wall_hits), horizon.hits.mean * kOrbits);
+  const TrajectoryHorizon horizon = HorizonOfMethod(Method::kLanes);
+  EXPECT_EQ(horizon.hits.count, kTwins);
+  EXPECT_EQ(horizon.wall_hits % kTwins, 0);
+  EXPECT_GT(static_cast<double>(horizon.wall_hits), horizon.hits.mean * kTwins);
   EXPECT_GT(horizon.seconds, 0);
 }
 
 TEST(TwinOrbits, PlacesLieOnTheOrbit) {
-  TwinOrbits twins(kGeometry, kRandom, 1);
-  EventFlow<TwinNumber> flow(kGeometry, twins.Start(0));
+  TwinOrbits twins(kPaperPair, kStreamOfTwins, 1);
+  EventFlow<TwinNumber> flow(kPaperPair, twins.Start(0));
   const Eigen::Vector2d start = RoundedTo<double>(twins.Start(0)).position;
   EXPECT_EQ(twins.PositionAt(0, 0), start);
   const double duration = static_cast<double>(flow.Step().duration);

@@ -6,81 +6,80 @@
 
 #include "core/geometry/pair_geometry.h"
 #include "tests/core/model_choice/questions.h"
+#include "tests/core/stopped.h"
 
 namespace ballpiston {
 namespace {
 
-PointParameters At(double delta, std::optional<double> epsilon = {}) {
-  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon};
-}
-
 // Measured with 4e6 orbits: 4.9 % +- 0.1 %.
 TEST(LimitError, IsOfTheOrderThatWasMeasured) {
-  EXPECT_GT(ExpectedLimitError(At(0.2)), 0.049 / 2);
-  EXPECT_LT(ExpectedLimitError(At(0.2)), 0.049 * 2);
+  EXPECT_GT(ExpectedLimitError(PaperPoint(0.2)), 0.049 / 2);
+  EXPECT_LT(ExpectedLimitError(PaperPoint(0.2)), 0.049 * 2);
 }
 
 // x log(1/x) with x of order delta^2: between delta^2 and delta.
 TEST(LimitError, FallsNearlyAsTheSquareOfDelta) {
   for (double delta = 0.02; delta > 1e-7; delta /= 10) {
-    const double ratio = ExpectedLimitError(At(delta)) / ExpectedLimitError(At(delta / 10));
+    const double ratio =
+        ExpectedLimitError(PaperPoint(delta)) / ExpectedLimitError(PaperPoint(delta / 10));
     EXPECT_GT(ratio, 50) << delta;
     EXPECT_LT(ratio, 100) << delta;
   }
 }
 
 TEST(LimitError, GrowsTowardsSlowPartners) {
-  const double in_equilibrium = ExpectedLimitError(At(0.05));
+  const double in_equilibrium = ExpectedLimitError(PaperPoint(0.05));
   double before = 100;
   for (const double epsilon : {0.0, 1e-20, 1e-8, 1e-4, 0.01, 0.1}) {
-    EXPECT_GT(ExpectedLimitError(At(0.05, epsilon)), in_equilibrium);
-    EXPECT_LE(ExpectedLimitError(At(0.05, epsilon)), before);
-    before = ExpectedLimitError(At(0.05, epsilon));
+    EXPECT_GT(ExpectedLimitError(PaperPoint(0.05, epsilon)), in_equilibrium);
+    EXPECT_LE(ExpectedLimitError(PaperPoint(0.05, epsilon)), before);
+    before = ExpectedLimitError(PaperPoint(0.05, epsilon));
   }
-  EXPECT_GT(ExpectedLimitError(At(0.05, 0.5)), ExpectedLimitError(At(0.05, 0.4)));
+  EXPECT_GT(ExpectedLimitError(PaperPoint(0.05, 0.5)), ExpectedLimitError(PaperPoint(0.05, 0.4)));
   for (const double epsilon : {0.0, 0.5}) {
-    EXPECT_GE(ExpectedLimitError(At(0.05, epsilon)), 1);  // no limit at all
-    EXPECT_LE(ExpectedLimitError(At(1e-6, epsilon)), 10);
+    EXPECT_GE(ExpectedLimitError(PaperPoint(0.05, epsilon)), 1);  // no limit at all
+    EXPECT_LE(ExpectedLimitError(PaperPoint(1e-6, epsilon)), 10);
   }
 }
 
 TEST(LimitError, PilotsAreMadeWhereCollisionsAreCheap) {
-  const double cheap = PilotPlaceFor(At(1e-6)).delta;
+  const double cheap = PilotPlaceFor(PaperPoint(1e-6)).delta;
   EXPECT_GT(cheap, 0.2 * PairDeltaBound(kPaperRho));
   EXPECT_LT(cheap, 0.4 * PairDeltaBound(kPaperRho));
-  EXPECT_EQ(PilotPlaceFor(At(1e-3)), PilotPlaceFor(At(1e-6)));
-  EXPECT_EQ(PilotPlaceFor(At(0.3)).delta, 0.3);
-  EXPECT_EQ(PilotPlaceFor(At(0.3)).epsilon, std::nullopt);
+  EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3)), PilotPlaceFor(PaperPoint(1e-6)));
+  EXPECT_EQ(PilotPlaceFor(PaperPoint(0.3)).delta, 0.3);
+  EXPECT_EQ(PilotPlaceFor(PaperPoint(0.3)).epsilon, std::nullopt);
 }
 
 // From the energy of a slow partner the limit need not be near at the pilot's delta, nor the error
 // fall in proportion from there: then the pilot is made at the point itself.
 TEST(LimitError, PilotsFromAnEnergyAreMadeWhereTheErrorIsSmall) {
-  EXPECT_EQ(PilotPlaceFor(At(1e-3, 0.1)).delta, PilotPlaceFor(At(1e-3)).delta);
-  EXPECT_EQ(PilotPlaceFor(At(1e-3, 0.1)).epsilon, 0.1);
+  EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).delta, PilotPlaceFor(PaperPoint(1e-3)).delta);
+  EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).epsilon, 0.1);
   for (const double epsilon : {0.0, 1e-6, 0.4999999, 0.5}) {
-    EXPECT_EQ(PilotPlaceFor(At(1e-3, epsilon)), (PilotPlace{kPaperRho, 1e-3, epsilon}));
+    EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, epsilon)), (PilotPlace{kPaperRho, 1e-3, epsilon}));
   }
 }
 
 TEST(LimitError, BoundIsTheDifferenceAndTwoErrorsScaledWithDelta) {
   const Pilot pilot = {.difference = -0.03, .standard_error = 0.005};
   const PilotPlace place = {.rho = kPaperRho, .delta = 0.1};
-  EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, At(0.1)), 0.04);
-  EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, At(0.001)), 0.0004);
+  EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.1)), 0.04);
+  EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.001)), 0.0004);
   // Never less than is expected: a pilot that found nothing has not shown that there is nothing.
   const Pilot lucky = {.difference = 0, .standard_error = 1e-9};
-  EXPECT_EQ(LimitErrorBound(lucky, place, At(0.05)), ExpectedLimitError(At(0.05)));
+  EXPECT_EQ(LimitErrorBound(lucky, place, PaperPoint(0.05)), ExpectedLimitError(PaperPoint(0.05)));
 }
 
 // What is expected to be found, scaled from the pilot's place, covers what is expected at smaller
 // deltas: the bound's proportion to delta is on the safe side.
 TEST(LimitError, BoundCoversWhatIsExpectedAtSmallerDeltas) {
-  const PilotPlace place = PilotPlaceFor(At(1e-6));
-  const Pilot pilot = {.difference = ExpectedLimitError(At(place.delta)), .standard_error = 0};
+  const PilotPlace place = PilotPlaceFor(PaperPoint(1e-6));
+  const Pilot pilot = {.difference = ExpectedLimitError(PaperPoint(place.delta)),
+                       .standard_error = 0};
   for (double delta = place.delta; delta > 1e-6; delta /= 2) {
-    EXPECT_GE(LimitErrorBound(pilot, place, At(delta)) * (1 + 1e-12),
-              ExpectedLimitError(At(delta)));
+    EXPECT_GE(LimitErrorBound(pilot, place, PaperPoint(delta)) * (1 + 1e-12),
+              ExpectedLimitError(PaperPoint(delta)));
   }
 }
 
@@ -99,9 +98,7 @@ TEST(LimitError, PilotIsAFunctionOfItsPlace) {
 }
 
 TEST(LimitError, StopEndsAPilot) {
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_FALSE(RunPilot(PilotPlaceFor(At(0.01)), stop.get_token()));
+  EXPECT_FALSE(RunPilot(PilotPlaceFor(PaperPoint(0.01)), Stopped()));
 }
 
 }  // namespace

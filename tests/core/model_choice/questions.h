@@ -9,10 +9,9 @@
 
 #include "core/experiment/answering_models.h"
 #include "core/model_choice/ladder.h"
+#include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
-
-inline constexpr double kPaperRho = 0.529561127988977;
 
 // Round numbers near those of a processor of the day.
 inline Machine SomeMachine() {
@@ -36,13 +35,11 @@ inline Machine SlowerMachine() {
 }
 
 inline EnsembleSpec Asked(Experiment experiment, double delta, const Target& target = {}) {
-  EnsembleSpec spec = {
-      .experiment = experiment, .grid = {.rho = {kPaperRho}, .delta = {delta}}, .target = target};
-  if (experiment == Experiment::kConditionalMeanFreeTime || experiment == Experiment::kFirstHit) {
-    spec.grid.epsilon = {0.125};
-  }
-  if (experiment == Experiment::kFirstHit) spec.grid.exponent = {1};
-  return spec;
+  PointParameters point = PaperPoint(delta);
+  const bool first_hit = experiment == Experiment::kFirstHit;
+  if (first_hit || experiment == Experiment::kConditionalMeanFreeTime) point.epsilon = 0.125;
+  if (first_hit) point.exponent = 1;
+  return SpecOf(experiment, point, target);
 }
 
 inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {

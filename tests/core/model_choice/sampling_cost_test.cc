@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "core/experiment/energy_relaxation.h"
-#include "core/experiment/point_experiment.h"
 #include "core/experiment/predicted_hits.h"
+#include "tests/core/geometries.h"
 #include "tests/core/model_choice/questions.h"
+#include "tests/core/run_point.h"
 
 namespace ballpiston {
 namespace {
@@ -22,21 +23,17 @@ struct Measured {
 };
 
 Measured ErrorMeasured(const EnsembleSpec& spec) {
-  const auto point = PointExperiment::Create(spec, 0);
-  BlockResult merged;
-  for (uint64_t block = 0; !point->TargetReached(block, merged); ++block) {
-    merged.Merge(*point->RunBlock(block, {}));
-  }
-  const Estimate estimate = point->FirstEstimate(merged);
+  const PointSummary summary = RunPoint(spec);
+  const Estimate& estimate = summary.estimates.front();
   return {*estimate.standard_error / std::fabs(estimate.value),
-          static_cast<double>(merged.samples)};
+          static_cast<double>(summary.samples)};
 }
 
 // Errors of some thousand samples are themselves known to a few percent.
 void ExpectWithinAFactorOfTwo(const EnsembleSpec& spec) {
   ASSERT_TRUE(Violations(spec).empty());
   const PointParameters point = PointAt(spec, 0);
-  const PairGeometry geometry = *PairGeometry::Create(point.rho, point.delta);
+  const PairGeometry geometry = GeometryOf(point.rho, point.delta);
   const Measured measured = ErrorMeasured(spec);
   const double predicted =
       RelativeErrorOfOneSample(spec.experiment, geometry, point) / std::sqrt(measured.samples);
@@ -83,7 +80,7 @@ TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwo) {
 TEST(SamplingCost, NoNumberOfSamplesIsEnoughWhereThereIsNoVariance) {
   EnsembleSpec spec = Asked(Experiment::kConditionalMeanFreeTime, 0.1);
   spec.grid.epsilon = {0};
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  const PairGeometry geometry = PaperGeometry(0.1);
   EXPECT_TRUE(std::isinf(RelativeErrorOfOneSample(spec.experiment, geometry, PointAt(spec, 0))));
 }
 
@@ -97,11 +94,11 @@ MachineRates OnlyOf(double EngineRate::*part) {
 
 double Cost(const EnsembleSpec& spec, const MachineRates& rates) {
   const PointParameters point = PointAt(spec, 0);
-  return SecondsPerSample(spec, *PairGeometry::Create(point.rho, point.delta), point, rates);
+  return SecondsPerSample(spec, GeometryOf(point.rho, point.delta), point, rates);
 }
 
 TEST(SamplingCost, IsThatOfTheEventsOfASample) {
-  const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.1);
+  const PairGeometry geometry = PaperGeometry(0.1);
   const double hits = HitsPerCollision(geometry).ball_wall;
   const EnsembleSpec collision = Asked(Experiment::kEquilibrium, 0.1), orbit = Relaxation(0.1);
   EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::wall_hit)), hits);

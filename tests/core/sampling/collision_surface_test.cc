@@ -7,7 +7,9 @@
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/cell_profile.h"
 #include "core/geometry/pair_state.h"
+#include "core/geometry/paper.h"
 #include "core/statistics/moments.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
@@ -19,8 +21,7 @@ struct Case {
 
 class CollisionSurface : public testing::TestWithParam<Case> {
  protected:
-  PairGeometry geometry_ =
-      *PairGeometry::Create(GetParam().rho, GetParam().share* PairDeltaBound(GetParam().rho));
+  PairGeometry geometry_ = GeometryAtShare(GetParam().rho, GetParam().share);
 };
 
 TEST_P(CollisionSurface, PointsLieInTheReachablePartOfTheCell) {
@@ -67,8 +68,8 @@ TEST_P(CollisionSurface, DepthHasTheDensityOfTheHalfHeight) {
 
 INSTANTIATE_TEST_SUITE_P(Geometries, CollisionSurface,
                          testing::Values(Case{0.5 + 1e-6, 1}, Case{0.5 + 1e-6, 0.01},
-                                         Case{0.529561127988977, 1}, Case{0.529561127988977, 0.1},
-                                         Case{0.7, 1}, Case{0.7, 0.01}));
+                                         Case{kPaperRho, 1}, Case{kPaperRho, 0.1}, Case{0.7, 1},
+                                         Case{0.7, 0.01}));
 
 }  // namespace
 }  // namespace ballpiston

@@ -6,19 +6,17 @@
 
 #include "core/closed_form/pair_measures.h"
 #include "core/statistics/moments.h"
+#include "tests/core/geometries.h"
 
 namespace ballpiston {
 namespace {
 
-PairGeometry Paper() { return *PairGeometry::Create(0.529561127988977, 0.2); }
-
 TEST(FlowMeasure, StatesAreLegalAndEnergiesAreBeta) {
-  const PairGeometry geometry = Paper();
   CounterRandom random(4, 0, 0);
   Moments u, u_squared;
   for (int i = 0; i < 100'000; ++i) {
-    const PairState state = DrawFromFlowMeasure(geometry, random);
-    ASSERT_TRUE(InsideCell(geometry, state.position));
+    const PairState state = DrawFromFlowMeasure(kPaperPair, random);
+    ASSERT_TRUE(InsideCell(kPaperPair, state.position));
     ASSERT_LT(state.position.x(), state.piston);
     ASSERT_LE(EnergyError(state), 1e-15);
     // ep has the law Beta(1/2, 1): u = sqrt(2 ep) is uniform on [0, 1].
@@ -31,14 +29,13 @@ TEST(FlowMeasure, StatesAreLegalAndEnergiesAreBeta) {
 
 // The share of states whose piston is left of the cell's tip is (|G| - A (lambda + delta))/|G|.
 TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
-  const PairGeometry geometry = Paper();
-  const PairMeasures measures = Measures(geometry);
+  const PairMeasures measures = Measures(kPaperPair);
   const double expected =
-      1 - measures.cell_area * (geometry.lambda() + geometry.delta()) / measures.volume;
+      1 - measures.cell_area * (kPaperPair.lambda() + kPaperPair.delta()) / measures.volume;
   CounterRandom random(5, 0, 0);
   Moments left;
   for (int i = 0; i < 200'000; ++i) {
-    left.Add(DrawFromFlowMeasure(geometry, random).piston < geometry.tip() ? 1 : 0);
+    left.Add(DrawFromFlowMeasure(kPaperPair, random).piston < kPaperPair.tip() ? 1 : 0);
   }
   EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
 }
@@ -46,21 +43,20 @@ TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
 // At given energies positions are those of mu, directions those of the circle, and the piston comes
 // as often as it goes.
 TEST(FlowMeasure, AtAnEnergyOnlySpeedsAreGiven) {
-  const PairGeometry geometry = Paper();
-  const PairMeasures measures = Measures(geometry);
+  const PairMeasures measures = Measures(kPaperPair);
   const double left_share =
-      1 - measures.cell_area * (geometry.lambda() + geometry.delta()) / measures.volume;
+      1 - measures.cell_area * (kPaperPair.lambda() + kPaperPair.delta()) / measures.volume;
   for (const double epsilon : {0.0, 1e-300, 0.01, 0.25, 0.4, 0.5}) {
     CounterRandom random(15, 0, 0);
     Moments left, coming, cosine, sine, square;
     for (int i = 0; i < 50'000; ++i) {
-      const PairState state = DrawFromFlowMeasureAt(geometry, epsilon, random);
-      ASSERT_TRUE(InsideCell(geometry, state.position));
+      const PairState state = DrawFromFlowMeasureAt(kPaperPair, epsilon, random);
+      ASSERT_TRUE(InsideCell(kPaperPair, state.position));
       ASSERT_LT(state.position.x(), state.piston);
       ASSERT_EQ(std::fabs(state.piston_velocity), std::sqrt(2 * epsilon));
       ASSERT_LE(EnergyError(state), 1e-15);
       ASSERT_NEAR(state.direction.norm(), 1, 1e-15);
-      left.Add(state.piston < geometry.tip() ? 1 : 0);
+      left.Add(state.piston < kPaperPair.tip() ? 1 : 0);
       coming.Add(std::signbit(state.piston_velocity) ? 1 : 0);
       cosine.Add(state.direction.x());
       sine.Add(state.direction.y());
@@ -78,11 +74,10 @@ TEST(FlowMeasure, AtAnEnergyOnlySpeedsAreGiven) {
 // Under nu_bp the normal component w = (v3 - v1)/sqrt(2) has density 2 w: mean 2/3; the tangential
 // ones are symmetric with mean square (1 - <w^2>)/2 = 1/4.
 TEST(CollisionMeasure, VelocityFollowsTheCosineLaw) {
-  const PairGeometry geometry = Paper();
   CounterRandom random(6, 0, 0);
   Moments normal, sum_squared, v2_squared, v2;
   for (int i = 0; i < 200'000; ++i) {
-    const PairState state = DrawFromCollisionMeasure(geometry, random);
+    const PairState state = DrawFromCollisionMeasure(kPaperPair, random);
     ASSERT_EQ(state.position.x(), state.piston);
     ASSERT_LE(EnergyError(state), 2e-15);
     const double v1 = state.ball_speed * state.direction.x(), v3 = state.piston_velocity;

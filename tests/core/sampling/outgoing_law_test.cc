@@ -17,7 +17,7 @@ struct Means {
 
 // Of the law proportional to (sigma sqrt(ep) - sqrt(eb) cos a)_+^n, by the midpoint rule:
 // spectrally accurate for whole n >= 2, and good to 1e-5 with the kink (n = 1) or jump (n = 0).
-Means Exact(double epsilon, double exponent) {
+Means MeansByMidpoints(double epsilon, double exponent) {
   constexpr int kCells = 40'000;
   const double ball = std::sqrt(0.5 - epsilon), piston = std::sqrt(epsilon);
   double total = 0;
@@ -41,7 +41,7 @@ class OutgoingLawMoments : public testing::TestWithParam<std::tuple<double, doub
 // 5 standard errors at 1e5 samples: false alarms 1e-6 a comparison. The 1e-5 is the quadrature's.
 TEST_P(OutgoingLawMoments, AgreeWithQuadrature) {
   const auto [epsilon, exponent] = GetParam();
-  const Means exact = Exact(epsilon, exponent);
+  const Means exact = MeansByMidpoints(epsilon, exponent);
   CounterRandom random(3, 0, 0);
   const OutgoingLaw law(epsilon, exponent);
   Moments cosine, sine, sigma;

@@ -3,22 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
+#include "core/sampling/counter_random.h"
 #include "core/statistics/moments.h"
 
 namespace ballpiston {
 namespace {
 
-double Uniform(std::mt19937_64& bits) {
-  return std::ldexp(static_cast<double>(bits() >> 11) + 0.5, -53);
-}
-
 TEST(BatchMeans, MergeEqualsSinglePass) {
-  std::mt19937_64 bits(3);
+  CounterRandom random(3, 0, 0);
   BatchMeans whole, first, second;
   for (int i = 0; i < 1000; ++i) {
-    const double denominator = 1 + Uniform(bits), numerator = denominator * (50 + Uniform(bits));
+    const double denominator = 1 + random.Uniform(),
+                 numerator = denominator * (50 + random.Uniform());
     whole.Add(numerator, denominator);
     (i < 300 ? first : second).Add(numerator, denominator);
   }
@@ -41,11 +38,11 @@ TEST(BatchMeans, MergeWithEmptyIsIdentity) {
 }
 
 TEST(BatchMeans, ErrorOfIndependentTermsIsTheirs) {
-  std::mt19937_64 bits(5);
+  CounterRandom random(5, 0, 0);
   BatchMeans batches;
   Moments moments;
   for (int i = 0; i < 1000; ++i) {
-    const double x = Uniform(bits);
+    const double x = random.Uniform();
     batches.Add(x, 1);
     moments.Add(x);
   }
@@ -75,7 +72,7 @@ TEST(BatchMeans, TooFewBatchesHaveNoError) {
 // times, batches of 500 terms do not: with 300 z-scores their variance has standard error 0.08; the
 // window of 4 of these has a false-alarm rate of 1e-4.
 TEST(BatchMeans, LongBatchesOfACorrelatedSeriesAreHonest) {
-  std::mt19937_64 bits(9);
+  CounterRandom random(9, 0, 0);
   Moments z_of_batches, z_of_terms;
   for (int repetition = 0; repetition < 300; ++repetition) {
     BatchMeans batches, terms;
@@ -83,7 +80,7 @@ TEST(BatchMeans, LongBatchesOfACorrelatedSeriesAreHonest) {
     for (int batch = 0; batch < 100; ++batch) {
       double sum = 0;
       for (int i = 0; i < 500; ++i) {
-        x = 0.9 * x + Uniform(bits) - 0.5;
+        x = 0.9 * x + random.Uniform() - 0.5;
         sum += x;
         terms.Add(x, 1);
       }

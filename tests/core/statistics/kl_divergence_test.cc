@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
+#include "core/sampling/counter_random.h"
 #include "core/statistics/moments.h"
 
 namespace ballpiston {
@@ -32,10 +32,10 @@ TEST(KlDivergence, OfAnImpossibleCountIsInfinite) {
   EXPECT_EQ(kl.cells, 1);
 }
 
-KlDivergence OfSample(std::mt19937_64& bits, size_t cells, int samples, double tilt) {
+KlDivergence OfSample(CounterRandom& random, size_t cells, int samples, double tilt) {
   std::vector<uint64_t> counts(cells);
   for (int i = 0; i < samples; ++i) {
-    const double u = std::ldexp(static_cast<double>(bits() >> 11) + 0.5, -53);
+    const double u = random.Uniform();
     // Density 1 + tilt (2 x - 1) on [0, 1], by inversion of x + tilt (x^2 - x).
     const double b = 1 - tilt;
     const double x = tilt == 0 ? u : (std::sqrt(b * b + 4 * tilt * u) - b) / (2 * tilt);
@@ -47,10 +47,10 @@ KlDivergence OfSample(std::mt19937_64& bits, size_t cells, int samples, double t
 // 400 repetitions: the mean has a standard error of 1/20 of the spread of one, the spread itself is
 // known to sqrt(1/800) = 3.5 percent. Windows of 5 of these: false alarms 1e-6.
 TEST(KlDivergence, NoiseFloorAndErrorHoldForEqualLaws) {
-  std::mt19937_64 bits(2);
+  CounterRandom random(2, 0, 0);
   Moments values;
   KlDivergence last;
-  for (int i = 0; i < 400; ++i) values.Add((last = OfSample(bits, 100, 10'000, 0)).value);
+  for (int i = 0; i < 400; ++i) values.Add((last = OfSample(random, 100, 10'000, 0)).value);
   const double spread = std::sqrt(*values.Variance());
   EXPECT_NEAR(values.mean, last.noise_floor, 5 * spread / 20);
   const double expected = std::sqrt(2 * 99.0) / (2 * 10'000);
@@ -58,10 +58,10 @@ TEST(KlDivergence, NoiseFloorAndErrorHoldForEqualLaws) {
 }
 
 TEST(KlDivergence, ErrorHoldsForUnequalLaws) {
-  std::mt19937_64 bits(4);
+  CounterRandom random(4, 0, 0);
   Moments values, errors;
   for (int i = 0; i < 400; ++i) {
-    const KlDivergence kl = OfSample(bits, 100, 10'000, 0.3);
+    const KlDivergence kl = OfSample(random, 100, 10'000, 0.3);
     values.Add(kl.value);
     errors.Add(kl.StandardError());
   }

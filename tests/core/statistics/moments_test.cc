@@ -3,18 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
+
+#include "core/sampling/counter_random.h"
 
 namespace ballpiston {
 namespace {
 
 // Skewed and far from 0, so that wrong updates of the third moment or of the mean show.
 std::vector<double> SkewedSample(size_t size) {
-  std::mt19937_64 bits(7);
+  CounterRandom random(7, 0, 0);
   std::vector<double> xs(size);
-  for (double& x : xs)
-    x = 1000 - std::log(std::ldexp(static_cast<double>(bits() >> 11) + 0.5, -53));
+  for (double& x : xs) x = 1000 - std::log(random.Uniform());
   return xs;
 }
 
@@ -84,13 +84,11 @@ TEST(Moments, TooFewSamplesHaveNoError) {
 // have variance near 1. With 500 z-scores the variance has standard error sqrt(2/500) = 0.06 and,
 // as the 1/count bias of the delta method is some 0.1, the window is 1 +- 0.35 (false alarms 1e-6).
 TEST(Moments, CoefficientOfVariationErrorIsHonest) {
-  std::mt19937_64 bits(11);
+  CounterRandom random(11, 0, 0);
   Moments z;
   for (int repetition = 0; repetition < 500; ++repetition) {
     Moments moments;
-    for (int i = 0; i < 1000; ++i) {
-      moments.Add(-std::log(std::ldexp(static_cast<double>(bits() >> 11) + 0.5, -53)));
-    }
+    for (int i = 0; i < 1000; ++i) moments.Add(-std::log(random.Uniform()));
     z.Add((*moments.CoefficientOfVariation() - 1) / *moments.CoefficientOfVariationError());
   }
   EXPECT_NEAR(*z.Variance(), 1, 0.35);

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
+
+#include "core/sampling/counter_random.h"
 
 namespace ballpiston {
 namespace {
@@ -19,14 +20,13 @@ struct OnGrid {
 };
 
 // `pieces` of lengths 0 to 11 steps; then the last value for `rest` steps more.
-OnGrid RandomOnGrid(std::mt19937_64& bits, int pieces, size_t rest) {
-  const auto value = [&bits] { return std::ldexp(static_cast<double>(bits() >> 11), -53); };
-  double now = value();
+OnGrid RandomOnGrid(CounterRandom& random, int pieces, size_t rest) {
+  double now = random.Uniform();
   OnGrid made = {StepFunction(now), {}};
   for (int i = 0; i < pieces; ++i) {
-    const size_t steps = bits() % 12;
+    const size_t steps = random.Bits() % 12;
     made.values.insert(made.values.end(), steps, now);
-    now = value();
+    now = random.Uniform();
     made.function.Add(static_cast<double>(steps) * kStep, now);
   }
   made.values.insert(made.values.end(), rest, now);
@@ -53,11 +53,11 @@ double CorrelationByCells(const OnGrid& of, double mean, size_t origins, size_t 
 // 1e4 terms of order 1: rounding stays below 1e-12.
 TEST(StepFunction, IntegralIsExact) {
   constexpr size_t kRest = 2000;
-  std::mt19937_64 bits(11);
+  CounterRandom random(11, 0, 0);
   for (const int pieces : {0, 1, 2, 5, 40, 200}) {
     for (const size_t origins : {1, 3, 50, 900}) {
       for (const size_t window : {0, 1, 2, 30, 1000}) {
-        const OnGrid of = RandomOnGrid(bits, pieces, kRest);
+        const OnGrid of = RandomOnGrid(random, pieces, kRest);
         const double mean = 0.3, span = static_cast<double>(origins) * kStep,
                      length = static_cast<double>(window) * kStep;
         EXPECT_NEAR(of.function.CorrelationIntegral(mean, span, length),

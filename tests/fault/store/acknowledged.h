@@ -17,7 +17,7 @@
 namespace ballpiston::server {
 
 // When a call was made and when it was answered, as counts of the disk's operations.
-struct Call {
+struct TracedCall {
   static constexpr size_t kNever = std::numeric_limits<size_t>::max();
 
   size_t made = kNever;
@@ -32,10 +32,10 @@ struct TracedJob {
   v1::EnsembleSpec spec;  // its seed is the job's key
   std::string request_id;
   std::string id;
-  Call create;
-  Call cancel;
-  Call remove;
-  Call success;                      // seen, with its results
+  TracedCall create;
+  TracedCall cancel;
+  TracedCall remove;
+  TracedCall success;                // seen, with its results
   std::vector<std::string> results;  // of an undisturbed run
 };
 

@@ -13,12 +13,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
-#include "google/rpc/error_details.pb.h"
 #include "gtest/gtest.h"
 #include "server/store/check_store.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/power_cut.h"
 #include "tests/fault/store/service_on_disk.h"
+#include "tests/server/error_details.h"
+#include "tests/server/requests.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -34,19 +36,11 @@ std::string NameOf(Refusal refusal) {
   return names[static_cast<size_t>(refusal)];
 }
 
-std::string ReasonOf(const absl::Status& status) {
-  const auto payload = status.GetPayload("type.googleapis.com/google.rpc.ErrorInfo");
-  google::rpc::ErrorInfo info;
-  if (payload) info.ParseFromString(std::string(*payload));
-  return info.reason();
-}
-
 void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
   const bool full = refusal == Refusal::kFull;
-  EXPECT_EQ(status.code(),
-            full ? absl::StatusCode::kResourceExhausted : absl::StatusCode::kUnavailable)
-      << status;
-  EXPECT_EQ(ReasonOf(status), full ? "STORE_FULL" : "STORE_FAILED");
+  EXPECT_THAT(status,
+              IsError(full ? absl::StatusCode::kResourceExhausted : absl::StatusCode::kUnavailable,
+                      full ? "STORE_FULL" : "STORE_FAILED"));
 }
 
 // A flush that succeeds does so when all that was pending is written.
@@ -59,7 +53,7 @@ void AwaitWritten(Store& store) {
 class Scene {
  public:
   Scene() : service_(std::make_unique<ServiceOnDisk>(disk_, &turnstile_)) {
-    EXPECT_TRUE(service_->status().ok()) << service_->status();
+    EXPECT_OK(service_->status());
     ended_ = Make(1);
     turnstile_.AdmitAll();
     service_->AwaitEnd(ended_);
@@ -76,7 +70,7 @@ class Scene {
   ServiceOnDisk& service() { return *service_; }
   const std::string& running() const { return running_; }
 
-  absl::Status Create() { return service_->Create(JobOf(1, 2, 3), "request").status(); }
+  absl::Status Create() { return service_->Create(Equilibrium(1, 2, 3), "request").status(); }
   absl::Status Cancel() { return service_->Cancel(running_, "cancel").status(); }
   absl::Status Delete() { return service_->Delete(ended_); }
 
@@ -102,8 +96,8 @@ class Scene {
 
  private:
   std::string Make(uint64_t seed) {
-    const auto job = service_->Create(JobOf(1, 3, seed), "");
-    EXPECT_TRUE(job.ok()) << job.status();
+    const auto job = service_->Create(Equilibrium(1, 3, seed), "");
+    EXPECT_OK(job);
     return job.ok() ? IdOf(*job) : "";
   }
 
@@ -157,7 +151,7 @@ class Refused {
     for (const Survival survival : kSurvivals) {
       FaultDisk left(scene_.CutNow(survival));
       ServiceOnDisk service(left);
-      ASSERT_TRUE(service.status().ok()) << service.status();
+      ASSERT_OK(service.status());
       const bool deletes = operation_.is_done == &Scene::IsDeleted;
       if (status_.ok() && deletes) {
         EXPECT_EQ(Scene::Count(service, 1), 0);
@@ -166,7 +160,7 @@ class Refused {
       if (status_.ok()) {
         EXPECT_EQ(Scene::Count(service, 3), 1);
       }
-      EXPECT_TRUE(service.Create(JobOf(1, 2, 3), "request").ok());
+      EXPECT_OK(service.Create(Equilibrium(1, 2, 3), "request"));
       EXPECT_EQ(Scene::Count(service, 3), 1);
     }
   }
@@ -184,9 +178,8 @@ class Refused {
     const EnsembleJob end = scene_.service().AwaitEnd(scene_.running());
     const bool cancels = operation_.call == &Scene::Cancel;
     EXPECT_EQ(end.state(), cancels ? EnsembleJob::CANCELLED : EnsembleJob::SUCCEEDED);
-    const auto summary = CheckStore(kStorePath, scene_.disk().vfs());
-    ASSERT_TRUE(summary.ok()) << summary.status();
-    EXPECT_THAT(summary->problems, IsEmpty());
+    ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(kStorePath, scene_.disk().vfs()));
+    EXPECT_THAT(summary.problems, IsEmpty());
   }
 
  private:
@@ -245,7 +238,7 @@ TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
     FaultDisk left(AfterPowerCut({}, operations, cut, survival, 0));
     ServiceOnDisk service(left);
     before.insert(Scene::Count(service, 3));
-    EXPECT_TRUE(service.Create(JobOf(1, 2, 3), "request").ok());
+    EXPECT_OK(service.Create(Equilibrium(1, 2, 3), "request"));
     EXPECT_EQ(Scene::Count(service, 3), 1);
   }
   EXPECT_THAT(before, testing::ElementsAre(0, 1));  // so it was in doubt
@@ -277,6 +270,7 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
   EXPECT_TRUE(scene.service().store().failing());
   scene.disk().StopRefusing();
   while (scene.service().store().failing()) std::this_thread::yield();  // nobody asks for anything
+  EXPECT_OK(scene.Create());
 }
 
 absl::Status FailureToOpen(const FaultDisk& disk) {
@@ -291,10 +285,11 @@ TEST(DiskFailure, AStoreWhoseDiskFailsAtTheStartIsNotCalledDamaged) {
     FaultDisk disk;
     disk.Refuse(refusal, 0);
     const absl::Status status = FailureToOpen(disk);
-    EXPECT_TRUE(absl::IsUnavailable(status)) << NameOf(refusal) << status;
-    EXPECT_THAT(std::string(status.message()), testing::Not(testing::HasSubstr("move it away")));
+    EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable,
+                                 testing::Not(testing::HasSubstr("move it away"))))
+        << NameOf(refusal);
     disk.StopRefusing();
-    EXPECT_TRUE(Store::Open(kStorePath, {.vfs = disk.vfs()}).ok());
+    EXPECT_OK(Store::Open(kStorePath, {.vfs = disk.vfs()}));
   }
 }
 
@@ -303,11 +298,11 @@ TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   Scene scene;
   Store& store = scene.service().store();
   store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(100'000, 'x')});
-  EXPECT_TRUE(store.Flush().ok());  // a long log, which is written back
+  EXPECT_OK(store.Flush());  // a long log, which is written back
   scene.disk().SetCapacity(scene.disk().bytes_used());
-  EXPECT_TRUE(scene.Delete().ok());
+  EXPECT_OK(scene.Delete());
   EXPECT_TRUE(scene.IsDeleted());
-  EXPECT_TRUE(scene.Cancel().ok());
+  EXPECT_OK(scene.Cancel());
   EXPECT_EQ(scene.service().AwaitEnd(scene.running()).state(), EnsembleJob::CANCELLED);
 }
 
@@ -319,7 +314,7 @@ TEST(DiskFailure, OnAFullDiskRequestsOvertakeWhatDoesNotFit) {
   store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(400'000, 'x')});
   EXPECT_FALSE(store.Flush().ok());
   EXPECT_TRUE(store.failing());
-  EXPECT_TRUE(scene.Delete().ok());
+  EXPECT_OK(scene.Delete());
   EXPECT_TRUE(store.failing());
   EXPECT_EQ(store.pending_writes(), 1);
   scene.disk().StopRefusing();
@@ -346,9 +341,8 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   options.retry = std::chrono::milliseconds(1);
   options.max_pending_bytes = 1000;
   options.vfs = disk.vfs();
-  const auto opened = Store::Open(kStorePath, options);
-  ASSERT_TRUE(opened.ok()) << opened.status();
-  Store& store = **opened;
+  ASSERT_OK_AND_ASSIGN(const auto opened, Store::Open(kStorePath, options));
+  Store& store = *opened;
   disk.Refuse(Refusal::kWriteError, disk.operation_count());
   store.RecordResult(99, {.point = 0, .samples = 1, .result = std::string(1001, 'x')});
   EXPECT_FALSE(store.Flush().ok());
@@ -362,6 +356,7 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   EXPECT_FALSE(has_room);
   disk.StopRefusing();
   worker.join();
+  EXPECT_TRUE(has_room);
 }
 
 // ---- a whole life with one refusal in it ----
@@ -369,7 +364,7 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
 // Asks until it is answered, as the client library does.
 std::string CreateAtLast(ServiceOnDisk& service, uint64_t seed) {
   while (true) {
-    const auto job = service.Create(JobOf(2, 3, seed), absl::StrCat("request-", seed));
+    const auto job = service.Create(Equilibrium(2, 3, seed), absl::StrCat("request-", seed));
     if (job.ok()) return IdOf(*job);
   }
 }
@@ -390,7 +385,7 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
     for (const Survival survival : {Survival::kNothing, Survival::kTornSectors}) {
       FaultDisk left(AfterPowerCut({}, done, done.size(), survival, at));
       ServiceOnDisk again(left);
-      EXPECT_TRUE(again.status().ok()) << again.status();
+      EXPECT_OK(again.status());
       for (const uint64_t seed : {7, 8, 9}) EXPECT_EQ(Scene::Count(again, seed), 1);
       for (const EnsembleJob& job : again.List()) {
         EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);

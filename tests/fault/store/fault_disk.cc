@@ -16,7 +16,7 @@ std::string UniqueName() {
   return "fault-disk-" + std::to_string(++made);
 }
 
-constexpr int kSectorBytes = 4096;  // what SQLite assumes on Unix
+constexpr int kSqliteSectorBytes = 4096;  // what SQLite assumes on Unix
 
 }  // namespace
 
@@ -228,7 +228,7 @@ struct Methods {
   }
 
   static int FileControl(sqlite3_file*, int, void*) { return SQLITE_NOTFOUND; }
-  static int SectorSize(sqlite3_file*) { return kSectorBytes; }
+  static int SectorSize(sqlite3_file*) { return kSqliteSectorBytes; }
   static int DeviceCharacteristics(sqlite3_file*) { return SQLITE_IOCAP_POWERSAFE_OVERWRITE; }
 
   // ---- the file system ----

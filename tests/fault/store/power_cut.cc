@@ -11,7 +11,7 @@ namespace {
 
 using Kind = DiskOperation::Kind;
 
-constexpr size_t kSectorBytes = 512;
+constexpr size_t kDiskSectorBytes = 512;
 
 // By operation, whether it is safe. Read backwards: a sync makes safe what lies before it, back to
 // a sync of the same file that failed.
@@ -90,8 +90,8 @@ class Chance {
 
 void ApplySectors(const DiskOperation& write, bool torn, Chance& chance, Leftover& leftover) {
   for (size_t from = 0; from < write.data.size();) {
-    const size_t in_sector = (static_cast<size_t>(write.offset) + from) % kSectorBytes;
-    const size_t to = std::min(write.data.size(), from + kSectorBytes - in_sector);
+    const size_t in_sector = (static_cast<size_t>(write.offset) + from) % kDiskSectorBytes;
+    const size_t to = std::min(write.data.size(), from + kDiskSectorBytes - in_sector);
     if (chance.OneIn(2)) {
       const bool half = torn && chance.OneIn(4);
       leftover.Write(write, from, half ? from + (to - from) / 2 : to);

@@ -20,7 +20,9 @@
 #include "tests/fault/store/acknowledged.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/service_on_disk.h"
+#include "tests/server/requests.h"
 #include "tests/server/store/first_store_version.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -36,7 +38,7 @@ std::vector<std::string> UndisturbedResults(const v1::EnsembleSpec& spec) {
   FaultDisk disk;
   ServiceOnDisk service(disk);
   const auto job = service.Create(spec, "");
-  EXPECT_TRUE(job.ok()) << job.status();
+  EXPECT_OK(job);
   const std::string id = IdOf(*job);
   EXPECT_EQ(service.AwaitEnd(id).state(), EnsembleJob::SUCCEEDED);
   return service.Results(id);
@@ -50,21 +52,19 @@ class Client {
   void Create(ServiceOnDisk& service, uint64_t seed, int points, int blocks,
               const std::string& request_id) {
     TracedJob& job = trace_.jobs[seed];
-    job.spec = JobOf(points, blocks, seed);
+    job.spec = Equilibrium(points, blocks, seed);
     job.request_id = request_id;
     job.results = UndisturbedResults(job.spec);
     job.create.made = disk_.operation_count();
-    const auto made = service.Create(job.spec, request_id);
-    ASSERT_TRUE(made.ok()) << made.status();
-    job.id = IdOf(*made);
+    ASSERT_OK_AND_ASSIGN(const auto made, service.Create(job.spec, request_id));
+    job.id = IdOf(made);
     job.create.answered = disk_.operation_count();
   }
 
   void Cancel(ServiceOnDisk& service, uint64_t seed) {
     TracedJob& job = trace_.jobs[seed];
     job.cancel.made = disk_.operation_count();
-    const auto cancelled = service.Cancel(job.id, absl::StrCat("cancel-", seed));
-    ASSERT_TRUE(cancelled.ok()) << cancelled.status();
+    ASSERT_OK(service.Cancel(job.id, absl::StrCat("cancel-", seed)));
     job.cancel.answered = disk_.operation_count();
     EXPECT_EQ(service.AwaitEnd(job.id).state(), EnsembleJob::CANCELLED);
   }
@@ -72,7 +72,7 @@ class Client {
   void Delete(ServiceOnDisk& service, uint64_t seed) {
     TracedJob& job = trace_.jobs[seed];
     job.remove.made = disk_.operation_count();
-    ASSERT_TRUE(service.Delete(job.id).ok());
+    ASSERT_OK(service.Delete(job.id));
     job.remove.answered = disk_.operation_count();
   }
 
@@ -92,22 +92,22 @@ class Client {
 void FirstLife(FaultDisk& disk, Client& client) {
   Turnstile turnstile;
   ServiceOnDisk service(disk, &turnstile);
-  ASSERT_TRUE(service.status().ok()) << service.status();
+  ASSERT_OK(service.status());
   service.WriteLogBackOften();
   client.Create(service, 1, 2, 4, "request-1");
   turnstile.Admit(2);
-  ASSERT_TRUE(service.store().Flush().ok());  // two blocks of point 0
+  ASSERT_OK(service.store().Flush());  // two blocks of point 0
   client.Create(service, 2, 1, 2, "request-2");
   client.Cancel(service, 2);  // while it is queued
   turnstile.Admit(3);
-  ASSERT_TRUE(service.store().Flush().ok());  // point 0, and a block of point 1
+  ASSERT_OK(service.store().Flush());  // point 0, and a block of point 1
   client.Delete(service, 2);
 }
 
 void SecondLife(FaultDisk& disk, Client& client) {
   Turnstile turnstile;
   ServiceOnDisk service(disk, &turnstile);
-  ASSERT_TRUE(service.status().ok()) << service.status();
+  ASSERT_OK(service.status());
   service.WriteLogBackOften();
   turnstile.Admit(2);  // one is left
   client.Create(service, 3, 1, 3, "request-3");
@@ -119,11 +119,11 @@ void SecondLife(FaultDisk& disk, Client& client) {
 void ThirdLife(FaultDisk& disk, Client& client) {
   Turnstile turnstile;
   ServiceOnDisk service(disk, &turnstile);
-  ASSERT_TRUE(service.status().ok()) << service.status();
+  ASSERT_OK(service.status());
   service.WriteLogBackOften();
   client.Create(service, 4, 1, 3, "request-4");
   turnstile.Admit(1);
-  ASSERT_TRUE(service.store().Flush().ok());
+  ASSERT_OK(service.store().Flush());
   client.Cancel(service, 4);  // while it runs
   client.Delete(service, 1);
   turnstile.AdmitAll();
@@ -134,10 +134,10 @@ void ThirdLife(FaultDisk& disk, Client& client) {
 void FourthLife(FaultDisk& disk, Client& client) {
   Turnstile turnstile;
   ServiceOnDisk service(disk, &turnstile);
-  ASSERT_TRUE(service.status().ok()) << service.status();
+  ASSERT_OK(service.status());
   client.Create(service, 6, 1, 3, "request-6");
   turnstile.Admit(1);
-  ASSERT_TRUE(service.store().Flush().ok());
+  ASSERT_OK(service.store().Flush());
 }
 
 Trace SubmitToFinish() {
@@ -222,7 +222,7 @@ TEST(PowerCut, TheTraceWritesTheLogBackAndBeginsItAnew) {
 }
 
 // The comparison sees it when a disk lies: it says that it has flushed, and has not.
-TEST(PowerCut, ADiskThatDoesNotFlushIsFoundOut) {
+TEST(PowerCut, ADiskThatDoesNotFlushIsDetected) {
   Trace trace = SubmitToFinish();
   for (DiskOperation& operation : trace.operations) {
     // The names of the files are flushed all the same.
@@ -233,7 +233,7 @@ TEST(PowerCut, ADiskThatDoesNotFlushIsFoundOut) {
               testing::Contains("job 2 is lost"));
 }
 
-TEST(PowerCut, ADeletedJobThatComesBackIsFoundOut) {
+TEST(PowerCut, ADeletedJobThatComesBackIsDetected) {
   Trace trace = SubmitToFinish();
   const size_t cut = trace.jobs.at(2).remove.made;  // before the deletion
   EXPECT_THAT(WhatIsWrongAfter(trace, cut, Survival::kNothing, 0), IsEmpty());

@@ -17,6 +17,8 @@
 #include "server/store/store.h"
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -41,7 +43,7 @@ JobRecord NewJob(int number) {
   JobRecord record;
   record.id = absl::StrCat("job-", number);
   record.principal = LocalPrincipal().name;
-  record.spec = SpecBytes(JobOf(1, 2, static_cast<uint64_t>(number)));
+  record.spec = SpecBytes(Equilibrium(1, 2, static_cast<uint64_t>(number)));
   record.question = absl::StrCat("question-", number);
   record.engine_version = EngineVersion();
   record.points = 1;
@@ -69,10 +71,8 @@ absl::Status AddUnfinished(Database& database, int number, JobState state,
 
 // Fills a store in one commit, and closes it.
 void Fill(const std::string& path, const Store::Change& change) {
-  const auto store = Store::Open(path, {});
-  ASSERT_TRUE(store.ok()) << store.status();
-  const absl::Status filled = (*store)->Commit(change);
-  ASSERT_TRUE(filled.ok()) << filled;
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(path, {}));
+  ASSERT_OK(store->Commit(change));
 }
 
 // What stands between the start of a server and its first answer.
@@ -80,18 +80,17 @@ double SecondsUntilReady(const std::string& path) {
   const auto start = std::chrono::steady_clock::now();
   const auto store = Store::Open(path, {});
   const double opened = SecondsSince(start);
-  EXPECT_TRUE(store.ok()) << store.status();
+  EXPECT_OK(store);
   // Held up, so that what is measured is not what the jobs cost.
   JobBook book(**store, Limits(), 2,
                FakeExperiments(
                    [](size_t, uint64_t, const std::stop_token& stop) { Turnstile().Pass(stop); }),
                nullptr);
-  EXPECT_TRUE(book.Resume().ok());
+  EXPECT_OK(book.Resume());
   const double resumed = SecondsSince(start);
-  EXPECT_TRUE(book.List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),
-                                           .max_jobs = 50,
-                                           .max_bytes = std::numeric_limits<size_t>::max()})
-                  .ok());
+  EXPECT_OK(book.List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),
+                                         .max_jobs = 50,
+                                         .max_bytes = std::numeric_limits<size_t>::max()}));
   const double ready = SecondsSince(start);
   std::cout << testing::UnitTest::GetInstance()->current_test_info()->name() << ": opened after "
             << opened << " s, resumed after " << resumed << " s, listed after " << ready << " s\n";

@@ -8,6 +8,7 @@
 #include "server/convert/spec.h"
 #include "server/jobs/job_state.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 
 namespace ballpiston::server {
 namespace {
@@ -70,16 +71,6 @@ void Turnstile::AwaitWaiting(std::unique_lock<std::mutex>& lock) {
 
 // ---- ServiceOnDisk ----
 
-v1::EnsembleSpec JobOf(int points, int blocks, uint64_t seed) {
-  v1::EnsembleSpec spec;
-  spec.set_experiment(v1::EnsembleSpec::EQUILIBRIUM);
-  spec.mutable_grid()->add_rho(0.53);
-  for (int i = 0; i < points; ++i) spec.mutable_grid()->add_delta(0.1 + 1e-6 * i);
-  spec.mutable_target()->set_collisions(blocks);
-  spec.set_seed(seed);
-  return spec;
-}
-
 ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) : turnstile_(turnstile) {
   auto store = Store::Open(kStorePath, StoreOptions(disk));
   status_ = store.status();
@@ -97,10 +88,7 @@ ServiceOnDisk::~ServiceOnDisk() {
 
 absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Create(const v1::EnsembleSpec& spec,
                                                       const std::string& request_id) {
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = spec;
-  request.set_request_id(request_id);
-  return book_->Create(LocalPrincipal(), request, CheckSpec(spec));
+  return book_->Create(LocalPrincipal(), CreateRequest(spec, request_id), CheckSpec(spec));
 }
 
 absl::StatusOr<v1::EnsembleJob> ServiceOnDisk::Cancel(const std::string& id,

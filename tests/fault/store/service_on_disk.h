@@ -44,9 +44,6 @@ class Turnstile {
   int waiting_ = 0;
 };
 
-// So many points of so many blocks; the seed tells jobs apart.
-v1::EnsembleSpec JobOf(int points, int blocks, uint64_t seed);
-
 class ServiceOnDisk {
  public:
   // A null turnstile lets everything through.

@@ -12,8 +12,8 @@
 
 #include "ballpiston/v1/spec.pb.h"
 #include "core/experiment/point_experiment.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/windows.h"
+#include "tests/support/server_process.h"
 
 namespace ballpiston::torture {
 

@@ -13,51 +13,50 @@
 #include "client/library/ensemble_client.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
 
 constexpr size_t kAtOnce = 64;
-constexpr size_t kConnections = 8;
-constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
+constexpr size_t kConnectionsOfCreates = 8;
 
 using Channels = std::vector<std::shared_ptr<grpc::Channel>>;
 
-Channels ConnectionsTo(ServerProcess& server) {
+Channels ConnectionsTo(ConnectedServer& server) {
   Channels channels;
-  for (size_t i = 0; i < kConnections; ++i) channels.push_back(server.Connect());
+  for (size_t i = 0; i < kConnectionsOfCreates; ++i) channels.push_back(server.Connect());
   return channels;
 }
 
-// The name, in the end, of the job; the server may be away for a while.
-std::string Insist(const std::shared_ptr<grpc::Channel>& channel, const v1::EnsembleSpec& spec,
-                   const std::string& request_id) {
+// The name of the job, also if the server is killed meanwhile; otherwise the error.
+std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
+                           const v1::EnsembleSpec& spec, const std::string& request_id) {
   const client::EnsembleClient client(channel);
   while (true) {
     const auto job = client.Create(spec, {.request_id = request_id});
     if (job.ok()) return job->name();
     if (!absl::IsUnavailable(job.status())) return job.status().ToString();
     std::this_thread::sleep_for(kPauseBeforeRepeating);
-    // Between calls gRPC looks only every 5 s whether it is connected again, unless it is waited
-    // for.
+    // Without a caller that waits, gRPC looks only every 5 s whether it is connected again.
     channel->WaitForConnected(std::chrono::system_clock::now() + kPauseBeforeRepeating);
   }
 }
 
-// All the names that one request id is answered with.
+// All the names in the answers to one request id.
 std::set<std::string> NamesOfOneRequest(const Channels& channels, const v1::EnsembleSpec& spec,
-                                        const std::string& request_id, ServerProcess* to_kill) {
+                                        const std::string& request_id, ConnectedServer* to_kill) {
   std::vector<std::string> names(kAtOnce);
   std::latch together(kAtOnce);
   std::vector<std::thread> threads;
   for (size_t i = 0; i < kAtOnce; ++i) {
     threads.emplace_back([&, i] {
       together.arrive_and_wait();
-      names[i] = Insist(channels[i % kConnections], spec, request_id);
+      names[i] = CreateInTheEnd(channels[i % kConnectionsOfCreates], spec, request_id);
     });
   }
   if (to_kill != nullptr) {  // armed beforehand
@@ -89,25 +88,24 @@ class BatchOfCreates : public testing::Test {
   void CheckReplay(const v1::EnsembleSpec& spec, const std::string& id, const std::string& name) {
     server_.Start();
     const auto channel = server_.Connect();
-    EXPECT_EQ(Insist(channel, spec, id), name);
+    EXPECT_EQ(CreateInTheEnd(channel, spec, id), name);
     const client::EnsembleClient client(channel);
     v1::EnsembleSpec other = spec;
     other.set_seed(spec.seed() + 1);
-    const auto refused = client.Create(other, {.request_id = id});
-    EXPECT_TRUE(absl::IsInvalidArgument(refused.status())) << refused.status();
-    EXPECT_EQ(client::ErrorReason(refused.status()), "REQUEST_ID_REUSED");
-    const auto jobs = client.List();
-    ASSERT_TRUE(jobs.ok());
-    EXPECT_EQ(jobs->size(), made_.size());
+    const auto rejected = client.Create(other, {.request_id = id});
+    EXPECT_THAT(rejected, StatusIs(absl::StatusCode::kInvalidArgument));
+    EXPECT_EQ(client::ErrorReason(rejected.status()), "REQUEST_ID_REUSED");
+    ASSERT_OK_AND_ASSIGN(const auto jobs, client.List());
+    EXPECT_EQ(jobs.size(), made_.size());
     findings_.Count("replays after a kill");
-    // So that the next server has nothing to write until it is asked for something.
+    // The next server then writes nothing until a client calls it.
     client.Cancel(name).status().IgnoreError();
-    EXPECT_TRUE(client.Watch(name, {}).ok());
+    EXPECT_OK(client.Watch(name, {}));
     server_.KillHard();
   }
 
   Findings findings_{"one request id"};
-  ServerProcess server_;
+  ConnectedServer server_;
   std::set<std::string> made_;
 };
 

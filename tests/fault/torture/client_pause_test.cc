@@ -12,10 +12,11 @@
 #include "absl/strings/str_format.h"
 #include "client/library/channel.h"
 #include "client/library/ensemble_client.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -24,10 +25,10 @@ using Clock = std::chrono::steady_clock;
 
 // The pause between attempts that the test's watch makes at most.
 constexpr absl::Duration kMostBackoff = absl::Milliseconds(500);
-// Between the server's being ready and the watch's hearing of it, apart from that pause.
-constexpr double kMostSeconds = 1;
+// From the server's being ready to the watch's first message, beside that pause.
+constexpr double kMostSecondsToHear = 1;
 
-// How often the job was told: at first, and after each restart.
+// How often the watch reported the job: at first, and after each restart.
 class Told {
  public:
   void Add() {
@@ -40,7 +41,7 @@ class Told {
     ended_ = true;
     news_.notify_all();
   }
-  // False if nothing will be told any more.
+  // False if the watch has ended.
   bool Await(int count) {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [&] { return ended_ || count_ >= count; });
@@ -58,16 +59,14 @@ class Told {
   bool ended_ = false;
 };
 
-TEST(ClientLibrary, HearsOfAJobSoonAfterARestart) {
+TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
   Findings findings("client's pause");
-  ServerProcess server;
+  ConnectedServer server;
   server.Start();
   // The library's own channel: nothing else in this process hurries it.
-  const auto channel = client::OpenChannel(server.address());
-  ASSERT_TRUE(channel.ok()) << channel.status();
-  const client::EnsembleClient client(*channel);
-  const auto job = client.Create(Endless());
-  ASSERT_TRUE(job.ok()) << job.status();
+  ASSERT_OK_AND_ASSIGN(const auto channel, client::OpenChannel(server.address()));
+  const client::EnsembleClient client(channel);
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Told told;
   client::WatchCallbacks callbacks;
   callbacks.on_job = [&](const v1::EnsembleJob&) { told.Add(); };
@@ -75,7 +74,7 @@ TEST(ClientLibrary, HearsOfAJobSoonAfterARestart) {
   options.max_backoff = kMostBackoff;
   absl::StatusOr<v1::EnsembleJob> ended;
   std::thread watch([&] {
-    ended = client.Watch(job->name(), callbacks, options);
+    ended = client.Watch(job.name(), callbacks, options);
     told.End();
   });
   told.Await(1);
@@ -91,10 +90,11 @@ TEST(ClientLibrary, HearsOfAJobSoonAfterARestart) {
     findings.Count("restarts");
   }
   findings.Note("longest, seconds from ready to heard", absl::StrFormat("%.2f", longest));
-  EXPECT_TRUE(client.Cancel(job->name()).ok());
+  EXPECT_OK(client.Cancel(job.name()));
   watch.join();
-  EXPECT_TRUE(ended.ok()) << ended.status();
-  EXPECT_LT(longest, HoldsToTimes() ? absl::ToDoubleSeconds(kMostBackoff) + kMostSeconds : 60);
+  EXPECT_OK(ended);
+  EXPECT_LT(longest,
+            HoldsToTimes() ? absl::ToDoubleSeconds(kMostBackoff) + kMostSecondsToHear : 60);
 }
 
 }  // namespace

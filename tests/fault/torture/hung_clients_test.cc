@@ -1,7 +1,6 @@
 // SIGTERM ends the server in time, whatever its clients do.
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -15,11 +14,12 @@
 
 #include "absl/strings/str_format.h"
 #include "client/library/ensemble_client.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -27,17 +27,17 @@ namespace {
 constexpr double kDrainSeconds = 1;
 constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";  // of every HTTP/2 connection
 
-// A connection that says this and no more.
+// A connection on which these bytes are sent, and no more.
 class HalfOpenConnection {
  public:
-  HalfOpenConnection(const std::string& address, const std::string& words)
+  HalfOpenConnection(const std::string& address, const std::string& bytes)
       : socket_(socket(AF_UNIX, SOCK_STREAM, 0)) {
     sockaddr_un name{};
     name.sun_family = AF_UNIX;
     const std::string path = address.substr(std::strlen("unix:"));
     path.copy(name.sun_path, sizeof(name.sun_path) - 1);
     if (connect(socket_, reinterpret_cast<sockaddr*>(&name), sizeof(name)) != 0 ||
-        send(socket_, words.data(), words.size(), 0) != static_cast<ssize_t>(words.size())) {
+        send(socket_, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
       throw std::runtime_error("no connection to " + address);
     }
   }
@@ -86,16 +86,13 @@ class HungClients : public testing::Test {
       : server_({.workers = 2, .flags = {absl::StrFormat("--drain_seconds=%g", kDrainSeconds)}}) {
     server_.Start();
     const client::EnsembleClient client(server_.Connect());
-    const auto job = client.Create(ManyPoints(20'000, 1'000));
-    if (!job.ok()) throw std::runtime_error(job.status().ToString());
-    name_ = job->name();
+    name_ = OrThrow(client.Create(ManyPoints(20'000, 1'000))).name();
   }
 
   // Seconds from SIGTERM to the process's end.
   double Stop() {
     const auto start = std::chrono::steady_clock::now();
-    server_.Signal(SIGTERM);
-    EXPECT_EQ(server_.AwaitEnd(), 0);
+    EXPECT_EQ(server_.Stop(), 0);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
@@ -108,32 +105,32 @@ class HungClients : public testing::Test {
   }
 
   Findings findings_{absl::StrFormat("SIGTERM, %g s to drain", kDrainSeconds)};
-  ServerProcess server_;
+  ConnectedServer server_;
   std::string name_;
 };
 
-TEST_F(HungClients, NoneOfThemKeepsTheServerFromStopping) { CheckStop("nobody there"); }
+TEST_F(HungClients, WithoutAnyTheServerStopsInTime) { CheckStop("no clients"); }
 
-TEST_F(HungClients, WatchesThatNobodyReadsDoNot) {
+TEST_F(HungClients, UnreadWatchesDoNotDelayTheStop) {
   const HungReaders readers(20, server_.address(), name_);
   CheckStop("stalled watches");
 }
 
-TEST_F(HungClients, HalfOpenConnectionsDoNot) {
+TEST_F(HungClients, HalfOpenConnectionsDoNotDelayTheStop) {
   const HalfOpenConnection silent(server_.address(), "");
   const HalfOpenConnection begun(server_.address(), kPreface);
   const HalfOpenConnection other(server_.address(), "GET / HTT");
   CheckStop("half-open connections");
 }
 
-TEST_F(HungClients, CallsWithoutAMessageDoNot) {
+TEST_F(HungClients, CallsWithoutAMessageDoNotDelayTheStop) {
   const auto channel = server_.Connect();
   const std::string service = "/ballpiston.v1.EnsembleService/";
   const CallWithoutMessage create(channel, service + "CreateEnsembleJob");
   const CallWithoutMessage watch(channel, service + "WatchEnsembleJob");
   const CallWithoutMessage health(channel, "/grpc.health.v1.Health/Check");
   // Answered after them, on the same connection: so they have arrived.
-  ASSERT_TRUE(client::EnsembleClient(channel).Get(name_).ok());
+  ASSERT_OK(client::EnsembleClient(channel).Get(name_));
   CheckStop("calls without a message");
 }
 

@@ -2,12 +2,11 @@
 
 #include <grpcpp/grpcpp.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -66,7 +65,8 @@ bool WasSilent(Reader& reader, const Silence& silence) {
 
 }  // namespace
 
-int RunHungReaders(const std::string& count, const std::string& address, const std::string& job) {
+int RunHungReaders(const std::string& count, const std::string& address, const std::string& job,
+                   const std::string& silence_file) {
   std::vector<std::unique_ptr<Reader>> readers;
   for (int i = 0; i < std::atoi(count.c_str()); ++i) {
     readers.push_back(Open(address, job, i % 2 == 0));
@@ -74,52 +74,27 @@ int RunHungReaders(const std::string& count, const std::string& address, const s
   }
   raise(SIGSTOP);
   Silence silence;
-  if (read(STDIN_FILENO, &silence, sizeof(silence)) != sizeof(silence)) std::_Exit(0);
+  std::ifstream(silence_file) >> silence.first >> silence.last;
   int silent = 0;
   for (const auto& reader : readers) silent += WasSilent(*reader, silence) ? 1 : 0;
-  std::_Exit(write(STDOUT_FILENO, &silent, sizeof(silent)) == sizeof(silent) ? 0 : 1);
+  std::cout << silent << std::flush;
+  std::_Exit(0);
 }
 
-HungReaders::HungReaders(int count, const std::string& address, const std::string& job) {
-  int sockets[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) {
-    throw std::runtime_error("no pair of sockets");
+HungReaders::HungReaders(int count, const std::string& address, const std::string& job)
+    : process_({.command = {std::filesystem::read_symlink("/proc/self/exe"), kHungReaders,
+                            std::to_string(count), address, job, folder_.File("silence")}}) {
+  if (!process_.WaitUntilStopped()) {
+    throw std::runtime_error("the readers could not watch " + job + ": " + process_.Wait().err);
   }
-  socket_ = sockets[0];
-  std::vector<std::string> words = {"/proc/self/exe", kHungReaders, std::to_string(count), address,
-                                    job};
-  std::vector<char*> command;
-  for (std::string& word : words) command.push_back(word.data());
-  command.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, sockets[1], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, sockets[1], STDOUT_FILENO);
-  const int error =
-      posix_spawn(&pid_, "/proc/self/exe", &actions, nullptr, command.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(sockets[1]);
-  if (error != 0) throw std::runtime_error("cannot start the readers");
-  int status = 0;
-  waitpid(pid_, &status, WUNTRACED);
-  if (!WIFSTOPPED(status)) throw std::runtime_error("the readers could not watch " + job);
-}
-
-HungReaders::~HungReaders() {
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
-  close(socket_);
 }
 
 int HungReaders::WakeAndCountSilent(int first, int last) {
-  const Silence silence{first, last};
-  kill(pid_, SIGCONT);
-  int silent = 0;
-  if (write(socket_, &silence, sizeof(silence)) != sizeof(silence) ||
-      read(socket_, &silent, sizeof(silent)) != sizeof(silent)) {
-    throw std::runtime_error("the readers did not wake");
-  }
-  return silent;
+  std::ofstream(folder_.File("silence")) << first << " " << last;
+  process_.Signal(SIGCONT);
+  const ProcessResult result = process_.Wait();
+  if (result.exit_code != 0) throw std::runtime_error("the readers did not wake: " + result.err);
+  return std::stoi(result.out);
 }
 
 }  // namespace ballpiston::torture

@@ -4,33 +4,32 @@
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 
-#include <sys/types.h>
-
 #include <string>
+
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::torture {
 
-inline constexpr char kHungReaders[] = "--hung_readers";  // COUNT ADDRESS JOB
+inline constexpr char kHungReaders[] = "--hung_readers";  // COUNT ADDRESS JOB SILENCE
 
-// The process's main function.
-int RunHungReaders(const std::string& count, const std::string& address, const std::string& job);
+// The process's main function. The file SILENCE holds the two numbers of WakeAndCountSilent.
+int RunHungReaders(const std::string& count, const std::string& address, const std::string& job,
+                   const std::string& silence_file);
 
 // The process, from outside: hangs when the constructor returns, is killed by the destructor.
 class HungReaders {
  public:
   HungReaders(int count, const std::string& address, const std::string& job);
-  ~HungReaders();
-  HungReaders(const HungReaders&) = delete;
-  HungReaders& operator=(const HungReaders&) = delete;
 
-  // Wakes them: each reads until it is told of at least `last` finished points. Returns how many of
-  // them find nothing that was said when there were more than `first` and fewer than `last`: to
-  // these a message was waiting to be sent all the while, and no other was made.
+  // Wakes them, once: each reads until it is told of at least `last` finished points. Returns how
+  // many of them find no message from the time when there were more than `first` and fewer than
+  // `last`: the server had a message waiting for these all the while, and made no other.
   int WakeAndCountSilent(int first, int last);
 
  private:
-  pid_t pid_ = 0;
-  int socket_ = -1;  // to the process's standard input and output
+  const TemporaryFolder folder_;
+  Process process_;
 };
 
 }  // namespace ballpiston::torture

@@ -18,35 +18,37 @@
 #include "absl/strings/str_format.h"
 #include "client/library/ensemble_client.h"
 #include "server/observability/failpoint.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/visitor.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestLife(600);
-// After it a failpoint that nobody came by is given up, and the server killed all the same.
+// After this time without a pass of the failpoint the server is killed all the same.
 constexpr std::chrono::milliseconds kWaitForFailpoint(1500);
-constexpr int kLivesToComeBy = 30;  // at least once in so many, or there is something wrong
+// A failpoint that was never passed gets so many further lives, each longer than the one before.
+constexpr int kMostFurtherLives = 30;
 constexpr int kKilled = 128 + SIGKILL;
 
-// The commonest are passed at every block, the rarest once or twice in a server's life.
+// The most frequent ones are passed at every block, the rarest once or twice in a server's life.
 int MostPasses(std::string_view failpoint) {
   if (failpoint.starts_with("store.") || failpoint.starts_with("checkpoint.")) return 30;
   if (failpoint.starts_with("block.") || failpoint == "resume.block") return 20;
   return failpoint.starts_with("stop.") ? 1 : 3;
 }
 
-// Passed at the latest when SIGTERM stops the server.
+// Passed when SIGTERM stops the server, if not before.
 bool ComesWithStop(std::string_view failpoint) {
   return failpoint.starts_with("stop.") || failpoint.starts_with("checkpoint.");
 }
 
 class Killer {
  public:
-  Killer(ServerProcess& server, Findings& findings) : server_(server), findings_(findings) {}
+  Killer(ConnectedServer& server, Findings& findings) : server_(server), findings_(findings) {}
 
   // One life in four is counted from the process's start, before the server is ready.
   void KillAtRandom() {
@@ -59,23 +61,22 @@ class Killer {
     findings_.Count("kills at random");
   }
 
-  // At its first pass the first time, later at any. False if nobody came by.
-  bool KillAt(std::string_view failpoint) {
+  // At the first pass, or at any one when the failpoint has killed before. Waits for it so long.
+  void KillAt(std::string_view failpoint, std::chrono::milliseconds wait = kWaitForFailpoint) {
     server_.Spawn(Armed(failpoint));
     if (server_.AwaitReady() && ComesWithStop(failpoint)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(Pick(0, 300)));
       server_.Signal(SIGTERM);
     }
-    const auto end = server_.AwaitEnd(kWaitForFailpoint);
+    const auto end = server_.AwaitEnd(wait);
     if (!end) server_.KillHard();
     const bool stopped = end && *end == 0 && ComesWithStop(failpoint);
-    const bool come_by = end && !stopped;
-    findings_.Count(come_by ? "kills at failpoints" : "failpoints not come by");
-    if (come_by) ++kills_at_[failpoint];
-    if (come_by && *end != kKilled) {
+    const bool passed = end && !stopped;
+    findings_.Count(passed ? "kills at failpoints" : "failpoints not passed");
+    if (passed) ++kills_at_[failpoint];
+    if (passed && *end != kKilled) {
       findings_.Wrong(absl::StrCat(std::string(failpoint), ": ended with ", *end));
     }
-    return come_by;
   }
 
   int KillsAt(std::string_view failpoint) const {
@@ -93,14 +94,14 @@ class Killer {
 
   int Pick(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
 
-  ServerProcess& server_;
+  ConnectedServer& server_;
   Findings& findings_;
   std::map<std::string_view, int> kills_at_;
   std::mt19937_64 random_{20};
 };
 
 // Half of them at random, half at failpoints, in turn.
-void KillManyTimes(int kills, ServerProcess& server, Findings& findings) {
+void KillManyTimes(int kills, ConnectedServer& server, Findings& findings) {
   Killer killer(server, findings);
   for (int i = 0; i < kills; ++i) {
     if (i % 2 == 0) {
@@ -112,21 +113,21 @@ void KillManyTimes(int kills, ServerProcess& server, Findings& findings) {
   }
   int fewest = kills;
   for (const std::string_view failpoint : server::kFailpoints) {
-    for (int i = 0; i < kLivesToComeBy && killer.KillsAt(failpoint) == 0; ++i) {
-      killer.KillAt(failpoint);
+    for (int i = 1; i <= kMostFurtherLives && killer.KillsAt(failpoint) == 0; ++i) {
+      killer.KillAt(failpoint, i * kWaitForFailpoint);
     }
     fewest = std::min(fewest, killer.KillsAt(failpoint));
-    EXPECT_GT(killer.KillsAt(failpoint), 0) << failpoint << " was not come by";
+    EXPECT_GT(killer.KillsAt(failpoint), 0) << failpoint << " was never passed";
   }
   findings.Count("failpoints", static_cast<int64_t>(server::kFailpoints.size()));
   findings.Count("fewest kills at one of the failpoints", fewest);
 }
 
-std::set<std::string> NamesOn(ServerProcess& server) {
-  const auto jobs = client::EnsembleClient(server.Connect()).List();
-  EXPECT_TRUE(jobs.ok()) << jobs.status();
+std::set<std::string> NamesOn(ConnectedServer& server) {
   std::set<std::string> names;
-  for (const v1::EnsembleJob& job : *jobs) EXPECT_TRUE(names.insert(job.name()).second);
+  for (const v1::EnsembleJob& job : OrThrow(client::EnsembleClient(server.Connect()).List())) {
+    EXPECT_TRUE(names.insert(job.name()).second);
+  }
   return names;
 }
 
@@ -136,7 +137,7 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
   exam.questions = Questions();
   exam.answers = UndisturbedAnswers(exam.questions);
 
-  ServerProcess server;
+  ConnectedServer server;
   std::vector<Visitor> visitors;
   for (int i = 0; i < Size(4, 6); ++i) {
     visitors.emplace_back(server.Connect(), exam, static_cast<uint64_t>(i), findings);

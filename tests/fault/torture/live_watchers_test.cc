@@ -1,4 +1,4 @@
-// A thousand watchers of one job, and a server that stays well.
+// A thousand watchers of one job, and a server that stays healthy.
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
@@ -15,10 +15,11 @@
 #include "absl/strings/str_format.h"
 #include "client/library/ensemble_client.h"
 #include "client/library/job_watch.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kMostHealthSeconds = 0.05;
-constexpr size_t kConnections = 10;
+constexpr size_t kConnectionsOfWatchers = 10;
 
 // A watch without a thread of its own.
 class LiveWatcher : public grpc::ClientReadReactor<v1::WatchEnsembleJobResponse> {
@@ -68,7 +69,7 @@ double HealthCheckSeconds(grpc::GenericStub& stub) {
   stub.UnaryCall(&context, "/grpc.health.v1.Health/Check", {}, &request, &response,
                  [&](grpc::Status status) { done.set_value(std::move(status)); });
   const grpc::Status status = done.get_future().get();
-  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_OK(status);
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -83,7 +84,7 @@ double HealthP99(grpc::GenericStub& stub, int checks) {
   return seconds[static_cast<size_t>(0.99 * static_cast<double>(seconds.size() - 1))];
 }
 
-// Creates jobs until the server refuses; returns how many it took.
+// Creates jobs until the server rejects one; returns how many it accepted.
 int FillQueue(const client::EnsembleClient& client) {
   std::atomic<int> asked = 0, taken = 0;
   std::vector<std::thread> threads;
@@ -94,7 +95,7 @@ int FillQueue(const client::EnsembleClient& client) {
         spec.set_seed(static_cast<uint64_t>(1'000 + asked++));
         const auto job = client.Create(spec);
         if (!job.ok()) {
-          EXPECT_TRUE(absl::IsResourceExhausted(job.status())) << job.status();
+          EXPECT_THAT(job, StatusIs(absl::StatusCode::kResourceExhausted));
           return;
         }
         ++taken;
@@ -112,14 +113,14 @@ class LiveWatchers : public testing::Test {
         server_({.workers = 2,
                  .flags = {absl::StrFormat("--max_active_jobs_per_principal=%d", queue_)}}) {
     server_.Start();
-    for (size_t i = 0; i < kConnections; ++i) {
+    for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
       stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));
     }
   }
 
   void Attach(int count, const std::string& job) {
     for (int i = 0; i < count; ++i) {
-      watchers_.emplace_back(*stubs_[static_cast<size_t>(i) % kConnections], job);
+      watchers_.emplace_back(*stubs_[static_cast<size_t>(i) % kConnectionsOfWatchers], job);
     }
   }
 
@@ -148,7 +149,7 @@ class LiveWatchers : public testing::Test {
 
   const int queue_;  // its length
   Findings findings_{"live watchers"};
-  ServerProcess server_;
+  ConnectedServer server_;
   std::vector<std::unique_ptr<v1::EnsembleService::Stub>> stubs_;
   std::list<LiveWatcher> watchers_;
 };
@@ -156,17 +157,16 @@ class LiveWatchers : public testing::Test {
 TEST_F(LiveWatchers, AllHearTheEndAndHealthAnswersWithAFullQueue) {
   const client::EnsembleClient client(server_.Connect());
   Health("a quiet server");
-  const auto job = client.Create(Endless());
-  ASSERT_TRUE(job.ok()) << job.status();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Health("one job");
-  Attach(Size(100, 1000), job->name());
+  Attach(Size(100, 1000), job.name());
   AwaitHeard(3);
   findings_.Count("watchers at once", static_cast<int64_t>(watchers_.size()));
   Health("one job, all watching");
   EXPECT_EQ(FillQueue(client), queue_ - 1);
   findings_.Count("jobs in the full queue", queue_);
   const double p99 = Health("a full queue, all watching");
-  ASSERT_TRUE(client.Cancel(job->name()).ok());
+  ASSERT_OK(client.Cancel(job.name()));
   CheckEnds();
   if (HoldsToTimes()) {
     EXPECT_LT(p99, kMostHealthSeconds);

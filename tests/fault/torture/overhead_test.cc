@@ -6,11 +6,12 @@
 #include <string>
 
 #include "tests/fault/torture/bare_engine.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/windows.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -45,18 +46,17 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
   const v1::EnsembleSpec question = Endless();
   BareEngine engine(question, workers);
-  ServerProcess server({.workers = workers});
+  ConnectedServer server({.workers = workers});
   server.Start();
   const client::EnsembleClient client(server.Connect());
-  const auto job = client.Create(question);
-  ASSERT_TRUE(job.ok()) << job.status();
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(question));
   const std::chrono::milliseconds length(300);
   engine.Run(length);  // both warm
-  ServerWindow(server, client, job->name(), length);
+  ServerWindow(server, client, job.name(), length);
   const double least = kBlocksInWindow * engine.SamplesOfBlock();
   PairedRatio processor, wall;
   for (int i = 0; i < Size(4, 400); ++i) {
-    const Window with = ServerWindow(server, client, job->name(), length, least);
+    const Window with = ServerWindow(server, client, job.name(), length, least);
     const Window bare = engine.RunInsteadOf(server, length);
     processor.Add(with.ProcessorCost(), bare.ProcessorCost());
     wall.Add(with.Cost(), bare.Cost());

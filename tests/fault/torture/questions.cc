@@ -1,20 +1,16 @@
 #include "tests/fault/torture/questions.h"
 
-#include <stdexcept>
-#include <utility>
-
 #include "absl/strings/str_cat.h"
 #include "client/library/ensemble_client.h"
 #include "core/experiment/point_experiment.h"
+#include "core/geometry/paper.h"
 #include "server/convert/spec.h"
-#include "tests/fault/torture/server_process.h"
+#include "tests/fault/torture/connected_server.h"
 
 namespace ballpiston::torture {
 namespace {
 
 using v1::EnsembleSpec;
-
-constexpr double kRho = 0.529561127988977;
 
 EnsembleSpec Question(EnsembleSpec::Experiment experiment, EnsembleSpec::Model model,
                       const std::vector<double>& deltas, const std::vector<double>& energies = {}) {
@@ -22,7 +18,7 @@ EnsembleSpec Question(EnsembleSpec::Experiment experiment, EnsembleSpec::Model m
   spec.set_experiment(experiment);
   spec.set_model(model);
   spec.set_seed(7);
-  spec.mutable_grid()->add_rho(kRho);
+  spec.mutable_grid()->add_rho(kPaperRho);
   for (const double delta : deltas) spec.mutable_grid()->add_delta(delta);
   for (const double energy : energies) spec.mutable_grid()->add_epsilon(energy);
   return spec;
@@ -47,12 +43,6 @@ EnsembleSpec FirstHit(const std::vector<double>& energies) {
   EnsembleSpec spec = Question(EnsembleSpec::FIRST_HIT, EnsembleSpec::BILLIARD, {0.2}, energies);
   spec.mutable_grid()->add_exponent(1);
   return spec;
-}
-
-template <typename Value>
-Value OrThrow(absl::StatusOr<Value> value) {
-  if (!value.ok()) throw std::runtime_error(value.status().ToString());
-  return *std::move(value);
 }
 
 // As many samples as its blocks have been planned to have: none missing, none twice.
@@ -109,7 +99,7 @@ Answer AnswerOf(const std::vector<v1::PointResult>& points) {
 }
 
 std::vector<Answer> UndisturbedAnswers(const std::vector<EnsembleSpec>& questions) {
-  ServerProcess server;
+  ConnectedServer server;
   server.Start();
   const client::EnsembleClient client(server.Connect());
   std::vector<Answer> answers;

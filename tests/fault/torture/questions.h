@@ -4,9 +4,12 @@
 
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 
 namespace ballpiston::torture {
@@ -20,6 +23,12 @@ v1::EnsembleSpec ManyPoints(int points, int64_t samples);
 
 // Never ends by itself; saturates the workers with blocks of some 50 ms.
 v1::EnsembleSpec Endless();
+
+template <typename Value>
+Value OrThrow(absl::StatusOr<Value> value) {
+  if (!value.ok()) throw std::runtime_error(value.status().ToString());
+  return *std::move(value);
+}
 
 // A point's result, serialized, by its index.
 using Answer = std::map<int, std::string>;

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "absl/strings/str_format.h"
 #include "tests/fault/torture/bare_engine.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/hung_readers.h"
 #include "tests/fault/torture/questions.h"
@@ -33,9 +35,7 @@ class StalledReaders : public testing::Test {
   StalledReaders() : server_({.workers = kWorkers}) {
     server_.Start();
     client_.emplace(server_.Connect());
-    const auto job = client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)));
-    if (!job.ok()) throw std::runtime_error(job.status().ToString());
-    name_ = job->name();
+    name_ = OrThrow(client_->Create(ManyPoints(kPoints, Size(5'000, 60'000)))).name();
     AwaitFinished(kFinishedBefore);
   }
 
@@ -108,7 +108,7 @@ class StalledReaders : public testing::Test {
   std::chrono::milliseconds to_stall_ = pause_;
   Findings findings_{"stalled readers"};
   BareEngine engine_{Endless(), kWorkers};
-  ServerProcess server_;
+  ConnectedServer server_;
   std::optional<client::EnsembleClient> client_;
   std::string name_;
   double mib_without_ = 0;

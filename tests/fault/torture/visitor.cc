@@ -9,6 +9,8 @@
 #include "client/library/error_text.h"
 #include "client/library/job_watch.h"
 #include "client/library/request_id.h"
+#include "tests/fault/torture/connected_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -20,8 +22,7 @@ using client::HasEnded;
 constexpr size_t kMostActive = 3;
 // Enough to find in a list, few enough to look through at the end.
 constexpr size_t kMostKept = 40;
-constexpr std::chrono::seconds kPatience(20);  // of one call; beyond it, it is repeated
-constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
+constexpr std::chrono::seconds kPatience(20);  // for one call, which then is repeated
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
 bool WasNotAnswered(const absl::Status& status) {
@@ -41,12 +42,6 @@ absl::StatusOr<Response> Ask(Stub& stub,
   const absl::Status status = client::FromGrpc((stub.*method)(&context, request, &response));
   if (!status.ok()) return status;
   return response;
-}
-
-const absl::Status& StatusOf(const absl::Status& status) { return status; }
-template <typename Value>
-const absl::Status& StatusOf(const absl::StatusOr<Value>& value) {
-  return value.status();
 }
 
 }  // namespace

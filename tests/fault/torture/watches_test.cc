@@ -12,9 +12,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/library/ensemble_client.h"
+#include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
-#include "tests/fault/torture/server_process.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/watch_chain.h"
 
@@ -24,12 +24,11 @@ namespace {
 constexpr int kChains = 24;
 constexpr int kClientWatches = 4;
 constexpr int kMostMessages = 4;
-constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 // The job that is watched now; a new one when it has ended.
 class WatchedJob {
  public:
-  explicit WatchedJob(ServerProcess& server) : client_(server.Connect()) { Next(""); }
+  explicit WatchedJob(ConnectedServer& server) : client_(server.Connect()) { Next(""); }
 
   std::string Now() {
     const std::lock_guard lock(mutex_);
@@ -114,7 +113,7 @@ class Watches : public testing::Test {
   }
 
   Findings findings_{"cut watches"};
-  ServerProcess server_;
+  ConnectedServer server_;
   std::atomic<int> life_ = 0;
   std::atomic<bool> enough_ = false;
   std::unique_ptr<WatchedJob> watched_;

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/library/job_watch.h"
+#include "tests/fault/torture/questions.h"
 
 namespace ballpiston::torture {
 namespace {
@@ -23,10 +24,9 @@ struct Reading {
 
 Reading Read(const ServerProcess& server, const client::EnsembleClient& client,
              const std::string& job) {
-  const auto now = client.Get(job);
-  if (!now.ok()) throw std::runtime_error(now.status().ToString());
-  if (client::HasEnded(now->state())) throw std::runtime_error("the job is too short to measure");
-  return {now->progress().samples(), server.ProcessorSeconds(), Clock::now()};
+  const v1::EnsembleJob now = OrThrow(client.Get(job));
+  if (client::HasEnded(now.state())) throw std::runtime_error("the job is too short to measure");
+  return {now.progress().samples(), server.ProcessorSeconds(), Clock::now()};
 }
 
 // Of a normal law: its deviation in median deviations, and a median's error in a mean's.

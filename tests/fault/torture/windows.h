@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "client/library/ensemble_client.h"
-#include "tests/fault/torture/server_process.h"
+#include "tests/support/server_process.h"
 
 namespace ballpiston::torture {
 

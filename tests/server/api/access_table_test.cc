@@ -1,22 +1,26 @@
 // Every method of every service, called with every kind of credential: a table.
-#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
-#include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.pb.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/dynamic_message.h"
-#include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
+#include "tests/server/api/watch_stream.h"
 #include "tests/server/call_by_name.h"
-#include "tests/support/running_server.h"
+#include "tests/server/error_details.h"
+#include "tests/server/requests.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/paths.h"
+#include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -41,8 +45,7 @@ std::vector<const MethodDescriptor*> AllMethods() {
   v1::GetServerStatusRequest::descriptor();  // links the file that nothing else here names
   std::vector<const MethodDescriptor*> methods;
   const std::string folder = "ballpiston/v1/";
-  for (const auto& entry :
-       std::filesystem::directory_iterator(SourcePath("proto/") + folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(SourcePath("proto/") + folder)) {
     const std::string name = folder + entry.path().filename().string();
     const auto* file = DescriptorPool::generated_pool()->FindFileByName(name);
     if (entry.path().extension() != ".proto") continue;
@@ -77,7 +80,7 @@ std::string PathOf(const MethodDescriptor& method) {
 
 std::string TextOf(const grpc::Status& status) {
   if (status.ok()) return "OK";
-  const std::string reason = DetailsOf(status).reason;
+  const std::string reason = ReasonOf(status);
   return reason.empty()
              ? "code " + std::to_string(status.error_code()) + " " + status.error_message()
              : reason;
@@ -85,38 +88,31 @@ std::string TextOf(const grpc::Status& status) {
 
 class AccessTable : public ::testing::Test {
  protected:
-  // A job of alice's that has ended.
-  std::string JobOfAlice() {
-    grpc::ClientContext context;
-    context.AddMetadata("authorization", std::string("Bearer ") + kAlice);
-    v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = Equilibrium(1, 2);
-    request.mutable_spec()->set_seed(++seed_);
-    v1::EnsembleJob job;
-    const grpc::Status created = stub_->CreateEnsembleJob(&context, request, &job);
-    EXPECT_TRUE(created.ok()) << created.error_message();
-    v1::WatchEnsembleJobRequest watch;
-    watch.set_name(job.name());
-    CallByName(channel_, "/ballpiston.v1.EnsembleService/WatchEnsembleJob",
-               watch.SerializeAsString(), Bearer(kAlice));
-    return job.name();
+  TestClient ClientWith(const char* token) const {
+    return TestClient(server_.NewChannel(files_.Credentials(token)));
   }
 
+  static std::string EndedJob(TestClient& client, int points) {
+    const std::string name = client.Submit(Equilibrium(points, 2));
+    client.AwaitEnd(name);
+    return name;
+  }
+  std::string JobOfAlice() { return EndedJob(alice_, 1); }
+
+  // `shown`: authorization headers.
   std::string Outcome(const MethodDescriptor& method, const std::vector<std::string>& shown) {
-    return TextOf(CallByName(channel_, PathOf(method), RequestFor(method, JobOfAlice()), shown));
+    return TextOf(
+        CallByName(server_.channel(), PathOf(method), RequestFor(method, JobOfAlice()), shown));
   }
 
   LaboratoryFiles files_;
-  TemporaryFolder folder_;
-  std::unique_ptr<BallpistonServer> server_ =
-      *BallpistonServer::Start(SecureOptions(files_.options(), folder_.path()));
-  std::shared_ptr<grpc::Channel> channel_ =
-      SecureChannel(server_->address(), files_.authority().Pem());
-  std::unique_ptr<v1::EnsembleService::Stub> stub_ = v1::EnsembleService::NewStub(channel_);
-  uint64_t seed_ = 0;
+  RunningServer server_{Secure(files_)};
+  TestClient alice_ = ClientWith(kAlice);
+  TestClient bob_ = ClientWith(kBob);
+  TestClient ops_ = ClientWith(kOps);
 };
 
-TEST_F(AccessTable, EveryCredentialMayExactlyWhatItsRoleMay) {
+TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
   std::ostringstream table;
   const auto row = [&](const std::vector<std::string>& cells) {
     table << std::left << std::setw(20) << cells[0];
@@ -154,166 +150,98 @@ TEST_F(AccessTable, EveryCredentialMayExactlyWhatItsRoleMay) {
   std::cout << table.str();
 }
 
-TEST_F(AccessTable, AListHoldsOnesOwnJobsAndAnAdminsAll) {
+TEST_F(AccessTable, ListsHoldOwnJobsAndAnAdministratorsAll) {
   const std::string job = JobOfAlice();
-  const auto listed = [&](const char* token) {
-    grpc::ClientContext context;
-    context.AddMetadata("authorization", std::string("Bearer ") + token);
-    v1::ListEnsembleJobsResponse response;
-    const grpc::Status status = stub_->ListEnsembleJobs(&context, {}, &response);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return response.jobs_size() == 1 && response.jobs(0).name() == job;
-  };
-  EXPECT_TRUE(listed(kAlice));
-  EXPECT_TRUE(listed(kAliceReads));
-  EXPECT_TRUE(listed(kOps));
-  EXPECT_FALSE(listed(kBob));
+  TestClient reader = ClientWith(kAliceReads);
+  for (TestClient* client : {&alice_, &reader, &ops_}) {
+    const v1::ListEnsembleJobsResponse list = client->List();
+    ASSERT_EQ(list.jobs_size(), 1);
+    EXPECT_EQ(list.jobs(0).name(), job);
+  }
+  EXPECT_EQ(bob_.List().jobs_size(), 0);
 }
 
-// ---- what another principal was given: tokens and request ids ----
+// ---- tokens and request ids that another principal was given ----
 
 class ForeignTokens : public AccessTable {
  protected:
-  static constexpr char kId[] = "123e4567-e89b-12d3-a456-426614174000";
-
-  static void Show(grpc::ClientContext& context, const char* token) {
-    context.AddMetadata("authorization", std::string("Bearer ") + token);
-  }
-
-  v1::EnsembleJob Create(const char* token, const v1::CreateEnsembleJobRequest& request) {
-    grpc::ClientContext context;
-    Show(context, token);
-    v1::EnsembleJob job;
-    const grpc::Status status = stub_->CreateEnsembleJob(&context, request, &job);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return job;
-  }
-
-  static v1::CreateEnsembleJobRequest Asking(int points, uint64_t seed, const char* id = "") {
-    v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = Equilibrium(points, 2);
-    request.mutable_spec()->set_seed(seed);
-    request.set_request_id(id);
-    return request;
-  }
-
-  // All that is told, and how it ends.
-  std::vector<v1::WatchEnsembleJobResponse> Watch(const char* token, const std::string& name,
-                                                  const std::string& resume, std::string* end) {
-    grpc::ClientContext context;
-    Show(context, token);
-    v1::WatchEnsembleJobRequest request;
-    request.set_name(name);
-    request.set_resume_token(resume);
-    const auto reader = stub_->WatchEnsembleJob(&context, request);
-    std::vector<v1::WatchEnsembleJobResponse> told;
-    v1::WatchEnsembleJobResponse message;
-    while (reader->Read(&message)) told.push_back(message);
-    *end = TextOf(reader->Finish());
-    return told;
-  }
-
-  std::string EndedJob(const char* token, int points, uint64_t seed) {
-    const std::string name = Create(token, Asking(points, seed)).name();
-    std::string end;
-    Watch(token, name, "", &end);
-    EXPECT_EQ(end, "OK");
-    return name;
-  }
-
-  v1::ListEnsembleJobsResponse List(const char* token, const std::string& page) {
-    grpc::ClientContext context;
-    Show(context, token);
+  static v1::ListEnsembleJobsResponse FirstJobOf(TestClient& client, const std::string& page) {
     v1::ListEnsembleJobsRequest request;
     request.set_page_size(1);
     request.set_page_token(page);
-    v1::ListEnsembleJobsResponse response;
-    const grpc::Status status = stub_->ListEnsembleJobs(&context, request, &response);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return response;
+    return client.List(request);
   }
 
-  std::string Results(const char* token, const std::string& job, const std::string& page,
-                      v1::ListResultsResponse* response) {
+  static grpc::Status FirstResult(TestClient& client, const std::string& job,
+                                  const std::string& page, v1::ListResultsResponse* response) {
     grpc::ClientContext context;
-    Show(context, token);
     v1::ListResultsRequest request;
     request.set_parent(job);
     request.set_page_size(1);
     request.set_page_token(page);
-    return TextOf(stub_->ListResults(&context, request, response));
+    return client.ensemble().ListResults(&context, request, response);
   }
 };
 
-TEST_F(ForeignTokens, APageOfAnothersListIsAPageOfOnesOwn) {
-  const std::string bobs = EndedJob(kBob, 1, 1);
-  for (uint64_t seed = 1; seed < 3; ++seed) EndedJob(kAlice, 1, seed);
-  const std::string page = List(kAlice, "").next_page_token();
+TEST_F(ForeignTokens, PageTokensOfAnothersListShowOwnJobs) {
+  const std::string bobs = EndedJob(bob_, 1);
+  for (int i = 0; i < 2; ++i) EndedJob(alice_, 1);
+  const std::string page = FirstJobOf(alice_, "").next_page_token();
   ASSERT_FALSE(page.empty());
-  const v1::ListEnsembleJobsResponse seen = List(kBob, page);
+  const v1::ListEnsembleJobsResponse seen = FirstJobOf(bob_, page);
   ASSERT_EQ(seen.jobs_size(), 1);
   EXPECT_EQ(seen.jobs(0).name(), bobs);
   EXPECT_EQ(seen.next_page_token(), "");
 }
 
-TEST_F(ForeignTokens, APageOfAnothersResultsIsNone) {
-  const std::string alices = EndedJob(kAlice, 2, 1), bobs = EndedJob(kBob, 2, 1);
+TEST_F(ForeignTokens, PageTokensOfAnothersResultsAreRefused) {
+  const std::string alices = EndedJob(alice_, 2), bobs = EndedJob(bob_, 2);
   v1::ListResultsResponse page, seen;
-  ASSERT_EQ(Results(kAlice, alices, "", &page), "OK");
-  ASSERT_FALSE(page.next_page_token().empty());
-  EXPECT_EQ(Results(kBob, alices, page.next_page_token(), &seen), "JOB_NOT_FOUND");
-  EXPECT_EQ(Results(kBob, bobs, page.next_page_token(), &seen), "INVALID_REQUEST");
+  ASSERT_OK(FirstResult(alice_, alices, "", &page));
+  const std::string next = page.next_page_token();
+  ASSERT_FALSE(next.empty());
+  EXPECT_EQ(ReasonOf(FirstResult(bob_, alices, next, &seen)), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(FirstResult(bob_, bobs, next, &seen)), "INVALID_REQUEST");
   EXPECT_EQ(seen.points_size(), 0);
-  EXPECT_EQ(Results(kOps, alices, page.next_page_token(), &seen), "OK");
+  EXPECT_OK(FirstResult(ops_, alices, next, &seen));
   EXPECT_EQ(seen.points(0).index(), 1);
 }
 
-TEST_F(ForeignTokens, AnothersResumeTokenIsAsGoodAsNone) {
-  const std::string alices = EndedJob(kAlice, 3, 1), bobs = EndedJob(kBob, 3, 1);
-  std::string end;
-  const std::string resume = Watch(kAlice, alices, "", &end).back().resume_token();
-  EXPECT_TRUE(Watch(kBob, alices, resume, &end).empty());
-  EXPECT_EQ(end, "JOB_NOT_FOUND");
-  const auto told = Watch(kBob, bobs, resume, &end);
-  EXPECT_EQ(end, "OK");
+TEST_F(ForeignTokens, ResumeTokensOfAnothersWatchSkipNothing) {
+  const std::string alices = EndedJob(alice_, 3), bobs = EndedJob(bob_, 3);
+  const std::string resume = WatchStream(alice_, alices).ToTheEnd().back().resume_token();
+  WatchStream foreign(bob_, alices, resume);
+  EXPECT_FALSE(foreign.Next());
+  EXPECT_EQ(ReasonOf(foreign.End()), "JOB_NOT_FOUND");
+  WatchStream own(bob_, bobs, resume);
+  const std::vector<WatchMessage> told = own.ToTheEnd();
+  EXPECT_OK(own.End());
   ASSERT_FALSE(told.empty());
   EXPECT_EQ(told[0].snapshot().finished_points_size(), 3);
   EXPECT_EQ(told.back().job().name(), bobs);
 }
 
-TEST_F(ForeignTokens, AnothersRequestIdMakesAJobOfOnesOwn) {
-  const std::string alices = Create(kAlice, Asking(1, 1, kId)).name();
-  const v1::EnsembleJob same = Create(kBob, Asking(1, 1, kId));
+TEST_F(ForeignTokens, EachPrincipalHasItsOwnRequestIds) {
+  const std::string alices = alice_.Created(CreateRequest(Equilibrium(1, 2), kUuid)).name();
+  const v1::EnsembleJob same = bob_.Created(CreateRequest(Equilibrium(1, 2), kUuid));
   EXPECT_NE(same.name(), alices);
   EXPECT_EQ(same.principal(), "bob");
   EXPECT_FALSE(same.answered_from_store());
   // And an administrator, who may see both, makes a third, of another question.
-  const v1::EnsembleJob third = Create(kOps, Asking(1, 2, kId));
+  const v1::EnsembleJob third = ops_.Created(CreateRequest(Equilibrium(1, 2, 2), kUuid));
   EXPECT_NE(third.name(), alices);
   EXPECT_EQ(third.principal(), "ops");
 }
 
 TEST_F(ForeignTokens, AnothersCancellationCannotBeRepeated) {
-  v1::CreateEnsembleJobRequest endless = Asking(1, 1);
-  endless.mutable_spec()->mutable_target()->set_collisions(1'000'000'000);
-  const std::string alices = Create(kAlice, endless).name();
-  const auto cancel = [&](const char* token) {
-    grpc::ClientContext context;
-    Show(context, token);
-    v1::CancelEnsembleJobRequest request;
-    request.set_name(alices);
-    request.set_request_id(kId);
-    v1::EnsembleJob job;
-    const std::string outcome = TextOf(stub_->CancelEnsembleJob(&context, request, &job));
-    return outcome + " " + job.name();
-  };
-  EXPECT_EQ(cancel(kBob), "JOB_NOT_FOUND ");
-  EXPECT_EQ(cancel(kAlice), "OK " + alices);
-  EXPECT_EQ(cancel(kBob), "JOB_NOT_FOUND ");
-  EXPECT_EQ(cancel(kAlice), "OK " + alices);  // a replay
+  const std::string alices = alice_.Submit(Equilibrium(1, 1'000'000'000));
+  EXPECT_EQ(ReasonOf(bob_.Cancel(alices, kUuid)), "JOB_NOT_FOUND");
+  EXPECT_OK(alice_.Cancel(alices, kUuid));
+  EXPECT_EQ(ReasonOf(bob_.Cancel(alices, kUuid)), "JOB_NOT_FOUND");
+  EXPECT_OK(alice_.Cancel(alices, kUuid));  // a replay
 }
 
-TEST_F(AccessTable, HeadersThatAreNotOneBearerTokenAreInvalid) {
+TEST_F(AccessTable, HeadersOtherThanOneBearerTokenAreInvalid) {
   const MethodDescriptor& list = *DescriptorPool::generated_pool()->FindMethodByName(
       "ballpiston.v1.EnsembleService.ListEnsembleJobs");
   const std::string right = std::string("Bearer ") + kAlice;
@@ -334,26 +262,22 @@ TEST_F(AccessTable, HeadersThatAreNotOneBearerTokenAreInvalid) {
   }
 }
 
-// An empty request of health's Check asks for the whole server; field 7 of a reflection request
-// lists the services.
-TEST_F(AccessTable, HealthIsOpenAndReflectionIsNot) {
-  const std::string health = "/grpc.health.v1.Health/Check";
-  const std::string reflection = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
-  const std::string list_services = "\x3a\x01*";
-  EXPECT_TRUE(CallByName(channel_, health, "", {}).ok());
+// An empty request of health's Check asks for the whole server.
+TEST_F(AccessTable, HealthNeedsNoTokenAndReflectionDoes) {
+  EXPECT_OK(CallByName(server_.channel(), kCheckHealth));
   for (const auto& shown : {Bearer(""), Bearer("no-such-token"), Bearer(kAliceOnce)}) {
-    EXPECT_EQ(CallByName(channel_, reflection, list_services, shown).error_code(),
-              grpc::StatusCode::UNAUTHENTICATED);
+    EXPECT_THAT(CallByName(server_.channel(), kReflection, kListServices, shown),
+                StatusIs(grpc::StatusCode::UNAUTHENTICATED));
   }
-  const grpc::Status status = CallByName(channel_, reflection, list_services, Bearer(kAliceReads));
-  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_OK(CallByName(server_.channel(), kReflection, kListServices, Bearer(kAliceReads)));
 }
 
-TEST_F(AccessTable, NoErrorHoldsTheTokenThatWasShown) {
+TEST_F(AccessTable, ErrorsNeverHoldTheToken) {
   for (const MethodDescriptor* method : AllMethods()) {
     for (const char* token : {"secret-no-such-token", kAliceOnce, kBob, kAliceReads}) {
-      const grpc::Status status = CallByName(
-          channel_, PathOf(*method), RequestFor(*method, "ensembleJobs/none"), Bearer(token));
+      const grpc::Status status =
+          CallByName(server_.channel(), PathOf(*method), RequestFor(*method, "ensembleJobs/none"),
+                     Bearer(token));
       EXPECT_EQ(status.error_message().find(token), std::string::npos) << method->name();
       EXPECT_EQ(status.error_details().find(token), std::string::npos) << method->name();
     }

@@ -1,12 +1,12 @@
 #include <cmath>
 #include <limits>
-#include <optional>
 
+#include "core/geometry/paper.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/fake_experiments.h"
+#include "tests/server/error_details.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -14,25 +14,19 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kPaperRho = 0.529561127988977;
-
 class AnalyticServiceTest : public testing::Test {
  protected:
   AnalyticServiceTest() {
-    ServerOptions options;
-    options.data_dir = folder_.path();
-    server_.emplace(options);
     request_.add_rho(kPaperRho);
     request_.add_delta(0.2);
   }
 
   grpc::Status Evaluate() {
     grpc::ClientContext context;
-    return server_->analytic().EvaluatePairs(&context, request_, &response_);
+    return server_.analytic().EvaluatePairs(&context, request_, &response_);
   }
 
-  TemporaryFolder folder_;
-  std::optional<RunningServer> server_;
+  RunningServer server_;
   v1::EvaluatePairsRequest request_;
   v1::EvaluatePairsResponse response_;
 };
@@ -40,7 +34,7 @@ class AnalyticServiceTest : public testing::Test {
 TEST_F(AnalyticServiceTest, EveryPairHasItsPointRhoOutermost) {
   request_.add_rho(0.55);
   request_.add_delta(0.1);
-  ASSERT_TRUE(Evaluate().ok());
+  ASSERT_OK(Evaluate());
   ASSERT_EQ(response_.points_size(), 4);
   EXPECT_EQ(response_.points(1).rho(), kPaperRho);
   EXPECT_EQ(response_.points(1).delta(), 0.1);
@@ -51,7 +45,7 @@ TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   for (const double epsilon : {0.0, 0.25, 0.5}) request_.add_epsilon(epsilon);
   request_.add_outgoing_epsilon(0.125);
   request_.add_beta(2);
-  ASSERT_TRUE(Evaluate().ok());
+  ASSERT_OK(Evaluate());
   const v1::PairAnalytics& point = response_.points(0);
   EXPECT_NEAR(point.gas_delta_bound(), 0.2, 1e-14);
   EXPECT_NEAR(point.tau_ball_piston(), 4 * point.volume() / point.area_ball_piston(),
@@ -76,8 +70,7 @@ TEST_F(AnalyticServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
   request_.add_outgoing_epsilon(0.5);
   request_.add_beta(std::numeric_limits<double>::infinity());
   const grpc::Status status = Evaluate();
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(DetailsOf(status).reason, "INVALID_REQUEST");
+  EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
   EXPECT_THAT(DetailsOf(status).fields, ElementsAre("rho[1]", "delta[1]", "delta[2]", "epsilon[0]",
                                                     "outgoing_epsilon[0]", "beta[0]"));
 }
@@ -113,7 +106,7 @@ TEST_F(AnalyticServiceTest, HugeWrongListsAreAnsweredQuickly) {
     request_.add_rho(0.53);
     request_.add_delta(7);
   }
-  EXPECT_EQ(Evaluate().error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(Evaluate(), StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
 }
 
 TEST_F(AnalyticServiceTest, WhatLeavesTheRangeOfDoubleIsAViolation) {

@@ -1,16 +1,20 @@
-#include <atomic>
+#include <cctype>
 #include <limits>
-#include <map>
+#include <mutex>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
-#include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -20,51 +24,13 @@ using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using v1::EnsembleJob;
 
-constexpr char kUuid[] = "123e4567-e89b-12d3-a456-426614174000";
-constexpr char kOtherUuid[] = "123e4567-e89b-12d3-a456-426614174001";
-constexpr char kUnknown[] = "ensembleJobs/unknown";
-
-class EnsembleServiceTest : public testing::Test {
- protected:
-  ~EnsembleServiceTest() override { gate_.Open(); }
-
-  // Fake experiments; blocks from `held_from` on wait at the gate.
-  RunningServer& Start(uint64_t held_from = std::numeric_limits<uint64_t>::max()) {
-    return StartWith(
-        FakeExperiments([this, held_from](size_t, uint64_t block, std::stop_token stop) {
-          if (block >= held_from) gate_.Pass(stop);
-        }));
-  }
-
-  RunningServer& StartWith(ExperimentFactory factory) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.workers = 2;
-    options.factory = std::move(factory);
-    options.watch.snapshot = std::chrono::milliseconds(5);
-    server_.emplace(options);
-    return *server_;
-  }
-
-  Gate gate_;
-  TemporaryFolder folder_;
-  std::optional<RunningServer> server_;
-};
-
-v1::CreateEnsembleJobRequest Request(const v1::EnsembleSpec& spec,
-                                     const std::string& request_id = "") {
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = spec;
-  request.set_request_id(request_id);
-  return request;
-}
+constexpr char kUnknownJob[] = "ensembleJobs/unknown";
 
 // ---- Create ----
 
-TEST_F(EnsembleServiceTest, AJobRunsToItsEnd) {
-  RunningServer& server = Start();
-  EnsembleJob made;
-  ASSERT_TRUE(server.Create(Request(Equilibrium(3, 10)), &made).ok());
+TEST(EnsembleService, AJobRunsToItsEnd) {
+  RunningServer server;
+  const EnsembleJob made = server.Created(CreateRequest(Equilibrium(3, 10)));
   EXPECT_THAT(made.name(), testing::StartsWith("ensembleJobs/"));
   EXPECT_EQ(made.spec().SerializeAsString(), Equilibrium(3, 10).SerializeAsString());
   EXPECT_TRUE(made.has_create_time());
@@ -80,7 +46,7 @@ TEST_F(EnsembleServiceTest, AJobRunsToItsEnd) {
   EXPECT_EQ(server.Get(made.name()).SerializeAsString(), ended.SerializeAsString());
 }
 
-TEST_F(EnsembleServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
+TEST(EnsembleService, AllViolationsAreListedWithTheirPaths) {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->set_rho(0, 0.4);
   spec.mutable_grid()->add_delta(-1);
@@ -88,24 +54,21 @@ TEST_F(EnsembleServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
   spec.mutable_grid()->add_exponent(std::numeric_limits<double>::infinity());
   spec.mutable_target()->set_samples(0);
   spec.set_model(static_cast<v1::EnsembleSpec::Model>(99));
-  EnsembleJob job;
-  const grpc::Status status = Start().Create(Request(spec, "not a uuid"), &job);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(DetailsOf(status).reason, "INVALID_SPEC");
+  const grpc::Status status = RunningServer().Create(CreateRequest(spec, "not a uuid"));
+  EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_SPEC"));
   EXPECT_THAT(
       DetailsOf(status).fields,
       IsSupersetOf({"spec.grid.rho[0]", "spec.grid.delta[3]", "spec.grid.epsilon[2]",
                     "spec.grid.exponent[1]", "spec.target.samples", "spec.model", "request_id"}));
 }
 
-TEST_F(EnsembleServiceTest, AnEmptyRequestIsRefused) {
-  EnsembleJob job;
-  const grpc::Status status = Start().Create({}, &job);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+TEST(EnsembleService, AnEmptyRequestIsRefused) {
+  const grpc::Status status = RunningServer().Create({});
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
   EXPECT_THAT(DetailsOf(status).fields, IsSupersetOf({"spec.experiment"}));
 }
 
-TEST_F(EnsembleServiceTest, AnAbsurdGridIsRefused) {
+TEST(EnsembleService, AnAbsurdGridIsRefused) {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->clear_rho();
   spec.mutable_grid()->clear_delta();
@@ -114,76 +77,63 @@ TEST_F(EnsembleServiceTest, AnAbsurdGridIsRefused) {
     spec.mutable_grid()->add_delta(0.1 + 1e-6 * i);
   }
   for (int i = 0; i < 998; ++i) spec.mutable_grid()->add_epsilon(0.1 + 1e-6 * i);
-  EnsembleJob job;
-  const grpc::Status status = Start().Create(Request(spec), &job);  // 10^9 points
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  const grpc::Status status = RunningServer().Create(CreateRequest(spec));  // 10^9 points
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
   EXPECT_THAT(DetailsOf(status).fields, IsSupersetOf({"spec.grid"}));
 }
 
-TEST_F(EnsembleServiceTest, ABudgetBesideSamplesIsRefused) {
+TEST(EnsembleService, ABudgetBesideSamplesIsRefused) {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_target()->mutable_budget()->set_seconds(5);
-  EnsembleJob job;
-  const grpc::Status status = Start().Create(Request(spec), &job);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  const grpc::Status status = RunningServer().Create(CreateRequest(spec));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
   EXPECT_THAT(DetailsOf(status).fields, ElementsAre("spec.target.budget"));
 }
 
-TEST_F(EnsembleServiceTest, ThousandsOfViolationsArriveAsInvalidArgument) {
+TEST(EnsembleService, ThousandsOfViolationsArriveAsInvalidArgument) {
   v1::EnsembleSpec spec = SmallFirstHit();
   for (int i = 0; i < 10'000; ++i) spec.mutable_grid()->add_rho(-1);
-  EnsembleJob job;
-  const grpc::Status status = Start().Create(Request(spec), &job);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
-  EXPECT_THAT(status.error_message(), HasSubstr("left out"));
+  const grpc::Status status = RunningServer().Create(CreateRequest(spec));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("left out")));
 }
 
-TEST_F(EnsembleServiceTest, ValidateOnlyMakesNothing) {
-  RunningServer& server = Start();
-  v1::CreateEnsembleJobRequest request = Request(Equilibrium(7, 10), kUuid);
+TEST(EnsembleService, ValidateOnlyCreatesNoJob) {
+  RunningServer server;
+  v1::CreateEnsembleJobRequest request = CreateRequest(Equilibrium(7, 10), kUuid);
   request.set_validate_only(true);
-  EnsembleJob job;
-  ASSERT_TRUE(server.Create(request, &job).ok());
+  const EnsembleJob job = server.Created(request);
   EXPECT_EQ(job.name(), "");
   EXPECT_EQ(job.progress().points(), 7);
   EXPECT_EQ(job.state(), EnsembleJob::QUEUED);
-  grpc::ClientContext context;
-  v1::ListEnsembleJobsResponse list;
-  ASSERT_TRUE(server.ensemble().ListEnsembleJobs(&context, {}, &list).ok());
-  EXPECT_EQ(list.jobs_size(), 0);
+  EXPECT_EQ(server.List().jobs_size(), 0);
 }
 
-TEST_F(EnsembleServiceTest, AReplayReturnsTheSameJob) {
-  RunningServer& server = Start();
-  EnsembleJob first, again;
-  ASSERT_TRUE(server.Create(Request(Equilibrium(1, 5), kUuid), &first).ok());
+TEST(EnsembleService, AReplayReturnsTheSameJob) {
+  RunningServer server;
+  const EnsembleJob first = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
   server.AwaitEnd(first.name());
   std::string upper = kUuid;
   for (char& c : upper) c = static_cast<char>(std::toupper(c));
-  ASSERT_TRUE(server.Create(Request(Equilibrium(1, 5), upper), &again).ok());
+  const EnsembleJob again = server.Created(CreateRequest(Equilibrium(1, 5), upper));
   EXPECT_EQ(again.name(), first.name());
   EXPECT_EQ(again.state(), EnsembleJob::SUCCEEDED);
 }
 
-TEST_F(EnsembleServiceTest, ARequestIdWithAnotherSpecIsRefused) {
-  RunningServer& server = Start();
-  EnsembleJob job;
-  ASSERT_TRUE(server.Create(Request(Equilibrium(1, 5), kUuid), &job).ok());
-  const grpc::Status status = server.Create(Request(Equilibrium(1, 6), kUuid), &job);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(DetailsOf(status).reason, "REQUEST_ID_REUSED");
+TEST(EnsembleService, ARequestIdWithAnotherSpecIsRefused) {
+  RunningServer server;
+  ASSERT_OK(server.Create(CreateRequest(Equilibrium(1, 5), kUuid)));
+  EXPECT_THAT(server.Create(CreateRequest(Equilibrium(1, 6), kUuid)),
+              IsError(grpc::StatusCode::INVALID_ARGUMENT, "REQUEST_ID_REUSED"));
 }
 
-TEST_F(EnsembleServiceTest, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
-  RunningServer& server = Start();
+TEST(EnsembleService, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
+  RunningServer server;
   std::mutex mutex;
   std::set<std::string> names;
   std::vector<std::thread> threads;
   for (int i = 0; i < 64; ++i) {
     threads.emplace_back([&] {
-      EnsembleJob job;
-      const grpc::Status status = server.Create(Request(Equilibrium(1, 5), kUuid), &job);
-      EXPECT_TRUE(status.ok()) << status.error_message();
+      const EnsembleJob job = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
       // It can be watched at once, whoever made it.
       EXPECT_EQ(server.AwaitEnd(job.name()).state(), EnsembleJob::SUCCEEDED);
       std::lock_guard lock(mutex);
@@ -192,52 +142,45 @@ TEST_F(EnsembleServiceTest, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(names.size(), 1u);
-  grpc::ClientContext context;
-  v1::ListEnsembleJobsResponse list;
-  ASSERT_TRUE(server.ensemble().ListEnsembleJobs(&context, {}, &list).ok());
-  EXPECT_EQ(list.jobs_size(), 1);
+  EXPECT_EQ(server.List().jobs_size(), 1);
 }
 
-TEST_F(EnsembleServiceTest, AnExceptionFailsTheJobAndTheServerStays) {
-  RunningServer& server =
-      StartWith([](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
-        return FakeExperiments([seed = spec.seed](size_t, uint64_t, std::stop_token) {
-          if (seed == 13) throw std::runtime_error("the ball left the cell");
-        })(spec, index, stop);
-      });
-  v1::EnsembleSpec bad = Equilibrium(2, 5);
-  bad.set_seed(13);
-  const EnsembleJob failed = server.AwaitEnd(server.Submit(bad));
+TEST(EnsembleService, AnExceptionFailsTheJobOnly) {
+  RunningServer server(
+      {.factory = FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t, std::stop_token) {
+         if (seed == 13) throw std::runtime_error("the ball left the cell");
+       })});
+  const EnsembleJob failed = server.AwaitEnd(server.Submit(Equilibrium(2, 5, 13)));
   EXPECT_EQ(failed.state(), EnsembleJob::FAILED);
   EXPECT_THAT(failed.error().message(), HasSubstr("the ball left the cell"));
-  EXPECT_EQ(server.AwaitEnd(server.Submit(Equilibrium(2, 5))).state(), EnsembleJob::SUCCEEDED);
+  server.Succeeded(Equilibrium(2, 5));
 }
 
 // ---- names ----
 
-TEST_F(EnsembleServiceTest, UnknownJobsAreNotFound) {
-  RunningServer& server = Start();
+TEST(EnsembleService, UnknownJobsAreNotFound) {
+  RunningServer server;
   grpc::ClientContext get, results, watch;
   v1::GetEnsembleJobRequest get_request;
-  get_request.set_name(kUnknown);
+  get_request.set_name(kUnknownJob);
   EnsembleJob job;
   v1::ListResultsRequest results_request;
-  results_request.set_parent(kUnknown);
+  results_request.set_parent(kUnknownJob);
   v1::ListResultsResponse points;
   v1::WatchEnsembleJobRequest watch_request;
-  watch_request.set_name(kUnknown);
+  watch_request.set_name(kUnknownJob);
   for (const grpc::Status& status :
-       {server.ensemble().GetEnsembleJob(&get, get_request, &job), server.Cancel(kUnknown),
-        server.Delete(kUnknown), server.ensemble().ListResults(&results, results_request, &points),
+       {server.ensemble().GetEnsembleJob(&get, get_request, &job), server.Cancel(kUnknownJob),
+        server.Delete(kUnknownJob),
+        server.ensemble().ListResults(&results, results_request, &points),
         server.ensemble().WatchEnsembleJob(&watch, watch_request)->Finish()}) {
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
-    EXPECT_EQ(DetailsOf(status).reason, "JOB_NOT_FOUND");
-    EXPECT_THAT(status.error_message(), HasSubstr(kUnknown));
+    EXPECT_THAT(status, IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
+    EXPECT_THAT(status.error_message(), HasSubstr(kUnknownJob));
   }
 }
 
-TEST_F(EnsembleServiceTest, MalformedNamesAreInvalid) {
-  RunningServer& server = Start();
+TEST(EnsembleService, MalformedNamesAreInvalid) {
+  RunningServer server;
   grpc::ClientContext get, results, watch;
   v1::GetEnsembleJobRequest get_request;
   get_request.set_name("jobs/1");
@@ -251,123 +194,109 @@ TEST_F(EnsembleServiceTest, MalformedNamesAreInvalid) {
       {server.ensemble().ListResults(&results, results_request, &points), "parent"},
       {server.ensemble().WatchEnsembleJob(&watch, {})->Finish(), "name"}};
   for (const auto& [status, field] : answers) {
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
     EXPECT_THAT(DetailsOf(status).fields, ElementsAre(field));
   }
 }
 
 // ---- Cancel, Delete ----
 
-TEST_F(EnsembleServiceTest, ACancelledJobEndsAndKeepsWhatItFinished) {
-  RunningServer& server =
-      StartWith(FakeExperiments([this](size_t point, uint64_t, std::stop_token stop) {
-        if (point >= 2) gate_.Pass(stop);
-      }));
+TEST(EnsembleService, ACancelledJobEndsAndKeepsWhatItFinished) {
+  Gate gate;
+  RunningServer server(
+      {.factory = FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {
+         if (point >= 2) gate.Pass(stop);
+       })});
   const std::string name = server.Submit(Equilibrium(5, 10));
-  gate_.AwaitWaiting(2);
-  ASSERT_TRUE(server.Cancel(name).ok());
+  gate.AwaitWaiting(2);
+  ASSERT_OK(server.Cancel(name));
   EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::CANCELLED);
   EXPECT_EQ(server.ResultBytes(name).size(), 2u);
   EXPECT_EQ(server.Get(name).progress().points_done(), 2);
 }
 
-TEST_F(EnsembleServiceTest, AnEndedJobCannotBeCancelled) {
-  RunningServer& server = Start();
-  const std::string name = server.Submit(Equilibrium(1, 5));
-  server.AwaitEnd(name);
+TEST(EnsembleService, AnEndedJobCannotBeCancelled) {
+  RunningServer server;
+  const std::string name = server.Succeeded(Equilibrium(1, 5));
   const grpc::Status status = server.Cancel(name);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
-  EXPECT_EQ(DetailsOf(status).reason, "JOB_ALREADY_ENDED");
+  EXPECT_THAT(status, IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_ALREADY_ENDED"));
   EXPECT_THAT(status.error_message(), HasSubstr("SUCCEEDED"));
 }
 
-TEST_F(EnsembleServiceTest, AReplayedCancellationSucceeds) {
-  RunningServer& server = Start(3);
+TEST(EnsembleService, AReplayedCancellationSucceeds) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
   const std::string name = server.Submit(Equilibrium(1, 100));
-  ASSERT_TRUE(server.Cancel(name, kUuid).ok());
+  ASSERT_OK(server.Cancel(name, kUuid));
   server.AwaitEnd(name);
-  EXPECT_TRUE(server.Cancel(name, kUuid).ok());
+  EXPECT_OK(server.Cancel(name, kUuid));
   const grpc::Status status = server.Cancel(name, kOtherUuid);
-  EXPECT_EQ(DetailsOf(status).reason, "JOB_ALREADY_ENDED");
+  EXPECT_EQ(ReasonOf(status), "JOB_ALREADY_ENDED");
   EXPECT_THAT(status.error_message(), HasSubstr("CANCELLED"));
 }
 
-TEST_F(EnsembleServiceTest, ACancellationsRequestIdHasToBeAUuid) {
-  EXPECT_THAT(DetailsOf(Start().Cancel(kUnknown, "x")).fields, ElementsAre("request_id"));
+TEST(EnsembleService, ACancellationsRequestIdMustBeAUuid) {
+  EXPECT_THAT(DetailsOf(RunningServer().Cancel(kUnknownJob, "x")).fields,
+              ElementsAre("request_id"));
 }
 
-TEST_F(EnsembleServiceTest, AnActiveJobCannotBeDeleted) {
-  RunningServer& server = Start(3);
+TEST(EnsembleService, AnActiveJobCannotBeDeleted) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate, 3)});
   const std::string name = server.Submit(Equilibrium(1, 100));
-  const grpc::Status status = server.Delete(name);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
-  EXPECT_EQ(DetailsOf(status).reason, "JOB_STILL_ACTIVE");
+  EXPECT_THAT(server.Delete(name),
+              IsError(grpc::StatusCode::FAILED_PRECONDITION, "JOB_STILL_ACTIVE"));
 }
 
-TEST_F(EnsembleServiceTest, ADeletedJobIsGone) {
-  RunningServer& server = Start();
-  const std::string name = server.Submit(Equilibrium(1, 5));
-  server.AwaitEnd(name);
-  ASSERT_TRUE(server.Delete(name).ok());
-  EXPECT_EQ(server.Delete(name).error_code(), grpc::StatusCode::NOT_FOUND);
+TEST(EnsembleService, ADeletedJobIsGone) {
+  RunningServer server;
+  const std::string name = server.Succeeded(Equilibrium(1, 5));
+  ASSERT_OK(server.Delete(name));
+  EXPECT_THAT(server.Delete(name), StatusIs(grpc::StatusCode::NOT_FOUND));
 }
 
 // ---- List ----
 
-TEST_F(EnsembleServiceTest, JobsAreListedNewestFirstInPages) {
-  RunningServer& server = Start();
+TEST(EnsembleService, JobsAreListedNewestFirstInPages) {
+  RunningServer server;
   std::vector<std::string> names;
   for (int i = 0; i < 5; ++i) names.insert(names.begin(), server.Submit(Equilibrium(1, 2)));
   std::vector<std::string> listed;
   std::vector<int> sizes;
   v1::ListEnsembleJobsRequest request;
   request.set_page_size(2);
-  do {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsResponse response;
-    ASSERT_TRUE(server.ensemble().ListEnsembleJobs(&context, request, &response).ok());
-    for (const auto& job : response.jobs()) listed.push_back(job.name());
-    sizes.push_back(response.jobs_size());
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
+  for (const auto& page : server.Pages(request)) {
+    for (const auto& job : page.jobs()) listed.push_back(job.name());
+    sizes.push_back(page.jobs_size());
+  }
   EXPECT_EQ(listed, names);
   EXPECT_THAT(sizes, ElementsAre(2, 2, 1));
 }
 
-TEST_F(EnsembleServiceTest, APageThatEndsWithTheListHasNoToken) {
-  RunningServer& server = Start();
+TEST(EnsembleService, APageThatEndsWithTheListHasNoToken) {
+  RunningServer server;
   for (int i = 0; i < 2; ++i) server.Submit(Equilibrium(1, 2));
-  grpc::ClientContext context;
   v1::ListEnsembleJobsRequest request;
   request.set_page_size(2);
-  v1::ListEnsembleJobsResponse response;
-  ASSERT_TRUE(server.ensemble().ListEnsembleJobs(&context, request, &response).ok());
-  EXPECT_EQ(response.next_page_token(), "");
+  EXPECT_EQ(server.List(request).next_page_token(), "");
 }
 
-TEST_F(EnsembleServiceTest, PagesOfLargeJobsStayBelowTwoMebibytes) {
-  RunningServer& server = Start(0);
-  v1::EnsembleSpec large = Equilibrium(0, 1);
-  for (int i = 0; i < 90'000; ++i) large.mutable_grid()->add_delta(0.1 + 1e-7 * i);  // 720 kB
-  for (int i = 0; i < 4; ++i) server.Submit(large);
-  v1::ListEnsembleJobsRequest request;
+TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
+  Gate gate;
+  RunningServer server({.factory = GatedExperiments(gate)});
+  for (int i = 0; i < 4; ++i) server.Submit(LargeEquilibrium());
+  const auto pages = server.Pages(v1::ListEnsembleJobsRequest());
   int listed = 0;
-  int pages = 0;
-  do {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsResponse response;
-    ASSERT_TRUE(server.ensemble().ListEnsembleJobs(&context, request, &response).ok());
-    EXPECT_LT(response.ByteSizeLong(), size_t{2} << 20);
-    listed += response.jobs_size();
-    ++pages;
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
+  for (const auto& page : pages) {
+    EXPECT_LT(page.ByteSizeLong(), size_t{2} << 20);
+    listed += page.jobs_size();
+  }
   EXPECT_EQ(listed, 4);
-  EXPECT_EQ(pages, 2);
+  EXPECT_EQ(pages.size(), 2u);
 }
 
-TEST_F(EnsembleServiceTest, BadPagesAreRefused) {
-  RunningServer& server = Start();
+TEST(EnsembleService, BadPagesAreRefused) {
+  RunningServer server;
   const std::string name = server.Submit(Equilibrium(1, 2));
   for (const char* token : {"x", "!!!", "am9iczotMQ==", "cmVzdWx0czphOjE="}) {
     grpc::ClientContext context;
@@ -376,7 +305,7 @@ TEST_F(EnsembleServiceTest, BadPagesAreRefused) {
     request.set_page_token(token);
     v1::ListEnsembleJobsResponse response;
     const grpc::Status status = server.ensemble().ListEnsembleJobs(&context, request, &response);
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
     EXPECT_THAT(DetailsOf(status).fields, ElementsAre("page_size", "page_token")) << token;
   }
   grpc::ClientContext context;
@@ -392,42 +321,34 @@ TEST_F(EnsembleServiceTest, BadPagesAreRefused) {
 
 // ---- Results ----
 
-TEST_F(EnsembleServiceTest, ResultsComeInGridOrderInPages) {
-  RunningServer& server = Start();
-  const std::string name = server.Submit(Equilibrium(25, 3));
-  server.AwaitEnd(name);
+TEST(EnsembleService, ResultsComeInGridOrderInPages) {
+  RunningServer server;
+  const std::string name = server.Succeeded(Equilibrium(25, 3));
   v1::ListResultsRequest request;
   request.set_parent(name);
   request.set_page_size(10);
   std::vector<int> indices;
   std::vector<int> sizes;
-  do {
-    grpc::ClientContext context;
-    v1::ListResultsResponse response;
-    ASSERT_TRUE(server.ensemble().ListResults(&context, request, &response).ok());
-    for (const auto& point : response.points()) {
+  for (const auto& page : server.Pages(request)) {
+    for (const auto& point : page.points()) {
       indices.push_back(point.index());
       EXPECT_EQ(point.parameters().delta(), 0.1 + 1e-6 * point.index());
     }
-    sizes.push_back(response.points_size());
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
+    sizes.push_back(page.points_size());
+  }
   EXPECT_THAT(sizes, ElementsAre(10, 10, 5));
   for (int i = 0; i < 25; ++i) EXPECT_EQ(indices[static_cast<size_t>(i)], i);
 }
 
-TEST_F(EnsembleServiceTest, TheBasicViewHasNoHistograms) {
-  RunningServer& server = StartWith(nullptr);  // the core's experiments
-  const std::string name = server.Submit(SmallFirstHit());
-  ASSERT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
+TEST(EnsembleService, TheBasicViewHasNoHistograms) {
+  RunningServer server({.factory = nullptr});  // the core's experiments
+  const std::string name = server.Succeeded(SmallFirstHit());
   for (const auto view : {v1::ListResultsRequest::BASIC, v1::ListResultsRequest::FULL,
                           v1::ListResultsRequest::VIEW_UNSPECIFIED}) {
-    grpc::ClientContext context;
     v1::ListResultsRequest request;
     request.set_parent(name);
     request.set_view(view);
-    v1::ListResultsResponse response;
-    ASSERT_TRUE(server.ensemble().ListResults(&context, request, &response).ok());
+    const v1::ListResultsResponse response = server.Results(request);
     ASSERT_EQ(response.points_size(), 6);
     EXPECT_EQ(response.points(0).histograms().empty(), view == v1::ListResultsRequest::BASIC);
     EXPECT_GT(response.points(0).estimates_size(), 0);
@@ -435,30 +356,24 @@ TEST_F(EnsembleServiceTest, TheBasicViewHasNoHistograms) {
   }
 }
 
-TEST_F(EnsembleServiceTest, PagesOfHistogramsStayBelowTwoMebibytes) {
-  RunningServer& server = StartWith(nullptr);
+TEST(EnsembleService, PagesOfHistogramsStayBelowTwoMebibytes) {
+  RunningServer server({.factory = nullptr});
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.mutable_grid()->clear_delta();
   for (int i = 0; i < 50; ++i) spec.mutable_grid()->add_delta(0.2 + 1e-3 * i);  // 100 points
   spec.mutable_target()->set_samples(64);
-  const std::string name = server.Submit(spec);
-  ASSERT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
+  const std::string name = server.Succeeded(spec);
   v1::ListResultsRequest request;
   request.set_parent(name);
   request.set_page_size(1000);
+  const auto pages = server.Pages(request);
   int points = 0;
-  int pages = 0;
-  do {
-    grpc::ClientContext context;
-    v1::ListResultsResponse response;
-    ASSERT_TRUE(server.ensemble().ListResults(&context, request, &response).ok());
-    EXPECT_LE(response.ByteSizeLong(), (size_t{2} << 20) + 1024);
-    points += response.points_size();
-    ++pages;
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
+  for (const auto& page : pages) {
+    EXPECT_LE(page.ByteSizeLong(), (size_t{2} << 20) + 1024);
+    points += page.points_size();
+  }
   EXPECT_EQ(points, 100);
-  EXPECT_GT(pages, 1);
+  EXPECT_GT(pages.size(), 1u);
 }
 
 }  // namespace

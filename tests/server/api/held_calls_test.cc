@@ -2,16 +2,18 @@
 #include "server/api/held_calls.h"
 
 #include <memory>
-#include <stop_token>
+#include <optional>
 #include <string>
 
 #include "gmock/gmock.h"
-#include "google/rpc/error_details.pb.h"
 #include "gtest/gtest.h"
+#include "tests/server/call_by_name.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/requests.h"
 #include "tests/server/unread_call.h"
+#include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -21,37 +23,38 @@ using ::testing::HasSubstr;
 constexpr Limits kTwoCallsOfTenBytes = {.max_calls_per_principal = 2,
                                         .max_call_bytes_per_principal = 10};
 
-TEST(HeldCalls, APrincipalsCallsAreItsOwn) {
+TEST(HeldCalls, EachPrincipalHasItsOwnCalls) {
   HeldCalls calls;
-  EXPECT_TRUE(calls.Begin("ann", 1, kTwoCallsOfTenBytes).ok());
-  EXPECT_TRUE(calls.Begin("ann", 1, kTwoCallsOfTenBytes).ok());
+  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
+  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
   const absl::Status third = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
-  EXPECT_TRUE(absl::IsResourceExhausted(third));
+  EXPECT_THAT(third, StatusIs(absl::StatusCode::kResourceExhausted));
   EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max_calls_per_principal)"));
-  EXPECT_TRUE(calls.Begin("bob", 1, kTwoCallsOfTenBytes).ok());
+  EXPECT_OK(calls.Begin("bob", 1, kTwoCallsOfTenBytes));
   calls.End("ann", 1);
-  EXPECT_TRUE(calls.Begin("ann", 1, kTwoCallsOfTenBytes).ok());
+  EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
 }
 
-TEST(HeldCalls, SoAreTheirBytesAndOneAloneMayHaveAnyNumber) {
+TEST(HeldCalls, BytesAreLimitedExceptOfASingleCall) {
   HeldCalls calls;
-  EXPECT_TRUE(calls.Begin("ann", 11, kTwoCallsOfTenBytes).ok());
-  EXPECT_TRUE(calls.CheckRoom("ann", kTwoCallsOfTenBytes).ok());
+  EXPECT_OK(calls.Begin("ann", 11, kTwoCallsOfTenBytes));
+  EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
   const absl::Status second = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
   EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max_call_bytes_per_principal)"));
   calls.End("ann", 11);
-  EXPECT_TRUE(calls.Begin("ann", 5, kTwoCallsOfTenBytes).ok());
-  EXPECT_TRUE(calls.Begin("ann", 5, kTwoCallsOfTenBytes).ok());
-  EXPECT_TRUE(calls.CheckRoom("ann", kTwoCallsOfTenBytes).ok());
+  EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
+  EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
+  EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
   calls.AddBytes("ann", 1);  // an answer
-  EXPECT_TRUE(absl::IsResourceExhausted(calls.CheckRoom("ann", kTwoCallsOfTenBytes)));
+  EXPECT_THAT(calls.CheckRoom("ann", kTwoCallsOfTenBytes),
+              StatusIs(absl::StatusCode::kResourceExhausted));
 }
 
-TEST(HeldCalls, ZeroIsNoLimit) {
+TEST(HeldCalls, ZeroMeansUnlimited) {
   HeldCalls calls;
   const Limits none = {.max_calls_per_principal = 0, .max_call_bytes_per_principal = 0};
-  for (int i = 0; i < 2000; ++i) EXPECT_TRUE(calls.Begin("ann", 1 << 30, none).ok());
-  EXPECT_TRUE(calls.CheckRoom("ann", none).ok());
+  for (int i = 0; i < 2000; ++i) EXPECT_OK(calls.Begin("ann", 1 << 30, none));
+  EXPECT_OK(calls.CheckRoom("ann", none));
 }
 
 TEST(HeldCalls, AMessageWaitsUntilThereIsRoom) {
@@ -65,24 +68,9 @@ TEST(HeldCalls, AMessageWaitsUntilThereIsRoom) {
   EXPECT_FALSE(messages.TryBegin("ann", 1, 10));
 }
 
+// Answers that hold a large job.
 class UnreadAnswers : public testing::Test {
  protected:
-  ~UnreadAnswers() override { gate_.Open(); }
-
-  // A server with a job whose message is more than a connection takes in.
-  RunningServer& Start(const Limits& limits) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.factory =
-        FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); });
-    options.limits = limits;
-    server_ = std::make_unique<RunningServer>(options);
-    v1::EnsembleSpec large = Equilibrium(0, 1);
-    for (int i = 0; i < 90'000; ++i) large.mutable_grid()->add_delta(0.1 + 1e-7 * i);
-    name_ = server_->Submit(large);
-    return *server_;
-  }
-
   grpc::Status Evaluate() {
     grpc::ClientContext context;
     v1::EvaluatePairsResponse response;
@@ -92,11 +80,15 @@ class UnreadAnswers : public testing::Test {
   std::unique_ptr<UnreadCall> Unread() {
     v1::GetEnsembleJobRequest request;
     request.set_name(name_);
-    auto call = std::make_unique<UnreadCall>(server_->channel(),
-                                             "/ballpiston.v1.EnsembleService/GetEnsembleJob");
+    auto call = std::make_unique<UnreadCall>(server_->channel(), kGetJob);
     call->Send(request.SerializeAsString());
     call->AwaitAnswer();
     return call;
+  }
+
+  void Start(const Limits& limits) {
+    server_.emplace(TestServerOptions{.factory = GatedExperiments(gate_), .limits = limits});
+    name_ = server_->Submit(LargeEquilibrium());
   }
 
   void ExpectRefusedUntilLetGo(const std::string& flag) {
@@ -105,17 +97,16 @@ class UnreadAnswers : public testing::Test {
     do {  // until the server knows that the answers before it were read
       unread = Unread();
       refused = Evaluate();
-    } while (DetailsOf(refused).reason != "TOO_MANY_CALLS");
-    EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    } while (ReasonOf(refused) != "TOO_MANY_CALLS");
+    EXPECT_THAT(refused, StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
     EXPECT_THAT(refused.error_message(), HasSubstr("(--" + flag + ")"));
     unread.reset();
-    while (DetailsOf(Evaluate()).reason == "TOO_MANY_CALLS") {  // until the server has heard of it
+    while (ReasonOf(Evaluate()) == "TOO_MANY_CALLS") {  // until the server has heard of it
     }
   }
 
   Gate gate_;
-  TemporaryFolder folder_;
-  std::unique_ptr<RunningServer> server_;
+  std::optional<RunningServer> server_;
   std::string name_;
 };
 

@@ -1,6 +1,7 @@
+#include <chrono>
 #include <future>
 #include <limits>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -9,29 +10,20 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/execution/comparison_thread.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using Message = v1::MethodMeasurement;
-
-v1::CompareMethodsRequest SomeRequest() {
-  v1::CompareMethodsRequest request;
-  request.set_rho(0.53);
-  request.set_delta(0.1);
-  request.set_epsilon(0.125);
-  return request;
-}
 
 class MethodServiceTest : public testing::Test {
  protected:
-  ~MethodServiceTest() override { gate_.Open(); }
-
   // With a comparison that tells so many measurements, numbered by their samples, and passes the
   // gate before it ends.
   void Start(uint64_t measurements = 1) {
@@ -46,19 +38,16 @@ class MethodServiceTest : public testing::Test {
   }
 
   void StartWith(MethodComparer compare) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.factory = FakeExperiments();
-    options.compare = std::move(compare);
-    server_.emplace(options);
+    server_.emplace(TestServerOptions{.compare = std::move(compare)});
   }
 
   struct Stream {
-    explicit Stream(RunningServer& server, const v1::CompareMethodsRequest& request = SomeRequest())
+    explicit Stream(RunningServer& server,
+                    const v1::CompareMethodsRequest& request = SomeComparison())
         : reader(server.method().CompareMethods(&context, request)) {}
 
-    std::optional<Message> Next() {
-      Message message;
+    std::optional<v1::MethodMeasurement> Next() {
+      v1::MethodMeasurement message;
       if (!reader->Read(&message)) return std::nullopt;
       return message;
     }
@@ -69,18 +58,17 @@ class MethodServiceTest : public testing::Test {
     }
 
     grpc::ClientContext context;
-    std::unique_ptr<grpc::ClientReader<Message>> reader;
+    std::unique_ptr<grpc::ClientReader<v1::MethodMeasurement>> reader;
   };
 
   ErrorDetails Refusal(const v1::CompareMethodsRequest& request) {
     const grpc::Status status = Stream(*server_, request).End();
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
     return DetailsOf(status);
   }
 
   Gate gate_;
   std::promise<MethodComparisonSpec> told_;  // all, by the comparison that runs
-  TemporaryFolder folder_;
   std::optional<RunningServer> server_;
 };
 
@@ -94,21 +82,21 @@ TEST_F(MethodServiceTest, MeasurementsComeInTheOrderTheyAreMade) {
     ASSERT_EQ(message->samples(), i);
   }
   EXPECT_FALSE(stream.Next());
-  EXPECT_TRUE(stream.reader->Finish().ok());
+  EXPECT_OK(stream.reader->Finish());
 }
 
-TEST_F(MethodServiceTest, EachComesAsSoonAsItIsMade) {
+TEST_F(MethodServiceTest, MeasurementsComeAsSoonAsTheyAreMade) {
   Start(3);
   Stream stream(*server_);
   for (uint64_t i = 0; i < 3; ++i) EXPECT_EQ(stream.Next()->samples(), i);  // the gate is closed
   gate_.Open();
-  EXPECT_TRUE(stream.End().ok());
+  EXPECT_OK(stream.End());
 }
 
-TEST_F(MethodServiceTest, WhatWasAskedForIsCompared) {
+TEST_F(MethodServiceTest, TheComparisonGetsTheRequestsFields) {
   Start();
   auto told = told_.get_future();
-  v1::CompareMethodsRequest request = SomeRequest();
+  v1::CompareMethodsRequest request = SomeComparison();
   request.set_seconds_per_curve(0.5);
   request.set_seed(7);
   Stream stream(*server_, request);
@@ -120,23 +108,22 @@ TEST_F(MethodServiceTest, WhatWasAskedForIsCompared) {
   EXPECT_EQ(spec.seed, 7u);
 }
 
-TEST_F(MethodServiceTest, ACurveHasASecondIfNothingElseIsSaid) {
+TEST_F(MethodServiceTest, ByDefaultACurveHasASecond) {
   Start();
   auto told = told_.get_future();
   Stream stream(*server_);
   EXPECT_EQ(told.get().seconds_per_curve, 1);
 }
 
-TEST_F(MethodServiceTest, ASecondComparisonIsRefusedUntilTheFirstHasEnded) {
+TEST_F(MethodServiceTest, ASecondComparisonIsRefusedUntilTheFirstEnds) {
   Start();
   Stream first(*server_);
   ASSERT_TRUE(first.Next());
-  const grpc::Status refused = Stream(*server_).End();
-  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_EQ(DetailsOf(refused).reason, "COMPARISON_RUNNING");
+  EXPECT_THAT(Stream(*server_).End(),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "COMPARISON_RUNNING"));
   gate_.Open();
-  EXPECT_TRUE(first.End().ok());
-  EXPECT_TRUE(Stream(*server_).End().ok());  // at once: no time in between
+  EXPECT_OK(first.End());
+  EXPECT_OK(Stream(*server_).End());  // at once: no time in between
 }
 
 TEST_F(MethodServiceTest, AClientThatLeavesStopsTheComparison) {
@@ -151,7 +138,7 @@ TEST_F(MethodServiceTest, AClientThatLeavesStopsTheComparison) {
   ASSERT_TRUE(stream.Next());
   stream.context.TryCancel();
   EXPECT_TRUE(stopped.get_future().get());
-  EXPECT_EQ(stream.End().error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_THAT(stream.End(), StatusIs(grpc::StatusCode::CANCELLED));
 }
 
 TEST_F(MethodServiceTest, AfterAClientLeftTheNextOneIsServed) {
@@ -167,17 +154,15 @@ TEST_F(MethodServiceTest, AfterAClientLeftTheNextOneIsServed) {
   do {  // the thread may still be on its way back
     status = Stream(*server_).End();
   } while (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_OK(status);
 }
 
 TEST_F(MethodServiceTest, AStoppingServerEndsTheComparison) {
   Start();
   Stream stream(*server_);
   ASSERT_TRUE(stream.Next());
-  server_->server().Shutdown(std::chrono::seconds(60));  // hangs so long if the stream stays
-  const grpc::Status status = stream.End();
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
-  EXPECT_EQ(DetailsOf(status).reason, "SHUTTING_DOWN");
+  server_->Shutdown(std::chrono::hours(1));  // hangs so long if the stream stays
+  EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
 }
 
 // One that looks for a stop rarely.
@@ -191,8 +176,8 @@ TEST_F(MethodServiceTest, AStreamEndsBeforeItsComparisonDoes) {
   });
   Stream stream(*server_);
   ASSERT_TRUE(stream.Next());
-  std::thread stopping([&] { server_->server().Shutdown(std::chrono::seconds(60)); });
-  EXPECT_EQ(stream.End().error_code(), grpc::StatusCode::UNAVAILABLE);
+  std::thread stopping([&] { server_->Shutdown(std::chrono::hours(1)); });
+  EXPECT_THAT(stream.End(), StatusIs(grpc::StatusCode::UNAVAILABLE));
   seen.set_value();
   stopping.join();
 }
@@ -205,7 +190,7 @@ TEST_F(MethodServiceTest, AServerIsNotIdleDuringAComparison) {
 }
 
 // More than a stalled stream takes in: some 5 MB.
-TEST_F(MethodServiceTest, AReaderThatStallsHoldsUpNobodyAndMissesNothing) {
+TEST_F(MethodServiceTest, AStalledReaderDelaysNobodyAndMissesNothing) {
   constexpr uint64_t kMany = 300'000;
   Start(kMany);
   auto told = told_.get_future();
@@ -218,22 +203,21 @@ TEST_F(MethodServiceTest, AReaderThatStallsHoldsUpNobodyAndMissesNothing) {
     ++read;
   }
   EXPECT_EQ(read, kMany);
-  EXPECT_TRUE(stream.reader->Finish().ok());
+  EXPECT_OK(stream.reader->Finish());
 }
 
-TEST_F(MethodServiceTest, AComparisonThatThrowsIsAnErrorAndNoMore) {
+TEST_F(MethodServiceTest, AComparisonThatThrowsEndsWithInternal) {
   bool throws = true;
   StartWith([&](const auto&, const auto&, const auto&) {
     if (std::exchange(throws, false)) throw std::runtime_error("no memory left");
     return absl::OkStatus();
   });
-  const grpc::Status status = Stream(*server_).End();
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INTERNAL);
-  EXPECT_THAT(status.error_message(), HasSubstr("no memory left"));
-  EXPECT_TRUE(Stream(*server_).End().ok());
+  EXPECT_THAT(Stream(*server_).End(),
+              StatusIs(grpc::StatusCode::INTERNAL, HasSubstr("no memory left")));
+  EXPECT_OK(Stream(*server_).End());
 }
 
-TEST_F(MethodServiceTest, AllThatIsWrongIsToldAtOnce) {
+TEST_F(MethodServiceTest, AllWrongFieldsAreListed) {
   Start();
   v1::CompareMethodsRequest request;
   request.set_seconds_per_curve(-1);
@@ -266,7 +250,7 @@ TEST_F(MethodServiceTest, EachFieldHasItsRange) {
            BadField{"seconds_per_curve", &Request::set_seconds_per_curve, 60.1, "[0.01, 60]"},
            BadField{"seconds_per_curve", &Request::set_seconds_per_curve, kNan, "[0.01, 60]"},
        }) {
-    Request request = SomeRequest();
+    Request request = SomeComparison();
     (request.*bad.set)(bad.value);
     EXPECT_THAT(Refusal(request).fields, ElementsAre(bad.field)) << bad.value;
     EXPECT_THAT(Stream(*server_, request).End().error_message(), HasSubstr(bad.permitted));

@@ -4,69 +4,60 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/server/error_details.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsSupersetOf;
-using v1::EnsembleSpec;
 
 // One server for all: measuring its rates takes some 0.3 s.
 class PlanServiceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    ServerOptions options;
-    options.data_dir = folder_->File("data");
-    options.workers = 2;
-    server_ = new RunningServer(options);
+    server_ = new RunningServer({.factory = nullptr});  // the core's experiments
   }
-  static void TearDownTestSuite() {
-    delete server_;
-    delete folder_;
-  }
+  static void TearDownTestSuite() { delete server_; }
 
-  static grpc::Status Plan(const EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
+  static grpc::Status Plan(const v1::EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
     grpc::ClientContext context;
     v1::PlanEnsembleJobRequest request;
     *request.mutable_spec() = spec;
     return server_->ensemble().PlanEnsembleJob(&context, request, plan);
   }
 
-  static v1::PlanEnsembleJobResponse PlanOf(const EnsembleSpec& spec) {
+  static v1::PlanEnsembleJobResponse PlanOf(const v1::EnsembleSpec& spec) {
     v1::PlanEnsembleJobResponse plan;
-    const grpc::Status status = Plan(spec, &plan);
-    EXPECT_TRUE(status.ok()) << status.error_message();
+    EXPECT_OK(Plan(spec, &plan));
     return plan;
   }
 
-  static inline TemporaryFolder* folder_ = nullptr;
   static inline RunningServer* server_ = nullptr;
 };
 
-EnsembleSpec Question(EnsembleSpec::Experiment experiment) {
-  EnsembleSpec spec;
+v1::EnsembleSpec PlanQuestion(v1::EnsembleSpec::Experiment experiment) {
+  v1::EnsembleSpec spec;
   spec.set_experiment(experiment);
   spec.mutable_grid()->add_rho(0.53);
   spec.mutable_grid()->add_delta(0.1);
-  const bool from_energy = experiment == EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME ||
-                           experiment == EnsembleSpec::FIRST_HIT;
+  const bool from_energy = experiment == v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME ||
+                           experiment == v1::EnsembleSpec::FIRST_HIT;
   if (from_energy) spec.mutable_grid()->add_epsilon(0.1);
-  if (experiment == EnsembleSpec::FIRST_HIT) spec.mutable_grid()->add_exponent(1);
+  if (experiment == v1::EnsembleSpec::FIRST_HIT) spec.mutable_grid()->add_exponent(1);
   return spec;
 }
 
-struct Expected {
-  EnsembleSpec::Model chosen;
-  std::set<EnsembleSpec::Model> answering;
+struct ExpectedLadder {
+  v1::EnsembleSpec::Model chosen;
+  std::set<v1::EnsembleSpec::Model> answering;
 };
 
-const std::map<EnsembleSpec::Experiment, Expected>& ExpectedOfAll() {
-  using E = EnsembleSpec;
-  static const std::map<E::Experiment, Expected> all = {
+const std::map<v1::EnsembleSpec::Experiment, ExpectedLadder>& LaddersOfAll() {
+  using E = v1::EnsembleSpec;
+  static const std::map<E::Experiment, ExpectedLadder> all = {
       {E::EQUILIBRIUM, {E::CLOSED_FORM, {E::CLOSED_FORM, E::BILLIARD, E::BILLIARD_REFERENCE}}},
       {E::CONDITIONAL_MEAN_FREE_TIME,
        {E::CLOSED_FORM, {E::CLOSED_FORM, E::BILLIARD, E::BILLIARD_REFERENCE}}},
@@ -80,18 +71,18 @@ const std::map<EnsembleSpec::Experiment, Expected>& ExpectedOfAll() {
 TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
   for (int number = v1::EnsembleSpec_Experiment_Experiment_MIN + 1;
        number <= v1::EnsembleSpec_Experiment_Experiment_MAX; ++number) {
-    const auto experiment = static_cast<EnsembleSpec::Experiment>(number);
-    ASSERT_TRUE(ExpectedOfAll().contains(experiment)) << number;
-    const Expected& expected = ExpectedOfAll().at(experiment);
-    const v1::PlanEnsembleJobResponse plan = PlanOf(Question(experiment));
-    SCOPED_TRACE(EnsembleSpec::Experiment_Name(experiment));
+    const auto experiment = static_cast<v1::EnsembleSpec::Experiment>(number);
+    ASSERT_TRUE(LaddersOfAll().contains(experiment)) << number;
+    const ExpectedLadder& expected = LaddersOfAll().at(experiment);
+    const v1::PlanEnsembleJobResponse plan = PlanOf(PlanQuestion(experiment));
+    SCOPED_TRACE(v1::EnsembleSpec::Experiment_Name(experiment));
     ASSERT_EQ(plan.points_size(), 1);
     EXPECT_EQ(plan.point_count(), 1);
     const v1::PointPlan& point = plan.points(0);
     EXPECT_EQ(point.model(), expected.chosen);
     EXPECT_NE(point.reason(), "");
     EXPECT_EQ(point.parameters().delta(), 0.1);
-    std::vector<EnsembleSpec::Model> order;
+    std::vector<v1::EnsembleSpec::Model> order;
     for (const v1::ModelPlan& model : point.models()) {
       order.push_back(model.model());
       EXPECT_EQ(model.answers(), expected.answering.contains(model.model()));
@@ -99,14 +90,14 @@ TEST_F(PlanServiceTest, EveryExperimentHasItsLadderCheapestFirst) {
       EXPECT_NE(model.reason(), "");
       EXPECT_EQ(model.work() > 0, model.answers());
     }
-    EXPECT_THAT(order,
-                ElementsAre(EnsembleSpec::CLOSED_FORM, EnsembleSpec::SPECTRUM, EnsembleSpec::MARKOV,
-                            EnsembleSpec::BILLIARD, EnsembleSpec::BILLIARD_REFERENCE));
+    EXPECT_THAT(order, ElementsAre(v1::EnsembleSpec::CLOSED_FORM, v1::EnsembleSpec::SPECTRUM,
+                                   v1::EnsembleSpec::MARKOV, v1::EnsembleSpec::BILLIARD,
+                                   v1::EnsembleSpec::BILLIARD_REFERENCE));
   }
 }
 
 TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
-  EnsembleSpec spec = Question(EnsembleSpec::FIRST_HIT);
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::FIRST_HIT);
   for (const double delta : {0.2, 0.05}) spec.mutable_grid()->add_delta(delta);
   const v1::PlanEnsembleJobResponse plan = PlanOf(spec);
   ASSERT_EQ(plan.points_size(), 3);
@@ -122,7 +113,7 @@ TEST_F(PlanServiceTest, TheWorkIsThatOfTheChosenOneOverAllPoints) {
 }
 
 TEST_F(PlanServiceTest, RatesAreMeasuredAndPositive) {
-  const v1::ComputingRates rates = PlanOf(Question(EnsembleSpec::EQUILIBRIUM)).rates();
+  const v1::ComputingRates rates = PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM)).rates();
   EXPECT_GT(rates.closed_form(), 0);
   EXPECT_GT(rates.spectrum(), 0);
   EXPECT_GT(rates.jump(), 0);
@@ -134,23 +125,22 @@ TEST_F(PlanServiceTest, RatesAreMeasuredAndPositive) {
   EXPECT_LT(rates.wall_hit(), rates.event_reference());
 }
 
-TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsACreationIs) {
-  EnsembleSpec spec = Question(EnsembleSpec::ENERGY_RELAXATION);
+TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsByCreate) {
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::ENERGY_RELAXATION);
   spec.mutable_grid()->set_rho(0, 0.4);
   spec.mutable_grid()->add_epsilon(0.7);
   spec.mutable_target()->set_tolerance(0);
   v1::PlanEnsembleJobResponse plan;
   const grpc::Status status = Plan(spec, &plan);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(DetailsOf(status).reason, "INVALID_SPEC");
+  EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_SPEC"));
   EXPECT_THAT(DetailsOf(status).fields,
               IsSupersetOf({"spec.grid.rho[0]", "spec.grid.epsilon[0]", "spec.target.tolerance"}));
-  EXPECT_EQ(Plan({}, &plan).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(Plan({}, &plan), StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
 }
 
 TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
-  EnsembleSpec spec = Question(EnsembleSpec::ENERGY_RELAXATION);
-  spec.set_model(EnsembleSpec::BILLIARD);  // no pilot, which is not as many as the points
+  v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::ENERGY_RELAXATION);
+  spec.set_model(v1::EnsembleSpec::BILLIARD);  // no pilot, which is not as many as the points
   spec.mutable_target()->set_tolerance(0.01);
   spec.mutable_grid()->clear_delta();
   for (int i = 0; i < 100'000; ++i) spec.mutable_grid()->add_delta(0.001 + 1e-6 * i);
@@ -169,12 +159,9 @@ TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
   EXPECT_NEAR((plan.work() - plan.rates().first_point()) / (100 * work), 1, 1e-9);
 }
 
-TEST_F(PlanServiceTest, APlanMakesNoJob) {
-  PlanOf(Question(EnsembleSpec::FIRST_HIT));
-  grpc::ClientContext context;
-  v1::ListEnsembleJobsResponse list;
-  ASSERT_TRUE(server_->ensemble().ListEnsembleJobs(&context, {}, &list).ok());
-  EXPECT_EQ(list.jobs_size(), 0);
+TEST_F(PlanServiceTest, APlanCreatesNoJob) {
+  PlanOf(PlanQuestion(v1::EnsembleSpec::FIRST_HIT));
+  EXPECT_EQ(server_->List().jobs_size(), 0);
 }
 
 }  // namespace

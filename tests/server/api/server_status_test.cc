@@ -1,5 +1,5 @@
+#include <atomic>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -13,8 +13,11 @@
 #include "server/api/methods.h"
 #include "server/api/services.h"
 #include "server/convert/spec.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -28,17 +31,14 @@ class ServerStatusTest : public testing::Test {
   ~ServerStatusTest() override { gate_.Open(); }
 
   void Submit(const std::string& principal, int points = 1) {
-    v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = Equilibrium(points, 100);
-    request.set_fresh(true);
-    const auto job = book_.Create({principal, Role::kSubmit}, request, CheckSpec(request.spec()));
-    ASSERT_TRUE(job.ok()) << job.status();
+    const v1::CreateEnsembleJobRequest request = FreshRequest(Equilibrium(points, 100));
+    ASSERT_OK(book_.Create({principal, Role::kSubmit}, request, CheckSpec(request.spec())));
   }
 
   v1::ServerStatus AskedBy(const std::string& principal, Role role) {
     const Call call{.method = "GetServerStatus", .request_id = "", .caller = {principal, role}};
     const auto status = GetServerStatus(context_, call, v1::GetServerStatusRequest());
-    EXPECT_TRUE(status.ok()) << status.status();
+    EXPECT_OK(status);
     return *status;
   }
 
@@ -80,7 +80,7 @@ class ServerStatusTest : public testing::Test {
                           .store_path = folder_.File("store.sqlite3")};
 };
 
-TEST_F(ServerStatusTest, TellsWhatIsQueuedAndComputed) {
+TEST_F(ServerStatusTest, CountsWhatIsQueuedAndComputed) {
   Submit("alice");
   gate_.AwaitWaiting(2);
   Submit("bob");
@@ -105,7 +105,7 @@ TEST_F(ServerStatusTest, TellsWhatIsQueuedAndComputed) {
   EXPECT_EQ(status.engine_version(), EngineVersion());
 }
 
-TEST_F(ServerStatusTest, OnlyAnAdministratorSeesWhoElseIsThere) {
+TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
   Submit("alice");
   gate_.AwaitWaiting(2);
   Submit("bob");
@@ -129,22 +129,15 @@ TEST_F(ServerStatusTest, OnlyAnAdministratorSeesWhoElseIsThere) {
   EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
 }
 
-TEST_F(ServerStatusTest, SaysWhenItIsStopping) {
+TEST_F(ServerStatusTest, AStoppingServerIsDraining) {
   draining_ = true;
   EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::DRAINING);
 }
 
-TEST(ServerStatus, IsServedToWhoeverIsLetIn) {
-  TemporaryFolder folder;
-  ServerOptions options;
-  options.data_dir = folder.path();
-  options.factory = FakeExperiments();
-  RunningServer server(options);
-  server.AwaitEnd(server.Submit(Equilibrium(2, 5)));
-  grpc::ClientContext context;
-  v1::ServerStatus status;
-  const auto stub = v1::ServerService::NewStub(server.channel());
-  ASSERT_TRUE(stub->GetServerStatus(&context, v1::GetServerStatusRequest(), &status).ok());
+TEST(ServerStatus, IsServedToAnybodyWithAccess) {
+  RunningServer server;
+  server.Succeeded(Equilibrium(2, 5));
+  const v1::ServerStatus status = server.Status();
   EXPECT_EQ(status.principal(), "local");
   EXPECT_EQ(status.role(), "admin");
   EXPECT_EQ(status.blocks_computed(), 10);
@@ -176,33 +169,23 @@ class HangingDiskTest : public ServerStatusTest {
   std::thread hanging_{[this] { Hang(); }};
 };
 
-TEST_F(HangingDiskTest, IsAStoreThatFails) {
+TEST_F(HangingDiskTest, TheStateIsStoreFailing) {
   EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
 }
 
 // One thread runs the calls: any that waited would be the last.
-TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndOthersAnswered) {
+TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
   EnsembleService service(context_);
   const std::string address = "unix:" + folder_.File("socket");
   const auto server = grpc::ServerBuilder()
                           .RegisterService(&service)
                           .AddListeningPort(address, grpc::InsecureServerCredentials())
                           .BuildAndStart();
-  const auto stub = v1::EnsembleService::NewStub(
-      grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+  TestClient client(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   for (int i = 0; i < 20; ++i) {
-    grpc::ClientContext create, list;
-    const auto deadline = std::chrono::system_clock::now() + std::chrono::minutes(10);
-    create.set_deadline(deadline);
-    list.set_deadline(deadline);
-    v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = Equilibrium(1, 1);
-    v1::EnsembleJob job;
-    const grpc::Status refused = stub->CreateEnsembleJob(&create, request, &job);
-    EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE) << refused.error_message();
-    EXPECT_EQ(DetailsOf(refused).reason, "STORE_FAILED");
-    v1::ListEnsembleJobsResponse jobs;
-    EXPECT_TRUE(stub->ListEnsembleJobs(&list, {}, &jobs).ok());
+    EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),
+                IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));
+    EXPECT_EQ(client.List().jobs_size(), 0);
   }
 }
 

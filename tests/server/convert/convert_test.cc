@@ -1,16 +1,23 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "ballpiston/v1/storage.pb.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
 #include "server/convert/block_record.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -32,31 +39,30 @@ BlockResult SomeBlock() {
 }
 
 TEST(BlockRecord, ComesBackExactly) {
-  const auto back = BlockResultFromBytes(BlockRecordBytes(SomeBlock()));
-  ASSERT_TRUE(back.ok());
-  EXPECT_TRUE(*back == SomeBlock());
-  EXPECT_TRUE(std::signbit(back->batch_means[0].mean_denominator));
+  ASSERT_OK_AND_ASSIGN(const auto back, BlockResultFromBytes(BlockRecordBytes(SomeBlock())));
+  EXPECT_TRUE(back == SomeBlock());
+  EXPECT_TRUE(std::signbit(back.batch_means[0].mean_denominator));
 }
 
 TEST(BlockRecord, GarbageIsDataLoss) {
-  EXPECT_TRUE(absl::IsDataLoss(BlockResultFromBytes("\xff\xff\xff").status()));
+  EXPECT_THAT(BlockResultFromBytes("\xff\xff\xff"), StatusIs(absl::StatusCode::kDataLoss));
 }
 
-TEST(BlockRecord, WhatItsExperimentCannotHaveWrittenIsDataLoss) {
+TEST(BlockRecord, ABlockThatItsExperimentCannotWriteIsDataLoss) {
   const EnsembleSpec spec = {.experiment = Experiment::kEquilibrium,
                              .grid = {.rho = {0.53}, .delta = {0.1}},
                              .target = {.collisions = 1000}};
   const auto experiment = PointExperiment::Create(spec, 0);
   const BlockPlan& plan = experiment->plan();
   const BlockResult empty = experiment->EmptyResult();
-  EXPECT_TRUE(CheckBlock(*experiment, 0, empty).ok());
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, plan.Blocks(), empty)));
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, BlockResult())));
+  EXPECT_OK(CheckBlock(*experiment, 0, empty));
+  EXPECT_THAT(CheckBlock(*experiment, plan.Blocks(), empty), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_THAT(CheckBlock(*experiment, 0, BlockResult()), StatusIs(absl::StatusCode::kDataLoss));
   BlockResult too_many = empty, no_error = empty;
   too_many.samples = plan.SamplesIn(0) + 1;
   no_error.health.max_energy_error = kNan;
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, too_many)));
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, no_error)));
+  EXPECT_THAT(CheckBlock(*experiment, 0, too_many), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_THAT(CheckBlock(*experiment, 0, no_error), StatusIs(absl::StatusCode::kDataLoss));
 }
 
 TEST(BlockRecord, ABlockThatCountsASampleTwiceIsDataLoss) {
@@ -69,14 +75,14 @@ TEST(BlockRecord, ABlockThatCountsASampleTwiceIsDataLoss) {
   block.histograms[0].counts[0] = 1;
   block.histograms[0].counts[1] = 2;
   block.histograms[1].counts[0] = 3;
-  EXPECT_TRUE(CheckBlock(*experiment, 0, block).ok());
+  EXPECT_OK(CheckBlock(*experiment, 0, block));
   block.histograms[1].counts[1] = 1;
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, block)));
+  EXPECT_THAT(CheckBlock(*experiment, 0, block), StatusIs(absl::StatusCode::kDataLoss));
   block.histograms[1].counts[1] = std::numeric_limits<uint64_t>::max();  // the sum is 2
-  EXPECT_TRUE(absl::IsDataLoss(CheckBlock(*experiment, 0, block)));
+  EXPECT_THAT(CheckBlock(*experiment, 0, block), StatusIs(absl::StatusCode::kDataLoss));
 }
 
-v1::EnsembleSpec FirstHit() {
+v1::EnsembleSpec OneFirstHit() {
   v1::EnsembleSpec message;
   message.set_experiment(v1::EnsembleSpec::FIRST_HIT);
   message.mutable_grid()->add_rho(0.53);
@@ -88,14 +94,14 @@ v1::EnsembleSpec FirstHit() {
   return message;
 }
 
-std::vector<std::string> Fields(const CheckedSpec& checked) {
+std::vector<std::string> ViolatedFields(const CheckedSpec& checked) {
   std::vector<std::string> fields;
   for (const FieldViolation& violation : checked.violations) fields.push_back(violation.field);
   return fields;
 }
 
-TEST(Spec, ComesBackAsItWent) {
-  v1::EnsembleSpec message = FirstHit();
+TEST(Spec, ComesBackUnchanged) {
+  v1::EnsembleSpec message = OneFirstHit();
   message.set_model(v1::EnsembleSpec::BILLIARD_REFERENCE);
   message.set_precision(v1::EnsembleSpec::DOUBLE);
   const CheckedSpec checked = CheckSpec(message);
@@ -105,7 +111,7 @@ TEST(Spec, ComesBackAsItWent) {
 
 TEST(Spec, EveryKindOfTargetComesBack) {
   for (const int kind : {0, 1, 2, 3}) {
-    v1::EnsembleSpec message = FirstHit();
+    v1::EnsembleSpec message = OneFirstHit();
     if (kind == 0) message.clear_target();
     if (kind == 1) message.mutable_target()->set_collisions(5);
     if (kind == 2) message.mutable_target()->set_tolerance(0.01);
@@ -123,7 +129,7 @@ TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
   std::set<Model> seen_models;
   for (int e = 0; e < experiments->value_count(); ++e) {
     for (int m = 0; m < models->value_count(); ++m) {
-      v1::EnsembleSpec message = FirstHit();
+      v1::EnsembleSpec message = OneFirstHit();
       message.set_experiment(
           static_cast<v1::EnsembleSpec::Experiment>(experiments->value(e)->number()));
       message.set_model(static_cast<v1::EnsembleSpec::Model>(models->value(m)->number()));
@@ -147,7 +153,7 @@ TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
 }
 
 TEST(Spec, VerifyComesBack) {
-  v1::EnsembleSpec message = FirstHit();
+  v1::EnsembleSpec message = OneFirstHit();
   message.set_verify(true);
   EXPECT_TRUE(CheckSpec(message).spec.verify);
   EXPECT_TRUE(SpecMessage(CheckSpec(message).spec).verify());
@@ -156,7 +162,7 @@ TEST(Spec, VerifyComesBack) {
 }
 
 TEST(Spec, ABudgetBesideAToleranceComesBackToTheNanosecond) {
-  v1::EnsembleSpec message = FirstHit();
+  v1::EnsembleSpec message = OneFirstHit();
   message.mutable_target()->set_tolerance(0.01);
   for (const int nanos : {1, 7, 100'000'000, 123'456'789, 300'000'000, 999'999'999}) {
     for (const int seconds : {0, 1, 86'400}) {
@@ -172,14 +178,14 @@ TEST(Spec, ABudgetBesideAToleranceComesBackToTheNanosecond) {
 }
 
 TEST(Spec, AToleranceBelowTheModelsOwnErrorIsAViolation) {
-  v1::EnsembleSpec message = FirstHit();
+  v1::EnsembleSpec message = OneFirstHit();
   message.set_experiment(v1::EnsembleSpec::ENERGY_RELAXATION);
   message.mutable_grid()->clear_epsilon();
   message.mutable_grid()->clear_exponent();
   message.mutable_target()->set_tolerance(1e-4);
   for (const auto model : {v1::EnsembleSpec::MARKOV, v1::EnsembleSpec::SPECTRUM}) {
     message.set_model(model);
-    EXPECT_THAT(Fields(CheckSpec(message)), testing::ElementsAre("spec.target.tolerance"));
+    EXPECT_THAT(ViolatedFields(CheckSpec(message)), testing::ElementsAre("spec.target.tolerance"));
   }
   for (const auto model : {v1::EnsembleSpec::AUTO, v1::EnsembleSpec::BILLIARD}) {
     message.set_model(model);
@@ -188,25 +194,25 @@ TEST(Spec, AToleranceBelowTheModelsOwnErrorIsAViolation) {
 }
 
 TEST(Spec, UnknownNumbersOfEnumerationsAreViolationsOnce) {
-  v1::EnsembleSpec message = FirstHit();
+  v1::EnsembleSpec message = OneFirstHit();
   message.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(77));
   message.set_model(static_cast<v1::EnsembleSpec::Model>(78));
   message.set_precision(static_cast<v1::EnsembleSpec::Precision>(79));
-  const std::vector<std::string> fields = Fields(CheckSpec(message));
+  const std::vector<std::string> fields = ViolatedFields(CheckSpec(message));
   for (const char* field : {"spec.experiment", "spec.model", "spec.precision"}) {
     EXPECT_EQ(std::count(fields.begin(), fields.end(), field), 1) << field;
   }
 }
 
-TEST(Spec, AFieldThatIsNotKnownIsAViolation) {
+TEST(Spec, AnUnknownFieldIsAViolation) {
   v1::EnsembleSpec message;
-  ASSERT_TRUE(message.ParseFromString(FirstHit().SerializeAsString() + "\xf8\x01\x01"));
-  EXPECT_THAT(Fields(CheckSpec(message)), testing::ElementsAre("spec"));
+  ASSERT_TRUE(message.ParseFromString(OneFirstHit().SerializeAsString() + "\xf8\x01\x01"));
+  EXPECT_THAT(ViolatedFields(CheckSpec(message)), testing::ElementsAre("spec"));
 }
 
 // A message of 4 MiB may hold two million of them.
-TEST(Spec, OfManyFieldsThatAreNotKnownSomeAreTold) {
-  v1::EnsembleSpec message = FirstHit();
+TEST(Spec, OfManyUnknownFieldsSomeAreListed) {
+  v1::EnsembleSpec message = OneFirstHit();
   for (int i = 0; i < 10'000; ++i) {
     message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);
   }
@@ -216,14 +222,14 @@ TEST(Spec, OfManyFieldsThatAreNotKnownSomeAreTold) {
 }
 
 TEST(Spec, NotANumberAndInfinityAreViolations) {
-  v1::EnsembleSpec message = FirstHit();
+  v1::EnsembleSpec message = OneFirstHit();
   message.mutable_grid()->add_rho(kNan);
   message.mutable_grid()->add_delta(kInfinity);
   message.mutable_grid()->add_epsilon(-kInfinity);
   message.mutable_grid()->add_exponent(kNan);
   message.mutable_target()->set_tolerance(kNan);
   EXPECT_THAT(
-      Fields(CheckSpec(message)),
+      ViolatedFields(CheckSpec(message)),
       testing::IsSupersetOf({"spec.grid.rho[1]", "spec.grid.delta[1]", "spec.grid.epsilon[1]",
                              "spec.grid.exponent[1]", "spec.target.tolerance"}));
 }
@@ -250,9 +256,9 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
 }
 
 // An answer with everything that a result can hold.
-class Told : public PointExperiment {
+class ToldExperiment : public PointExperiment {
  public:
-  explicit Told(const EnsembleSpec& spec) : PointExperiment(spec, PointAt(spec, 0), {}) {}
+  explicit ToldExperiment(const EnsembleSpec& spec) : PointExperiment(spec, PointAt(spec, 0), {}) {}
   std::optional<BlockResult> RunBlock(uint64_t, std::stop_token) const override {
     return BlockResult();
   }
@@ -270,9 +276,9 @@ class Told : public PointExperiment {
   }
 };
 
-TEST(PointResult, LimitNoiseFloorAndCurvesAreTold) {
+TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
   const v1::PointResult result =
-      PointResultOf(0, Told(FakeSpec(1, 1)), BlockResult(), Details::kIncluded);
+      PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult(), Details::kIncluded);
   ASSERT_EQ(result.estimates_size(), 3);
   EXPECT_EQ(result.estimates(0).limit(), 3);
   EXPECT_FALSE(result.estimates(0).has_noise_floor());
@@ -294,7 +300,7 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreTold) {
 }
 
 TEST(PointResult, DetailsCanBeLeftOutOrCleared) {
-  const Told told(FakeSpec(1, 1));
+  const ToldExperiment told(FakeSpec(1, 1));
   const v1::PointResult without = PointResultOf(0, told, BlockResult(), Details::kLeftOut);
   EXPECT_EQ(without.curves_size(), 0);
   EXPECT_EQ(without.estimates_size(), 3);
@@ -324,7 +330,7 @@ TEST(PointResult, TheModelsErrorAndReasonComeFromTheAnswer) {
   EXPECT_FALSE(answered(std::nullopt).estimates(0).has_model_error());
 }
 
-google::rpc::Status Details(const grpc::Status& status) {
+google::rpc::Status RpcStatusOf(const grpc::Status& status) {
   google::rpc::Status details;
   EXPECT_TRUE(details.ParseFromString(status.error_details()));
   return details;
@@ -332,9 +338,8 @@ google::rpc::Status Details(const grpc::Status& status) {
 
 TEST(Errors, CarryReasonAndDomain) {
   const grpc::Status status = GrpcStatus(JobNotFound("ensembleJobs/x"));
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
-  EXPECT_THAT(status.error_message(), HasSubstr("ensembleJobs/x"));
-  const google::rpc::Status details = Details(status);
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::NOT_FOUND, HasSubstr("ensembleJobs/x")));
+  const google::rpc::Status details = RpcStatusOf(status);
   EXPECT_EQ(details.code(), grpc::StatusCode::NOT_FOUND);
   google::rpc::ErrorInfo info;
   ASSERT_EQ(details.details_size(), 1);
@@ -349,19 +354,16 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
   spec.target = {.tolerance = 1e-6, .budget_seconds = 0.25};
   const absl::Status missed =
       ToleranceNotReached(spec, 17, {.name = "time", .value = -8, .standard_error = 0.04});
-  EXPECT_TRUE(absl::IsDeadlineExceeded(missed));
-  EXPECT_EQ(std::string(missed.message()),
-            "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: reached 0.005");
+  EXPECT_THAT(missed,
+              StatusIs(absl::StatusCode::kDeadlineExceeded,
+                       "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: "
+                       "reached 0.005"));
   const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
   EXPECT_THAT(std::string(without.message()), HasSubstr("reached no error that could be told"));
   // A job that ends with it keeps its reason; one without gets that of a failed computation.
-  const auto reason = [](const absl::Status& status) {
-    google::rpc::ErrorInfo info;
-    RpcStatus(WithDefaultReason(status, "COMPUTATION_FAILED")).details(0).UnpackTo(&info);
-    return info.reason();
-  };
-  EXPECT_EQ(reason(missed), "TOLERANCE_NOT_REACHED");
-  EXPECT_EQ(reason(absl::InternalError("lost")), "COMPUTATION_FAILED");
+  EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
+  EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),
+            "COMPUTATION_FAILED");
 }
 
 TEST(Errors, ViolationsThatDoNotFitAreCounted) {
@@ -373,7 +375,7 @@ TEST(Errors, ViolationsThatDoNotFitAreCounted) {
   EXPECT_LT(status.error_details().size(), kMaxErrorDetails);
   google::rpc::ErrorInfo info;
   google::rpc::BadRequest request;
-  const google::rpc::Status details = Details(status);
+  const google::rpc::Status details = RpcStatusOf(status);
   for (const auto& detail : details.details()) {
     detail.UnpackTo(&info);
     detail.UnpackTo(&request);
@@ -395,7 +397,7 @@ TEST(Errors, TextIsCutBetweenCharacters) {
   std::string text;
   for (int i = 0; i < 1000; ++i) text += "\xc3\xa9";  // e with an accent
   const grpc::Status status = GrpcStatus(InvalidField("a", text));
-  EXPECT_TRUE(Details(status).IsInitialized());
+  EXPECT_TRUE(RpcStatusOf(status).IsInitialized());
   const std::string message = status.error_message();
   EXPECT_NE(message.find("\xa9..."), std::string::npos);
 }

@@ -6,6 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/convert/method.h"
+#include "tests/server/requests.h"
 
 namespace ballpiston::server {
 namespace {
@@ -13,15 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using Message = v1::MethodMeasurement;
-
-v1::CompareMethodsRequest SomeRequest() {
-  v1::CompareMethodsRequest request;
-  request.set_rho(0.53);
-  request.set_delta(0.1);
-  request.set_epsilon(0.125);
-  return request;
-}
+using Measurement = v1::MethodMeasurement;
 
 // The core's values are 0, 1, 2, ... to the last one; the conversion gives UNSPECIFIED for the
 // number after it.
@@ -44,35 +37,36 @@ std::set<int> NumbersOf(const google::protobuf::EnumDescriptor& descriptor) {
   return numbers;
 }
 
-TEST(MethodMessage, EachMethodHasItsValueAndEachValueItsMethod) {
+TEST(MethodMessage, EachMethodHasOneMessageAndEachMessageOneMethod) {
   EXPECT_EQ(MessagesOf(Method::kSpectrum, &MethodMessage),
-            NumbersOf(*Message::Method_descriptor()));
+            NumbersOf(*Measurement::Method_descriptor()));
 }
 
-TEST(MethodMessage, EachQuantityHasItsValueAndEachValueItsQuantity) {
+TEST(MethodMessage, EachQuantityHasOneMessageAndEachMessageOneQuantity) {
   EXPECT_EQ(MessagesOf(Quantity::kRelaxationTime, &QuantityMessage),
-            NumbersOf(*Message::Quantity_descriptor()));
+            NumbersOf(*Measurement::Quantity_descriptor()));
 }
 
-TEST(MethodMessage, AMethodKeepsItsMeaning) {
-  EXPECT_EQ(MethodMessage(Method::kFixedStep), Message::FIXED_STEP);
-  EXPECT_EQ(MethodMessage(Method::kReferenceSingle), Message::BILLIARD_REFERENCE_SINGLE);
-  EXPECT_EQ(MethodMessage(Method::kReference), Message::BILLIARD_REFERENCE);
-  EXPECT_EQ(MethodMessage(Method::kReferenceLongDouble), Message::BILLIARD_REFERENCE_LONG_DOUBLE);
-  EXPECT_EQ(MethodMessage(Method::kReferenceQuadruple), Message::BILLIARD_REFERENCE_QUADRUPLE);
-  EXPECT_EQ(MethodMessage(Method::kLanes), Message::BILLIARD);
-  EXPECT_EQ(MethodMessage(Method::kLanesSingle), Message::BILLIARD_SINGLE);
-  EXPECT_EQ(MethodMessage(Method::kClosedForm), Message::CLOSED_FORM);
-  EXPECT_EQ(MethodMessage(Method::kMarkov), Message::MARKOV);
-  EXPECT_EQ(MethodMessage(Method::kSpectrum), Message::SPECTRUM);
-  EXPECT_EQ(QuantityMessage(Quantity::kMeanFreeTime), Message::MEAN_FREE_TIME);
-  EXPECT_EQ(QuantityMessage(Quantity::kIngoingLaw), Message::INGOING_LAW);
-  EXPECT_EQ(QuantityMessage(Quantity::kTrajectory), Message::TRAJECTORY);
-  EXPECT_EQ(QuantityMessage(Quantity::kRelaxationTime), Message::RELAXATION_TIME);
+TEST(MethodMessage, MethodsKeepTheirMeaning) {
+  EXPECT_EQ(MethodMessage(Method::kFixedStep), Measurement::FIXED_STEP);
+  EXPECT_EQ(MethodMessage(Method::kReferenceSingle), Measurement::BILLIARD_REFERENCE_SINGLE);
+  EXPECT_EQ(MethodMessage(Method::kReference), Measurement::BILLIARD_REFERENCE);
+  EXPECT_EQ(MethodMessage(Method::kReferenceLongDouble),
+            Measurement::BILLIARD_REFERENCE_LONG_DOUBLE);
+  EXPECT_EQ(MethodMessage(Method::kReferenceQuadruple), Measurement::BILLIARD_REFERENCE_QUADRUPLE);
+  EXPECT_EQ(MethodMessage(Method::kLanes), Measurement::BILLIARD);
+  EXPECT_EQ(MethodMessage(Method::kLanesSingle), Measurement::BILLIARD_SINGLE);
+  EXPECT_EQ(MethodMessage(Method::kClosedForm), Measurement::CLOSED_FORM);
+  EXPECT_EQ(MethodMessage(Method::kMarkov), Measurement::MARKOV);
+  EXPECT_EQ(MethodMessage(Method::kSpectrum), Measurement::SPECTRUM);
+  EXPECT_EQ(QuantityMessage(Quantity::kMeanFreeTime), Measurement::MEAN_FREE_TIME);
+  EXPECT_EQ(QuantityMessage(Quantity::kIngoingLaw), Measurement::INGOING_LAW);
+  EXPECT_EQ(QuantityMessage(Quantity::kTrajectory), Measurement::TRAJECTORY);
+  EXPECT_EQ(QuantityMessage(Quantity::kRelaxationTime), Measurement::RELAXATION_TIME);
 }
 
-TEST(MethodMessage, RelaxationIsMeasuredWhereverItIsAskedFor) {
-  v1::CompareMethodsRequest request = SomeRequest();
+TEST(MethodMessage, RelaxationIsMeasuredAtTheRequestedDeltas) {
+  v1::CompareMethodsRequest request = SomeComparison();
   request.add_relaxation_delta(0.3);
   request.add_relaxation_delta(0.01);
   const CheckedComparison checked = CheckComparison(request);
@@ -82,7 +76,7 @@ TEST(MethodMessage, RelaxationIsMeasuredWhereverItIsAskedFor) {
 
 // The bound on delta, (1 - lambda)/2, is 0.32 at rho = 0.53, 0.039 at 0.68 and 0.010 at 0.7.
 TEST(MethodMessage, WithoutADeltaRelaxationIsMeasuredAtTheUsualOnesThatRhoPermits) {
-  v1::CompareMethodsRequest request = SomeRequest();
+  v1::CompareMethodsRequest request = SomeComparison();
   EXPECT_THAT(CheckComparison(request).spec.relaxation_deltas, ElementsAre(0.2, 0.1, 0.05, 0.025));
   request.set_delta(0.01);
   request.set_rho(0.68);
@@ -93,7 +87,7 @@ TEST(MethodMessage, WithoutADeltaRelaxationIsMeasuredAtTheUsualOnesThatRhoPermit
 }
 
 TEST(MethodMessage, EachDeltaOfRelaxationIsCheckedLikeDelta) {
-  v1::CompareMethodsRequest request = SomeRequest();
+  v1::CompareMethodsRequest request = SomeComparison();
   for (const double delta : {0.1, 0.4, 0.0, std::nan("")}) request.add_relaxation_delta(delta);
   const std::vector<FieldViolation> violations = CheckComparison(request).violations;
   ASSERT_EQ(violations.size(), 3u);
@@ -104,7 +98,7 @@ TEST(MethodMessage, EachDeltaOfRelaxationIsCheckedLikeDelta) {
 }
 
 TEST(MethodMessage, ThereAreAtMostEightDeltasOfRelaxation) {
-  v1::CompareMethodsRequest request = SomeRequest();
+  v1::CompareMethodsRequest request = SomeComparison();
   for (int i = 0; i < 8; ++i) request.add_relaxation_delta(0.1);
   EXPECT_THAT(CheckComparison(request).violations, IsEmpty());
   request.add_relaxation_delta(0.4);
@@ -115,19 +109,19 @@ TEST(MethodMessage, ThereAreAtMostEightDeltasOfRelaxation) {
   EXPECT_THAT(violations[0].description, HasSubstr("at most 8"));
 }
 
-TEST(MethodMessage, AMeasurementIsToldWhole) {
-  const Message message = MeasurementMessage({.method = Method::kFixedStep,
-                                              .time_step = 0.25,
-                                              .quantity = Quantity::kTrajectory,
-                                              .delta = 0.375,
-                                              .samples = 5'000'000'000,
-                                              .wall_hits = 6'000'000'000,
-                                              .work = 1.5,
-                                              .value = -0.125,
-                                              .statistical_error = 0.0625});
-  EXPECT_EQ(message.method(), Message::FIXED_STEP);
+TEST(MethodMessage, AMessageHoldsAllOfAMeasurement) {
+  const Measurement message = MeasurementMessage({.method = Method::kFixedStep,
+                                                  .time_step = 0.25,
+                                                  .quantity = Quantity::kTrajectory,
+                                                  .delta = 0.375,
+                                                  .samples = 5'000'000'000,
+                                                  .wall_hits = 6'000'000'000,
+                                                  .work = 1.5,
+                                                  .value = -0.125,
+                                                  .statistical_error = 0.0625});
+  EXPECT_EQ(message.method(), Measurement::FIXED_STEP);
   EXPECT_EQ(message.time_step(), 0.25);
-  EXPECT_EQ(message.quantity(), Message::TRAJECTORY);
+  EXPECT_EQ(message.quantity(), Measurement::TRAJECTORY);
   EXPECT_EQ(message.delta(), 0.375);
   EXPECT_EQ(message.samples(), 5'000'000'000u);
   EXPECT_EQ(message.wall_hits(), 6'000'000'000u);

@@ -60,7 +60,7 @@ TEST_F(ComparisonThreadTest, AnotherPrincipalsComparisonWaitsInTurn) {
   EXPECT_THAT(Ended(), ElementsAre("ann", "bob", "eve"));
 }
 
-TEST_F(ComparisonThreadTest, WhoLeavesWhileItWaitsGivesItsPlaceBack) {
+TEST_F(ComparisonThreadTest, AComparisonStoppedWhileWaitingFreesItsPlace) {
   Begin("ann");
   gate_.AwaitWaiting(1);
   std::stop_source stop;
@@ -70,7 +70,7 @@ TEST_F(ComparisonThreadTest, WhoLeavesWhileItWaitsGivesItsPlaceBack) {
   EXPECT_THAT(Ended(), ElementsAre("bob stopped"));
 }
 
-TEST_F(ComparisonThreadTest, AStopEndsThoseThatWaitToo) {
+TEST_F(ComparisonThreadTest, AStopEndsWaitingComparisonsToo) {
   for (const char* principal : {"ann", "bob", "eve"}) Begin(principal);
   thread_.Stop();
   EXPECT_THAT(Ended(), ElementsAre("ann stopped", "bob stopped", "eve stopped"));

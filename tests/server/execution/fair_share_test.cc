@@ -9,16 +9,16 @@
 namespace ballpiston::server {
 namespace {
 
-using Seconds = std::map<int64_t, double>;
+using SecondsByRun = std::map<int64_t, double>;
 
-int64_t First(const FairShare& share) {
+int64_t FirstRun(const FairShare& share) {
   return share.First([](int64_t) { return true; }).value_or(-1);
 }
 
 // One worker; each run's blocks take their time, 0.1 s if none is given. What the runs got.
-Seconds Served(FairShare& share, double seconds, const Seconds& block_seconds = {},
-               const std::set<int64_t>& without_task = {}) {
-  Seconds served;
+SecondsByRun Served(FairShare& share, double seconds, const SecondsByRun& block_seconds = {},
+                    const std::set<int64_t>& without_task = {}) {
+  SecondsByRun served;
   for (double now = 0; now < seconds;) {
     const auto run = share.First([&](int64_t asked) { return !without_task.contains(asked); });
     if (!run) break;
@@ -32,25 +32,25 @@ Seconds Served(FairShare& share, double seconds, const Seconds& block_seconds = 
   return served;
 }
 
-void Add(FairShare& share, const std::vector<int64_t>& runs, const std::string& principal = "a",
-         int32_t priority = 0) {
+void AddRuns(FairShare& share, const std::vector<int64_t>& runs, const std::string& principal = "a",
+             int32_t priority = 0) {
   for (const int64_t run : runs) share.Add(run, principal, priority);
 }
 
 TEST(FairShare, UnequalBlocksGetEqualTime) {
   FairShare share;
-  Add(share, {1, 2});
-  const Seconds served = Served(share, 200, {{1, 1.0}, {2, 0.01}});
+  AddRuns(share, {1, 2});
+  const SecondsByRun served = Served(share, 200, {{1, 1.0}, {2, 0.01}});
   EXPECT_NEAR(served.at(1), 100, 2);
   EXPECT_NEAR(served.at(2), 100, 2);
 }
 
 TEST(FairShare, PrincipalsGetEqualTimeWhateverTheirJobs) {
   FairShare share;
-  Add(share, {1, 2, 3, 4, 5, 6, 7, 8, 9}, "many");
-  Add(share, {10}, "one");
-  Add(share, {11, 12}, "long blocks");
-  const Seconds served = Served(share, 300, {{11, 2.0}, {12, 2.0}});
+  AddRuns(share, {1, 2, 3, 4, 5, 6, 7, 8, 9}, "many");
+  AddRuns(share, {10}, "one");
+  AddRuns(share, {11, 12}, "long blocks");
+  const SecondsByRun served = Served(share, 300, {{11, 2.0}, {12, 2.0}});
   EXPECT_NEAR(served.at(10), 100, 2.5);
   EXPECT_NEAR(served.at(11) + served.at(12), 100, 2.5);
   EXPECT_NEAR(served.at(11), 50, 2.5);
@@ -59,28 +59,28 @@ TEST(FairShare, PrincipalsGetEqualTimeWhateverTheirJobs) {
 
 TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
   FairShare share;
-  Add(share, {1}, "a", -5);
-  Add(share, {2}, "a", 0);
+  AddRuns(share, {1}, "a", -5);
+  AddRuns(share, {2}, "a", 0);
   Served(share, 10);
-  Add(share, {3, 4}, "a", 100);
-  const Seconds served = Served(share, 100);
+  AddRuns(share, {3, 4}, "a", 100);
+  const SecondsByRun served = Served(share, 100);
   EXPECT_NEAR(served.at(3), 50, 0.2);
   EXPECT_NEAR(served.at(4), 50, 0.2);
   EXPECT_EQ(served.size(), 2u);
   share.Remove(3);
   share.Remove(4);
-  EXPECT_EQ(First(share), 2);
+  EXPECT_EQ(FirstRun(share), 2);
   share.Remove(2);
-  EXPECT_EQ(First(share), 1);
+  EXPECT_EQ(FirstRun(share), 1);
 }
 
 // What those of the highest priority cannot use goes to the next.
-TEST(FairShare, WhoHasNoTaskIsPassedOver) {
+TEST(FairShare, RunsWithoutATaskArePassedOver) {
   FairShare share;
-  Add(share, {1}, "a", 1);
-  Add(share, {2}, "a", 0);
-  Add(share, {3}, "b");
-  const Seconds served = Served(share, 100, {}, {1});
+  AddRuns(share, {1}, "a", 1);
+  AddRuns(share, {2}, "a", 0);
+  AddRuns(share, {3}, "b");
+  const SecondsByRun served = Served(share, 100, {}, {1});
   EXPECT_NEAR(served.at(2), 50, 0.2);
   EXPECT_NEAR(served.at(3), 50, 0.2);
   EXPECT_FALSE(share.First([](int64_t) { return false; }));
@@ -88,29 +88,29 @@ TEST(FairShare, WhoHasNoTaskIsPassedOver) {
 
 TEST(FairShare, APriorityDoesNotTakeFromOtherPrincipals) {
   FairShare share;
-  Add(share, {1, 2}, "urgent", 100);
-  Add(share, {3}, "patient", -100);
-  const Seconds served = Served(share, 100);
+  AddRuns(share, {1, 2}, "urgent", 100);
+  AddRuns(share, {3}, "patient", -100);
+  const SecondsByRun served = Served(share, 100);
   EXPECT_NEAR(served.at(1) + served.at(2), 50, 0.2);
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
 TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
   FairShare share;
-  Add(share, {1, 2}, "old");
+  AddRuns(share, {1, 2}, "old");
   Served(share, 1000);
-  Add(share, {3}, "new");
-  const Seconds served = Served(share, 100);
+  AddRuns(share, {3}, "new");
+  const SecondsByRun served = Served(share, 100);
   EXPECT_NEAR(served.at(1) + served.at(2), 50, 0.2);
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
 TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
   FairShare share;
-  Add(share, {1});
+  AddRuns(share, {1});
   Served(share, 1000);
-  Add(share, {2});
-  const Seconds served = Served(share, 100);
+  AddRuns(share, {2});
+  const SecondsByRun served = Served(share, 100);
   EXPECT_NEAR(served.at(1), 50, 0.2);
   EXPECT_NEAR(served.at(2), 50, 0.2);
 }
@@ -120,10 +120,10 @@ TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
 TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;
-    Add(share, {1}, "a");
-    Add(share, {2}, of_one_principal ? "a" : "b");
+    AddRuns(share, {1}, "a");
+    AddRuns(share, {2}, of_one_principal ? "a" : "b");
     EXPECT_NEAR(Served(share, 1000, {}, {1}).at(2), 1000, 0.2);
-    const Seconds served = Served(share, 100);
+    const SecondsByRun served = Served(share, 100);
     EXPECT_NEAR(served.at(1), 50, 0.2);
     EXPECT_NEAR(served.at(2), 50, 0.2);
   }
@@ -132,12 +132,12 @@ TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
 // A row of jobs of one long block each, every one of them new.
 TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
   FairShare share;
-  Add(share, {1}, "steady");
-  Seconds served;
+  AddRuns(share, {1}, "steady");
+  SecondsByRun served;
   for (int64_t run = 2; run < 50; ++run) {
-    Add(share, {run}, "again");
+    AddRuns(share, {run}, "again");
     while (true) {
-      const int64_t chosen = First(share);
+      const int64_t chosen = FirstRun(share);
       const double block = chosen == 1 ? 0.1 : 10;
       share.BlockBegins(chosen);
       share.BlockEnds(chosen, block);
@@ -150,53 +150,53 @@ TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
 }
 
 // While nobody else was there it took nothing from anybody.
-TEST(FairShare, WhatWasUsedBeforeAllWereGoneIsForgotten) {
+TEST(FairShare, UseIsForgottenWhenAllAreGone) {
   FairShare share;
-  Add(share, {1}, "a");
-  Add(share, {2}, "b");
+  AddRuns(share, {1}, "a");
+  AddRuns(share, {2}, "b");
   Served(share, 100, {{1, 60}});
   share.Remove(1);
   share.Remove(2);
-  Add(share, {3}, "b");
-  Add(share, {4}, "a");
-  const Seconds served = Served(share, 100);
+  AddRuns(share, {3}, "b");
+  AddRuns(share, {4}, "a");
+  const SecondsByRun served = Served(share, 100);
   EXPECT_NEAR(served.at(3), 50, 0.2);
   EXPECT_NEAR(served.at(4), 50, 0.2);
 }
 
 TEST(FairShare, TheOlderRunComesFirstAtEquality) {
   FairShare share;
-  Add(share, {8, 7});
-  EXPECT_EQ(First(share), 7);
+  AddRuns(share, {8, 7});
+  EXPECT_EQ(FirstRun(share), 7);
 }
 
 TEST(FairShare, BlocksInFlightAreCharged) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;
-    Add(share, {1}, "a");
-    Add(share, {2}, of_one_principal ? "a" : "b");
+    AddRuns(share, {1}, "a");
+    AddRuns(share, {2}, of_one_principal ? "a" : "b");
     share.BlockBegins(1);
-    EXPECT_EQ(First(share), 2);
+    EXPECT_EQ(FirstRun(share), 2);
     share.BlockBegins(2);
     share.BlockBegins(2);
-    EXPECT_EQ(First(share), 1);
+    EXPECT_EQ(FirstRun(share), 1);
   }
 }
 
 TEST(FairShare, ARemovedRunIsForgotten) {
   FairShare share;
-  Add(share, {1});
+  AddRuns(share, {1});
   share.BlockBegins(1);
   share.Remove(1);
   share.BlockEnds(1, 1.0);
-  EXPECT_EQ(First(share), -1);
+  EXPECT_EQ(FirstRun(share), -1);
   EXPECT_EQ(share.runs(), 0u);
-  Add(share, {2, 3}, "a");
-  Add(share, {4}, "b");
+  AddRuns(share, {2, 3}, "a");
+  AddRuns(share, {4}, "b");
   share.BlockBegins(2);
-  EXPECT_EQ(First(share), 4);
+  EXPECT_EQ(FirstRun(share), 4);
   share.Remove(2);  // its block counts no more against its principal
-  EXPECT_EQ(First(share), 3);
+  EXPECT_EQ(FirstRun(share), 3);
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include "gtest/gtest.h"
 #include "server/store/pilot_table.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/store_access.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -32,11 +34,7 @@ PilotPlace PlaceOf(const EnsembleSpec& spec) { return PilotPlaceFor(PointAt(spec
 // Pilots that cost nothing, are counted, and can be held up.
 class ModelLadderTest : public testing::Test {
  protected:
-  ModelLadderTest() {
-    auto store = Store::Open(folder_.File("store.sqlite3"), {});
-    EXPECT_TRUE(store.ok()) << store.status();
-    store_ = *std::move(store);
-  }
+  ModelLadderTest() : store_(*Store::Open(folder_.File("store.sqlite3"), {})) {}
   ~ModelLadderTest() override { gate_.Open(); }
 
   PilotRunner Runner() {
@@ -54,16 +52,10 @@ class ModelLadderTest : public testing::Test {
   }
 
   std::optional<Pilot> Stored(const PilotPlace& place) {
-    std::optional<Pilot> pilot;
-    EXPECT_TRUE(store_->Flush().ok());
-    EXPECT_TRUE(store_
-                    ->Read([&](Database& database) {
-                      const auto found = FindPilot(database, std::string(kEngineVersion), place);
-                      if (found.ok()) pilot = *found;
-                      return found.status();
-                    })
-                    .ok());
-    return pilot;
+    EXPECT_OK(store_->Flush());
+    return ReadFrom(*store_, [&](Database& database) {
+      return FindPilot(database, std::string(kEngineVersion), place);
+    });
   }
 
   TemporaryFolder folder_;
@@ -98,7 +90,7 @@ TEST_F(ModelLadderTest, AnotherServerOnTheSameStoreDoesNotRunItAgain) {
     ModelLadder ladder(*store_, 2, Runner());
     first = Create(ladder, spec)->answer();
   }
-  ASSERT_TRUE(store_->Flush().ok());
+  ASSERT_OK(store_->Flush());
   ModelLadder ladder(*store_, 7, Runner());
   const Answer second = Create(ladder, spec)->answer();
   EXPECT_EQ(runs_, 1);
@@ -107,7 +99,7 @@ TEST_F(ModelLadderTest, AnotherServerOnTheSameStoreDoesNotRunItAgain) {
   EXPECT_EQ(second.model_error, first.model_error);
 }
 
-TEST_F(ModelLadderTest, APilotThatFindsTheLimitTooFarOffLeavesItToTheBilliard) {
+TEST_F(ModelLadderTest, IfThePilotFindsTheLimitTooFarOffTheBilliardIsChosen) {
   found_.difference = 1;
   ModelLadder ladder(*store_, 2, Runner());
   const auto experiment = Create(ladder, Relaxation());
@@ -122,7 +114,7 @@ TEST_F(ModelLadderTest, OneStoredPilotServesAllSmallerDeltas) {
   EXPECT_EQ(runs_, 1);
 }
 
-TEST_F(ModelLadderTest, ThoseWhoNeedThePlaceThatIsBeingRunWaitForIt) {
+TEST_F(ModelLadderTest, JobsWaitForARunningPilotOfTheirPlace) {
   constexpr int kThreads = 8;
   const EnsembleSpec spec = Relaxation();
   held_ = PlaceOf(spec);
@@ -148,7 +140,7 @@ TEST_F(ModelLadderTest, ThoseWhoNeedThePlaceThatIsBeingRunWaitForIt) {
   EXPECT_EQ(runs_, 2);
 }
 
-TEST_F(ModelLadderTest, OneThatWaitsOrRunsCanBeToldToStop) {
+TEST_F(ModelLadderTest, WaitingAndRunningPilotsCanBeStopped) {
   const EnsembleSpec spec = Relaxation();
   held_ = PlaceOf(spec);
   ModelLadder ladder(*store_, 2, Runner());
@@ -169,7 +161,7 @@ TEST_F(ModelLadderTest, OneThatWaitsOrRunsCanBeToldToStop) {
   EXPECT_TRUE(Stored(PlaceOf(spec)));
 }
 
-TEST_F(ModelLadderTest, WhatNeedsNoPilotRunsNone) {
+TEST_F(ModelLadderTest, WithoutNeedNoPilotIsRun) {
   ModelLadder ladder(*store_, 2, Runner());
   EnsembleSpec closed = Relaxation();
   closed.experiment = Experiment::kEquilibrium;
@@ -186,7 +178,7 @@ TEST_F(ModelLadderTest, WhatNeedsNoPilotRunsNone) {
   EXPECT_EQ(runs_, 0);
 }
 
-TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherItKnowsOne) {
+TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherThereIsOne) {
   const EnsembleSpec spec = Relaxation();
   ModelLadder ladder(*store_, 2, Runner());
   const Ladder before = ladder.LadderOf(spec, PointAt(spec, 0));

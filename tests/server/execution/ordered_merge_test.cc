@@ -1,6 +1,7 @@
 #include "server/execution/ordered_merge.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -11,22 +12,22 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr uint64_t kBlocks = 50;
+constexpr uint64_t kMergedBlocks = 50;
 
-std::shared_ptr<const PointExperiment> Experiment() {
-  return FakeExperiments()(FakeSpec(1, kBlocks), 0, std::stop_token());
+std::shared_ptr<const PointExperiment> ExperimentOfBlocks() {
+  return FakeExperiments()(FakeSpec(1, kMergedBlocks), 0, std::stop_token());
 }
 
 std::vector<uint64_t> Shuffled(unsigned seed) {
-  std::vector<uint64_t> order(kBlocks);
+  std::vector<uint64_t> order(kMergedBlocks);
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(seed));
   return order;
 }
 
 TEST(OrderedMerge, ResultIsIndependentOfArrivalOrder) {
-  const auto experiment = Experiment();
-  const BlockResult expected = FakeMerged(FakeSpec(1, kBlocks), 0, kBlocks);
+  const auto experiment = ExperimentOfBlocks();
+  const BlockResult expected = FakeMerged(FakeSpec(1, kMergedBlocks), 0, kMergedBlocks);
   for (unsigned seed = 0; seed < 20; ++seed) {
     OrderedMerge merge(experiment);
     std::vector<uint64_t> merged;
@@ -37,19 +38,20 @@ TEST(OrderedMerge, ResultIsIndependentOfArrivalOrder) {
     EXPECT_TRUE(merge.finished());
     EXPECT_TRUE(merge.merged() == expected) << "arrival order " << seed;
     EXPECT_TRUE(std::is_sorted(merged.begin(), merged.end()));
-    EXPECT_EQ(merged.size(), kBlocks);
+    EXPECT_EQ(merged.size(), kMergedBlocks);
   }
 }
 
 TEST(OrderedMerge, MergingInAnotherOrderGivesOtherBits) {  // or the test above proves nothing
-  const auto experiment = Experiment();
+  const auto experiment = ExperimentOfBlocks();
   BlockResult backwards;
-  for (uint64_t block = kBlocks; block-- > 0;) backwards.Merge(*experiment->RunBlock(block, {}));
-  EXPECT_FALSE(backwards == FakeMerged(FakeSpec(1, kBlocks), 0, kBlocks));
+  for (uint64_t block = kMergedBlocks; block-- > 0;)
+    backwards.Merge(*experiment->RunBlock(block, {}));
+  EXPECT_FALSE(backwards == FakeMerged(FakeSpec(1, kMergedBlocks), 0, kMergedBlocks));
 }
 
 TEST(OrderedMerge, EarlyBlocksWait) {
-  const auto experiment = Experiment();
+  const auto experiment = ExperimentOfBlocks();
   OrderedMerge merge(experiment);
   merge.Add(1, *experiment->RunBlock(1, {}), nullptr);
   EXPECT_EQ(merge.blocks_merged(), 0u);
@@ -62,7 +64,7 @@ TEST(OrderedMerge, EarlyBlocksWait) {
 }
 
 TEST(OrderedMerge, ABlockCountsOnce) {
-  const auto experiment = Experiment();
+  const auto experiment = ExperimentOfBlocks();
   OrderedMerge merge(experiment);
   for (int repeat = 0; repeat < 3; ++repeat) {
     merge.Add(0, *experiment->RunBlock(0, {}), nullptr);
@@ -72,8 +74,8 @@ TEST(OrderedMerge, ABlockCountsOnce) {
   EXPECT_EQ(merge.merged().samples, kFakeSamplesPerBlock);
 }
 
-TEST(OrderedMerge, FinishedEarlyItKeepsThePrefixAndDropsWhatWaits) {
-  const auto experiment = Experiment();
+TEST(OrderedMerge, FinishKeepsThePrefixAndDropsWaitingBlocks) {
+  const auto experiment = ExperimentOfBlocks();
   OrderedMerge merge(experiment);
   for (const uint64_t block : {0, 1, 3, 4}) {
     merge.Add(block, *experiment->RunBlock(block, {}), nullptr);
@@ -83,10 +85,10 @@ TEST(OrderedMerge, FinishedEarlyItKeepsThePrefixAndDropsWhatWaits) {
   EXPECT_EQ(merge.waiting(), 0u);
   merge.Add(2, *experiment->RunBlock(2, {}), nullptr);  // came too late
   EXPECT_EQ(merge.blocks_merged(), 2u);
-  EXPECT_TRUE(merge.merged() == FakeMerged(FakeSpec(1, kBlocks), 0, 2));
+  EXPECT_TRUE(merge.merged() == FakeMerged(FakeSpec(1, kMergedBlocks), 0, 2));
 }
 
-TEST(OrderedMerge, APlanWithoutBlocksIsFinishedFromTheStart) {
+TEST(OrderedMerge, APlanWithoutBlocksIsFinishedAtOnce) {
   const std::shared_ptr<const PointExperiment> computed =
       FakeExperiments()(FakeSpec(1, 0), 0, std::stop_token());
   ASSERT_EQ(computed->plan().Blocks(), 0u);

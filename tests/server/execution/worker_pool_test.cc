@@ -3,31 +3,48 @@
 #include <algorithm>
 #include <atomic>
 #include <ctime>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/execution/recording_journal.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
 
-RunRequest Request(int64_t key, const EnsembleSpec& spec,
-                   std::shared_ptr<RecordingJournal> journal) {
+using JournalPointer = std::shared_ptr<RecordingJournal>;
+
+RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& journal) {
   RunRequest request;
   request.key = key;
   request.spec = spec;
   request.finished.assign(PointCount(spec), false);
-  request.journal = std::move(journal);
+  request.has_stored_blocks = journal != nullptr && !journal->stored.empty();
+  request.journal = journal;
   return request;
+}
+
+JournalPointer AddRun(WorkerPool& pool, int64_t key, const EnsembleSpec& spec,
+                      const std::string& principal = "", int32_t priority = 0) {
+  auto journal = std::make_shared<RecordingJournal>();
+  RunRequest request = RunOf(key, spec, journal);
+  request.principal = principal;
+  request.priority = priority;
+  pool.Add(std::move(request));
+  return journal;
 }
 
 void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJournal& journal) {
@@ -42,9 +59,8 @@ TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
   const EnsembleSpec spec = FakeSpec(20, 40);
   for (const int workers : {1, 2, 8}) {
     WorkerPool pool(workers, FakeExperiments());
-    auto journal = std::make_shared<RecordingJournal>();
-    pool.Add(Request(1, spec, journal));
-    EXPECT_TRUE(journal->AwaitEnd().ok());
+    const auto journal = AddRun(pool, 1, spec);
+    EXPECT_OK(journal->AwaitEnd());
     ExpectAllPointsRight(spec, *journal);
     EXPECT_EQ(journal->begun, 1);
   }
@@ -53,9 +69,8 @@ TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
 TEST(WorkerPool, BlocksOfAPointAreMergedInOrderAndOnce) {
   const EnsembleSpec spec = FakeSpec(5, 100);
   WorkerPool pool(8, FakeExperiments());
-  auto journal = std::make_shared<RecordingJournal>();
-  pool.Add(Request(1, spec, journal));
-  ASSERT_TRUE(journal->AwaitEnd().ok());
+  const auto journal = AddRun(pool, 1, spec);
+  ASSERT_OK(journal->AwaitEnd());
   for (const auto& [point, blocks] : journal->merged) {
     EXPECT_EQ(blocks.size(), 100u);
     EXPECT_TRUE(std::is_sorted(blocks.begin(), blocks.end()));
@@ -75,10 +90,8 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
                     std::lock_guard lock(mutex);
                     if (point == 1) computed.insert(block);
                   }));
-  RunRequest request = Request(1, spec, journal);
-  request.has_stored_blocks = true;
-  pool.Add(std::move(request));
-  ASSERT_TRUE(journal->AwaitEnd().ok());
+  pool.Add(RunOf(1, spec, journal));
+  ASSERT_OK(journal->AwaitEnd());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed.size(), 25u);
   for (const uint64_t block : {0, 1, 2, 7, 9}) EXPECT_FALSE(computed.contains(block));
@@ -93,10 +106,8 @@ TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   }
   std::atomic<int> computed = 0;
   WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
-  RunRequest request = Request(1, spec, journal);
-  request.has_stored_blocks = true;
-  pool.Add(std::move(request));
-  ASSERT_TRUE(journal->AwaitEnd().ok());
+  pool.Add(RunOf(1, spec, journal));
+  ASSERT_OK(journal->AwaitEnd());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed, 0);
 }
@@ -109,21 +120,19 @@ TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
   journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
   journal->stored[0].at(1).moments.resize(1000);
   WorkerPool pool(2, FakeExperiments());
-  RunRequest request = Request(1, spec, journal);
-  request.has_stored_blocks = true;
-  pool.Add(std::move(request));
-  EXPECT_TRUE(absl::IsDataLoss(journal->AwaitEnd()));
+  pool.Add(RunOf(1, spec, journal));
+  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_TRUE(journal->finished.empty());
 }
 
-TEST(WorkerPool, FinishedPointsAreLeftAlone) {
+TEST(WorkerPool, FinishedPointsAreNotComputedAgain) {
   const EnsembleSpec spec = FakeSpec(4, 5);
   auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(2, FakeExperiments());
-  RunRequest request = Request(1, spec, journal);
+  RunRequest request = RunOf(1, spec, journal);
   request.finished = {true, false, true, false};
   pool.Add(std::move(request));
-  ASSERT_TRUE(journal->AwaitEnd().ok());
+  ASSERT_OK(journal->AwaitEnd());
   ASSERT_EQ(journal->finished.size(), 2u);
   EXPECT_TRUE(journal->finished.contains(1));
   EXPECT_TRUE(journal->finished.contains(3));
@@ -132,10 +141,10 @@ TEST(WorkerPool, FinishedPointsAreLeftAlone) {
 TEST(WorkerPool, ARunWithNothingToComputeEnds) {
   auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(1, FakeExperiments());
-  RunRequest request = Request(1, FakeSpec(1, 5), journal);
+  RunRequest request = RunOf(1, FakeSpec(1, 5), journal);
   request.finished = {true};
   pool.Add(std::move(request));
-  EXPECT_TRUE(journal->AwaitEnd().ok());
+  EXPECT_OK(journal->AwaitEnd());
   EXPECT_EQ(journal->begun, 0);
 }
 
@@ -146,7 +155,6 @@ TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
   EnsembleSpec spec = FakeSpec(1, 0);
   spec.target = {};
   spec.target.tolerance = 0.05;
-  auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(kWorkers, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
                     uint64_t seen = furthest;
                     while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
@@ -155,8 +163,8 @@ TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
                     // The last block of the window: no more can be handed out before the first.
                     if (block == 4 * kWorkers - 1) gate.Open();
                   }));
-  pool.Add(Request(1, spec, journal));
-  ASSERT_TRUE(journal->AwaitEnd().ok());
+  const auto journal = AddRun(pool, 1, spec);
+  ASSERT_OK(journal->AwaitEnd());
   const uint64_t merged = journal->merged[0].size();
   EXPECT_LT(merged, 1000u);
   EXPECT_LE(furthest, merged + 4 * kWorkers);
@@ -178,9 +186,8 @@ TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
   const EnsembleSpec spec = FakeBudget(5);
   for (const int workers : {1, 4}) {
     WorkerPool pool(workers, FakeExperiments());
-    auto journal = std::make_shared<RecordingJournal>();
-    pool.Add(Request(1, spec, journal));
-    EXPECT_TRUE(journal->AwaitEnd().ok());
+    const auto journal = AddRun(pool, 1, spec);
+    EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 5u);
     for (const auto& [point, merged] : journal->finished) {
       const uint64_t blocks = journal->merged[point].size();
@@ -192,27 +199,25 @@ TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
   }
 }
 
-TEST(WorkerPool, AnAmpleBudgetEndsNothing) {
+TEST(WorkerPool, AnAmpleBudgetHasNoEffect) {
   EnsembleSpec spec = FakeSpec(2, 0);
   spec.target = {.budget_seconds = 1e6};
   WorkerPool pool(2, FakeExperiments());
-  auto journal = std::make_shared<RecordingJournal>();
-  pool.Add(Request(1, spec, journal));
-  EXPECT_TRUE(journal->AwaitEnd().ok());
+  const auto journal = AddRun(pool, 1, spec);
+  EXPECT_OK(journal->AwaitEnd());
   for (const auto& [point, merged] : journal->finished) {
     EXPECT_TRUE(merged == FakeMerged(spec, point, 1000)) << "point " << point;
   }
 }
 
 // With one worker one block is merged at a time, so nothing but the first.
-TEST(WorkerPool, AToleranceThatTheBudgetDoesNotReachIsToldAfterAllPointsAreFinished) {
+TEST(WorkerPool, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
   EnsembleSpec spec = FakeBudget(5);
   spec.target.tolerance = 0.001;
   WorkerPool pool(1, FakeExperiments());
-  auto journal = std::make_shared<RecordingJournal>();
-  pool.Add(Request(1, spec, journal));
+  const auto journal = AddRun(pool, 1, spec);
   const absl::Status outcome = journal->AwaitEnd();
-  EXPECT_TRUE(absl::IsDeadlineExceeded(outcome)) << outcome;
+  EXPECT_THAT(outcome, StatusIs(absl::StatusCode::kDeadlineExceeded));
   EXPECT_EQ(journal->finished.size(), 5u);
   for (const auto& [point, merged] : journal->finished) {
     EXPECT_TRUE(merged == FakeMerged(spec, point, 1)) << "point " << point;
@@ -226,16 +231,15 @@ TEST(WorkerPool, AToleranceThatTheBudgetDoesNotReachIsToldAfterAllPointsAreFinis
                             reached));
 }
 
-TEST(WorkerPool, AToleranceThatIsReachedLeavesTheBudgetAlone) {
+TEST(WorkerPool, AReachedToleranceEndsBeforeTheBudget) {
   EnsembleSpec spec = FakeSpec(3, 0);
   spec.target = {.tolerance = 0.05};
   EnsembleSpec with_budget = spec;
   with_budget.target.budget_seconds = 1e6;
   for (const EnsembleSpec& asked : {spec, with_budget}) {
     WorkerPool pool(1, FakeExperiments());
-    auto journal = std::make_shared<RecordingJournal>();
-    pool.Add(Request(1, asked, journal));
-    EXPECT_TRUE(journal->AwaitEnd().ok());
+    const auto journal = AddRun(pool, 1, asked);
+    EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 3u);
     for (const auto& [point, merged] : journal->finished) {
       EXPECT_GT(merged.samples, kMinBlocks * kFakeSamplesPerBlock);
@@ -247,14 +251,13 @@ TEST(WorkerPool, AToleranceThatIsReachedLeavesTheBudgetAlone) {
 
 TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
   EnsembleSpec spec = FakeSpec(4, 5);
-  auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(2, [](const EnsembleSpec& whole, size_t index, const std::stop_token& stop) {
     EnsembleSpec of_point = whole;
     if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
     return FakeExperiments()(of_point, index, stop);
   });
-  pool.Add(Request(1, spec, journal));
-  EXPECT_TRUE(journal->AwaitEnd().ok());
+  const auto journal = AddRun(pool, 1, spec);
+  EXPECT_OK(journal->AwaitEnd());
   ASSERT_EQ(journal->finished.size(), 4u);
   for (const auto& [point, merged] : journal->finished) {
     EXPECT_TRUE(merged == FakeMerged(spec, point, point % 2 == 0 ? 0 : 5)) << "point " << point;
@@ -265,7 +268,6 @@ TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
 // As a pilot run that is told to stop does.
 TEST(WorkerPool, AFactoryIsToldToStopAndItsRunEndsAsCancelled) {
   Gate gate;
-  auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(1,
                   [&](const EnsembleSpec& spec, size_t index,
                       const std::stop_token& stop) -> std::unique_ptr<const PointExperiment> {
@@ -273,17 +275,15 @@ TEST(WorkerPool, AFactoryIsToldToStopAndItsRunEndsAsCancelled) {
                     if (stop.stop_requested()) return nullptr;
                     return FakeExperiments()(spec, index, stop);
                   });
-  pool.Add(Request(1, FakeSpec(3, 5), journal));
+  const auto journal = AddRun(pool, 1, FakeSpec(3, 5));
   gate.AwaitWaiting(1);
   pool.Cancel(1);
-  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
   EXPECT_TRUE(journal->finished.empty());
   EXPECT_EQ(journal->ends, 1);
 }
 
 TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
-  auto idle = std::make_shared<RecordingJournal>();
-  auto busy = std::make_shared<RecordingJournal>();
   // Some of the thread's own time, whoever else computes.
   const auto compute = [] {
     timespec begin{}, now{};
@@ -298,10 +298,10 @@ TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
       if (seed == 2) compute();
     })(spec, index, stop);
   });
-  pool.Add(Request(1, FakeSpec(1, 4, 1), idle));
-  ASSERT_TRUE(idle->AwaitEnd().ok());
-  pool.Add(Request(2, FakeSpec(1, 4, 2), busy));
-  ASSERT_TRUE(busy->AwaitEnd().ok());
+  const auto idle = AddRun(pool, 1, FakeSpec(1, 4, 1));
+  ASSERT_OK(idle->AwaitEnd());
+  const auto busy = AddRun(pool, 2, FakeSpec(1, 4, 2));
+  ASSERT_OK(busy->AwaitEnd());
   EXPECT_GT(idle->work, 0);
   // At least one of five in each second of the clock: a turn of the second cuts one short.
   EXPECT_GE(busy->work, 4 * 0.002);
@@ -309,70 +309,60 @@ TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
 
 TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
   Gate gate;
-  auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
-                    if (block >= 3) gate.Pass(stop);
-                  }));
-  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  WorkerPool pool(2, GatedExperiments(gate, 3));
+  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
   gate.AwaitWaiting(2);
   pool.Cancel(1);
   pool.Cancel(1);
-  EXPECT_TRUE(absl::IsCancelled(journal->AwaitEnd()));
+  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
   pool.Shutdown();
   EXPECT_EQ(journal->ends, 1);
   EXPECT_TRUE(journal->finished.empty());
 }
 
-TEST(WorkerPool, AnExceptionFailsItsRunAndNoOther) {
-  auto good = std::make_shared<RecordingJournal>();
-  auto bad = std::make_shared<RecordingJournal>();
-  auto hungry = std::make_shared<RecordingJournal>();
-  WorkerPool pool(2, [](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
-    return FakeExperiments([seed = spec.seed](size_t, uint64_t block, std::stop_token) {
-      if (seed == 13 && block == 5) throw std::runtime_error("the ball left the cell");
-      if (seed == 14 && block == 5) throw std::bad_alloc();
-    })(spec, index, stop);
-  });
-  pool.Add(Request(1, FakeSpec(3, 20, 13), bad));
-  pool.Add(Request(2, FakeSpec(3, 20, 14), hungry));
-  pool.Add(Request(3, FakeSpec(3, 20, 15), good));
-  EXPECT_TRUE(good->AwaitEnd().ok());
+TEST(WorkerPool, AnExceptionFailsItsRunOnly) {
+  WorkerPool pool(2,
+                  FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
+                    if (seed == 13 && block == 5)
+                      throw std::runtime_error("the ball left the cell");
+                    if (seed == 14 && block == 5) throw std::bad_alloc();
+                  }));
+  const auto bad = AddRun(pool, 1, FakeSpec(3, 20, 13));
+  const auto hungry = AddRun(pool, 2, FakeSpec(3, 20, 14));
+  const auto good = AddRun(pool, 3, FakeSpec(3, 20, 15));
+  EXPECT_OK(good->AwaitEnd());
   EXPECT_THAT(std::string(bad->AwaitEnd().message()), HasSubstr("the ball left the cell"));
   EXPECT_THAT(std::string(hungry->AwaitEnd().message()), HasSubstr("out of memory"));
   ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
 }
 
 TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
-  auto journal = std::make_shared<RecordingJournal>();
   WorkerPool pool(2,
                   [](const EnsembleSpec&, size_t,
                      const std::stop_token&) -> std::unique_ptr<const PointExperiment> {
                     throw std::runtime_error("no such experiment");
                   });
-  pool.Add(Request(1, FakeSpec(3, 20), journal));
+  const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }
 
 // A short run beside a long one that came first: it has ended when the long one has not.
 TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
-  auto long_run = std::make_shared<RecordingJournal>();
-  auto short_run = std::make_shared<RecordingJournal>();
   Gate gate;
-  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
-    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t block, std::stop_token stop) {
-      if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
-    })(spec, index, told);
-  });
-  pool.Add(Request(1, FakeSpec(1, 1'000'000'000, 1), long_run));
+  WorkerPool pool(
+      1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
+        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
+      }));
+  const auto long_run = AddRun(pool, 1, FakeSpec(1, 1'000'000'000, 1));
   gate.AwaitWaiting(1);
-  pool.Add(Request(2, FakeSpec(1, 10, 2), short_run));
+  const auto short_run = AddRun(pool, 2, FakeSpec(1, 10, 2));
   gate.Open();
-  EXPECT_TRUE(short_run->AwaitEnd().ok());
+  EXPECT_OK(short_run->AwaitEnd());
   EXPECT_EQ(long_run->ends, 0);
 }
 
 // What a worker does with a task. Block 5 of each point was stored before.
-void Do(const RunTask& task, const EnsembleSpec& spec, Run& run) {
+void DoTask(const RunTask& task, const EnsembleSpec& spec, Run& run) {
   if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
     auto open = std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {}));
     open->merge.Add(5, *open->experiment->RunBlock(5, {}), nullptr);
@@ -387,11 +377,11 @@ void Do(const RunTask& task, const EnsembleSpec& spec, Run& run) {
 }
 
 // So that of 10,000 runs no more are asked in vain than there are workers.
-TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
+TEST(Run, HasATaskUnlessItWaitsForOthersOrIsOver) {
   const EnsembleSpec spec = FakeSpec(4, 10);
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::minstd_rand random(seed);
-    server::Run run(Request(1, spec, nullptr), 3);
+    server::Run run(RunOf(1, spec, nullptr), 3);
     std::vector<RunTask> out;
     while (!run.over()) {
       std::optional<RunTask> task = run.NextTask();
@@ -399,53 +389,26 @@ TEST(Run, HasATaskUnlessSomeAreOutOrItIsOver) {
       ASSERT_FALSE(out.empty());
       if (task && random() % 2 == 0) continue;
       std::swap(out[random() % out.size()], out.back());
-      Do(out.back(), spec, run);
+      DoTask(out.back(), spec, run);
       out.pop_back();
     }
     EXPECT_TRUE(out.empty());
   }
 }
 
-// Whose blocks were begun, by the seed of their specification, in that order.
-class Begun {
- public:
-  void Add(uint64_t seed) {
-    std::lock_guard lock(mutex_);
-    seeds_.push_back(seed);
-  }
-  std::vector<uint64_t> seeds() const {
-    std::lock_guard lock(mutex_);
-    return seeds_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<uint64_t> seeds_;
-};
-
-RunRequest RequestOf(const char* principal, int32_t priority, int64_t key, const EnsembleSpec& spec,
-                     std::shared_ptr<RecordingJournal> journal) {
-  RunRequest request = Request(key, spec, std::move(journal));
-  request.principal = principal;
-  request.priority = priority;
-  return request;
-}
-
 // Added while the only worker is held up by a first run, so that all of them are there when it goes
 // on.
 TEST(WorkerPool, AHigherPriorityIsServedFirst) {
   Gate gate;
-  Begun begun;
-  WorkerPool pool(1, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
-    return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token stop) {
-      begun.Add(seed);
-      if (seed == 1) gate.Pass(stop);
-    })(spec, index, told);
-  });
-  std::vector<std::shared_ptr<RecordingJournal>> journals;
+  std::vector<uint64_t> begun;  // blocks, by the seed of their run
+  WorkerPool pool(1,
+                  FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+                    begun.push_back(seed);
+                    if (seed == 1) gate.Pass(stop);
+                  }));
+  std::vector<JournalPointer> journals;
   const auto add = [&](int64_t key, int32_t priority, uint64_t seed, int64_t blocks) {
-    journals.push_back(std::make_shared<RecordingJournal>());
-    pool.Add(RequestOf("a", priority, key, FakeSpec(2, blocks, seed), journals.back()));
+    journals.push_back(AddRun(pool, key, FakeSpec(2, blocks, seed), "a", priority));
   };
   add(1, 0, 1, 1);
   gate.AwaitWaiting(1);
@@ -453,34 +416,31 @@ TEST(WorkerPool, AHigherPriorityIsServedFirst) {
   add(3, 0, 3, 10);
   add(4, 7, 4, 10);
   gate.Open();
-  for (const auto& journal : journals) EXPECT_TRUE(journal->AwaitEnd().ok());
+  for (const auto& journal : journals) EXPECT_OK(journal->AwaitEnd());
   // The first run's second point comes when its priority's turn has come.
-  std::vector<uint64_t> others = begun.seeds();
-  std::erase(others, 1u);
+  std::erase(begun, 1u);
   std::vector<uint64_t> expected;
   for (const uint64_t seed : {4u, 3u, 2u}) expected.insert(expected.end(), 20, seed);
-  EXPECT_EQ(others, expected);
+  EXPECT_EQ(begun, expected);
 }
 
 // The first has a point that takes long to be opened; nothing but that keeps it from working.
-TEST(WorkerPool, ARunWithNothingToHandOutLetsTheNextGoOn) {
+TEST(WorkerPool, ARunWithoutTasksLetsTheNextGoOn) {
   Gate gate;
-  auto first = std::make_shared<RecordingJournal>();
-  auto next = std::make_shared<RecordingJournal>();
   WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
     if (spec.seed == 1) gate.Pass(stop);
     return FakeExperiments()(spec, index, stop);
   });
-  pool.Add(RequestOf("a", 100, 1, FakeSpec(1, 5, 1), first));
+  const auto first = AddRun(pool, 1, FakeSpec(1, 5, 1), "a", 100);
   gate.AwaitWaiting(1);
-  pool.Add(RequestOf("a", -100, 2, FakeSpec(3, 50, 2), next));
-  EXPECT_TRUE(next->AwaitEnd().ok());
+  const auto next = AddRun(pool, 2, FakeSpec(3, 50, 2), "a", -100);
+  EXPECT_OK(next->AwaitEnd());
   EXPECT_EQ(first->ends, 0);
   gate.Open();
-  EXPECT_TRUE(first->AwaitEnd().ok());
+  EXPECT_OK(first->AwaitEnd());
 }
 
-TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
+TEST(WorkerPool, TheSameBitsInAnyOrderOfTurns) {
   struct Owner {
     const char* principal;
     int32_t priority;
@@ -489,14 +449,13 @@ TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
                              std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
                              std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
     WorkerPool pool(3, FakeExperiments());
-    std::vector<std::shared_ptr<RecordingJournal>> journals;
+    std::vector<JournalPointer> journals;
     for (size_t i = 0; i < owners.size(); ++i) {
-      journals.push_back(std::make_shared<RecordingJournal>());
-      pool.Add(RequestOf(owners[i].principal, owners[i].priority, static_cast<int64_t>(i) + 1,
-                         FakeSpec(5, 40, i), journals.back()));
+      journals.push_back(AddRun(pool, static_cast<int64_t>(i) + 1, FakeSpec(5, 40, i),
+                                owners[i].principal, owners[i].priority));
     }
     for (size_t i = 0; i < owners.size(); ++i) {
-      EXPECT_TRUE(journals[i]->AwaitEnd().ok());
+      EXPECT_OK(journals[i]->AwaitEnd());
       ExpectAllPointsRight(FakeSpec(5, 40, i), *journals[i]);
     }
   }
@@ -504,23 +463,18 @@ TEST(WorkerPool, TheSameBitsWhoseverTurnItWas) {
 
 TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
   Gate gate;
-  auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(
-      2, FakeExperiments([&](size_t, uint64_t, std::stop_token stop) { gate.Pass(stop); }));
-  pool.Add(Request(1, FakeSpec(10, 100), journal));
+  WorkerPool pool(2, GatedExperiments(gate));
+  const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
   gate.AwaitWaiting(2);
   pool.Shutdown();
   EXPECT_EQ(journal->ends, 0);
 }
 
-TEST(WorkerPool, LivePointsAreThoseThatChanged) {
+TEST(WorkerPool, ChangedSinceReturnsThePointsThatChanged) {
   Gate gate;
-  auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(1, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
-                    if (block == 6) gate.Pass(stop);
-                  }));
+  WorkerPool pool(1, GatedExperiments(gate, 6));
   const EnsembleSpec spec = FakeSpec(1, 100);
-  pool.Add(Request(1, spec, journal));
+  const auto journal = AddRun(pool, 1, spec);
   gate.AwaitWaiting(1);
   const auto live = pool.ChangedSince(1, 0, 10);
   ASSERT_EQ(live.size(), 1u);

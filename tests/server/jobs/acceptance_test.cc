@@ -8,24 +8,26 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "absl/strings/cord.h"
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
-#include "google/rpc/error_details.pb.h"
 #include "gtest/gtest.h"
 #include "server/jobs/job_book.h"
 #include "server/jobs/job_state.h"
 #include "server/jobs/question.h"
 #include "server/store/job_table.h"
+#include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/store_access.h"
 #include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -35,40 +37,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using v1::EnsembleJob;
 
-constexpr char kUuid[] = "123e4567-e89b-12d3-a456-426614174000";
 constexpr uint64_t kFailingSeed = 13;
 constexpr uint64_t kHeldSeed = 14;
 
 const Principal kAnn{"ann", Role::kSubmit};
-const Principal kBob{"bob", Role::kSubmit};
+const Principal kBen{"ben", Role::kSubmit};
 
-v1::CreateEnsembleJobRequest Asking(const v1::EnsembleSpec& spec, const char* request_id = "") {
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = spec;
-  request.set_request_id(request_id);
-  return request;
-}
-
-v1::CreateEnsembleJobRequest AskingAnew(const v1::EnsembleSpec& spec, const char* request_id = "") {
-  v1::CreateEnsembleJobRequest request = Asking(spec, request_id);
-  request.set_fresh(true);
-  return request;
-}
-
-v1::EnsembleSpec Question(uint64_t seed = 1) {
-  v1::EnsembleSpec spec = Equilibrium(2, 5);
-  spec.set_seed(seed);
-  return spec;
-}
-
-google::rpc::ErrorInfo InfoOf(const absl::Status& status) {
-  google::rpc::ErrorInfo info;
-  const auto payload = status.GetPayload("type.googleapis.com/google.rpc.ErrorInfo");
-  if (payload) info.ParseFromString(std::string(*payload));
-  return info;
-}
-
-std::string ReasonOf(const absl::Status& status) { return InfoOf(status).reason(); }
+v1::EnsembleSpec Question(uint64_t seed = 1) { return Equilibrium(2, 5, seed); }
 
 // Jobs with the seeds above fail, or wait at the gate.
 class AcceptanceTest : public testing::Test {
@@ -77,14 +52,13 @@ class AcceptanceTest : public testing::Test {
   ~AcceptanceTest() override { Stop(); }
 
   void Start() {
-    auto store = Store::Open(folder_.File("store"), {.delay = std::chrono::milliseconds(1)});
-    ASSERT_TRUE(store.ok()) << store.status();
-    store_ = *std::move(store);
+    ASSERT_OK_AND_ASSIGN(
+        store_, Store::Open(folder_.File("store"), {.delay = std::chrono::milliseconds(1)}));
     book_ = std::make_unique<JobBook>(*store_, limits_, 2, Experiments(), [this] {
       std::lock_guard lock(mutex_);
       changed_.notify_all();
     });
-    ASSERT_TRUE(book_->Resume().ok());
+    ASSERT_OK(book_->Resume());
   }
 
   void Stop() {
@@ -98,12 +72,10 @@ class AcceptanceTest : public testing::Test {
   }
 
   ExperimentFactory Experiments() {
-    return [this](const EnsembleSpec& spec, size_t index, const std::stop_token& told) {
-      return FakeExperiments([this, seed = spec.seed](size_t, uint64_t, std::stop_token stop) {
-        if (seed == kFailingSeed) throw std::runtime_error("the ball left the cell");
-        if (seed == kHeldSeed) gate_.Pass(stop);
-      })(spec, index, told);
-    };
+    return FakeExperimentsBySeed([this](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+      if (seed == kFailingSeed) throw std::runtime_error("the ball left the cell");
+      if (seed == kHeldSeed) gate_.Pass(stop);
+    });
   }
 
   absl::StatusOr<EnsembleJob> Create(const Principal& caller,
@@ -116,11 +88,11 @@ class AcceptanceTest : public testing::Test {
   // The name of a job that has to be made, or answered with.
   std::string Name(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
     const auto job = Create(caller, request);
-    EXPECT_TRUE(job.ok()) << job.status();
+    EXPECT_OK(job);
     return job.ok() ? job->name() : "";
   }
 
-  std::string IdOf(const std::string& name) const { return name.substr(name.find('/') + 1); }
+  static std::string IdOf(const std::string& name) { return name.substr(name.find('/') + 1); }
 
   EnsembleJob AwaitEnd(const std::string& name) {
     absl::StatusOr<EnsembleJob> job;
@@ -129,7 +101,7 @@ class AcceptanceTest : public testing::Test {
       job = book_->Get({"", Role::kAdmin}, IdOf(name));
       return !job.ok() || HasEnded(job->state());
     });
-    EXPECT_TRUE(job.ok()) << job.status();
+    EXPECT_OK(job);
     return job.ok() ? *std::move(job) : EnsembleJob();
   }
 
@@ -143,10 +115,9 @@ class AcceptanceTest : public testing::Test {
   // That the request made a job of its own.
   void ExpectComputed(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const std::string& earlier) {
-    const auto job = Create(caller, request);
-    ASSERT_TRUE(job.ok()) << job.status();
-    EXPECT_NE(job->name(), earlier);
-    EXPECT_FALSE(job->answered_from_store());
+    ASSERT_OK_AND_ASSIGN(const auto job, Create(caller, request));
+    EXPECT_NE(job.name(), earlier);
+    EXPECT_FALSE(job.answered_from_store());
   }
 
   size_t Jobs() {
@@ -154,7 +125,7 @@ class AcceptanceTest : public testing::Test {
         book_->List({"", Role::kAdmin}, {.before = std::numeric_limits<int64_t>::max(),
                                          .max_jobs = 1000,
                                          .max_bytes = std::numeric_limits<size_t>::max()});
-    EXPECT_TRUE(page.ok()) << page.status();
+    EXPECT_OK(page);
     return page.ok() ? page->jobs.size() : 0;
   }
 
@@ -170,74 +141,72 @@ class AcceptanceTest : public testing::Test {
 // ---- the same question ----
 
 TEST_F(AcceptanceTest, TheSameQuestionIsAnsweredByTheJobThatSucceeded) {
-  const std::string first = Answered(kAnn, Asking(Question()));
-  const auto again = Create(kAnn, Asking(Question()));
-  ASSERT_TRUE(again.ok());
-  EXPECT_EQ(again->name(), first);
-  EXPECT_EQ(again->state(), EnsembleJob::SUCCEEDED);
-  EXPECT_TRUE(again->answered_from_store());
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
+  ASSERT_OK_AND_ASSIGN(const auto again, Create(kAnn, CreateRequest(Question())));
+  EXPECT_EQ(again.name(), first);
+  EXPECT_EQ(again.state(), EnsembleJob::SUCCEEDED);
+  EXPECT_TRUE(again.answered_from_store());
   EXPECT_EQ(Jobs(), 1u);
   // Nobody but who asked is told so.
   EXPECT_FALSE(book_->Get(kAnn, IdOf(first))->answered_from_store());
   StartAgain();
-  EXPECT_TRUE(Create(kAnn, Asking(Question()))->answered_from_store());
+  EXPECT_TRUE(Create(kAnn, CreateRequest(Question()))->answered_from_store());
 }
 
-TEST_F(AcceptanceTest, APriorityIsNoPartOfTheQuestion) {
-  const std::string first = Answered(kAnn, Asking(Question()));
-  v1::CreateEnsembleJobRequest urgent = Asking(Question());
+TEST_F(AcceptanceTest, ThePriorityIsNotPartOfTheQuestion) {
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
+  v1::CreateEnsembleJobRequest urgent = CreateRequest(Question());
   urgent.set_priority(100);
   EXPECT_EQ(Name(kAnn, urgent), first);
 }
 
 TEST_F(AcceptanceTest, AFreshAnswerIsComputed) {
-  const std::string first = Answered(kAnn, Asking(Question()));
-  ExpectComputed(kAnn, AskingAnew(Question()), first);
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
+  ExpectComputed(kAnn, FreshRequest(Question()), first);
 }
 
 TEST_F(AcceptanceTest, ABudgetsAnswerIsComputed) {
   v1::EnsembleSpec spec = Question();
   spec.mutable_target()->Clear();
   spec.mutable_target()->mutable_budget()->set_nanos(1);
-  const std::string first = Answered(kAnn, Asking(spec));
-  ExpectComputed(kAnn, Asking(spec), first);
+  const std::string first = Answered(kAnn, CreateRequest(spec));
+  ExpectComputed(kAnn, CreateRequest(spec), first);
 }
 
 TEST_F(AcceptanceTest, AnotherQuestionIsComputed) {
-  const std::string first = Answered(kAnn, Asking(Question()));
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
   std::vector<v1::EnsembleSpec> others(5, Question());
   others[0].set_seed(2);
   others[1].set_model(v1::EnsembleSpec::BILLIARD);
   others[2].set_precision(v1::EnsembleSpec::SINGLE);
   others[3].set_verify(true);
   others[4].mutable_target()->set_collisions(6);
-  for (const v1::EnsembleSpec& other : others) ExpectComputed(kAnn, Asking(other), first);
+  for (const v1::EnsembleSpec& other : others) ExpectComputed(kAnn, CreateRequest(other), first);
 }
 
 TEST_F(AcceptanceTest, AnotherPrincipalsAnswerIsNotGiven) {
-  const std::string first = Answered(kAnn, Asking(Question()));
-  ExpectComputed(kBob, Asking(Question()), first);
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
+  ExpectComputed(kBen, CreateRequest(Question()), first);
   // An administrator sees it, but did not ask it.
-  ExpectComputed({"root", Role::kAdmin}, Asking(Question()), first);
+  ExpectComputed({"root", Role::kAdmin}, CreateRequest(Question()), first);
 }
 
 TEST_F(AcceptanceTest, AJobThatFailedAnswersNothing) {
-  const std::string failed = Name(kAnn, Asking(Question(kFailingSeed)));
+  const std::string failed = Name(kAnn, CreateRequest(Question(kFailingSeed)));
   EXPECT_EQ(AwaitEnd(failed).state(), EnsembleJob::FAILED);
-  ExpectComputed(kAnn, Asking(Question(kFailingSeed)), failed);
+  ExpectComputed(kAnn, CreateRequest(Question(kFailingSeed)), failed);
 }
 
 TEST_F(AcceptanceTest, AnActiveOrCancelledJobAnswersNothing) {
-  const std::string held = Name(kAnn, Asking(Question(kHeldSeed)));
+  const std::string held = Name(kAnn, CreateRequest(Question(kHeldSeed)));
   gate_.AwaitWaiting(1);
-  const auto second = Create(kAnn, Asking(Question(kHeldSeed)));
-  ASSERT_TRUE(second.ok());
-  EXPECT_NE(second->name(), held);
-  for (const std::string& name : {held, second->name()}) {
-    ASSERT_TRUE(book_->Cancel(kAnn, IdOf(name), "").ok());
+  ASSERT_OK_AND_ASSIGN(const auto second, Create(kAnn, CreateRequest(Question(kHeldSeed))));
+  EXPECT_NE(second.name(), held);
+  for (const std::string& name : {held, second.name()}) {
+    ASSERT_OK(book_->Cancel(kAnn, IdOf(name), ""));
   }
   EXPECT_EQ(AwaitEnd(held).state(), EnsembleJob::CANCELLED);
-  ExpectComputed(kAnn, Asking(Question(kHeldSeed)), held);
+  ExpectComputed(kAnn, CreateRequest(Question(kHeldSeed)), held);
 }
 
 // A row as this or an earlier engine left it.
@@ -262,30 +231,29 @@ TEST_F(AcceptanceTest, AnotherEnginesAnswerIsNotGiven) {
       end.time = absl::Now();
       return EndJob(database, record.sequence, end).status();
     };
-    ASSERT_TRUE(store_->Commit(insert).ok());
+    ASSERT_OK(store_->Commit(insert));
   };
   insert_succeeded(AnnsJob("of-another-engine", "0.0.1"));
-  const std::string computed = Answered(kAnn, Asking(Question()));
+  const std::string computed = Answered(kAnn, CreateRequest(Question()));
   EXPECT_NE(computed, "ensembleJobs/of-another-engine");
-  ASSERT_TRUE(book_->Delete(kAnn, IdOf(computed)).ok());
+  ASSERT_OK(book_->Delete(kAnn, IdOf(computed)));
   insert_succeeded(AnnsJob("of-this-engine", EngineVersion()));
-  EXPECT_EQ(Name(kAnn, Asking(Question())), "ensembleJobs/of-this-engine");
+  EXPECT_EQ(Name(kAnn, CreateRequest(Question())), "ensembleJobs/of-this-engine");
 }
 
 TEST_F(AcceptanceTest, AJobThatThisEngineComputedAnewAnswers) {
   JobRecord record = AnnsJob("unfinished", "0.0.1");
-  ASSERT_TRUE(store_->Commit([&](Database& database) { return InsertJob(database, record); }).ok());
+  ASSERT_OK(store_->Commit([&](Database& database) { return InsertJob(database, record); }));
   StartAgain();
   EXPECT_EQ(AwaitEnd("ensembleJobs/unfinished").state(), EnsembleJob::SUCCEEDED);
-  EXPECT_EQ(Name(kAnn, Asking(Question())), "ensembleJobs/unfinished");
+  EXPECT_EQ(Name(kAnn, CreateRequest(Question())), "ensembleJobs/unfinished");
 }
 
 // ---- which questions are the same ----
 
 using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
 
-void SetOther(Message& message, const FieldDescriptor& field) {
+void SetOther(google::protobuf::Message& message, const FieldDescriptor& field) {
   const google::protobuf::Reflection& reflect = *message.GetReflection();
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
@@ -322,7 +290,7 @@ void WithEachFieldChanged(
       continue;
     }
     v1::EnsembleSpec changed = whole;
-    Message* holder = &changed;
+    google::protobuf::Message* holder = &changed;
     for (const int number : path) {
       holder = holder->GetReflection()->MutableMessage(
           holder, holder->GetDescriptor()->FindFieldByNumber(number));
@@ -332,7 +300,7 @@ void WithEachFieldChanged(
   }
 }
 
-TEST(Question, EveryFieldOfTheSpecificationMakesItAnother) {
+TEST(Question, EveryFieldOfTheSpecificationIsPartOfIt) {
   std::map<std::string, std::string> fields = {{QuestionOf(Question(), "1"), "none"}};
   int changes = 0;
   WithEachFieldChanged(Question(), {}, *v1::EnsembleSpec::descriptor(),
@@ -351,13 +319,13 @@ TEST(Question, EveryFieldOfTheSpecificationMakesItAnother) {
   EXPECT_GE(changes, 15);
 }
 
-TEST(Question, TheEngineIsAPartOfIt) {
+TEST(Question, TheEngineIsPartOfIt) {
   EXPECT_NE(QuestionOf(Question(), "1"), QuestionOf(Question(), "2"));
   EXPECT_EQ(QuestionOf(Question(), "1"), QuestionOf(Question(), "1"));
 }
 
-TEST(Payload, EveryFieldOfTheRequestButItsIdIsAPartOfIt) {
-  const v1::CreateEnsembleJobRequest request = Asking(Question(), kUuid);
+TEST(Payload, EveryFieldOfTheRequestButItsIdCounts) {
+  const v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
   std::map<std::string, std::string> fields = {{PayloadOf(request), "none"}};
   const auto expect_new = [&](const FieldDescriptor& field,
                               const v1::CreateEnsembleJobRequest& changed) {
@@ -377,20 +345,20 @@ TEST(Payload, EveryFieldOfTheRequestButItsIdIsAPartOfIt) {
   }
   WithEachFieldChanged(Question(), {}, *v1::EnsembleSpec::descriptor(),
                        [&](const FieldDescriptor& field, const v1::EnsembleSpec& spec) {
-                         expect_new(field, Asking(spec, kUuid));
+                         expect_new(field, CreateRequest(spec, kUuid));
                        });
-  EXPECT_EQ(PayloadOf(Asking(Question(), "another")), PayloadOf(request));
+  EXPECT_EQ(PayloadOf(CreateRequest(Question(), "another")), PayloadOf(request));
 }
 
 // ---- the same request ----
 
-TEST_F(AcceptanceTest, SixtyFourRequestsAtOnceWithOneIdMakeOneJob) {
+TEST_F(AcceptanceTest, ConcurrentRequestsWithOneIdMakeOneJob) {
   std::mutex mutex;
   std::set<std::string> names;
   std::vector<std::thread> threads;
   for (int i = 0; i < 64; ++i) {
     threads.emplace_back([&] {
-      const std::string name = Name(kAnn, AskingAnew(Question(), kUuid));
+      const std::string name = Name(kAnn, FreshRequest(Question(), kUuid));
       std::lock_guard lock(mutex);
       names.insert(name);
     });
@@ -401,57 +369,55 @@ TEST_F(AcceptanceTest, SixtyFourRequestsAtOnceWithOneIdMakeOneJob) {
 }
 
 TEST_F(AcceptanceTest, AReplayIsTheSameJobAfterARestart) {
-  const std::string held = Name(kAnn, AskingAnew(Question(kHeldSeed), kUuid));
+  const std::string held = Name(kAnn, FreshRequest(Question(kHeldSeed), kUuid));
   StartAgain();
-  const auto active = Create(kAnn, AskingAnew(Question(kHeldSeed), kUuid));
-  ASSERT_TRUE(active.ok()) << active.status();
-  EXPECT_EQ(active->name(), held);
-  EXPECT_FALSE(active->answered_from_store());
+  ASSERT_OK_AND_ASSIGN(const auto active, Create(kAnn, FreshRequest(Question(kHeldSeed), kUuid)));
+  EXPECT_EQ(active.name(), held);
+  EXPECT_FALSE(active.answered_from_store());
   gate_.Open();
   EXPECT_EQ(AwaitEnd(held).state(), EnsembleJob::SUCCEEDED);
   StartAgain();
-  const auto ended = Create(kAnn, AskingAnew(Question(kHeldSeed), kUuid));
+  const auto ended = Create(kAnn, FreshRequest(Question(kHeldSeed), kUuid));
   EXPECT_EQ(ended->name(), held);
   EXPECT_FALSE(ended->answered_from_store());
   EXPECT_EQ(Jobs(), 1u);
 }
 
 // What was said the first time is said again.
-TEST_F(AcceptanceTest, AReplayOfARequestAnsweredFromTheStoreIsAnsweredTheSame) {
-  const std::string first = Answered(kAnn, Asking(Question()));
+TEST_F(AcceptanceTest, AReplayOfAStoredAnswerIsTheSame) {
+  const std::string first = Answered(kAnn, CreateRequest(Question()));
   for (int i = 0; i < 2; ++i) {
-    const auto answer = Create(kAnn, Asking(Question(), kUuid));
+    const auto answer = Create(kAnn, CreateRequest(Question(), kUuid));
     EXPECT_EQ(answer->name(), first);
     EXPECT_TRUE(answer->answered_from_store());
     StartAgain();
   }
 }
 
-TEST_F(AcceptanceTest, AnIdIsNotForAnotherRequest) {
-  const std::string first = Name(kAnn, Asking(Question(), kUuid));
-  std::vector<v1::CreateEnsembleJobRequest> others(3, Asking(Question(), kUuid));
+TEST_F(AcceptanceTest, ARequestIdOfAnotherRequestIsRefused) {
+  const std::string first = Name(kAnn, CreateRequest(Question(), kUuid));
+  std::vector<v1::CreateEnsembleJobRequest> others(3, CreateRequest(Question(), kUuid));
   others[0].mutable_spec()->set_seed(2);
   others[1].set_fresh(true);
   others[2].set_priority(1);
   for (int restarted = 0; restarted < 2; ++restarted) {
     for (const v1::CreateEnsembleJobRequest& other : others) {
       const absl::Status refused = Create(kAnn, other).status();
-      EXPECT_TRUE(absl::IsInvalidArgument(refused)) << refused;
-      EXPECT_EQ(ReasonOf(refused), "REQUEST_ID_REUSED");
+      EXPECT_THAT(refused, IsError(absl::StatusCode::kInvalidArgument, "REQUEST_ID_REUSED"));
     }
-    EXPECT_EQ(Name(kAnn, Asking(Question(), kUuid)), first);
+    EXPECT_EQ(Name(kAnn, CreateRequest(Question(), kUuid)), first);
     StartAgain();
   }
   EXPECT_EQ(Jobs(), 1u);
 }
 
-TEST_F(AcceptanceTest, OneIdOfTwoPrincipalsMakesTwoJobs) {
-  const std::string anns = Name(kAnn, Asking(Question(), kUuid));
-  const std::string bobs = Name(kBob, Asking(Question(2), kUuid));
-  EXPECT_NE(anns, bobs);
-  EXPECT_EQ(Name(kAnn, Asking(Question(), kUuid)), anns);
-  EXPECT_EQ(Name(kBob, Asking(Question(2), kUuid)), bobs);
-  EXPECT_TRUE(absl::IsNotFound(book_->Get(kAnn, IdOf(bobs)).status()));
+TEST_F(AcceptanceTest, EachPrincipalHasItsOwnRequestIds) {
+  const std::string anns = Name(kAnn, CreateRequest(Question(), kUuid));
+  const std::string bens = Name(kBen, CreateRequest(Question(2), kUuid));
+  EXPECT_NE(anns, bens);
+  EXPECT_EQ(Name(kAnn, CreateRequest(Question(), kUuid)), anns);
+  EXPECT_EQ(Name(kBen, CreateRequest(Question(2), kUuid)), bens);
+  EXPECT_THAT(book_->Get(kAnn, IdOf(bens)), StatusIs(absl::StatusCode::kNotFound));
 }
 
 // ---- limits ----
@@ -465,262 +431,221 @@ class LimitTest : public AcceptanceTest {
 
   // Keeps the workers busy, so that the job and those after it stay active.
   std::string Hold(const Principal& caller, const char* request_id = "") {
-    return Name(caller, AskingAnew(Question(kHeldSeed), request_id));
+    return Name(caller, FreshRequest(Question(kHeldSeed), request_id));
   }
 
-  void ExpectRefused(const absl::Status& refused, const std::string& reason,
+  void ExpectRefused(const absl::StatusOr<EnsembleJob>& refused, const std::string& reason,
                      const std::string& flag, const std::string& limit) {
-    EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
-    const google::rpc::ErrorInfo info = InfoOf(refused);
-    EXPECT_EQ(info.domain(), "ballpiston");
-    EXPECT_EQ(info.reason(), reason);
-    EXPECT_EQ(info.metadata().at("flag"), flag);
-    EXPECT_EQ(info.metadata().at("limit"), limit);
-    EXPECT_THAT(std::string(refused.message()), HasSubstr("--" + flag));
+    EXPECT_THAT(refused, IsError(absl::StatusCode::kResourceExhausted, reason));
+    const ErrorDetails details = DetailsOf(refused.status());
+    EXPECT_EQ(details.domain, "ballpiston");
+    EXPECT_EQ(details.metadata.at("flag"), flag);
+    EXPECT_EQ(details.metadata.at("limit"), limit);
+    EXPECT_THAT(std::string(refused.status().message()), HasSubstr("--" + flag));
   }
 };
 
-TEST_F(LimitTest, AFullQueueRefusesWhatIsNewAndNothingElse) {
-  const std::string answered = Answered(kAnn, Asking(Question()));
+TEST_F(LimitTest, AFullQueueRefusesOnlyNewJobs) {
+  const std::string answered = Answered(kAnn, CreateRequest(Question()));
   Limit({.max_active_jobs = 2});
   const std::string first = Hold(kAnn, kUuid);
-  Hold(kBob);
-  for (const Principal& caller : {kAnn, kBob}) {
-    ExpectRefused(Create(caller, Asking(Question(2))).status(), "QUEUE_FULL", "max_active_jobs",
-                  "2");
+  Hold(kBen);
+  for (const Principal& caller : {kAnn, kBen}) {
+    ExpectRefused(Create(caller, CreateRequest(Question(2))), "QUEUE_FULL", "max_active_jobs", "2");
   }
   // A replay, and what the store can answer.
-  EXPECT_EQ(Name(kAnn, AskingAnew(Question(kHeldSeed), kUuid)), first);
-  EXPECT_EQ(Name(kAnn, Asking(Question())), answered);
+  EXPECT_EQ(Name(kAnn, FreshRequest(Question(kHeldSeed), kUuid)), first);
+  EXPECT_EQ(Name(kAnn, CreateRequest(Question())), answered);
   // And with another request its id is refused for what it is.
-  EXPECT_EQ(ReasonOf(Create(kAnn, Asking(Question(3), kUuid)).status()), "REQUEST_ID_REUSED");
+  EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Question(3), kUuid))), "REQUEST_ID_REUSED");
   EXPECT_EQ(Jobs(), 3u);
-  ASSERT_TRUE(book_->Cancel(kAnn, IdOf(first), "").ok());
+  ASSERT_OK(book_->Cancel(kAnn, IdOf(first), ""));
   AwaitEnd(first);
-  EXPECT_TRUE(Create(kAnn, Asking(Question(2))).ok());
+  EXPECT_OK(Create(kAnn, CreateRequest(Question(2))));
 }
 
-TEST_F(LimitTest, APrincipalsJobsAreItsOwn) {
+TEST_F(LimitTest, JobsAreCountedByPrincipal) {
   Limit({.max_active_jobs_per_principal = 1});
   Hold(kAnn);
-  ExpectRefused(Create(kAnn, Asking(Question())).status(), "TOO_MANY_JOBS",
+  ExpectRefused(Create(kAnn, CreateRequest(Question())), "TOO_MANY_JOBS",
                 "max_active_jobs_per_principal", "1");
-  EXPECT_TRUE(Create(kBob, Asking(Question())).ok());
+  EXPECT_OK(Create(kBen, CreateRequest(Question())));
 }
 
 // The id is free: nothing was made with it.
-TEST_F(LimitTest, ARefusedRequestMayComeAgain) {
+TEST_F(LimitTest, ARefusedRequestCanBeRetried) {
   Limit({.max_active_jobs = 1});
   const std::string first = Hold(kAnn);
-  EXPECT_EQ(ReasonOf(Create(kAnn, Asking(Question(), kUuid)).status()), "QUEUE_FULL");
-  ASSERT_TRUE(book_->Cancel(kAnn, IdOf(first), "").ok());
+  EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Question(), kUuid))), "QUEUE_FULL");
+  ASSERT_OK(book_->Cancel(kAnn, IdOf(first), ""));
   AwaitEnd(first);
-  EXPECT_TRUE(Create(kAnn, Asking(Question(), kUuid)).ok());
+  EXPECT_OK(Create(kAnn, CreateRequest(Question(), kUuid)));
 }
 
 TEST_F(LimitTest, AJobMayNotHaveTooManyPoints) {
   Limit({.max_points_per_job = 3});
-  EXPECT_TRUE(Create(kAnn, Asking(Equilibrium(3, 5))).ok());
-  ExpectRefused(Create(kAnn, Asking(Equilibrium(4, 5))).status(), "TOO_MANY_POINTS",
+  EXPECT_OK(Create(kAnn, CreateRequest(Equilibrium(3, 5))));
+  ExpectRefused(Create(kAnn, CreateRequest(Equilibrium(4, 5))), "TOO_MANY_POINTS",
                 "max_points_per_job", "3");
 }
 
 TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   Limit({.max_samples_per_job = 40'000});
-  EXPECT_TRUE(Create(kAnn, Asking(Equilibrium(4, 10'000))).ok());
-  ExpectRefused(Create(kAnn, Asking(Equilibrium(4, 10'001))).status(), "TOO_MANY_SAMPLES",
+  EXPECT_OK(Create(kAnn, CreateRequest(Equilibrium(4, 10'000))));
+  ExpectRefused(Create(kAnn, CreateRequest(Equilibrium(4, 10'001))).status(), "TOO_MANY_SAMPLES",
                 "max_samples_per_job", "40000");
   v1::EnsembleSpec by_default = Equilibrium(5, 1);
   by_default.clear_target();
-  EXPECT_EQ(ReasonOf(Create(kAnn, Asking(by_default)).status()), "TOO_MANY_SAMPLES");
+  EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(by_default))), "TOO_MANY_SAMPLES");
   // How many these take is not known before.
   v1::EnsembleSpec tolerance = Equilibrium(5, 1);
   tolerance.mutable_target()->set_tolerance(0.1);
-  EXPECT_TRUE(Create(kAnn, Asking(tolerance)).ok());
+  EXPECT_OK(Create(kAnn, CreateRequest(tolerance)));
 }
 
 TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
   Limit({.max_active_points = 20, .max_active_points_per_principal = 6});
   const auto held = [](int points, const char* request_id = "") {
-    v1::EnsembleSpec spec = Equilibrium(points, 5);
-    spec.set_seed(kHeldSeed);
-    return AskingAnew(spec, request_id);
+    return FreshRequest(Equilibrium(points, 5, kHeldSeed), request_id);
   };
   const std::string first = Name(kAnn, held(4, kUuid));
   const auto expect_full = [&] {
-    ExpectRefused(Create(kAnn, held(3)).status(), "TOO_MANY_ACTIVE_POINTS",
+    ExpectRefused(Create(kAnn, held(3)), "TOO_MANY_ACTIVE_POINTS",
                   "max_active_points_per_principal", "6");
   };
   expect_full();
-  Name(kBob, held(6));
+  Name(kBen, held(6));
   Name({"eve", Role::kSubmit}, held(6));
-  ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)).status(), "TOO_MANY_ACTIVE_POINTS",
+  ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)), "TOO_MANY_ACTIVE_POINTS",
                 "max_active_points", "20");
   EXPECT_EQ(Name(kAnn, held(4, kUuid)), first);  // a replay
   StartAgain();
   expect_full();
-  ASSERT_TRUE(book_->Cancel(kAnn, IdOf(first), "").ok());
+  ASSERT_OK(book_->Cancel(kAnn, IdOf(first), ""));
   AwaitEnd(first);
-  EXPECT_TRUE(Create(kAnn, held(3)).ok());
+  EXPECT_OK(Create(kAnn, held(3)));
 }
 
 // What is not made takes no room.
-TEST_F(LimitTest, PointsOfAJobThatIsNotKeptDoNotCount) {
+TEST_F(LimitTest, PointsOfJobsThatAreNotCreatedDoNotCount) {
   Limit({.max_active_points = 4, .max_active_points_per_principal = 0});
-  const std::string answered = Answered(kAnn, Asking(Equilibrium(3, 5)));
+  const std::string answered = Answered(kAnn, CreateRequest(Equilibrium(3, 5)));
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(Name(kAnn, Asking(Equilibrium(3, 5))), answered);
-    EXPECT_EQ(ReasonOf(Create(kAnn, Asking(Equilibrium(5, 5))).status()), "TOO_MANY_ACTIVE_POINTS");
+    EXPECT_EQ(Name(kAnn, CreateRequest(Equilibrium(3, 5))), answered);
+    EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Equilibrium(5, 5)))), "TOO_MANY_ACTIVE_POINTS");
   }
-  AwaitEnd(Name(kAnn, AskingAnew(Equilibrium(4, 5))));
+  AwaitEnd(Name(kAnn, FreshRequest(Equilibrium(4, 5))));
 }
 
 TEST(ActivePointsTest, AJobCountsOnce) {
   ActivePoints points;
   for (int i = 0; i < 3; ++i) points.Add("a", "ann", 4);
   const Limits limits = {.max_active_points = 5};
-  EXPECT_TRUE(points.Check("ann", 1, limits).ok());
+  EXPECT_OK(points.Check("ann", 1, limits));
   EXPECT_FALSE(points.Check("bob", 2, limits).ok());
   for (int i = 0; i < 2; ++i) points.Remove("a");
-  EXPECT_TRUE(points.Check("ann", 5, limits).ok());
+  EXPECT_OK(points.Check("ann", 5, limits));
   EXPECT_FALSE(points.Check("ann", 6, limits).ok());
 }
 
 // Of the requests that one job answers a thousand are remembered; the answer is the same.
-TEST_F(AcceptanceTest, RequestsThatOneJobAnswersAreNotRememberedWithoutEnd) {
-  const std::string name = Answered(kAnn, Asking(Question()));
+TEST_F(AcceptanceTest, AThousandRequestsThatOneJobAnswersAreRemembered) {
+  const std::string name = Answered(kAnn, CreateRequest(Question()));
   const auto requests = [&] {
-    int64_t found = 0;
-    EXPECT_TRUE(store_
-                    ->Read([&](Database& database) {
-                      const auto count = CountRequests(database, 1, 1'000'000);
-                      found = count.value_or(-1);
-                      return count.status();
-                    })
-                    .ok());
-    return found;
+    return ReadFrom(*store_,
+                    [](Database& database) { return CountRequests(database, 1, 1'000'000); });
   };
-  ASSERT_TRUE(store_
-                  ->Commit([](Database& database) {
-                    absl::Status inserted;
-                    for (int i = 0; i < 999 && inserted.ok(); ++i) {
-                      inserted = InsertRequest(database, {kAnn.name, std::to_string(i), "", 1});
-                    }
-                    return inserted;
-                  })
-                  .ok());
+  ASSERT_OK(store_->Commit([](Database& database) {
+    absl::Status inserted;
+    for (int i = 0; i < 999 && inserted.ok(); ++i) {
+      inserted = InsertRequest(database, {kAnn.name, std::to_string(i), "", 1});
+    }
+    return inserted;
+  }));
   EXPECT_EQ(requests(), 999);
   for (int i = 0; i < 3; ++i) {
     const std::string id = "123e4567-e89b-12d3-a456-42661417400" + std::to_string(i);
     for (int repeated = 0; repeated < 2; ++repeated) {
-      const auto again = Create(kAnn, Asking(Question(), id.c_str()));
-      ASSERT_TRUE(again.ok()) << again.status();
-      EXPECT_EQ(again->name(), name);
-      EXPECT_TRUE(again->answered_from_store());
+      ASSERT_OK_AND_ASSIGN(const auto again, Create(kAnn, CreateRequest(Question(), id)));
+      EXPECT_EQ(again.name(), name);
+      EXPECT_TRUE(again.answered_from_store());
     }
   }
   EXPECT_EQ(requests(), 1000);
 }
 
-TEST_F(LimitTest, AReplayAndAnAnswerAreGivenUnderALowerLimit) {
-  const std::string name = Answered(kAnn, Asking(Equilibrium(4, 5), kUuid));
+TEST_F(LimitTest, ReplaysAndStoredAnswersIgnoreALowerLimit) {
+  const std::string name = Answered(kAnn, CreateRequest(Equilibrium(4, 5), kUuid));
   Limit({.max_points_per_job = 3});
-  EXPECT_EQ(Name(kAnn, Asking(Equilibrium(4, 5), kUuid)), name);
-  EXPECT_EQ(Name(kAnn, Asking(Equilibrium(4, 5))), name);
-  EXPECT_EQ(ReasonOf(Create(kAnn, AskingAnew(Equilibrium(4, 5))).status()), "TOO_MANY_POINTS");
+  EXPECT_EQ(Name(kAnn, CreateRequest(Equilibrium(4, 5), kUuid)), name);
+  EXPECT_EQ(Name(kAnn, CreateRequest(Equilibrium(4, 5))), name);
+  EXPECT_EQ(ReasonOf(Create(kAnn, FreshRequest(Equilibrium(4, 5)))), "TOO_MANY_POINTS");
 }
 
-TEST_F(LimitTest, ZeroIsNoLimit) {
+TEST_F(LimitTest, ZeroMeansUnlimited) {
   Limit({.max_active_jobs = 0,
          .max_active_jobs_per_principal = 0,
          .max_active_points = 0,
          .max_active_points_per_principal = 0,
          .max_points_per_job = 0,
          .max_samples_per_job = 0});
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(Create(kAnn, AskingAnew(Equilibrium(50, 1000))).ok());
+  for (int i = 0; i < 5; ++i) EXPECT_OK(Create(kAnn, FreshRequest(Equilibrium(50, 1000))));
 }
 
 // ---- through the API ----
 
-class AcceptanceRpcTest : public testing::Test {
- protected:
-  RunningServer& Start(const Limits& limits) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.factory = FakeExperiments();
-    options.limits = limits;
-    server_.emplace(options);
-    return *server_;
-  }
-
-  int Jobs() {
-    grpc::ClientContext context;
-    v1::ListEnsembleJobsResponse list;
-    EXPECT_TRUE(server_->ensemble().ListEnsembleJobs(&context, {}, &list).ok());
-    return list.jobs_size();
-  }
-
-  TemporaryFolder folder_;
-  std::optional<RunningServer> server_;
-};
-
-TEST_F(AcceptanceRpcTest, APriorityOutOfRangeIsAViolation) {
-  RunningServer& server = Start({});
+TEST(AcceptanceRpc, APriorityOutOfRangeIsAViolation) {
+  RunningServer server;
   for (const int priority : {-101, 101, std::numeric_limits<int32_t>::min()}) {
-    v1::CreateEnsembleJobRequest request = Asking(Question());
+    v1::CreateEnsembleJobRequest request = CreateRequest(Question());
     request.set_priority(priority);
-    EnsembleJob job;
-    const grpc::Status status = server.Create(request, &job);
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+    const grpc::Status status = server.Create(request);
+    EXPECT_THAT(status, StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("-100 to 100")));
     EXPECT_THAT(DetailsOf(status).fields, ElementsAre("priority"));
-    EXPECT_THAT(status.error_message(), HasSubstr("-100 to 100"));
   }
   for (const int priority : {-100, 100}) {
-    v1::CreateEnsembleJobRequest request = AskingAnew(Question());
+    v1::CreateEnsembleJobRequest request = FreshRequest(Question());
     request.set_priority(priority);
-    EnsembleJob job;
-    EXPECT_TRUE(server.Create(request, &job).ok());
+    const EnsembleJob job = server.Created(request);
     EXPECT_EQ(job.priority(), priority);
     EXPECT_EQ(job.principal(), "local");
   }
-  EXPECT_EQ(Jobs(), 2);
+  EXPECT_EQ(server.List().jobs_size(), 2);
 }
 
-TEST_F(AcceptanceRpcTest, ValidateOnlyTellsLimitsAndMakesNothing) {
-  RunningServer& server = Start({.max_points_per_job = 3, .max_samples_per_job = 100});
+TEST(AcceptanceRpc, ValidateOnlyChecksLimitsAndCreatesNoJob) {
+  RunningServer server({.limits = {.max_points_per_job = 3, .max_samples_per_job = 100}});
   const std::pair<v1::EnsembleSpec, const char*> questions[] = {
       {Equilibrium(4, 1), "TOO_MANY_POINTS"},
       {Equilibrium(3, 40), "TOO_MANY_SAMPLES"},
       {Equilibrium(3, 30), ""}};
   for (const auto& [spec, reason] : questions) {
-    v1::CreateEnsembleJobRequest request = Asking(spec, kUuid);
+    v1::CreateEnsembleJobRequest request = CreateRequest(spec, kUuid);
     request.set_validate_only(true);
     EnsembleJob job;
-    const grpc::Status status = server.Create(request, &job);
-    EXPECT_EQ(DetailsOf(status).reason, reason);
-    EXPECT_EQ(status.error_code(),
-              *reason == '\0' ? grpc::StatusCode::OK : grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_THAT(
+        server.Create(request, &job),
+        IsError(*reason == '\0' ? grpc::StatusCode::OK : grpc::StatusCode::RESOURCE_EXHAUSTED,
+                reason));
     EXPECT_EQ(job.name(), "");
     EXPECT_FALSE(job.answered_from_store());
   }
-  EXPECT_EQ(Jobs(), 0);
+  EXPECT_EQ(server.List().jobs_size(), 0);
 }
 
-TEST_F(AcceptanceRpcTest, ValidateOnlyAnswersAsOtherwise) {
-  RunningServer& server = Start({.max_active_jobs = 1});
-  const std::string answered = server.Submit(Question());
-  server.AwaitEnd(answered);
-  v1::CreateEnsembleJobRequest request = Asking(Question(), kUuid);
+TEST(AcceptanceRpc, ValidateOnlyReturnsAStoredAnswer) {
+  RunningServer server({.limits = {.max_active_jobs = 1}});
+  const std::string answered = server.Succeeded(Question());
+  v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
   request.set_validate_only(true);
-  EnsembleJob job;
-  ASSERT_TRUE(server.Create(request, &job).ok());
+  const EnsembleJob job = server.Created(request);
   EXPECT_EQ(job.name(), answered);
   EXPECT_TRUE(job.answered_from_store());
-  EXPECT_EQ(Jobs(), 1);
+  EXPECT_EQ(server.List().jobs_size(), 1);
   // Nothing was kept of the id: it is free for another question.
-  ASSERT_TRUE(server.Create(Asking(Question(2), kUuid), &job).ok());
-  EXPECT_NE(job.name(), answered);
-  server.AwaitEnd(job.name());
+  const EnsembleJob another = server.Created(CreateRequest(Question(2), kUuid));
+  EXPECT_NE(another.name(), answered);
+  server.AwaitEnd(another.name());
 }
 
 }  // namespace

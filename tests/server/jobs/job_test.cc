@@ -16,6 +16,8 @@
 #include "server/jobs/job_state.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/store_access.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -23,7 +25,7 @@ namespace {
 
 using v1::EnsembleJob;
 
-JobRecord Record(int64_t points = 4) {
+JobRecord JobWithPoints(int64_t points) {
   JobRecord record;
   record.sequence = 1;
   record.id = "a";
@@ -31,7 +33,7 @@ JobRecord Record(int64_t points = 4) {
   return record;
 }
 
-FinishedPoint Point(int number) {
+FinishedPoint FinishedPointOf(int number) {
   auto point = std::make_shared<v1::PointResult>();
   point->set_index(number);
   return {number, point};
@@ -68,7 +70,7 @@ TEST(JobState, OnlyLegalTransitionsAreLegal) {
 
 TEST(Job, AnIllegalTransitionChangesNothing) {
   int told = 0;
-  Job job(Record(), [&] { ++told; });
+  Job job(JobWithPoints(4), [&] { ++told; });
   EXPECT_TRUE(job.Enter(EnsembleJob::CANCELLING, absl::Now()));
   EXPECT_FALSE(job.Enter(EnsembleJob::RUNNING, absl::Now()));
   EXPECT_EQ(job.state(), EnsembleJob::CANCELLING);
@@ -77,7 +79,7 @@ TEST(Job, AnIllegalTransitionChangesNothing) {
 }
 
 TEST(Job, TimesAreThoseOfTheTransitions) {
-  Job job(Record(), nullptr);
+  Job job(JobWithPoints(4), nullptr);
   job.Enter(EnsembleJob::RUNNING, absl::FromUnixSeconds(10));
   job.Enter(EnsembleJob::SUCCEEDED, absl::FromUnixSeconds(20));
   EXPECT_EQ(job.Message().start_time().seconds(), 10);
@@ -85,7 +87,7 @@ TEST(Job, TimesAreThoseOfTheTransitions) {
 }
 
 TEST(Job, ProgressIsTheShareOfWorkDone) {
-  Job job(Record(4), nullptr);
+  Job job(JobWithPoints(4), nullptr);
   job.AddRestoredPoints(1, 100, 1);
   job.AddBlock(50, 0.5);
   const v1::JobProgress progress = job.Progress();
@@ -98,24 +100,24 @@ TEST(Job, ProgressIsTheShareOfWorkDone) {
 TEST(Job, WithAToleranceThereIsNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
-  JobRecord record = Record();
+  JobRecord record = JobWithPoints(4);
   record.spec = spec.SerializeAsString();
   EXPECT_FALSE(Job(record, nullptr).Progress().has_fraction());
 }
 
 TEST(Job, APointIsDoneWhenItIsStored) {
-  Job job(Record(2), nullptr);
+  Job job(JobWithPoints(2), nullptr);
   EXPECT_EQ(job.Progress().points_done(), 0);
   const uint64_t before = job.last_change();
-  job.AddFinishedPoint(Point(1));
+  job.AddFinishedPoint(FinishedPointOf(1));
   EXPECT_EQ(job.Progress().points_done(), 1);
   EXPECT_EQ(job.last_finished(), 1);
   EXPECT_GT(job.last_change(), before);
 }
 
 TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
-  Job job(Record(1000), nullptr);
-  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(Point(number));
+  Job job(JobWithPoints(1000), nullptr);
+  for (int number = 1; number <= 300; ++number) job.AddFinishedPoint(FinishedPointOf(number));
   const auto last = static_cast<int64_t>(300 - kRecentPoints);
   EXPECT_EQ(job.FinishedAfter(last - 1, 10), std::nullopt);
   EXPECT_EQ(job.FinishedAfter(last, 1000)->size(), kRecentPoints);
@@ -126,17 +128,17 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
 
 // A store of an older version numbers results with gaps.
 TEST(Job, RestoredPointsAreNotKept) {
-  Job job(Record(1000), nullptr);
+  Job job(JobWithPoints(1000), nullptr);
   job.AddRestoredPoints(3, 12, 70);
   EXPECT_EQ(job.last_finished(), 70);
   EXPECT_EQ(job.FinishedAfter(69, 10), std::nullopt);
   EXPECT_TRUE(job.FinishedAfter(70, 10)->empty());
-  job.AddFinishedPoint(Point(75));
+  job.AddFinishedPoint(FinishedPointOf(75));
   EXPECT_THAT(Numbers(*job.FinishedAfter(70, 10)), testing::ElementsAre(75));
   EXPECT_EQ(job.Progress().points_done(), 4);
 }
 
-TEST(SharedSnapshot, IsMadeAnewOnlyIfItIsOldAndSomethingChanged) {
+TEST(SharedSnapshot, IsMadeAgainOnlyIfItIsOldAndSomethingChanged) {
   SharedSnapshot shared;
   uint64_t made = 0;
   const auto make = [&made] {
@@ -158,12 +160,10 @@ class JobJournalTest : public testing::Test {
  protected:
   // Nothing is committed before it is flushed.
   void SetUp() override {
-    auto store = Store::Open(folder_.File("store"), {.delay = std::chrono::hours(1)});
-    ASSERT_TRUE(store.ok()) << store.status();
-    store_ = *std::move(store);
-    record_ = Record(3);
-    ASSERT_TRUE(
-        store_->Commit([this](Database& database) { return InsertJob(database, record_); }).ok());
+    ASSERT_OK_AND_ASSIGN(store_,
+                         Store::Open(folder_.File("store"), {.delay = std::chrono::hours(1)}));
+    record_ = JobWithPoints(3);
+    ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_, nullptr);
     journal_.emplace(job_, *store_, nullptr);
   }
@@ -181,13 +181,13 @@ class JobJournalTest : public testing::Test {
   std::optional<JobJournal> journal_;
 };
 
-TEST_F(JobJournalTest, NothingIsToldThatIsNotOnDisk) {
+TEST_F(JobJournalTest, NothingIsSentThatIsNotOnDisk) {
   journal_->Began();
   Finish(2);
   Finish(0);
   EXPECT_EQ(job_->state(), EnsembleJob::QUEUED);
   EXPECT_EQ(job_->last_finished(), 0);
-  ASSERT_TRUE(store_->Flush().ok());
+  ASSERT_OK(store_->Flush());
   EXPECT_EQ(job_->state(), EnsembleJob::RUNNING);
   const auto told = *job_->FinishedAfter(0, 10);
   EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
@@ -198,17 +198,15 @@ TEST_F(JobJournalTest, NothingIsToldThatIsNotOnDisk) {
 TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
   for (const size_t point : {2, 0, 1}) Finish(point);
   Finish(0);  // the first writer wins: no number for this one
-  ASSERT_TRUE(store_->Flush().ok());
+  ASSERT_OK(store_->Flush());
   std::vector<std::pair<int64_t, int64_t>> stored;
-  ASSERT_TRUE(store_
-                  ->Read([&](Database& database) {
-                    return ReadResultsStoredAfter(database, record_.sequence, 1,
-                                                  [&](int64_t number, const PointRow& row) {
-                                                    stored.emplace_back(number, row.point);
-                                                    return true;
-                                                  });
-                  })
-                  .ok());
+  ASSERT_OK(store_->Read([&](Database& database) {
+    return ReadResultsStoredAfter(database, record_.sequence, 1,
+                                  [&](int64_t number, const PointRow& row) {
+                                    stored.emplace_back(number, row.point);
+                                    return true;
+                                  });
+  }));
   EXPECT_THAT(stored, testing::ElementsAre(testing::Pair(2, 0), testing::Pair(3, 1)));
   EXPECT_EQ(job_->last_finished(), 3);
 }
@@ -217,15 +215,9 @@ TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
 TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
   for (const size_t point : {0, 1, 2}) Finish(point);
   journal_->Ended(absl::OkStatus());
-  ASSERT_TRUE(store_->Flush().ok());
-  std::optional<JobRecord> ended;
-  ASSERT_TRUE(store_
-                  ->Read([&](Database& database) {
-                    auto found = FindJob(database, record_.id);
-                    if (found.ok()) ended = *std::move(found);
-                    return found.status();
-                  })
-                  .ok());
+  ASSERT_OK(store_->Flush());
+  const auto ended =
+      ReadFrom(*store_, [&](Database& database) { return FindJob(database, record_.id); });
   EXPECT_EQ(ended->state, EnsembleJob::SUCCEEDED);
   EXPECT_EQ(ended->points_done, 3);
   EXPECT_EQ(job_->Progress().points_done(), 3);
@@ -234,13 +226,13 @@ TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
 TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
   for (const size_t point : {0, 2}) Finish(point);
   journal_->Ended(absl::OkStatus());
-  ASSERT_TRUE(store_->Flush().ok());
+  ASSERT_OK(store_->Flush());
   const EnsembleJob job = job_->Message();
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
-TEST(LeaveOutFinished, OfAPointInBothListsOnlyTheEndIsTold) {
+TEST(LeaveOutFinished, OfAPointInBothListsOnlyTheEndIsKept) {
   v1::StatisticsSnapshot message;
   for (const int index : {4, 2, 7}) message.add_points()->set_index(index);
   for (const int index : {1, 2}) message.add_finished_points()->set_index(index);

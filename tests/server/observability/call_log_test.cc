@@ -1,6 +1,6 @@
 // What the log says of calls and jobs.
-#include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,16 +11,17 @@
 #include "server/observability/call_observer.h"
 #include "server/observability/log.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
+using google::protobuf::Struct;
 using ::testing::HasSubstr;
-using Line = google::protobuf::Struct;
 
-std::string Text(const Line& line, const std::string& name) {
+std::string FieldOf(const Struct& line, const std::string& name) {
   const auto found = line.fields().find(name);
   return found == line.fields().end() ? "" : found->second.string_value();
 }
@@ -32,11 +33,11 @@ class CallLog : public testing::Test {
 
   // What was written while `act` ran.
   template <typename Act>
-  static std::vector<Line> LinesOf(Act act) {
+  static std::vector<Struct> LinesOf(Act act) {
     testing::internal::CaptureStderr();
     act();
     std::istringstream text(testing::internal::GetCapturedStderr());
-    std::vector<Line> lines;
+    std::vector<Struct> lines;
     for (std::string line; std::getline(text, line);) {
       const auto status = google::protobuf::util::JsonStringToMessage(line, &lines.emplace_back());
       EXPECT_TRUE(status.ok()) << line;
@@ -44,21 +45,11 @@ class CallLog : public testing::Test {
     return lines;
   }
 
-  static std::vector<std::string> Messages(const std::vector<Line>& lines) {
+  static std::vector<std::string> Messages(const std::vector<Struct>& lines) {
     std::vector<std::string> messages;
-    for (const Line& line : lines) messages.push_back(Text(line, "message"));
+    for (const Struct& line : lines) messages.push_back(FieldOf(line, "message"));
     return messages;
   }
-
-  ServerOptions Options() {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.factory = FakeExperiments();
-    options.limits.max_points_per_job = 10;
-    return options;
-  }
-
-  TemporaryFolder folder_;
 };
 
 FailedCall Failure(absl::StatusCode code, const std::string& reason) {
@@ -71,30 +62,29 @@ FailedCall Failure(absl::StatusCode code, const std::string& reason) {
           .seconds = 0.5};
 }
 
-TEST_F(CallLog, AJobsLifeIsToldWithJobPrincipalAndRequest) {
+TEST_F(CallLog, AJobsLifeIsLoggedWithJobPrincipalAndRequest) {
   std::string name;
   const auto lines = LinesOf([&] {
-    RunningServer server(Options());
+    RunningServer server;
     grpc::ClientContext context;
     context.AddMetadata("x-request-id", "my-request");
-    v1::CreateEnsembleJobRequest request;
-    *request.mutable_spec() = Equilibrium(2, 3);
     v1::EnsembleJob job;
-    ASSERT_TRUE(server.ensemble().CreateEnsembleJob(&context, request, &job).ok());
+    ASSERT_OK(
+        server.ensemble().CreateEnsembleJob(&context, CreateRequest(Equilibrium(2, 3)), &job));
     name = job.name();
     server.AwaitEnd(name);
     server.Get(name);  // reading is not told
-    ASSERT_TRUE(server.Delete(name).ok());
+    ASSERT_OK(server.Delete(name));
   });
   EXPECT_THAT(Messages(lines), testing::UnorderedElementsAre("job accepted", "job running",
                                                              "job succeeded", "job deleted"));
-  for (const Line& line : lines) {
-    EXPECT_EQ(Text(line, "job"), name);
-    EXPECT_EQ(Text(line, "principal"), "local");
-    if (Text(line, "message") == "job accepted") {
-      EXPECT_EQ(Text(line, "request_id"), "my-request");
+  for (const Struct& line : lines) {
+    EXPECT_EQ(FieldOf(line, "job"), name);
+    EXPECT_EQ(FieldOf(line, "principal"), "local");
+    if (FieldOf(line, "message") == "job accepted") {
+      EXPECT_EQ(FieldOf(line, "request_id"), "my-request");
     }
-    if (Text(line, "message") == "job succeeded") {
+    if (FieldOf(line, "message") == "job succeeded") {
       EXPECT_EQ(line.fields().at("samples").number_value(), 2 * 3 * kFakeSamplesPerBlock);
       EXPECT_GE(line.fields().at("seconds").number_value(), 0);
     }
@@ -102,73 +92,64 @@ TEST_F(CallLog, AJobsLifeIsToldWithJobPrincipalAndRequest) {
 }
 
 TEST_F(CallLog, AFailedJobSaysWhy) {
-  ServerOptions options = Options();
-  options.factory = FakeExperiments(
-      [](size_t, uint64_t, std::stop_token) { throw std::runtime_error("line one\nline two"); });
-  const auto lines = LinesOf([&] {
-    RunningServer server(options);
+  const auto lines = LinesOf([] {
+    RunningServer server({.factory = FakeExperiments([](size_t, uint64_t, std::stop_token) {
+                            throw std::runtime_error("line one\nline two");
+                          })});
     server.AwaitEnd(server.Submit(Equilibrium(1, 3)));
   });
   EXPECT_THAT(Messages(lines),
               testing::UnorderedElementsAre("job accepted", "job running", "job failed"));
-  for (const Line& line : lines) {
-    if (Text(line, "message") != "job failed") continue;
-    EXPECT_EQ(Text(line, "severity"), "WARNING");
-    EXPECT_THAT(Text(line, "error"), HasSubstr("line one\nline two"));
+  for (const Struct& line : lines) {
+    if (FieldOf(line, "message") != "job failed") continue;
+    EXPECT_EQ(FieldOf(line, "severity"), "WARNING");
+    EXPECT_THAT(FieldOf(line, "error"), HasSubstr("line one\nline two"));
   }
 }
 
-TEST_F(CallLog, ACallOverALimitIsToldAndOneThatIsMerelyWrongIsNot) {
+TEST_F(CallLog, ACallOverALimitIsLoggedAndAnInvalidOneIsNot) {
   const auto lines = LinesOf([&] {
-    RunningServer server(Options());
-    v1::CreateEnsembleJobRequest request;
-    v1::EnsembleJob job;
-    EXPECT_FALSE(server.Create(request, &job).ok());
-    *request.mutable_spec() = Equilibrium(11, 1);
-    EXPECT_FALSE(server.Create(request, &job).ok());
+    RunningServer server({.limits = {.max_points_per_job = 10}});
+    EXPECT_FALSE(server.Create({}).ok());
+    EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
     grpc::ClientContext context;
+    v1::EnsembleJob job;
     v1::GetEnsembleJobRequest none;
     none.set_name("ensembleJobs/none");
-    EXPECT_EQ(server.ensemble().GetEnsembleJob(&context, none, &job).error_code(),
-              grpc::StatusCode::NOT_FOUND);
+    EXPECT_THAT(server.ensemble().GetEnsembleJob(&context, none, &job),
+                StatusIs(grpc::StatusCode::NOT_FOUND));
   });
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(Text(lines[0], "message"), HasSubstr("call refused: the grid has 11 points"));
-  EXPECT_EQ(Text(lines[0], "severity"), "WARNING");
-  EXPECT_EQ(Text(lines[0], "method"), "CreateEnsembleJob");
-  EXPECT_EQ(Text(lines[0], "principal"), "local");
-  EXPECT_EQ(Text(lines[0], "code"), "RESOURCE_EXHAUSTED");
-  EXPECT_EQ(Text(lines[0], "reason"), "TOO_MANY_POINTS");
-  EXPECT_EQ(Text(lines[0], "request_id").size(), 16u);
+  EXPECT_THAT(FieldOf(lines[0], "message"), HasSubstr("call refused: the grid has 11 points"));
+  EXPECT_EQ(FieldOf(lines[0], "severity"), "WARNING");
+  EXPECT_EQ(FieldOf(lines[0], "method"), "CreateEnsembleJob");
+  EXPECT_EQ(FieldOf(lines[0], "principal"), "local");
+  EXPECT_EQ(FieldOf(lines[0], "code"), "RESOURCE_EXHAUSTED");
+  EXPECT_EQ(FieldOf(lines[0], "reason"), "TOO_MANY_POINTS");
+  EXPECT_EQ(FieldOf(lines[0], "request_id").size(), 16u);
 }
 
-TEST_F(CallLog, WhatThrowsIsToldAsTheServersFault) {
-  ServerOptions options = Options();
-  options.compare = [](const MethodComparisonSpec&, const std::stop_token&,
-                       const std::function<void(const MethodMeasurement&)>&) -> absl::Status {
+TEST_F(CallLog, ExceptionsAreLoggedAsErrorsOfTheServer) {
+  const MethodComparer compare = [](const auto&, const auto&, const auto&) -> absl::Status {
     throw std::runtime_error("no memory left");
   };
   const auto lines = LinesOf([&] {
-    RunningServer server(options);
+    RunningServer server({.compare = compare});
     grpc::ClientContext context;
-    v1::CompareMethodsRequest request;
-    request.set_rho(0.53);
-    request.set_delta(0.1);
-    request.set_epsilon(0.1);
-    const auto stream = server.method().CompareMethods(&context, request);
+    const auto stream = server.method().CompareMethods(&context, SomeComparison());
     v1::MethodMeasurement message;
     while (stream->Read(&message)) {
     }
-    EXPECT_EQ(stream->Finish().error_code(), grpc::StatusCode::INTERNAL);
+    EXPECT_THAT(stream->Finish(), StatusIs(grpc::StatusCode::INTERNAL));
   });
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_EQ(Text(lines[0], "message"), "call failed: no memory left");
-  EXPECT_EQ(Text(lines[0], "severity"), "ERROR");
-  EXPECT_EQ(Text(lines[0], "method"), "CompareMethods");
-  EXPECT_EQ(Text(lines[0], "principal"), "local");
+  EXPECT_EQ(FieldOf(lines[0], "message"), "call failed: no memory left");
+  EXPECT_EQ(FieldOf(lines[0], "severity"), "ERROR");
+  EXPECT_EQ(FieldOf(lines[0], "method"), "CompareMethods");
+  EXPECT_EQ(FieldOf(lines[0], "principal"), "local");
 }
 
-TEST_F(CallLog, TheOperatorIsToldOfWhatIsHisConcern) {
+TEST_F(CallLog, OnlyWhatConcernsTheOperatorIsLogged) {
   using absl::StatusCode;
   const auto verdict = [](StatusCode code, const char* reason = "") {
     return VerdictOn(Failure(code, reason));
@@ -187,7 +168,7 @@ TEST_F(CallLog, TheOperatorIsToldOfWhatIsHisConcern) {
   }
 }
 
-TEST_F(CallLog, AFloodAtTheDoorIsCountedWholeAndToldInPart) {
+TEST_F(CallLog, AFloodOfRefusedCallsIsCountedWholeAndLoggedInPart) {
   CallObserver calls;
   const auto lines = LinesOf([&] {
     for (int i = 0; i < 500; ++i) {
@@ -201,7 +182,7 @@ TEST_F(CallLog, AFloodAtTheDoorIsCountedWholeAndToldInPart) {
   EXPECT_EQ(LinesOf([&] { calls.Failed(Failure(absl::StatusCode::kInternal, "")); }).size(), 1u);
 }
 
-TEST_F(CallLog, WhatIsLessSevereThanWantedIsNotWritten) {
+TEST_F(CallLog, LinesBelowTheLeastSeverityAreNotWritten) {
   SetLogOptions({.format = LogFormat::kJson, .least = Severity::kError});
   const auto lines = LinesOf([] {
     Log(Severity::kInfo, "a");

@@ -58,7 +58,7 @@ TEST_F(HealthStates, EachServiceServesByItsNameFromTheStart) {
   EXPECT_TRUE(answers_.IsServing("formulas"));
 }
 
-TEST_F(HealthStates, OnlyWhatNeedsTheStoreStopsServingWhileItFails) {
+TEST_F(HealthStates, OnlyServicesThatNeedTheStoreStopServingWhileItFails) {
   store_fails_ = true;
   answers_.Await("jobs", false);
   EXPECT_TRUE(answers_.IsServing("formulas"));
@@ -67,7 +67,7 @@ TEST_F(HealthStates, OnlyWhatNeedsTheStoreStopsServingWhileItFails) {
   answers_.Await("jobs", true);
 }
 
-TEST_F(HealthStates, AServerThatStopsServesNothingAnyMore) {
+TEST_F(HealthStates, AStoppingServerServesNothing) {
   store_fails_ = true;
   answers_.Await("jobs", false);
   health_.Drain();

@@ -87,13 +87,20 @@ TEST_F(LogSocketTest, ALineThatWasTornIsEnded) {
   EXPECT_EQ(before.size() % 4000 == 0, after[0] != '\n');
 }
 
-TEST_F(LogOutputTest, AClosedDescriptorStopsNothing) {
+TEST_F(LogOutputTest, LinesToAClosedDescriptorAreCounted) {
   signal(SIGPIPE, SIG_IGN);  // as the program does
   close(std::exchange(reader_, -1));
-  LogOutput closed(writer_);
-  closed.Write("line\n", Loss);
-  LogOutput none(-1);
-  none.Write("line\n", Loss);
+  for (const int descriptor : {writer_, -1}) {
+    LogOutput closed(descriptor);
+    int64_t counted = 0;
+    for (int i = 0; i < 3; ++i) {
+      closed.Write("line\n", [&](int64_t lost) {
+        counted = lost;
+        return Loss(lost);
+      });
+    }
+    EXPECT_EQ(counted, 2);  // before the third
+  }
 }
 
 }  // namespace

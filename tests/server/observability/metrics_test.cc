@@ -1,6 +1,6 @@
 #include "server/observability/metrics.h"
 
-#include <future>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -10,10 +10,13 @@
 #include "gmock/gmock.h"
 #include "grpcpp/generic/generic_stub.h"
 #include "gtest/gtest.h"
+#include "tests/server/api/watch_stream.h"
+#include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
+#include "tests/server/requests.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
@@ -47,18 +50,10 @@ std::map<std::string, double> Samples(const std::string& page) {
 
 class MetricsTest : public testing::Test {
  protected:
-  ~MetricsTest() override { gate_.Open(); }
-
   RunningServer& Start(bool held = false) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.workers = 2;
-    options.metrics_listen = "127.0.0.1:0";
-    options.limits.max_points_per_job = 10;
-    options.factory = FakeExperiments([this, held](size_t, uint64_t, std::stop_token stop) {
-      if (held) gate_.Pass(stop);
-    });
-    server_.emplace(options);
+    server_.emplace(TestServerOptions{.factory = held ? GatedExperiments(gate_) : FakeExperiments(),
+                                      .limits = {.max_points_per_job = 10},
+                                      .metrics_listen = "127.0.0.1:0"});
     return *server_;
   }
   std::string Address() { return server_->server().metrics_address(); }
@@ -69,12 +64,11 @@ class MetricsTest : public testing::Test {
     while (Metrics().at(metric) != value) std::this_thread::yield();
   }
 
-  TemporaryFolder folder_;
   Gate gate_;
   std::optional<RunningServer> server_;
 };
 
-TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
+TEST(ServerMetrics, TheEndOfACertificateIsAMetricIfThereIsOne) {
   const auto names = [](const ServerSnapshot& server) {
     std::map<std::string, double> values;
     for (const auto& family : ServerMetrics(server)) {
@@ -89,7 +83,7 @@ TEST(ServerMetrics, TellTheEndOfACertificateWhereThereIsOne) {
   EXPECT_EQ(names(server)[kExpiry], 2e9);
 }
 
-TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
+TEST_F(MetricsTest, AWatchOfHealthThatItsClientEndsIsNoFailure) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();
   {
@@ -101,10 +95,10 @@ TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
       return queue.Next(&tag, &ok) && ok;
     };
     grpc::GenericStub stub(server.channel());
-    const auto call = stub.PrepareCall(&context, "/grpc.health.v1.Health/Watch", &queue);
+    const auto call = stub.PrepareCall(&context, kWatchHealth, &queue);
     call->StartCall(nullptr);
     ASSERT_TRUE(await());
-    const grpc::Slice whole_server(std::string("\x0a\0", 2));
+    const grpc::Slice whole_server(kWholeServer);
     call->WriteLast(grpc::ByteBuffer(&whole_server, 1), {}, nullptr);
     ASSERT_TRUE(await());
     grpc::ByteBuffer state;
@@ -128,7 +122,7 @@ TEST_F(MetricsTest, AWatchOfHealthWhoseClientLeavesIsCancelledAndNoFailure) {
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("call failed")));
 }
 
-TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
+TEST_F(MetricsTest, MethodsAreListedBeforeTheirFirstCall) {
   Start();
   const auto metrics = Metrics();
   ASSERT_EQ(metrics.count(kCreated), 1u);
@@ -138,9 +132,9 @@ TEST_F(MetricsTest, MethodsAreToldOfBeforeTheirFirstCall) {
             1u);
 }
 
-TEST_F(MetricsTest, CountersMoveWithCallsJobsAndBlocks) {
+TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
   RunningServer& server = Start();
-  for (int i = 0; i < 3; ++i) server.AwaitEnd(server.Submit(Equilibrium(2, 50)));
+  for (int i = 0; i < 3; ++i) server.Succeeded(Equilibrium(2, 50));
   Await("ballpiston_jobs_ended_total{state=\"succeeded\"}", 3);
   const auto metrics = Metrics();
   EXPECT_EQ(metrics.at(kCreated), 3);
@@ -163,12 +157,8 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   const std::string first = server.Submit(Equilibrium(2, 50));
   gate_.AwaitWaiting(2);
   const std::string second = server.Submit(Equilibrium(1, 1));
-  grpc::ClientContext context;
-  v1::WatchEnsembleJobRequest request;
-  request.set_name(first);
-  const auto watch = server.ensemble().WatchEnsembleJob(&context, request);
-  v1::WatchEnsembleJobResponse message;
-  ASSERT_TRUE(watch->Read(&message));
+  WatchStream watch(server, first);
+  ASSERT_TRUE(watch.Next());
   const auto metrics = Metrics();
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"running\"}"), 1);
   EXPECT_EQ(metrics.at("ballpiston_jobs{state=\"queued\"}"), 1);
@@ -176,8 +166,7 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
   EXPECT_EQ(metrics.at("ballpiston_busy_workers"), 2);
   EXPECT_EQ(metrics.at("ballpiston_streams"), 1);
   gate_.Open();
-  while (watch->Read(&message)) {
-  }
+  EXPECT_OK(watch.End());
   server.AwaitEnd(second);
   Await("ballpiston_streams", 0);
   EXPECT_EQ(Metrics().at("ballpiston_jobs{state=\"running\"}"), 0);
@@ -185,24 +174,22 @@ TEST_F(MetricsTest, ActiveJobsWorkersAndStreamsAreGauges) {
 
 TEST_F(MetricsTest, RefusalsAreCountedByReason) {
   RunningServer& server = Start();
-  v1::CreateEnsembleJobRequest request;
-  *request.mutable_spec() = Equilibrium(11, 1);
-  v1::EnsembleJob job;
-  for (int i = 0; i < 2; ++i) EXPECT_FALSE(server.Create(request, &job).ok());
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(server.Create(CreateRequest(Equilibrium(11, 1))).ok());
+  }
   EXPECT_EQ(Metrics().at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 2);
 }
 
-TEST_F(MetricsTest, NoLabelNamesAJobOrAPrincipal) {
+TEST_F(MetricsTest, LabelsNameNoJobAndNoPrincipal) {
   RunningServer& server = Start();
-  const std::string name = server.Submit(Equilibrium(1, 2));
-  server.AwaitEnd(name);
+  const std::string name = server.Succeeded(Equilibrium(1, 2));
   const std::string page = Page();
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
   EXPECT_THAT(page, Not(HasSubstr(name.substr(name.find('/') + 1))));
   EXPECT_THAT(page, Not(HasSubstr("\"local\"")));
 }
 
-TEST_F(MetricsTest, WhatIsNotAskedForInOrderHarmsNobody) {
+TEST_F(MetricsTest, MalformedRequestsHarmNobody) {
   Start();
   Connection silent(Address()), slow(Address());
   slow.Send("GET /met");
@@ -219,49 +206,38 @@ TEST_F(MetricsTest, WhatIsNotAskedForInOrderHarmsNobody) {
   EXPECT_EQ(Metrics().at("ballpiston_workers"), 2);
 }
 
-TEST_F(MetricsTest, AStoppedServerIsAskedNoMore) {
+TEST_F(MetricsTest, AStoppedServerHasNoMetrics) {
   RunningServer& server = Start();
   Connection slow(Address());
   slow.Send("GET /met");
-  server.server().Shutdown(std::chrono::seconds(10));
+  server.Shutdown();
   const std::string page = Page();
   EXPECT_THAT(page, StartsWith("HTTP/1.1 200 OK"));
   EXPECT_THAT(page, Not(HasSubstr("ballpiston_")));
 }
 
-TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
+TEST_F(MetricsTest, OnlyLoopbackAddressesAreAccepted) {
   for (const char* address :
        {"0.0.0.0:9090", "192.168.1.1:9090", "[::]:9090", "example.org:9090", "9090", ":9090",
         "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1", "::1:9090", "[127.0.0.1]:1",
         "127.0.0.1:9090,0.0.0.0:9091", "unix:/tmp/metrics", "127.0.0.1:90s"}) {
-    ServerOptions options;
-    options.data_dir = folder_.File("data");
-    options.metrics_listen = address;
-    const auto server = BallpistonServer::Start(options);
-    EXPECT_EQ(server.status().code(), absl::StatusCode::kInvalidArgument) << address;
-    EXPECT_THAT(std::string(server.status().message()),
+    const absl::Status error = StartError({.metrics_listen = address});
+    EXPECT_THAT(error, StatusIs(absl::StatusCode::kInvalidArgument)) << address;
+    EXPECT_THAT(std::string(error.message()),
                 HasSubstr("--metrics_listen=" + std::string(address)));
   }
 }
 
 // The HTTP server takes no names.
 TEST_F(MetricsTest, LocalhostIsAnAddress) {
-  ServerOptions options;
-  options.data_dir = folder_.File("data");
-  options.metrics_listen = "localhost:0";
-  RunningServer server(options);
+  RunningServer server({.metrics_listen = "localhost:0"});
   EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));
 }
 
 TEST_F(MetricsTest, AnAddressInUseIsRefused) {
   Start();
-  TemporaryFolder other;
-  ServerOptions options;
-  options.data_dir = other.path();
-  options.metrics_listen = Address();
-  const auto server = BallpistonServer::Start(options);
-  EXPECT_EQ(server.status().code(), absl::StatusCode::kFailedPrecondition);
-  EXPECT_THAT(std::string(server.status().message()), HasSubstr(Address()));
+  EXPECT_THAT(StartError({.metrics_listen = Address()}),
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(Address())));
 }
 
 }  // namespace

@@ -3,12 +3,14 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <string>
+#include <utility>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "server/convert/errors.h"
 #include "server/security/token_hash.h"
-#include "tests/support/running_server.h"
+#include "tests/server/error_details.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -19,25 +21,24 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const NamedFile kFile{"access_file", "list"};
-const absl::Time kNow = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
+const absl::Time kNoon = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
 
 std::string HashText(const std::string& token) { return "sha256:" + HexOf(HashOf(token)); }
 
-AccessList Parsed(const std::string& text) {
+AccessList ParsedList(const std::string& text) {
   auto list = AccessList::Parse(kFile, text);
-  EXPECT_TRUE(list.ok()) << list.status();
+  EXPECT_OK(list);
   return *std::move(list);
 }
 
-std::string ReasonOf(const absl::StatusOr<Principal>& who) {
-  EXPECT_TRUE(absl::IsUnauthenticated(who.status())) << who.status();
-  return DetailsOf(GrpcStatus(who.status())).reason;
+auto IsRefusedAs(const std::string& reason) {
+  return IsError(absl::StatusCode::kUnauthenticated, reason);
 }
 
 std::string ErrorOf(const std::string& text) {
-  const auto list = AccessList::Parse(kFile, text);
-  EXPECT_TRUE(absl::IsInvalidArgument(list.status())) << text;
-  return std::string(list.status().message());
+  const absl::Status error = AccessList::Parse(kFile, text).status();
+  EXPECT_THAT(error, StatusIs(absl::StatusCode::kInvalidArgument)) << text;
+  return std::string(error.message());
 }
 
 TEST(TokenHash, IsTheStandardsSha256) {
@@ -48,79 +49,78 @@ TEST(TokenHash, IsTheStandardsSha256) {
   EXPECT_FALSE(HashOf("abc") == HashOf("abd"));
 }
 
-TEST(AccessList, ATokenIsItsPrincipals) {
+TEST(AccessList, ATokenBelongsToItsPrincipal) {
   const AccessList list =
-      Parsed("# the laboratory\n\ntoken " + HashText("one") + " alice submit\n  token\t" +
-             HashText("two") + " bob@lab.example read # on paper\r\ntoken " + HashText("three") +
-             " root-3 admin 2030-06-02");
+      ParsedList("# the laboratory\n\ntoken " + HashText("one") + " alice submit\n  token\t" +
+                 HashText("two") + " bob@lab.example read # on paper\r\ntoken " +
+                 HashText("three") + " root-3 admin 2030-06-02");
   EXPECT_EQ(list.size(), 3u);
-  EXPECT_EQ(list.OfToken("one", kNow)->name, "alice");
-  EXPECT_EQ(list.OfToken("one", kNow)->role, Role::kSubmit);
-  EXPECT_EQ(list.OfToken("two", kNow)->name, "bob@lab.example");
-  EXPECT_EQ(list.OfToken("two", kNow)->role, Role::kRead);
-  EXPECT_EQ(list.OfToken("three", kNow)->role, Role::kAdmin);
+  EXPECT_EQ(list.OfToken("one", kNoon)->name, "alice");
+  EXPECT_EQ(list.OfToken("one", kNoon)->role, Role::kSubmit);
+  EXPECT_EQ(list.OfToken("two", kNoon)->name, "bob@lab.example");
+  EXPECT_EQ(list.OfToken("two", kNoon)->role, Role::kRead);
+  EXPECT_EQ(list.OfToken("three", kNoon)->role, Role::kAdmin);
 }
 
-TEST(AccessList, WhatIsNotATokenOfItIsInvalid) {
-  const AccessList list = Parsed("token " + HashText("one") + " alice submit");
+TEST(AccessList, UnknownTokensAreInvalid) {
+  const AccessList list = ParsedList("token " + HashText("one") + " alice submit");
   const std::string long_token(kLongestToken + 1, 'x');
   for (const std::string& token : {std::string("two"), std::string(), std::string("one "),
                                    std::string("on"), HashText("one"), long_token}) {
-    EXPECT_EQ(ReasonOf(list.OfToken(token, kNow)), "CREDENTIALS_INVALID") << token;
+    EXPECT_THAT(list.OfToken(token, kNoon), IsRefusedAs("CREDENTIALS_INVALID")) << token;
   }
 }
 
 TEST(AccessList, ATokenThatIsTooLongIsRefusedEvenIfItsHashIsListed) {
   const std::string longest(kLongestToken, 'x');
-  const AccessList list = Parsed("token " + HashText(longest) + " a read\ntoken " +
-                                 HashText(longest + "x") + " b read\n");
-  EXPECT_TRUE(list.OfToken(longest, kNow).ok());
-  EXPECT_EQ(ReasonOf(list.OfToken(longest + "x", kNow)), "CREDENTIALS_INVALID");
+  const AccessList list = ParsedList("token " + HashText(longest) + " a read\ntoken " +
+                                     HashText(longest + "x") + " b read\n");
+  EXPECT_OK(list.OfToken(longest, kNoon));
+  EXPECT_THAT(list.OfToken(longest + "x", kNoon), IsRefusedAs("CREDENTIALS_INVALID"));
 }
 
 TEST(AccessList, AnEntryIsRefusedFromItsTimeOfExpiryOn) {
   const AccessList list =
-      Parsed("token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " +
-             HashText("zone") + " b read 2030-06-01T14:00:00.5+02:00\ntoken " + HashText("date") +
-             " c read 2030-06-02\ncertificate old d read 2030-06-01\n");
-  EXPECT_TRUE(list.OfToken("time", kNow - absl::Milliseconds(1)).ok());
-  EXPECT_EQ(ReasonOf(list.OfToken("time", kNow)), "CREDENTIALS_EXPIRED");
-  EXPECT_TRUE(list.OfToken("zone", kNow).ok());
-  EXPECT_EQ(ReasonOf(list.OfToken("zone", kNow + absl::Seconds(1))), "CREDENTIALS_EXPIRED");
-  EXPECT_TRUE(list.OfToken("date", kNow + absl::Hours(11)).ok());
-  EXPECT_EQ(ReasonOf(list.OfToken("date", kNow + absl::Hours(12))), "CREDENTIALS_EXPIRED");
-  EXPECT_EQ(ReasonOf(list.OfCertificate("old", kNow)), "CREDENTIALS_EXPIRED");
+      ParsedList("token " + HashText("time") + " a read 2030-06-01T12:00:00Z\ntoken " +
+                 HashText("zone") + " b read 2030-06-01T14:00:00.5+02:00\ntoken " +
+                 HashText("date") + " c read 2030-06-02\ncertificate old d read 2030-06-01\n");
+  EXPECT_OK(list.OfToken("time", kNoon - absl::Milliseconds(1)));
+  EXPECT_THAT(list.OfToken("time", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  EXPECT_OK(list.OfToken("zone", kNoon));
+  EXPECT_THAT(list.OfToken("zone", kNoon + absl::Seconds(1)), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  EXPECT_OK(list.OfToken("date", kNoon + absl::Hours(11)));
+  EXPECT_THAT(list.OfToken("date", kNoon + absl::Hours(12)), IsRefusedAs("CREDENTIALS_EXPIRED"));
+  EXPECT_THAT(list.OfCertificate("old", kNoon), IsRefusedAs("CREDENTIALS_EXPIRED"));
 }
 
 TEST(AccessList, ACertificateIsKnownByItsWholeCommonName) {
   const AccessList list =
-      Parsed("certificate \"Ada Lovelace\" ada admin\ncertificate box box read");
+      ParsedList("certificate \"Ada Lovelace\" ada admin\ncertificate box box read");
   EXPECT_TRUE(list.has_certificates());
-  EXPECT_EQ(list.OfCertificate("Ada Lovelace", kNow)->name, "ada");
-  EXPECT_EQ(list.OfCertificate("box", kNow)->role, Role::kRead);
+  EXPECT_EQ(list.OfCertificate("Ada Lovelace", kNoon)->name, "ada");
+  EXPECT_EQ(list.OfCertificate("box", kNoon)->role, Role::kRead);
   for (const std::string name : {"Ada", "", "BOX", "box.evil.example"}) {
-    EXPECT_EQ(ReasonOf(list.OfCertificate(name, kNow)), "CREDENTIALS_INVALID");
+    EXPECT_THAT(list.OfCertificate(name, kNoon), IsRefusedAs("CREDENTIALS_INVALID"));
   }
-  EXPECT_EQ(ReasonOf(list.OfCertificate(std::string("box\0.evil", 9), kNow)),
-            "CREDENTIALS_INVALID");
+  EXPECT_THAT(list.OfCertificate(std::string("box\0.evil", 9), kNoon),
+              IsRefusedAs("CREDENTIALS_INVALID"));
 }
 
-TEST(AccessList, AFormattedEntryIsReadAsItself) {
+TEST(AccessList, AFormattedEntryIsReadBack) {
   const AccessEntry entries[] = {
-      {HashOf("one"), {"alice", Role::kSubmit}, kNow},
+      {HashOf("one"), {"alice", Role::kSubmit}, kNoon},
       {std::string("Ada Lovelace"), {"ada", Role::kAdmin}, absl::InfiniteFuture()}};
   for (const AccessEntry& entry : entries) {
-    const auto read = ParseAccessEntry(FormatAccessEntry(entry));
-    ASSERT_TRUE(read.ok()) << read.status();
-    EXPECT_EQ((*read)->credential, entry.credential);
-    EXPECT_EQ((*read)->principal.name, entry.principal.name);
-    EXPECT_EQ((*read)->principal.role, entry.principal.role);
-    EXPECT_EQ((*read)->expires, entry.expires);
+    ASSERT_OK_AND_ASSIGN(const auto read, ParseAccessEntry(FormatAccessEntry(entry)));
+    EXPECT_EQ(read->credential, entry.credential);
+    EXPECT_EQ(read->principal.name, entry.principal.name);
+    EXPECT_EQ(read->principal.role, entry.principal.role);
+    EXPECT_EQ(read->expires, entry.expires);
   }
 }
 
 // In every place of a line where somebody may have put a token.
-TEST(AccessList, AMalformedLineIsNamedWithoutAWordOfIt) {
+TEST(AccessList, ErrorsNameTheLineAndShowNoneOfItsWords) {
   const std::string secret = "hunter2hunter2";
   const std::string good = HashText("one");
   const std::pair<std::string, std::string> cases[] = {
@@ -170,36 +170,37 @@ class AccessFile : public ::testing::Test {
   NamedFile file_{"access_file", folder_.File("list")};
 };
 
-TEST_F(AccessFile, ThatOthersMayReadOrWriteIsRefused) {
-  EXPECT_TRUE(With(0600).ok());
-  EXPECT_TRUE(With(0400).ok());
-  EXPECT_TRUE(With(0640).ok());
+TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
+  EXPECT_OK(With(0600));
+  EXPECT_OK(With(0400));
+  EXPECT_OK(With(0640));
   for (const mode_t mode : {0604, 0644, 0660, 0620, 0602, 0666, 0777}) {
     EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to others")) << mode;
   }
 }
 
-TEST_F(AccessFile, OfAnotherUserIsRefusedUnlessItIsRoots) {
+TEST_F(AccessFile, AFileOfAnotherUserThanRootIsRefused) {
   struct stat status {};
   status.st_mode = S_IFREG | 0600;
   status.st_uid = 1000;
-  EXPECT_TRUE(CheckKeptPrivate(file_, status, 1000).ok());
+  EXPECT_OK(CheckKeptPrivate(file_, status, 1000));
   EXPECT_THAT(std::string(CheckKeptPrivate(file_, status, 1001).message()),
               HasSubstr("belongs to user 1000; permitted: this server's user (1001) or root"));
   status.st_uid = 0;
-  EXPECT_TRUE(CheckKeptPrivate(file_, status, 1000).ok());
+  EXPECT_OK(CheckKeptPrivate(file_, status, 1000));
 }
 
-TEST_F(AccessFile, ThatIsNoRegularFileOrNoneAtAllIsRefused) {
+TEST_F(AccessFile, OnlyARegularFileIsRead) {
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
               HasSubstr("cannot be opened"));
   ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
               HasSubstr("is not a regular file"));
-  EXPECT_TRUE(absl::IsInvalidArgument(AccessList::Read({"access_file", folder_.path()}).status()));
+  EXPECT_THAT(AccessList::Read({"access_file", folder_.path()}),
+              StatusIs(absl::StatusCode::kInvalidArgument));
 }
 
-TEST_F(AccessFile, ThatIsTooLongIsRefused) {
+TEST_F(AccessFile, AFileThatIsTooLongIsRefused) {
   std::ofstream(file_.path) << std::string(kMaxSecurityFile + 1, '#');
   chmod(file_.path.c_str(), 0600);
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()), HasSubstr("longer than"));

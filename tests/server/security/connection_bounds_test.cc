@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -16,27 +17,15 @@
 #include "gtest/gtest.h"
 #include "server/security/socket_listener.h"
 #include "tests/server/call_by_name.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
-#include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/server/unread_call.h"
+#include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
-constexpr char kList[] = "/ballpiston.v1.EnsembleService/ListEnsembleJobs";
-
-ServerOptions Options(const TemporaryFolder& folder) {
-  ServerOptions options;
-  options.data_dir = folder.path();
-  options.listen = "127.0.0.1:0";
-  options.factory = FakeExperiments();
-  return options;
-}
 
 // The number that the next descriptor gets.
 rlim_t NextDescriptor() {
@@ -68,11 +57,10 @@ TEST(ConnectionBounds, AQuarterOfAFewDescriptorsIsReservedAndNoMoreThan32) {
 
 // As many connections as the process has descriptors, and more: the surplus is closed, the process
 // can still open files, and when they have gone the server serves as before.
-TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsAndPasses) {
+TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsFree) {
   constexpr rlim_t kFlood = 100;
-  TemporaryFolder folder;
-  RunningServer server(Options(folder));
-  ASSERT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
+  RunningServer server({.listen = "127.0.0.1:0"});
+  ASSERT_OK(CallByName(server.channel(), kListJobs));
   testing::internal::CaptureStderr();
   {
     // Descriptors of the clients, in this same process, are below the limit; half as many of the
@@ -82,22 +70,21 @@ TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsAndPasses) {
     std::vector<std::unique_ptr<Connection>> flood;
     int closed = 0;
     for (rlim_t i = 0; i < kFlood && closed < 3; ++i) {
-      flood.push_back(std::make_unique<Connection>(server.server().address()));
+      flood.push_back(std::make_unique<Connection>(server.address()));
       if (flood.back()->ReadSome().empty()) ++closed;
     }
     EXPECT_EQ(closed, 3);
     EXPECT_LT(NextDescriptor(), limit);
   }
-  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
-  EXPECT_FALSE(Connection(server.server().address()).ReadSome().empty());
+  EXPECT_OK(CallByName(server.channel(), kListJobs));
+  EXPECT_FALSE(Connection(server.address()).ReadSome().empty());
   const std::string log = testing::internal::GetCapturedStderr();
   EXPECT_THAT(log, HasSubstr("1 connection closed: the process has nearly as many descriptors"));
 }
 
-TEST(ConnectionBounds, AConnectionIsToldHowManyStreamsItMayHave) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder));
-  Connection connection(server.server().address());
+TEST(ConnectionBounds, TheSettingsLimitTheStreamsOfAConnection) {
+  RunningServer server({.listen = "127.0.0.1:0"});
+  Connection connection(server.address());
   // The server's settings come first: SETTINGS_MAX_CONCURRENT_STREAMS is 3, and 2,048 is 0x800.
   EXPECT_THAT(connection.ReadSome(), HasSubstr(std::string("\0\x3\0\0\x8\0", 6)));
 }
@@ -194,43 +181,38 @@ class EndlessRequests {
 };
 
 // Some 40 MiB without end, where 16 MiB are allowed; on one connection, that shows no credentials.
-TEST(ConnectionBounds, RequestsThatNeverEndAreEndedWhenMemoryIsUsedUp) {
+TEST(ConnectionBounds, EndlessRequestsAreEndedWhenMemoryIsUsedUp) {
   constexpr size_t kOfEach = 49'152;  // less than a stream's window at the start
-  TemporaryFolder folder;
-  ServerOptions options = Options(folder);
-  options.limits.max_transfer_mib = 16;
-  RunningServer server(options);
-  EndlessRequests client(server.server().address());
+  RunningServer server({.listen = "127.0.0.1:0", .limits = {.max_transfer_mib = 16}});
+  EndlessRequests client(server.address());
   for (int begun = 0; begun < 900 && client.Send(kOfEach); ++begun) {
   }
   EXPECT_TRUE(client.EndsOne());
   // Others come in again, if not at once: there is room for a moment only.
-  while (!CallByName(server.channel(), kList, "", {}).ok()) {
+  while (!CallByName(server.channel(), kListJobs).ok()) {
   }
 }
 
-size_t Threads() {
+size_t ThreadsOfThisProcess() {
   const std::filesystem::directory_iterator all("/proc/self/task");
   return static_cast<size_t>(std::distance(begin(all), end(all)));
 }
 
-TEST(ConnectionBounds, ReflectionTakesSoManyThreadsAndOtherCallsGoOn) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder));
-  const std::string list_services("\x3a\x00", 2);
-  ASSERT_TRUE(CallByName(server.channel(), kReflection, list_services, {}).ok());
-  const size_t before = Threads();
+TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
+  RunningServer server({.listen = "127.0.0.1:0"});
+  ASSERT_OK(CallByName(server.channel(), kReflection, kListServices));
+  const size_t before = ThreadsOfThisProcess();
   std::vector<std::unique_ptr<UnreadCall>> streams;
   for (int i = 0; i < 60; ++i) {
     streams.push_back(std::make_unique<UnreadCall>(server.channel(), kReflection));
   }
   // The last is refused, in a moment; it would be open as long as the client likes.
-  EXPECT_EQ(streams.back()->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_LT(Threads(), before + 50);  // the client's own may be among them
-  EXPECT_TRUE(CallByName(server.channel(), kList, "", {}).ok());
-  EXPECT_TRUE(CallByName(server.channel(), "/grpc.health.v1.Health/Check", "", {}).ok());
+  EXPECT_THAT(streams.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
+  EXPECT_LT(ThreadsOfThisProcess(), before + 50);  // the client's own may be among them
+  EXPECT_OK(CallByName(server.channel(), kListJobs));
+  EXPECT_OK(CallByName(server.channel(), kCheckHealth));
   streams.clear();
-  while (!CallByName(server.channel(), kReflection, list_services, {}).ok()) {
+  while (!CallByName(server.channel(), kReflection, kListServices).ok()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the server is to have the core
   }
 }

@@ -6,14 +6,16 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/security/access_list.h"
+#include "tests/server/files.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -22,17 +24,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const absl::Time kNow = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
+const absl::Time kIssueTime =
+    absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
 
 class NewToken : public ::testing::Test {
  protected:
-  std::string Text() const {
-    std::ifstream in(file_.path);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   std::string Issue(const std::string& request) const {
-    const auto token = IssueToken(file_, *ParseTokenRequest(request), kNow);
-    EXPECT_TRUE(token.ok()) << token.status();
+    const auto token = IssueToken(file_, *ParseTokenRequest(request), kIssueTime);
+    EXPECT_OK(token);
     return *token;
   }
 
@@ -40,63 +39,58 @@ class NewToken : public ::testing::Test {
   const NamedFile file_{"access_file", folder_.File("list")};
 };
 
-TEST_F(NewToken, LetsItsPrincipalInAndIsNotInTheFile) {
+TEST_F(NewToken, AuthenticatesItsPrincipalAndIsNotInTheFile) {
   const std::string token = Issue("alice:submit");
-  const auto list = AccessList::Read(file_);
-  ASSERT_TRUE(list.ok()) << list.status();
-  EXPECT_EQ(list->OfToken(token, kNow + absl::Hours(24 * 36'500))->name, "alice");
-  EXPECT_EQ(list->OfToken(token, kNow)->role, Role::kSubmit);
-  EXPECT_THAT(Text(), Not(HasSubstr(token)));
-  EXPECT_THAT(Text(), Not(HasSubstr(token.substr(3))));  // without its prefix
+  ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
+  EXPECT_EQ(list.OfToken(token, kIssueTime + absl::Hours(24 * 36'500))->name, "alice");
+  EXPECT_EQ(list.OfToken(token, kIssueTime)->role, Role::kSubmit);
+  EXPECT_THAT(Contents(file_.path), Not(HasSubstr(token)));
+  EXPECT_THAT(Contents(file_.path), Not(HasSubstr(token.substr(3))));  // without its prefix
 }
 
 TEST_F(NewToken, TheFileIsItsOwnersOnly) {
   const mode_t before = umask(0);
   Issue("alice:read");
   umask(before);
-  struct stat found {};
-  ASSERT_EQ(stat(file_.path.c_str(), &found), 0);
-  EXPECT_EQ(found.st_mode & 07777, 0600u);
+  EXPECT_EQ(ModeOf(file_.path), 0600u);
 }
 
 TEST_F(NewToken, ExpiresAfterItsDays) {
   const std::string token = Issue("alice:admin:30");
   const auto list = AccessList::Read(file_);
-  EXPECT_TRUE(list->OfToken(token, kNow + 29.9 * absl::Hours(24)).ok());
-  EXPECT_FALSE(list->OfToken(token, kNow + 30 * absl::Hours(24)).ok());
+  EXPECT_OK(list->OfToken(token, kIssueTime + 29.9 * absl::Hours(24)));
+  EXPECT_FALSE(list->OfToken(token, kIssueTime + 30 * absl::Hours(24)).ok());
 }
 
 TEST_F(NewToken, IsAppendedAfterALineWithoutAnEnd) {
   std::ofstream(file_.path) << "certificate box box read";
   chmod(file_.path.c_str(), 0600);
   Issue("alice:read");
-  const auto list = AccessList::Read(file_);
-  ASSERT_TRUE(list.ok()) << list.status();
-  EXPECT_EQ(list->size(), 2u);
+  ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
+  EXPECT_EQ(list.size(), 2u);
 }
 
-TEST_F(NewToken, ManyAtOnceAreAllThereAndAllDifferent) {
+TEST_F(NewToken, ConcurrentTokensAreAllKeptAndAllDifferent) {
   std::vector<std::string> tokens(8);
   std::vector<std::thread> threads;
   for (std::string& token : tokens) threads.emplace_back([&] { token = Issue("alice:read"); });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(std::set<std::string>(tokens.begin(), tokens.end()).size(), tokens.size());
-  const auto list = AccessList::Read(file_);
-  ASSERT_TRUE(list.ok()) << list.status();
-  for (const std::string& token : tokens) EXPECT_TRUE(list->OfToken(token, kNow).ok());
+  ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
+  for (const std::string& token : tokens) EXPECT_OK(list.OfToken(token, kIssueTime));
 }
 
-TEST_F(NewToken, AFileThatIsOpenToOthersOrMalformedStaysAsItIs) {
+TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
   std::ofstream(file_.path) << "certificate box box read\n";
   chmod(file_.path.c_str(), 0644);
   const TokenRequest request = *ParseTokenRequest("alice:read");
-  EXPECT_THAT(std::string(IssueToken(file_, request, kNow).status().message()),
+  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("open to others"));
   chmod(file_.path.c_str(), 0600);
   std::ofstream(file_.path) << "nonsense\n";
-  EXPECT_THAT(std::string(IssueToken(file_, request, kNow).status().message()),
+  EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("line 1"));
-  EXPECT_EQ(Text(), "nonsense\n");
+  EXPECT_EQ(Contents(file_.path), "nonsense\n");
 }
 
 // No file may grow beyond `bytes`, as on a disk that is full.
@@ -119,31 +113,32 @@ class FullDisk {
   rlimit before_{};
 };
 
-TEST_F(NewToken, WithoutRoomForItsWholeLineTheFileStaysAsItIs) {
-  while (!std::filesystem::exists(file_.path) || Text().size() < 900) Issue("alice:submit");
-  const std::string before = Text();
+TEST_F(NewToken, OnAFullDiskTheFileStaysUnchanged) {
+  while (!std::filesystem::exists(file_.path) || Contents(file_.path).size() < 900)
+    Issue("alice:submit");
+  const std::string before = Contents(file_.path);
   {
     const FullDisk disk(before.size() + 20);
-    const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kNow);
+    const auto token = IssueToken(file_, *ParseTokenRequest("bob:submit"), kIssueTime);
     EXPECT_THAT(std::string(token.status().message()), HasSubstr("File too large"));
   }
-  EXPECT_EQ(Text(), before);
+  EXPECT_EQ(Contents(file_.path), before);
   Issue("bob:submit");
 }
 
-TEST_F(NewToken, WhereNoFileCanBeMadeThereIsNone) {
+TEST_F(NewToken, WithoutItsFolderNoFileIsMade) {
   const NamedFile nowhere{"access_file", folder_.File("no/such/list")};
-  EXPECT_TRUE(absl::IsPermissionDenied(
-      IssueToken(nowhere, *ParseTokenRequest("alice:read"), kNow).status()));
+  EXPECT_THAT(IssueToken(nowhere, *ParseTokenRequest("alice:read"), kIssueTime),
+              StatusIs(absl::StatusCode::kPermissionDenied));
 }
 
-TEST_F(NewToken, ARequestThatIsNoneIsRefused) {
+TEST_F(NewToken, MalformedRequestsAreRefused) {
   for (const char* text :
        {"", "alice", "alice:", ":read", "alice:root", "alice:read:", "a b:read", "alice:read:0",
         "alice:read:x", "alice:read:36501", "alice:read:1:2", "local:read"}) {
     const auto request = ParseTokenRequest(text);
-    EXPECT_TRUE(absl::IsInvalidArgument(request.status())) << text;
-    EXPECT_THAT(std::string(request.status().message()), HasSubstr("--new_token"));
+    EXPECT_THAT(request, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--new_token")))
+        << text;
   }
 }
 

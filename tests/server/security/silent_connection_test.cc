@@ -2,45 +2,38 @@
 #include <chrono>
 #include <string>
 
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
 #include "tests/support/running_server.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::HasSubstr;
 
-// One of these is short; the others are longer than any test may take.
-ServerOptions Options(const TemporaryFolder& folder, const ConnectionTiming& timing) {
-  ServerOptions options;
-  options.data_dir = folder.path();
-  options.listen = "127.0.0.1:0";
-  options.factory = FakeExperiments();
-  options.connections = timing;
-  return options;
-}
-
+// One time of each server is short; the others are longer than any test may take.
 constexpr std::chrono::hours kNever(1);
 
-TEST(SilentConnection, OneThatNeverSpeaksIsClosed) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder, {.handshake = milliseconds(200), .ping_interval = kNever}));
-  Connection connection(server.server().address());
-  connection.ReadToTheEnd();  // has one
+TestServerOptions OnPort(const ConnectionTiming& timing) {
+  return {.listen = "127.0.0.1:0", .connections = timing};
 }
 
-TEST(SilentConnection, OneThatAnswersNoPingIsClosed) {
-  TemporaryFolder folder;
-  RunningServer server(Options(folder, {.handshake = kNever,
-                                        .ping_interval = milliseconds(100),
-                                        .ping_timeout = milliseconds(100)}));
-  Connection connection(server.server().address());
+TEST(SilentConnection, AConnectionThatNeverSpeaksIsClosed) {
+  RunningServer server(OnPort({.handshake = milliseconds(200), .ping_interval = kNever}));
+  Connection connection(server.address());
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr("settings before handshake timeout"));
+}
+
+TEST(SilentConnection, AConnectionThatAnswersNoPingIsClosed) {
+  RunningServer server(OnPort({.handshake = kNever,
+                               .ping_interval = milliseconds(100),
+                               .ping_timeout = milliseconds(100)}));
+  Connection connection(server.address());
   const std::string empty_settings("\0\0\0\x4\0\0\0\0\0", 9);
   connection.Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + empty_settings);
-  EXPECT_NE(connection.ReadToTheEnd(), "");
+  EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(std::string("\0\0\x8\x6", 4)));  // the ping
 }
 
 }  // namespace

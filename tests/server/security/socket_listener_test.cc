@@ -12,28 +12,30 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <future>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
 #include <thread>
-#include <vector>
 
 #include "gmock/gmock.h"
-#include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
 #include "server/security/peer_user.h"
 #include "tests/server/call_by_name.h"
+#include "tests/server/files.h"
 #include "tests/support/running_server.h"
-#include "tests/server/secure_server.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr uid_t kStranger = 65534;
 
-int Connect(const std::string& path) {
+int ConnectTo(const std::string& path) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -53,7 +55,7 @@ bool IsClosed(int descriptor) {
   return closed;
 }
 
-TEST(PeerUser, IsToldByTheKernel) {
+TEST(PeerUser, IsTheUserThatTheKernelReports) {
   int ends[2];
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   EXPECT_EQ(PeerUser(ends[0]), geteuid());
@@ -65,7 +67,7 @@ TEST(PeerUser, IsToldByTheKernel) {
   close(tcp);
 }
 
-TEST(PeerUser, OnlyThePermittedMayConnect) {
+TEST(PeerUser, OnlyPermittedUsersMayConnect) {
   EXPECT_TRUE(MayConnect(1000, {1000, 0}));
   EXPECT_TRUE(MayConnect(0, {1000, 0}));
   EXPECT_FALSE(MayConnect(1001, {1000, 0}));
@@ -77,11 +79,10 @@ TEST(PeerUser, OnlyThePermittedMayConnect) {
 
 class Socket : public ::testing::Test {
  protected:
-  // Hands on the first byte that each connection sends.
+  // Sends a byte to each connection that it accepts.
   void Listen(std::set<uid_t> permitted) {
-    auto listener = SocketListener::Listen(*ParseListenAddress("unix:" + path_), permitted);
-    ASSERT_TRUE(listener.ok()) << listener.status();
-    listener_ = *std::move(listener);
+    ASSERT_OK_AND_ASSIGN(listener_,
+                         SocketListener::Listen(*ParseListenAddress("unix:" + path_), permitted));
     listener_->Start([this](int descriptor) {
       EXPECT_EQ(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, FD_CLOEXEC);
       EXPECT_EQ(fcntl(descriptor, F_GETFL) & O_NONBLOCK, O_NONBLOCK);
@@ -95,15 +96,15 @@ class Socket : public ::testing::Test {
   std::unique_ptr<SocketListener> listener_;
 };
 
-TEST_F(Socket, APermittedUserIsHandedOn) {
+TEST_F(Socket, APermittedUserIsAccepted) {
   Listen(OwnUserAndRoot());
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(IsClosed(Connect(path_)));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(IsClosed(ConnectTo(path_)));
 }
 
-TEST_F(Socket, AnotherUserIsClosedAndLoggedButNotEveryTime) {
+TEST_F(Socket, OtherUsersAreClosedAndSometimesLogged) {
   ::testing::internal::CaptureStderr();
   Listen({kStranger});
-  for (int i = 0; i < 50; ++i) EXPECT_TRUE(IsClosed(Connect(path_)));
+  for (int i = 0; i < 50; ++i) EXPECT_TRUE(IsClosed(ConnectTo(path_)));
   listener_->Stop();
   const std::string log = ::testing::internal::GetCapturedStderr();
   EXPECT_LE(std::count(log.begin(), log.end(), '\n'), 10) << log;  // one in 10 s, and at the end
@@ -111,13 +112,11 @@ TEST_F(Socket, AnotherUserIsClosedAndLoggedButNotEveryTime) {
                              std::to_string(geteuid())));
 }
 
-TEST_F(Socket, ItsFileIsItsOwnersFromTheStartAndGoneAtTheEnd) {
+TEST_F(Socket, ItsFileHasMode0600AndIsRemovedAtTheEnd) {
   const mode_t before = umask(0);
   auto listener = SocketListener::Listen(*ParseListenAddress("unix:" + path_), {});
   umask(before);
-  struct stat found {};
-  ASSERT_EQ(stat(path_.c_str(), &found), 0);
-  EXPECT_EQ(found.st_mode & 07777, 0600u);
+  EXPECT_EQ(ModeOf(path_), 0600u);
   (*listener)->Stop();
   (*listener)->Stop();
   EXPECT_FALSE(std::filesystem::exists(path_));
@@ -127,17 +126,16 @@ TEST_F(Socket, AFileOfAnotherServerAtThePathStays) {
   const auto address = *ParseListenAddress("unix:" + path_);
   auto first = SocketListener::Listen(address, {});
   unlink(path_.c_str());
-  auto second = SocketListener::Listen(address, OwnUserAndRoot());
-  ASSERT_TRUE(second.ok()) << second.status();
+  ASSERT_OK_AND_ASSIGN(auto second, SocketListener::Listen(address, OwnUserAndRoot()));
   (*first)->Stop();
-  EXPECT_GE(Connect(path_), 0);
-  (*second)->Stop();
+  EXPECT_GE(ConnectTo(path_), 0);
+  second->Stop();
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
-TEST_F(Socket, ConnectionsThatComeBeforeTheStartWait) {
+TEST_F(Socket, ConnectionsBeforeTheStartWait) {
   auto listener = SocketListener::Listen(*ParseListenAddress("unix:" + path_), OwnUserAndRoot());
-  const int early = Connect(path_);
+  const int early = ConnectTo(path_);
   (*listener)->Start([](int descriptor) {
     [[maybe_unused]] const ssize_t written = write(descriptor, "x", 1);
     close(descriptor);
@@ -145,11 +143,10 @@ TEST_F(Socket, ConnectionsThatComeBeforeTheStartWait) {
   EXPECT_FALSE(IsClosed(early));
 }
 
-TEST_F(Socket, WhereNoSocketCanBeThereIsNone) {
+TEST_F(Socket, APathWithoutAFolderIsRefused) {
   const auto listener =
       SocketListener::Listen(*ParseListenAddress("unix:" + folder_.File("no/such")), {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(listener.status()));
-  EXPECT_THAT(std::string(listener.status().message()), HasSubstr("No such file"));
+  EXPECT_THAT(listener, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("No such file")));
 }
 
 // A real other user, which takes root.
@@ -159,7 +156,7 @@ TEST_F(Socket, AProcessOfAnotherUserIsClosed) {
   chmod(folder_.path().c_str(), 0755);
   chmod(path_.c_str(), 0666);  // so that only the check of the user stands in the way
   const pid_t child = fork();
-  if (child == 0) _exit(setuid(kStranger) == 0 && IsClosed(Connect(path_)) ? 0 : 1);
+  if (child == 0) _exit(setuid(kStranger) == 0 && IsClosed(ConnectTo(path_)) ? 0 : 1);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_EQ(WEXITSTATUS(status), 0);
@@ -184,19 +181,18 @@ bool Reaches(int family, const char* host, int port) {
 
 bool HasIpv6() { return SocketListener::Listen(*ParseListenAddress("[::1]:0"), {}).ok(); }
 
-TEST(Port, OneThatIsFreeIsChosenForEveryAddressOfAName) {
-  auto listener = SocketListener::Listen(*ParseListenAddress("localhost:0"), {});
-  ASSERT_TRUE(listener.ok()) << listener.status();
-  const int port = (*listener)->address().port;
+TEST(Port, PortZeroChoosesAFreePort) {
+  ASSERT_OK_AND_ASSIGN(auto listener,
+                       SocketListener::Listen(*ParseListenAddress("localhost:0"), {}));
+  const int port = listener->address().port;
   EXPECT_GT(port, 0);
   EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port) || Reaches(AF_INET6, "::1", port));
 }
 
-TEST(Port, EveryAddressMeansThoseOfEitherKind) {
+TEST(Port, AnyAddressMeansIpv4AndIpv6) {
   for (const char* every : {"0.0.0.0:0", "[::]:0"}) {
-    auto listener = SocketListener::Listen(*ParseListenAddress(every), {});
-    ASSERT_TRUE(listener.ok()) << listener.status();
-    const int port = (*listener)->address().port;
+    ASSERT_OK_AND_ASSIGN(auto listener, SocketListener::Listen(*ParseListenAddress(every), {}));
+    const int port = listener->address().port;
     EXPECT_TRUE(Reaches(AF_INET, "127.0.0.1", port)) << every;
     if (HasIpv6()) {
       EXPECT_TRUE(Reaches(AF_INET6, "::1", port)) << every;
@@ -204,15 +200,14 @@ TEST(Port, EveryAddressMeansThoseOfEitherKind) {
   }
 }
 
-TEST(Port, OneInUseIsRefusedWhoeverAsksSecond) {
+TEST(Port, APortInUseIsRefused) {
   for (const char* first : {"127.0.0.1:0", "0.0.0.0:0"}) {
-    auto listener = SocketListener::Listen(*ParseListenAddress(first), {});
-    ASSERT_TRUE(listener.ok()) << listener.status();
+    ASSERT_OK_AND_ASSIGN(auto listener, SocketListener::Listen(*ParseListenAddress(first), {}));
     for (const char* host : {"127.0.0.1:", "0.0.0.0:", "localhost:"}) {
       const auto second = SocketListener::Listen(
-          *ParseListenAddress(host + std::to_string((*listener)->address().port)), {});
-      EXPECT_TRUE(absl::IsFailedPrecondition(second.status())) << first << " " << host;
-      EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+          *ParseListenAddress(host + std::to_string(listener->address().port)), {});
+      EXPECT_THAT(second, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("in use")))
+          << first << " " << host;
     }
   }
 }
@@ -222,44 +217,24 @@ TEST(Port, AHostThatIsNotOfThisMachineIsRefused) {
   EXPECT_THAT(std::string(listener.status().message()), HasSubstr("--listen=192.0.2.1:0"));
 }
 
-class SocketServer : public ::testing::Test {
- protected:
-  ServerOptions Options(std::set<uid_t> users) {
-    ServerOptions options = SecureOptions({}, folder_.path());
-    options.listen = "";
-    options.socket_users = std::move(users);
-    return options;
-  }
-  static int OpenDescriptors() {
-    const std::filesystem::directory_iterator all("/proc/self/fd");
-    return static_cast<int>(std::distance(begin(all), end(all)));
-  }
-
-  TemporaryFolder folder_;
-};
-
-TEST_F(SocketServer, AnotherUserGetsNoAnswer) {
-  RunningServer server(Options({kStranger}));
-  const grpc::Status status = CallByName(server.channel(), "/grpc.health.v1.Health/Check", "", {});
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+int OpenDescriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<int>(std::distance(begin(all), end(all)));
 }
 
-TEST_F(SocketServer, ManyConnectionsAreServedAndNoneIsLeftAtTheEnd) {
+TEST(SocketServer, AnotherUserGetsNoAnswer) {
+  RunningServer server({.socket_users = {kStranger}});
+  EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
+}
+
+TEST(SocketServer, ManyConnectionsAreServedAndNoneIsLeftAtTheEnd) {
   const int before = OpenDescriptors();
   {
-    RunningServer server(Options(OwnUserAndRoot()));
-    for (int i = 0; i < 40; ++i) {
-      const auto channel = grpc::CreateCustomChannel(
-          server.server().address(), grpc::InsecureChannelCredentials(), [] {
-            grpc::ChannelArguments own;
-            own.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-            return own;
-          }());
-      EXPECT_TRUE(CallByName(channel, "/grpc.health.v1.Health/Check", "", {}).ok());
-    }
-    const int hanging = Connect(server.server().address().substr(5));
+    RunningServer server;
+    for (int i = 0; i < 40; ++i) EXPECT_OK(CallByName(server.NewChannel(), kCheckHealth));
+    const int hanging = ConnectTo(server.address().substr(5));
     ASSERT_GE(hanging, 0);
-    server.server().Shutdown(std::chrono::milliseconds(0));
+    server.Shutdown();
     close(hanging);
   }
   // gRPC gives its sockets back on threads of its own.

@@ -1,13 +1,10 @@
-// Checking and copying stores, also while somebody writes to them.
+// Checking and copying stores, also while a server writes to them.
 #include "server/store/backup.h"
-
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -16,9 +13,12 @@
 #include "gtest/gtest.h"
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
-#include "server/store/sqlite.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/files.h"
+#include "tests/server/requests.h"
+#include "tests/server/store_access.h"
 #include "tests/support/running_server.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -29,21 +29,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using v1::EnsembleJob;
 
-std::string Contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-ServerOptions Options(const std::string& data_dir, ExperimentFactory factory) {
-  ServerOptions options;
-  options.data_dir = data_dir;
-  options.workers = 2;
-  options.factory = std::move(factory);
-  options.watch.snapshot = std::chrono::milliseconds(5);
-  options.store.delay = std::chrono::milliseconds(1);
-  return options;
-}
-
 class BackupTest : public testing::Test {
  protected:
   std::string Store() const { return folder_.File("store.sqlite3"); }
@@ -52,26 +37,20 @@ class BackupTest : public testing::Test {
   // With a job that has succeeded, and one in the midst of it with blocks in the store.
   void MakeStore() {
     Gate gate;
-    RunningServer server(Options(
-        folder_.path(), FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
-          if (point == 2 && block >= 3) gate.Pass(stop);
-        })));
-    finished_ = server.Submit(Equilibrium(2, 3));
-    EXPECT_EQ(server.AwaitEnd(finished_).state(), EnsembleJob::SUCCEEDED);
+    RunningServer server(
+        {.data_dir = folder_.path(),
+         .factory = FakeExperiments([&](size_t point, uint64_t block, std::stop_token stop) {
+           if (point == 2 && block >= 3) gate.Pass(stop);
+         })});
+    finished_ = server.Succeeded(Equilibrium(2, 3));
     results_ = server.ResultBytes(finished_);
     unfinished_ = server.Submit(Equilibrium(3, 6));
     gate.AwaitWaiting(2);  // both workers: all before is done
   }
 
-  void Execute(const std::string& sql) {
-    const auto database = Database::Open(Store(), Database::Mode::kReadWrite);
-    const absl::Status done = (*database)->Execute(sql);
-    ASSERT_TRUE(done.ok()) << done;
-  }
-
   std::vector<std::string> Problems() {
     const auto summary = CheckStore(Store());
-    EXPECT_TRUE(summary.ok()) << summary.status();
+    EXPECT_OK(summary);
     return summary.ok() ? summary->problems : std::vector<std::string>();
   }
 
@@ -83,17 +62,16 @@ class BackupTest : public testing::Test {
 
 TEST_F(BackupTest, ASoundStoreIsSummedUp) {
   MakeStore();
-  const auto summary = CheckStore(Store());
-  ASSERT_TRUE(summary.ok()) << summary.status();
-  EXPECT_TRUE(summary->sound());
-  EXPECT_EQ(summary->version, kSchemaVersion);
-  EXPECT_EQ(summary->jobs.at("SUCCEEDED"), 1);
-  EXPECT_EQ(summary->jobs.at("RUNNING"), 1);
-  EXPECT_GE(summary->results, 2);
-  EXPECT_THAT(SummaryText(*summary), HasSubstr("the store is sound"));
+  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
+  EXPECT_TRUE(summary.sound());
+  EXPECT_EQ(summary.version, kSchemaVersion);
+  EXPECT_EQ(summary.jobs.at("SUCCEEDED"), 1);
+  EXPECT_EQ(summary.jobs.at("RUNNING"), 1);
+  EXPECT_GE(summary.results, 2);
+  EXPECT_THAT(SummaryText(summary), HasSubstr("the store is sound"));
 }
 
-TEST_F(BackupTest, EachInconsistencyIsToldInASentence) {
+TEST_F(BackupTest, EachInconsistencyIsReported) {
   const struct {
     const char* sql;
     const char* sentence;
@@ -118,38 +96,34 @@ TEST_F(BackupTest, EachInconsistencyIsToldInASentence) {
   for (const auto& damage : damages) {
     std::ofstream(Store(), std::ios::binary) << sound;
     EXPECT_THAT(Problems(), IsEmpty());
-    Execute(damage.sql);
+    ChangeStore(Store(), damage.sql);
     EXPECT_THAT(Problems(), Contains(HasSubstr(damage.sentence))) << damage.sql;
   }
 }
 
-TEST_F(BackupTest, ADamagedPageIsTold) {
+TEST_F(BackupTest, ADamagedPageIsReported) {
   MakeStore();
   std::string contents = Contents(Store());
   for (size_t at = 5 * 4096; at < contents.size(); ++at) contents[at] = 'x';
   std::ofstream(Store(), std::ios::binary) << contents;
-  const auto summary = CheckStore(Store());
-  ASSERT_TRUE(summary.ok()) << summary.status();
-  EXPECT_FALSE(summary->sound());
-  EXPECT_THAT(SummaryText(*summary), HasSubstr("the store is damaged"));
-  EXPECT_TRUE(absl::IsDataLoss(BackupStore(Store(), Copy()).status()));
+  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
+  EXPECT_FALSE(summary.sound());
+  EXPECT_THAT(SummaryText(summary), HasSubstr("the store is damaged"));
+  EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_FALSE(std::filesystem::exists(Copy()));
 }
 
-TEST_F(BackupTest, WhatIsNoStoreIsNotChecked) {
-  EXPECT_TRUE(absl::IsNotFound(CheckStore(Store()).status()));
+TEST_F(BackupTest, OnlyAStoreIsChecked) {
+  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kNotFound));
   std::ofstream(Store()) << std::string(5000, 'x');
-  EXPECT_TRUE(absl::IsFailedPrecondition(CheckStore(Store()).status()));
+  EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
-TEST_F(BackupTest, ACopyIsOneFileForItsOwner) {
+TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
   MakeStore();
-  const auto summary = BackupStore(Store(), Copy());
-  ASSERT_TRUE(summary.ok()) << summary.status();
-  EXPECT_TRUE(summary->sound());
-  struct stat found {};
-  ASSERT_EQ(stat(Copy().c_str(), &found), 0);
-  EXPECT_EQ(found.st_mode & 0777, 0600u);
+  ASSERT_OK_AND_ASSIGN(const auto summary, BackupStore(Store(), Copy()));
+  EXPECT_TRUE(summary.sound());
+  EXPECT_EQ(ModeOf(Copy()), 0600u);
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     const std::string name = entry.path().filename();
     EXPECT_TRUE(name == "copy" || !name.starts_with("copy")) << name;
@@ -159,25 +133,26 @@ TEST_F(BackupTest, ACopyIsOneFileForItsOwner) {
 TEST_F(BackupTest, NothingIsOverwritten) {
   MakeStore();
   std::ofstream(Copy()) << "precious";
-  EXPECT_TRUE(absl::IsAlreadyExists(BackupStore(Store(), Copy()).status()));
+  EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
   EXPECT_EQ(Contents(Copy()), "precious");
 }
 
-TEST_F(BackupTest, AFolderThatIsNotThereIsTold) {
+TEST_F(BackupTest, AMissingFolderIsReported) {
   MakeStore();
-  EXPECT_TRUE(absl::IsPermissionDenied(BackupStore(Store(), folder_.File("no/copy")).status()));
-  EXPECT_TRUE(absl::IsNotFound(BackupStore(folder_.File("none"), Copy()).status()));
+  EXPECT_THAT(BackupStore(Store(), folder_.File("no/copy")),
+              StatusIs(absl::StatusCode::kPermissionDenied));
+  EXPECT_THAT(BackupStore(folder_.File("none"), Copy()), StatusIs(absl::StatusCode::kNotFound));
 }
 
-TEST_F(BackupTest, ARestoredCopyGoesOnToTheSameBytes) {
+TEST_F(BackupTest, ARestoredCopyResumesToTheSameBytes) {
   MakeStore();
-  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
+  ASSERT_OK(BackupStore(Store(), Copy()));
   TemporaryFolder elsewhere;
   std::filesystem::copy_file(Copy(), elsewhere.File("store.sqlite3"));
-  RunningServer restored(Options(elsewhere.path(), FakeExperiments()));
+  RunningServer restored({.data_dir = elsewhere.path()});
   EXPECT_EQ(restored.ResultBytes(finished_), results_);
   EXPECT_EQ(restored.AwaitEnd(unfinished_).state(), EnsembleJob::SUCCEEDED);
-  RunningServer original(Options(folder_.path(), FakeExperiments()));
+  RunningServer original({.data_dir = folder_.path()});
   EXPECT_EQ(original.AwaitEnd(unfinished_).state(), EnsembleJob::SUCCEEDED);
   EXPECT_EQ(restored.ResultBytes(unfinished_), original.ResultBytes(unfinished_));
 }
@@ -185,10 +160,10 @@ TEST_F(BackupTest, ARestoredCopyGoesOnToTheSameBytes) {
 // The operator forgot to move the old store's log away.
 TEST_F(BackupTest, ACopyRestoredBesideAnOldLogIsRefused) {
   MakeStore();
-  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
+  ASSERT_OK(BackupStore(Store(), Copy()));
   std::string log;
   {
-    RunningServer server(Options(folder_.path(), FakeExperiments()));
+    RunningServer server({.data_dir = folder_.path()});
     server.AwaitEnd(unfinished_);
     log = Contents(Store() + "-wal");
   }
@@ -196,28 +171,23 @@ TEST_F(BackupTest, ACopyRestoredBesideAnOldLogIsRefused) {
   std::filesystem::copy_file(Copy(), Store(), std::filesystem::copy_options::overwrite_existing);
   std::ofstream(Store() + "-wal", std::ios::binary) << log;
   const auto opened = OpenStoreFile(Store());
-  EXPECT_TRUE(absl::IsFailedPrecondition(opened.status())) << opened.status();
-  EXPECT_THAT(std::string(opened.status().message()), HasSubstr("the log of another store"));
+  EXPECT_THAT(opened, StatusIs(absl::StatusCode::kFailedPrecondition,
+                               HasSubstr("the log of another store")));
   EXPECT_EQ(Contents(Store() + "-wal"), log);
 }
 
 // A server writes and checkpoints without a pause, while copies are made and checked.
 TEST_F(BackupTest, CopiesMadeWhileAServerWorksAreSound) {
-  RunningServer server(Options(folder_.path(), FakeExperiments()));
+  RunningServer server({.data_dir = folder_.path()});
   std::atomic<bool> done = false;
   std::thread client([&] {
     while (!done) {
-      const std::string name = server.Submit(Equilibrium(20, 5));
-      server.AwaitEnd(name);
-      server.Delete(name);
+      server.Delete(server.Succeeded(Equilibrium(20, 5)));
     }
   });
   for (int i = 0; i < 10; ++i) {
-    const auto copied = BackupStore(Store(), folder_.File("copy-" + std::to_string(i)));
-    EXPECT_TRUE(copied.ok()) << copied.status();
-    const auto checked = CheckStore(Store());
-    ASSERT_TRUE(checked.ok()) << checked.status();
-    EXPECT_THAT(checked->problems, IsEmpty());
+    EXPECT_OK(BackupStore(Store(), folder_.File("copy-" + std::to_string(i))));
+    EXPECT_THAT(Problems(), IsEmpty());
   }
   done = true;
   client.join();
@@ -236,35 +206,34 @@ TEST_F(BackupTest, NothingIsLeftBesideAStoreThatNobodyHasOpen) {
   MakeStore();
   const std::vector<std::string> before = NamesIn(folder_.path());
   const std::string file = Contents(Store());
-  ASSERT_TRUE(CheckStore(Store()).ok());
+  ASSERT_OK(CheckStore(Store()));
   EXPECT_EQ(NamesIn(folder_.path()), before);
   TemporaryFolder elsewhere;
-  ASSERT_TRUE(BackupStore(Store(), elsewhere.File("copy")).ok());
+  ASSERT_OK(BackupStore(Store(), elsewhere.File("copy")));
   EXPECT_EQ(NamesIn(folder_.path()), before);
   EXPECT_EQ(Contents(Store()), file);
 }
 
-TEST_F(BackupTest, TheBytesAreThoseOfTheLogToo) {
-  RunningServer server(Options(folder_.path(), FakeExperiments()));
-  server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+TEST_F(BackupTest, TheSizeIncludesTheLog) {
+  RunningServer server({.data_dir = folder_.path()});
+  server.Succeeded(Equilibrium(2, 3));
   const auto log = std::filesystem::file_size(Store() + "-wal");
   ASSERT_GT(log, 0u);
-  const auto summary = CheckStore(Store());
-  ASSERT_TRUE(summary.ok()) << summary.status();
-  EXPECT_EQ(static_cast<uintmax_t>(summary->bytes), std::filesystem::file_size(Store()) + log);
+  ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
+  EXPECT_EQ(static_cast<uintmax_t>(summary.bytes), std::filesystem::file_size(Store()) + log);
 }
 
 // Neither the file nor its log, which a checkpoint would write back.
 TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
   MakeStore();
-  RunningServer server(Options(folder_.path(), FakeExperiments()));
-  server.AwaitEnd(server.Submit(Equilibrium(2, 3)));
+  RunningServer server({.data_dir = folder_.path()});
+  server.Succeeded(Equilibrium(2, 3));
   server.AwaitEnd(unfinished_);  // nothing is left to write
   const std::string file = Contents(Store());
   const std::string log = Contents(Store() + "-wal");
   ASSERT_FALSE(log.empty());
-  ASSERT_TRUE(BackupStore(Store(), Copy()).ok());
-  ASSERT_TRUE(CheckStore(Store()).ok());
+  ASSERT_OK(BackupStore(Store(), Copy()));
+  ASSERT_OK(CheckStore(Store()));
   EXPECT_EQ(Contents(Store()), file);
   EXPECT_EQ(Contents(Store() + "-wal"), log);
 }

@@ -8,6 +8,8 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/server/files.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
@@ -21,93 +23,86 @@ class DataFolder : public ::testing::Test {
     std::filesystem::create_directory(path_);
     ASSERT_EQ(chmod(path_.c_str(), mode), 0);
   }
-  mode_t Mode() const {
-    struct stat found {};
-    EXPECT_EQ(stat(path_.c_str(), &found), 0);
-    return found.st_mode & 07777;
-  }
+  mode_t Mode() const { return ModeOf(path_); }
 
   TemporaryFolder folder_;
   const std::string path_ = folder_.File("data");
 };
 
-TEST_F(DataFolder, ANewOneIsItsOwnersWhateverTheMask) {
+TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
   const mode_t before = umask(0);
-  EXPECT_TRUE(DataDirectory::Open(path_).ok());
+  EXPECT_OK(DataDirectory::Open(path_));
   umask(before);
   EXPECT_EQ(Mode(), 0700u);
 }
 
-TEST_F(DataFolder, OneOfOursThatIsOpenIsClosedAndThatIsLogged) {
+TEST_F(DataFolder, AnOpenEmptyFolderIsClosedAndThatIsLogged) {
   for (const mode_t mode : {0755, 0750, 0711, 0777, 0770}) {
     Make(mode);
     ::testing::internal::CaptureStderr();
-    EXPECT_TRUE(DataDirectory::Open(path_).ok());
+    EXPECT_OK(DataDirectory::Open(path_));
     EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("is 0700 now"));
     EXPECT_EQ(Mode(), 0700u);
   }
 }
 
-TEST_F(DataFolder, OneThatHasBeenAServersIsClosedWhateverElseIsInIt) {
+TEST_F(DataFolder, AnOpenFolderOfAServerIsClosedWhateverElseIsInIt) {
   for (const char* name : {"lock", "store.sqlite3"}) {
     Make(0755);
     std::ofstream(path_ + "/" + name);
     std::ofstream(path_ + "/notes.txt");
-    EXPECT_TRUE(DataDirectory::Open(path_).ok()) << name;
+    EXPECT_OK(DataDirectory::Open(path_)) << name;
     EXPECT_EQ(Mode(), 0700u) << name;
     std::filesystem::remove_all(path_);
   }
 }
 
 // A client that starts a server has made its log before.
-TEST_F(DataFolder, OneWithNothingButAClientsLogIsClosed) {
+TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
   Make(0755);
   std::ofstream(path_ + "/server.log");
-  EXPECT_TRUE(DataDirectory::Open(path_).ok());
+  EXPECT_OK(DataDirectory::Open(path_));
   EXPECT_EQ(Mode(), 0700u);
 }
 
 // Somebody else may be reading them.
-TEST_F(DataFolder, OneWithFilesThatAreNoServersIsRefusedAndLeftAlone) {
+TEST_F(DataFolder, AnOpenFolderWithOtherFilesIsRefusedAndUnchanged) {
   Make(0755);
   std::ofstream(path_ + "/thesis.tex");
   std::filesystem::create_symlink("/run/lock", path_ + "/lock");  // as in /var
   const auto directory = DataDirectory::Open(path_);
-  EXPECT_TRUE(absl::IsPermissionDenied(directory.status()));
-  EXPECT_THAT(std::string(directory.status().message()), HasSubstr("mode 0755"));
+  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("mode 0755")));
   EXPECT_THAT(std::string(directory.status().message()), HasSubstr(path_ + "/ballpiston"));
   EXPECT_EQ(Mode(), 0755u);
 }
 
-TEST_F(DataFolder, OneWithOtherFilesThatIsClosedAlreadyIsTaken) {
+TEST_F(DataFolder, AClosedFolderWithOtherFilesIsAccepted) {
   Make(0700);
   std::ofstream(path_ + "/thesis.tex");
-  EXPECT_TRUE(DataDirectory::Open(path_).ok());
+  EXPECT_OK(DataDirectory::Open(path_));
 }
 
-TEST_F(DataFolder, OneThatIsClosedStaysAsItIsWithoutAWord) {
+TEST_F(DataFolder, AClosedFolderIsUnchangedAndNothingIsLogged) {
   Make(0700);
   ::testing::internal::CaptureStderr();
-  EXPECT_TRUE(DataDirectory::Open(path_).ok());
+  EXPECT_OK(DataDirectory::Open(path_));
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(DataFolder, OneThatAllUsersShareIsRefusedAndLeftAlone) {
+TEST_F(DataFolder, AFolderOfAllUsersIsRefusedAndUnchanged) {
   Make(01777);
   const auto directory = DataDirectory::Open(path_);
-  EXPECT_TRUE(absl::IsPermissionDenied(directory.status()));
-  EXPECT_THAT(std::string(directory.status().message()), HasSubstr("mode 1777"));
+  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("mode 1777")));
   EXPECT_EQ(Mode(), 01777u);
   EXPECT_TRUE(std::filesystem::is_empty(path_));  // not even a lock
 }
 
-TEST_F(DataFolder, AnotherUsersIsRefusedIfItIsOpen) {
+TEST_F(DataFolder, AnOpenFolderOfAnotherUserIsRefused) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
   Make(0755);
   ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
   const auto directory = DataDirectory::Open(path_);
-  EXPECT_TRUE(absl::IsPermissionDenied(directory.status()));
-  EXPECT_THAT(std::string(directory.status().message()), HasSubstr("user 65534"));
+  EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("user 65534")));
   EXPECT_EQ(Mode(), 0755u);
 }
 

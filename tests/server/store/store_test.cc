@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <new>
 #include <optional>
@@ -22,18 +21,16 @@
 #include "server/store/request_table.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/files.h"
 #include "tests/server/store/first_store_version.h"
+#include "tests/server/store_access.h"
+#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string Contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 JobRecord Record(const std::string& id) {
   JobRecord record;
@@ -52,98 +49,66 @@ class StoreTest : public testing::Test {
  protected:
   std::unique_ptr<Store> Open(Store::Options options = {}) {
     auto store = Store::Open(File(), options);
-    EXPECT_TRUE(store.ok()) << store.status();
+    EXPECT_OK(store);
     return store.ok() ? *std::move(store) : nullptr;
   }
   std::string File() const { return folder_.File("store.sqlite3"); }
 
   static int64_t Insert(Store& store, JobRecord record) {
-    EXPECT_TRUE(store.Commit([&](Database& database) { return InsertJob(database, record); }).ok());
+    EXPECT_OK(store.Commit([&](Database& database) { return InsertJob(database, record); }));
     return record.sequence;
   }
 
   static std::optional<JobRecord> Find(Store& store, const std::string& id) {
-    std::optional<JobRecord> record;
-    EXPECT_TRUE(store
-                    .Read([&](Database& database) {
-                      auto found = FindJob(database, id);
-                      if (found.ok()) record = *found;
-                      return found.status();
-                    })
-                    .ok());
-    return record;
+    return ReadFrom(store, [&](Database& database) { return FindJob(database, id); });
   }
 
   static std::vector<std::string> Blocks(Store& store, int64_t job, int64_t point) {
     std::vector<std::string> blocks;
-    EXPECT_TRUE(store
-                    .Read([&](Database& database) {
-                      return ReadBlocks(database, job, point,
-                                        [&](int64_t block, const std::string& record) {
-                                          blocks.push_back(std::to_string(block) + record);
-                                          return absl::OkStatus();
-                                        });
-                    })
-                    .ok());
+    EXPECT_OK(store.Read([&](Database& database) {
+      return ReadBlocks(database, job, point, [&](int64_t block, const std::string& record) {
+        blocks.push_back(std::to_string(block) + record);
+        return absl::OkStatus();
+      });
+    }));
     return blocks;
   }
 
   static std::vector<std::string> Results(Store& store, int64_t job) {
     std::vector<std::string> results;
-    EXPECT_TRUE(store
-                    .Read([&](Database& database) {
-                      return ReadResults(database, job, 0, [&](PointRow row) {
-                        results.push_back(std::to_string(row.point) + row.result);
-                        return true;
-                      });
-                    })
-                    .ok());
+    EXPECT_OK(store.Read([&](Database& database) {
+      return ReadResults(database, job, 0, [&](PointRow row) {
+        results.push_back(std::to_string(row.point) + row.result);
+        return true;
+      });
+    }));
     return results;
   }
 
   static void KeepPilot(Store& store, const std::string& engine, const PilotPlace& place,
                         const Pilot& pilot) {
-    EXPECT_TRUE(
-        store
-            .Commit([&](Database& database) { return InsertPilot(database, engine, place, pilot); })
-            .ok());
+    EXPECT_OK(store.Commit(
+        [&](Database& database) { return InsertPilot(database, engine, place, pilot); }));
   }
 
   static std::optional<Pilot> StoredPilot(Store& store, const std::string& engine,
                                           const PilotPlace& place) {
-    std::optional<Pilot> pilot;
-    EXPECT_TRUE(store
-                    .Read([&](Database& database) {
-                      auto found = FindPilot(database, engine, place);
-                      if (found.ok()) pilot = *found;
-                      return found.status();
-                    })
-                    .ok());
-    return pilot;
+    return ReadFrom(store, [&](Database& database) { return FindPilot(database, engine, place); });
   }
 
   static std::optional<RequestRecord> StoredRequest(Store& store, const std::string& principal,
                                                     const std::string& request_id) {
-    std::optional<RequestRecord> request;
-    const absl::Status read = store.Read([&](Database& database) {
-      auto found = FindRequest(database, principal, request_id);
-      if (found.ok()) request = *std::move(found);
-      return found.status();
-    });
-    EXPECT_TRUE(read.ok()) << read;
-    return request;
+    return ReadFrom(
+        store, [&](Database& database) { return FindRequest(database, principal, request_id); });
   }
 
   static JobState End(Store& store, int64_t job, JobState wish) {
     JobState state{};
-    EXPECT_TRUE(
-        store
-            .Commit([&](Database& database) {
-              const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
-              if (now.ok()) state = *now;
-              return now.status();
-            })
-            .ok());
+    EXPECT_OK(store.Commit([&](Database& database) {
+      const auto now = EndJob(database, job, {wish, absl::Now(), "why", 2, 7.5, 0.25});
+      if (now.ok()) state = *now;
+      return now.status();
+    }));
     return state;
   }
 
@@ -168,13 +133,11 @@ TEST_F(StoreTest, WritesAreFlushedToTheDisk) {
   const auto store = Open();
   std::string mode;
   int64_t synchronous = 0;
-  ASSERT_TRUE(store
-                  ->Commit([&](Database& database) {
-                    mode = database.Text("PRAGMA journal_mode").value_or("");
-                    synchronous = database.Integer("PRAGMA synchronous").value_or(0);
-                    return absl::OkStatus();
-                  })
-                  .ok());
+  ASSERT_OK(store->Commit([&](Database& database) {
+    mode = database.Text("PRAGMA journal_mode").value_or("");
+    synchronous = database.Integer("PRAGMA synchronous").value_or(0);
+    return absl::OkStatus();
+  }));
   EXPECT_EQ(mode, "wal");
   EXPECT_EQ(synchronous, 2);  // FULL
 }
@@ -189,12 +152,11 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
   Open().reset();
   {
     auto database = Database::Open(File(), Database::Mode::kReadWrite);
-    ASSERT_TRUE((*database)->Execute("PRAGMA user_version = 99").ok());
+    ASSERT_OK((*database)->Execute("PRAGMA user_version = 99"));
   }
   const std::string before = Contents(File());
   const auto store = Store::Open(File(), {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("version 99"));
+  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("version 99")));
   EXPECT_EQ(Contents(File()), before);
 }
 
@@ -306,8 +268,7 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
 TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
   std::ofstream(File()) << std::string(5000, 'x');
   const auto store = Store::Open(File(), {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(store.status()));
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
   EXPECT_EQ(Contents(File()), std::string(5000, 'x'));
 }
 
@@ -322,8 +283,7 @@ TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
   contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
   std::ofstream(File(), std::ios::binary) << contents;
   const auto store = Store::Open(File(), {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("damaged"));
+  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
   EXPECT_EQ(Contents(File()), contents);
 }
 
@@ -333,7 +293,7 @@ TEST_F(StoreTest, ATruncatedFileIsRefused) {
     for (int i = 0; i < 200; ++i) Insert(*store, Record("job-" + std::to_string(i)));
   }
   std::filesystem::resize_file(File(), std::filesystem::file_size(File()) / 2);
-  EXPECT_TRUE(absl::IsFailedPrecondition(Store::Open(File(), {}).status()));
+  EXPECT_THAT(Store::Open(File(), {}), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
 // All that lies in the folder, by name.
@@ -349,8 +309,7 @@ void ExpectRefusedAndUntouched(const std::string& path, const std::string& why) 
   const std::string folder = std::filesystem::path(path).parent_path();
   const auto before = ContentsOfFolder(folder);
   const auto store = Store::Open(path, {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr(why));
+  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(why)));
   EXPECT_EQ(ContentsOfFolder(folder), before);
 }
 
@@ -363,17 +322,15 @@ void WriteAt(const std::string& path, int64_t offset, const std::string& bytes) 
 // A store of some pages, closed.
 void MakeStore(const std::string& path, int jobs) {
   const auto store = Store::Open(path, {});
-  ASSERT_TRUE(store.ok()) << store.status();
-  ASSERT_TRUE((*store)
-                  ->Commit([&](Database& database) {
-                    for (int i = 0; i < jobs; ++i) {
-                      JobRecord record = Record("job-" + std::to_string(i));
-                      record.spec = std::string(300, 's');
-                      if (const auto made = InsertJob(database, record); !made.ok()) return made;
-                    }
-                    return absl::OkStatus();
-                  })
-                  .ok());
+  ASSERT_OK(store);
+  ASSERT_OK((*store)->Commit([&](Database& database) {
+    for (int i = 0; i < jobs; ++i) {
+      JobRecord record = Record("job-" + std::to_string(i));
+      record.spec = std::string(300, 's');
+      if (const auto made = InsertJob(database, record); !made.ok()) return made;
+    }
+    return absl::OkStatus();
+  }));
 }
 
 TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
@@ -404,8 +361,7 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
 TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
   std::filesystem::create_directory(File());
   const auto store = Store::Open(File(), {});
-  EXPECT_TRUE(absl::IsFailedPrecondition(store.status())) << store.status();
-  EXPECT_THAT(std::string(store.status().message()), HasSubstr("is a folder"));
+  EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("is a folder")));
   EXPECT_TRUE(std::filesystem::is_directory(File()));
 }
 
@@ -437,8 +393,8 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
   store->Record(broken, [&](const absl::Status& status) { told = status; });
   store->RecordBlock(1, 0, 1, [] { return "after"; });
   const absl::Status commit = store->Commit(broken);
-  EXPECT_TRUE(absl::IsInvalidArgument(commit)) << commit;
-  EXPECT_TRUE(absl::IsInvalidArgument(told)) << told;
+  EXPECT_THAT(commit, StatusIs(absl::StatusCode::kInvalidArgument));
+  EXPECT_THAT(told, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_FALSE(store->failing());
   EXPECT_EQ(store->pending_writes(), 0);
   EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0before", "1after"));
@@ -451,7 +407,7 @@ TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
   full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
   const absl::Status refused = store->Commit([&](Database& database) {
     JobRecord record = Record("half");
-    EXPECT_TRUE(InsertJob(database, record).ok());
+    EXPECT_OK(InsertJob(database, record));
     return full;
   });
   EXPECT_EQ(refused, full);
@@ -476,7 +432,7 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
 TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
   {
     auto database = Database::Open(File(), Database::Mode::kReadWrite);
-    ASSERT_TRUE((*database)->Execute("CREATE TABLE recipes (name TEXT)").ok());
+    ASSERT_OK((*database)->Execute("CREATE TABLE recipes (name TEXT)"));
   }
   const auto store = Store::Open(File(), {});
   EXPECT_THAT(std::string(store.status().message()), HasSubstr("not a ballpiston store"));
@@ -485,18 +441,18 @@ TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
 TEST_F(StoreTest, TheFirstWriterOfABlockWins) {
   const auto store = Open();
   store->RecordBlock(1, 2, 3, [] { return "first"; });
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   store->RecordBlock(1, 2, 3, [] { return "second"; });
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_THAT(Blocks(*store, 1, 2), testing::ElementsAre("3first"));
 }
 
 TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
   const auto store = Open();
   store->RecordResult(1, {2, 10, "first"});
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   store->RecordResult(1, {2, 10, "second"});
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_THAT(Results(*store, 1), testing::ElementsAre("2first"));
 }
 
@@ -505,7 +461,7 @@ TEST_F(StoreTest, BlocksComeBackInOrder) {
   for (const int block : {10, 9, 2, 11}) {
     store->RecordBlock(1, 0, block, [] { return "r"; });
   }
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("2r", "9r", "10r", "11r"));
 }
 
@@ -514,7 +470,7 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
   for (int block = 0; block < 1000; ++block) {
     store->RecordBlock(1, 0, block, [] { return "r"; });
   }
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_EQ(store->commits(), 1);
   EXPECT_EQ(store->blocks_written(), 1000);
 }
@@ -533,12 +489,12 @@ TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
 TEST_F(StoreTest, BlocksOfAFinishedPointAreNeitherWrittenNorKept) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   store->RecordBlock(1, 0, 0, [] { return "r"; });
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_EQ(store->blocks_written(), 1);
   store->RecordBlock(1, 0, 1, [] { return "r"; });
   store->RecordBlock(1, 5, 0, [] { return "other"; });
   store->RecordResult(1, {0, 8, "result"});
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_EQ(store->blocks_written(), 2);
   EXPECT_TRUE(Blocks(*store, 1, 0).empty());
   EXPECT_EQ(Blocks(*store, 1, 5).size(), 1u);
@@ -558,11 +514,11 @@ TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
   for (int i = 0; i < 5; ++i) {
     store->Record([](Database&) { return absl::OkStatus(); },
                   [&order, i](const absl::Status& status) {
-                    EXPECT_TRUE(status.ok());
+                    EXPECT_OK(status);
                     order.push_back(i);
                   });
   }
-  ASSERT_TRUE(store->Flush().ok());
+  ASSERT_OK(store->Flush());
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
@@ -570,10 +526,10 @@ TEST_F(StoreTest, AFailedCommitTellsAndLeavesNothingBehind) {
   const auto store = Open();
   const absl::Status failed = store->Commit([](Database& database) {
     JobRecord record = Record("half");
-    EXPECT_TRUE(InsertJob(database, record).ok());
+    EXPECT_OK(InsertJob(database, record));
     return absl::UnavailableError("disk full");
   });
-  EXPECT_TRUE(absl::IsUnavailable(failed));
+  EXPECT_THAT(failed, StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_FALSE(Find(*store, "half"));
 }
 
@@ -596,12 +552,10 @@ TEST_F(StoreTest, WhileACommitHangsReadsGoOnAndRequestsAreRefused) {
   const auto store = *Store::Open(folder_.File("store"), {.stall = std::chrono::milliseconds(1)});
   Gate gate;
   std::thread hanging([&] {
-    EXPECT_TRUE(store
-                    ->Commit([&](Database&) {
-                      gate.Pass(std::stop_token());
-                      return absl::OkStatus();
-                    })
-                    .ok());
+    EXPECT_OK(store->Commit([&](Database&) {
+      gate.Pass(std::stop_token());
+      return absl::OkStatus();
+    }));
   });
   gate.AwaitWaiting(1);
   while (!store->stalled()) std::this_thread::yield();
@@ -614,10 +568,10 @@ TEST_F(StoreTest, WhileACommitHangsReadsGoOnAndRequestsAreRefused) {
   bool told = false;
   const absl::Status refused =
       store->Commit(change, [&](const absl::Status& done) { told = !done.ok(); });
-  EXPECT_TRUE(absl::IsUnavailable(refused)) << refused;
+  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_TRUE(told);
   EXPECT_FALSE(run);
-  EXPECT_TRUE(store->Read([](Database& database) { return CountJobs(database).status(); }).ok());
+  EXPECT_OK(store->Read([](Database& database) { return CountJobs(database).status(); }));
   gate.Open();
   hanging.join();
   while (!store->Commit(change).ok()) {  // until the store's thread has seen the end of it
@@ -633,29 +587,27 @@ TEST_F(StoreTest, JobsAreReadOneByOneAndNoMoreThanAreWanted) {
     read.push_back(job.id);
     return read.size() < 2;
   };
-  ASSERT_TRUE(
-      store->Read([&](Database& database) { return ReadJobs(database, std::nullopt, 1000, take); })
-          .ok());
+  ASSERT_OK(store->Read(
+      [&](Database& database) { return ReadJobs(database, std::nullopt, 1000, take); }));
   EXPECT_THAT(read, testing::ElementsAre("d", "c"));
 }
 
 TEST_F(StoreTest, AfterClosingWritesFail) {
   const auto store = Open();
   store->Close();
-  EXPECT_TRUE(absl::IsUnavailable(store->Flush()));
-  EXPECT_TRUE(absl::IsUnavailable(store->Read([](Database&) { return absl::OkStatus(); })));
+  EXPECT_THAT(store->Flush(), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_THAT(store->Read([](Database&) { return absl::OkStatus(); }),
+              StatusIs(absl::StatusCode::kUnavailable));
 }
 
 TEST_F(StoreTest, ACancellationThatCameFirstIsNotOvertakenByTheEnd) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   bool begun = false;
-  ASSERT_TRUE(store
-                  ->Commit([&](Database& database) {
-                    begun = BeginCancellation(database, job, "").value_or(false);
-                    return absl::OkStatus();
-                  })
-                  .ok());
+  ASSERT_OK(store->Commit([&](Database& database) {
+    begun = BeginCancellation(database, job, "").value_or(false);
+    return absl::OkStatus();
+  }));
   EXPECT_TRUE(begun);
   EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::CANCELLED);
   EXPECT_EQ(Find(*store, "a")->error, "");
@@ -666,12 +618,10 @@ TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
   const int64_t job = Insert(*store, Record("a"));
   EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::SUCCEEDED);
   bool begun = true;
-  ASSERT_TRUE(store
-                  ->Commit([&](Database& database) {
-                    begun = BeginCancellation(database, job, "").value_or(true);
-                    return absl::OkStatus();
-                  })
-                  .ok());
+  ASSERT_OK(store->Commit([&](Database& database) {
+    begun = BeginCancellation(database, job, "").value_or(true);
+    return absl::OkStatus();
+  }));
   EXPECT_FALSE(begun);
   EXPECT_EQ(Find(*store, "a")->state, v1::EnsembleJob::SUCCEEDED);
 }
@@ -694,7 +644,7 @@ TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   store->RecordResult(job, {0, 1, "r"});
-  ASSERT_TRUE(store->Commit([&](Database& database) { return DeleteJob(database, job); }).ok());
+  ASSERT_OK(store->Commit([&](Database& database) { return DeleteJob(database, job); }));
   EXPECT_FALSE(Find(*store, "a"));
   EXPECT_TRUE(Results(*store, job).empty());
   EXPECT_GT(Insert(*store, Record("a")), job);
@@ -705,8 +655,7 @@ TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
   const int64_t job = Insert(*store, Record("a"));
   store->RecordResult(job, {0, 1, "r"});
   store->RecordBlock(job, 1, 0, [] { return "r"; });
-  ASSERT_TRUE(
-      store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }).ok());
+  ASSERT_OK(store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }));
   EXPECT_TRUE(Results(*store, job).empty());
   EXPECT_TRUE(Blocks(*store, job, 1).empty());
   EXPECT_EQ(Find(*store, "a")->engine_version, "2");
@@ -715,7 +664,7 @@ TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
 TEST(DataDirectory, IsMadeForItsOwnerOnly) {
   TemporaryFolder folder;
   const auto directory = DataDirectory::Open(folder.File("a/b"));
-  ASSERT_TRUE(directory.ok()) << directory.status();
+  ASSERT_OK(directory);
   struct stat found {};
   ASSERT_EQ(stat(directory->path().c_str(), &found), 0);
   EXPECT_EQ(found.st_mode & 0777, 0700u);
@@ -725,19 +674,20 @@ TEST(DataDirectory, IsHeldByOneAtATime) {
   TemporaryFolder folder;
   {
     const auto first = DataDirectory::Open(folder.path());
-    ASSERT_TRUE(first.ok());
+    ASSERT_OK(first);
     const auto second = DataDirectory::Open(folder.path());
-    EXPECT_TRUE(absl::IsFailedPrecondition(second.status()));
-    EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+    EXPECT_THAT(second, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("in use")));
   }
-  EXPECT_TRUE(DataDirectory::Open(folder.path()).ok());
+  EXPECT_OK(DataDirectory::Open(folder.path()));
 }
 
 TEST(DataDirectory, AFileInItsPlaceIsNotWritable) {
   TemporaryFolder folder;
   std::ofstream(folder.File("file")) << "x";
-  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file")).status()));
-  EXPECT_TRUE(absl::IsPermissionDenied(DataDirectory::Open(folder.File("file/below")).status()));
+  EXPECT_THAT(DataDirectory::Open(folder.File("file")),
+              StatusIs(absl::StatusCode::kPermissionDenied));
+  EXPECT_THAT(DataDirectory::Open(folder.File("file/below")),
+              StatusIs(absl::StatusCode::kPermissionDenied));
 }
 
 }  // namespace

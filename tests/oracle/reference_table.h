@@ -1,7 +1,7 @@
 // A csv table of reference values with more digits than a double, and how far computed values are
 // from it.
-#ifndef BALLPISTON_TESTS_CORE_CLOSED_FORM_REFERENCE_TABLE_H_
-#define BALLPISTON_TESTS_CORE_CLOSED_FORM_REFERENCE_TABLE_H_
+#ifndef BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
+#define BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
 
 #include <map>
 #include <string>
@@ -56,4 +56,4 @@ class ErrorTable {
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_TESTS_CORE_CLOSED_FORM_REFERENCE_TABLE_H_
+#endif  // BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_

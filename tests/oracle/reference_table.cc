@@ -1,4 +1,4 @@
-#include "tests/core/closed_form/reference_table.h"
+#include "tests/oracle/reference_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,22 @@
+// Messages as tests write them: in the text format of Protocol Buffers.
+#ifndef BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
+#define BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
+
+#include <google/protobuf/text_format.h>
+
+#include <string>
+
+#include "gtest/gtest.h"
+
+namespace ballpiston::client {
+
+template <typename Message>
+Message FromText(const std::string& text) {
+  Message message;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &message)) << text;
+  return message;
+}
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_

@@ -1,0 +1,15 @@
+// These tests break disks; the log would report every failure.
+#include "gtest/gtest.h"
+#include "server/observability/log.h"
+
+namespace ballpiston::server {
+namespace {
+
+class SilentLog : public testing::Environment {
+  void SetUp() override { SetLogOptions({.silent = true}); }
+};
+
+[[maybe_unused]] const auto* const kSilentLog = testing::AddGlobalTestEnvironment(new SilentLog);
+
+}  // namespace
+}  // namespace ballpiston::server

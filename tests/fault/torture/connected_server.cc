@@ -1,0 +1,26 @@
+#include "tests/fault/torture/connected_server.h"
+
+namespace ballpiston::torture {
+
+std::shared_ptr<grpc::Channel> ConnectedServer::Connect() {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 200);
+  auto channel =
+      grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments);
+  const std::lock_guard lock(mutex_);
+  channels_.push_back(channel);
+  return channel;
+}
+
+// Without it gRPC would wait for the end of the pause after the last attempt that failed.
+void ConnectedServer::OnReady() {
+  const std::lock_guard lock(mutex_);
+  for (const std::weak_ptr<grpc::Channel>& channel : channels_) {
+    const auto living = channel.lock();
+    if (living) grpc::experimental::ChannelResetConnectionBackoff(living.get());
+  }
+}
+
+}  // namespace ballpiston::torture

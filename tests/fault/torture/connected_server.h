@@ -1,0 +1,36 @@
+// A server process, and gRPC channels to it.
+#ifndef BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_
+#define BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "tests/support/server_process.h"
+
+namespace ballpiston::torture {
+
+// Before a client repeats a call that the server did not answer.
+inline constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
+
+class ConnectedServer : public ServerProcess {
+ public:
+  using ServerProcess::ServerProcess;
+
+  // With a connection of its own, even beside others to the same server, and connected again as
+  // soon as a new process is ready.
+  std::shared_ptr<grpc::Channel> Connect();
+
+ private:
+  void OnReady() override;
+
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<grpc::Channel>> channels_;
+};
+
+}  // namespace ballpiston::torture
+
+#endif  // BALLPISTON_TESTS_FAULT_TORTURE_CONNECTED_SERVER_H_

@@ -1,0 +1,62 @@
+// One watch of a job, message by message.
+#ifndef BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_
+#define BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "gtest/gtest.h"
+#include "tests/support/running_server.h"
+
+namespace ballpiston::server {
+
+using WatchMessage = v1::WatchEnsembleJobResponse;
+
+struct WatchStream {
+  WatchStream(TestClient& client, const std::string& name, const std::string& resume_token = "") {
+    v1::WatchEnsembleJobRequest request;
+    request.set_name(name);
+    request.set_resume_token(resume_token);
+    reader = client.ensemble().WatchEnsembleJob(&context, request);
+  }
+
+  std::optional<WatchMessage> Next() {
+    WatchMessage message;
+    if (!reader->Read(&message)) return std::nullopt;
+    return message;
+  }
+  // Reads on until a message is like that.
+  template <typename Condition>
+  WatchMessage Until(Condition condition) {
+    while (auto message = Next()) {
+      if (condition(*message)) return *message;
+    }
+    ADD_FAILURE() << "the stream ended: " << reader->Finish().error_message();
+    return {};
+  }
+  std::vector<WatchMessage> ToTheEnd() {
+    std::vector<WatchMessage> messages;
+    while (auto message = Next()) messages.push_back(*message);
+    return messages;
+  }
+  // Reads to the end, and tells how it ended.
+  grpc::Status End() {
+    ToTheEnd();
+    return reader->Finish();
+  }
+  // As a client does that loses interest.
+  void Leave() {
+    context.TryCancel();
+    reader->Finish();
+  }
+
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReader<WatchMessage>> reader;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_API_WATCH_STREAM_H_

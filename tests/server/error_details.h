@@ -1,0 +1,45 @@
+// What an error says beside its code and message.
+//
+//   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
+#ifndef BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_
+#define BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "gmock/gmock.h"
+#include "grpcpp/support/status.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+
+struct ErrorDetails {
+  std::string reason;  // of google.rpc.ErrorInfo, as the next two
+  std::string domain;
+  std::map<std::string, std::string> metadata;
+  std::vector<std::string> fields;  // of the violations in google.rpc.BadRequest
+};
+
+ErrorDetails DetailsOf(const grpc::Status& status);
+ErrorDetails DetailsOf(const absl::Status& status);
+
+template <typename Result>
+std::string ReasonOf(const Result& result) {
+  if constexpr (requires { result.error_code(); }) {
+    return DetailsOf(result).reason;
+  } else {
+    return DetailsOf(StatusOf(result)).reason;
+  }
+}
+
+MATCHER_P2(IsError, code, reason, "") {
+  *result_listener << "whose reason is " << ReasonOf(arg) << ", ";
+  return testing::ExplainMatchResult(StatusIs(code), arg, result_listener) &&
+         ReasonOf(arg) == reason;
+}
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_

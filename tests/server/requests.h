@@ -1,0 +1,37 @@
+// What tests ask a server for.
+#ifndef BALLPISTON_TESTS_SERVER_REQUESTS_H_
+#define BALLPISTON_TESTS_SERVER_REQUESTS_H_
+
+#include <cstdint>
+#include <string>
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/method.pb.h"
+
+namespace ballpiston::server {
+
+// Idempotency keys.
+inline constexpr char kUuid[] = "123e4567-e89b-12d3-a456-426614174000";
+inline constexpr char kOtherUuid[] = "123e4567-e89b-12d3-a456-426614174001";
+
+// For the fake experiments (fake_experiments.h): so many points of so many blocks each.
+v1::EnsembleSpec Equilibrium(int points, int64_t blocks, uint64_t seed = 1);
+
+// 90,000 points of one block. It has 720 kB: more than a connection takes that nobody reads from.
+v1::EnsembleSpec LargeEquilibrium();
+
+// For the core's experiments: six points of 4096 samples.
+v1::EnsembleSpec SmallFirstHit();
+
+v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,
+                                           const std::string& request_id = "");
+// The same, not to be answered from the store.
+v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
+                                          const std::string& request_id = "");
+
+// Of all methods, at one point.
+v1::CompareMethodsRequest SomeComparison();
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_REQUESTS_H_

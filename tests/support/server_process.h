@@ -1,0 +1,75 @@
+// The real server, ballpistond, as a process: started, killed and started again on one data folder.
+#ifndef BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
+#define BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston {
+
+// HOME is this folder, so that a program touches nothing of the user's, and none of the project's
+// variables is set.
+std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home);
+
+// Runs the server program to its end: with flags that it rejects, or that make it do one thing.
+ProcessResult RunServer(const TemporaryFolder& home, std::vector<std::string> flags);
+
+struct ServerSetUp {
+  int workers = 2;
+  std::vector<std::string> flags = {};     // further ones
+  std::string listen = {};                 // empty: a Unix socket in the server's folder
+  std::vector<std::string> launcher = {};  // a command that is given the server's as arguments
+};
+
+// One thread starts, stops and waits. Any thread may read address, data folder and what is
+// measured.
+class ServerProcess {
+ public:
+  explicit ServerProcess(ServerSetUp set_up = {});  // does not start the server
+  virtual ~ServerProcess() = default;               // kills the server
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+  void Start();  // returns when the server listens; throws std::runtime_error if it ends instead
+  void Spawn(const std::string& failpoint = "");  // NAME:N of server/observability/failpoint.h
+  bool AwaitReady();                              // false if the server ended instead
+
+  void Signal(int signal) const { process_->Signal(signal); }
+  bool AwaitLog(const std::string& text) { return process_->WaitForErr(text); }
+  // The exit code, 128 + signal if one killed the server. After `limit` empty if it still runs.
+  std::optional<int> AwaitEnd(std::chrono::milliseconds limit);
+  int AwaitEnd();
+  int Stop();  // SIGTERM
+  void KillHard();
+
+  const std::string& address() const { return address_; }  // of a TCP port when it is ready
+  std::string data_dir() const { return folder_.File("data"); }
+  const TemporaryFolder& folder() const { return folder_; }
+  std::string log() const;  // all that its processes wrote
+
+  double ResidentMiB() const;
+  double ProcessorSeconds() const;  // of the living threads
+
+ protected:
+  virtual void OnReady() {}
+
+ private:
+  const ServerSetUp set_up_;
+  const TemporaryFolder folder_;
+  std::string address_;
+  std::string ended_log_;  // of the processes before this one
+  std::unique_ptr<Process> process_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
