@@ -56,11 +56,9 @@ absl::Status Replay(Database& database, const RequestRecord& request, Acceptance
   acceptance.earlier = *std::move(job);
   acceptance.replay = true;
   acceptance.answered_from_store = request.answered_from_store;
-  // A store of an older version knows of its requests only which jobs they made.
-  const bool same = request.payload.empty()
-                        ? acceptance.earlier && acceptance.earlier->spec == acceptance.record.spec
-                        : request.payload == acceptance.request.payload;
-  if (!same) acceptance.refused = RequestIdReused(request.request_id);
+  if (request.payload != acceptance.request.payload) {
+    acceptance.refused = RequestIdReused(request.request_id);
+  }
   return absl::OkStatus();
 }
 

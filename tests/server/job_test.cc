@@ -124,7 +124,6 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
   EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
 }
 
-// A store of an older version numbers results with gaps.
 TEST(Job, RestoredPointsAreNotKept) {
   Job job(Record(1000), nullptr);
   job.AddRestoredPoints(3, 12, 70);
