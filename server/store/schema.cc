@@ -79,7 +79,7 @@ CREATE TABLE pilots (
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
-                   "; it was left as it is: move it away, or choose another --data_dir"));
+                   "; it was left as it is: move it away, or choose another --data-dir"));
 }
 
 std::string Text(const absl::Status& status) {

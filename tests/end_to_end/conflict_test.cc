@@ -20,7 +20,7 @@ TEST(TwoServers, DoNotShareADataFolder) {
   const TestServer first;
   const TemporaryFolder home;
   const ProcessResult second = SecondServer(
-      home, {"--listen", "unix:" + home.Path("socket"), "--data_dir", first.DataDir()});
+      home, {"--listen", "unix:" + home.Path("socket"), "--data-dir", first.DataDir()});
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.err, HasSubstr(first.DataDir()));
   EXPECT_EQ(first.Client({"list"}).exit_code, 0);  // unharmed
@@ -30,19 +30,19 @@ TEST(TwoServers, DoNotShareASocket) {
   const TestServer first;
   const TemporaryFolder home;
   const ProcessResult second =
-      SecondServer(home, {"--listen", first.Address(), "--data_dir", home.Path("data")});
+      SecondServer(home, {"--listen", first.Address(), "--data-dir", home.Path("data")});
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_EQ(first.Client({"list"}).exit_code, 0);
 }
 
 TEST(TwoServers, DoNotShareAPort) {
   const TemporaryFolder home;
-  Process first(ServerCommand(home, {"--listen", "127.0.0.1:0", "--data_dir", home.Path("first")}));
+  Process first(ServerCommand(home, {"--listen", "127.0.0.1:0", "--data-dir", home.Path("first")}));
   const std::string line = first.WaitForErrLine(
       [](const std::string& text) { return text.find("listening on") != std::string::npos; });
   const std::string address = line.substr(line.find("127.0.0.1:"));
   const ProcessResult second =
-      SecondServer(home, {"--listen", address, "--data_dir", home.Path("second")});
+      SecondServer(home, {"--listen", address, "--data-dir", home.Path("second")});
   EXPECT_EQ(second.exit_code, 2);
   EXPECT_THAT(second.err, HasSubstr(address));
   const ProcessResult list =
@@ -56,7 +56,7 @@ TEST(Server, NeedsADataFolderItCanWriteTo) {
   const TemporaryFolder home;
   std::ofstream(home.Path("file")) << "not a folder";
   const ProcessResult result = SecondServer(
-      home, {"--listen", "unix:" + home.Path("socket"), "--data_dir", home.Path("file/data")});
+      home, {"--listen", "unix:" + home.Path("socket"), "--data-dir", home.Path("file/data")});
   EXPECT_EQ(result.exit_code, 6);
   EXPECT_THAT(result.err, HasSubstr("data folder " + home.Path("file")));
   EXPECT_THAT(result.err, HasSubstr("is not writable"));

@@ -35,7 +35,7 @@ ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::strin
 void TestServer::Start() {
   process_ = std::make_unique<Process>(ServerCommand(
       folder_,
-      {"--listen", Address(), "--data_dir", DataDir(), "--workers", std::to_string(workers_)}));
+      {"--listen", Address(), "--data-dir", DataDir(), "--workers", std::to_string(workers_)}));
   if (!process_->WaitForErr("listening on")) {
     ADD_FAILURE() << "the server did not start: " << process_->Wait().err;
   }

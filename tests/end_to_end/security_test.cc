@@ -54,7 +54,7 @@ class Security : public ::testing::Test {
   // A new token, which is also in the file `token_NAME`.
   std::string NewToken(const std::string& name, const std::string& request) {
     const ProcessResult made =
-        Server({"--access_file", home_.Path("access"), "--new_token", request});
+        Server({"--access-file", home_.Path("access"), "--new-token", request});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     EXPECT_EQ(made.err, "");
     Write("token_" + name, made.out);
@@ -62,12 +62,12 @@ class Security : public ::testing::Test {
   }
 
   Words TlsFlags() const {
-    return {"--tls_certificate",      home_.Path("server.pem"), "--tls_key",
-            home_.Path("server.key"), "--access_file",          home_.Path("access")};
+    return {"--tls-certificate",      home_.Path("server.pem"), "--tls-key",
+            home_.Path("server.key"), "--access-file",          home_.Path("access")};
   }
 
   void Start(const Words& more) {
-    Words flags = {"--listen", "127.0.0.1:0", "--data_dir", home_.Path("data")};
+    Words flags = {"--listen", "127.0.0.1:0", "--data-dir", home_.Path("data")};
     Append(flags, more);
     server_ = std::make_unique<Process>(ServerCommand(home_, flags));
     const std::string line = server_->WaitForErrLine(
@@ -183,7 +183,7 @@ TEST_F(Security, AClientsCertificateIsAskedForAndTaken) {
   Write("access", "certificate Ada alice read\n");
   const KeyAndCertificate own = authority_.Issue("Ada");
   Words flags = TlsFlags();
-  Append(flags, {"--tls_client_ca", home_.Path("ca.pem")});
+  Append(flags, {"--tls-client-ca", home_.Path("ca.pem")});
   Start(flags);
   const Words ca = {"--ca", home_.Path("ca.pem")};
   Words known = ca;
@@ -205,7 +205,7 @@ TEST_F(Security, HangupReadsTheFilesAgainAndKeepsTheOldOnesIfTheyAreWrong) {
   EXPECT_EQ(List(Known("bob")).exit_code, 0);
   Write("access", "nonsense\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->WaitForErr("not read again, the old stays: --access_file="));
+  ASSERT_TRUE(server_->WaitForErr("not read again, the old stays: --access-file="));
   EXPECT_EQ(List(Known("bob")).exit_code, 0);
   server_->Signal(SIGTERM);
   EXPECT_EQ(server_->Wait().exit_code, 0);
@@ -213,7 +213,7 @@ TEST_F(Security, HangupReadsTheFilesAgainAndKeepsTheOldOnesIfTheyAreWrong) {
 
 TEST_F(Security, UnsafeCombinationsEndWithTwoAndOneLine) {
   NewToken("alice", "alice:read");
-  const Words data = {"--data_dir", home_.Path("data")};
+  const Words data = {"--data-dir", home_.Path("data")};
   const auto expect = [&](Words flags, const std::string& text) {
     Append(flags, data);
     const ProcessResult result = Server(flags);
@@ -221,12 +221,13 @@ TEST_F(Security, UnsafeCombinationsEndWithTwoAndOneLine) {
     EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
-  expect({"--listen", "0.0.0.0:0"}, "missing: --tls_certificate and --tls_key and --access_file");
-  expect({"--listen", "127.0.0.1:0", "--access_file", home_.Path("access")}, "readable for others");
+  expect({"--listen", "0.0.0.0:0"}, "missing: --tls-certificate and --tls-key and --access-file");
+  expect({"--listen", "127.0.0.1:0", "--access-file", home_.Path("access")},
+         "others could read the tokens");
   Words over_socket = TlsFlags();
   Append(over_socket, {"--listen", "unix:" + home_.Path("s")});
   expect(over_socket, "over a Unix socket");
-  expect({"--new_token", "alice:read"}, "--access_file is missing");
+  expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.Path("server.key").c_str(), 0644);
   Words open_key = TlsFlags();
   Append(open_key, {"--listen", "127.0.0.1:0"});

@@ -52,8 +52,8 @@ TEST(Status, TellsWhatWasAskedAndComputed) {
 TEST(Status, LogLinesAreJsonWhereThatIsWanted) {
   const TemporaryFolder home;
   Process server(ServerCommand(
-      home, {"--listen", "unix:" + home.Path("socket"), "--data_dir", home.Path("data"),
-             "--log_format", "json", "--metrics_listen", "127.0.0.1:0"}));
+      home, {"--listen", "unix:" + home.Path("socket"), "--data-dir", home.Path("data"),
+             "--log-format", "json", "--metrics-listen", "127.0.0.1:0"}));
   ASSERT_TRUE(server.WaitForErr("listening on"));
   server.Signal(SIGTERM);
   const ProcessResult result = server.Wait();
@@ -88,7 +88,7 @@ TEST(Status, ALogThatNobodyReadsStopsNothing) {
   const FullPipe log(home.Path("log"));
   const std::string address = "unix:" + home.Path("socket");
   ProcessOptions command = ServerCommand(
-      home, {"--listen", address, "--data_dir", home.Path("data"), "--drain_seconds", "1"});
+      home, {"--listen", address, "--data-dir", home.Path("data"), "--drain-seconds", "1"});
   command.command.insert(command.command.begin(),
                          {"/bin/sh", "-c", "exec \"$@\" 2>\"$0\"", home.Path("log")});
   Process server(command);
@@ -110,9 +110,9 @@ TEST(Status, ALogThatNobodyReadsStopsNothing) {
 TEST(Status, MetricsForOtherMachinesAreRefused) {
   const TemporaryFolder home;
   const ProcessResult result = RunProgram(
-      ServerCommand(home, {"--data_dir", home.Path("data"), "--metrics_listen", "0.0.0.0:9090"}));
+      ServerCommand(home, {"--data-dir", home.Path("data"), "--metrics-listen", "0.0.0.0:9090"}));
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("--metrics_listen=0.0.0.0:9090 is not a loopback address"));
+  EXPECT_THAT(result.err, HasSubstr("--metrics-listen=0.0.0.0:9090 is not a loopback address"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ const std::vector<std::string> kQuestion = {"run",      "equilibrium", "--rho", 
                                             "--verify", "--format",    "json",         "--fresh"};
 
 ProcessResult Server(const TestServer& server, std::vector<std::string> flags) {
-  flags.insert(flags.begin(), {"--data_dir", server.DataDir()});
+  flags.insert(flags.begin(), {"--data-dir", server.DataDir()});
   return RunProgram(ServerCommand(server.folder(), std::move(flags)));
 }
 
@@ -61,10 +61,10 @@ TEST(StoreCommands, OneIsDoneAtATime) {
   const TemporaryFolder home;
   const std::string access = home.Path("access");
   const ProcessResult result =
-      RunProgram(ServerCommand(home, {"--data_dir", home.Path("data"), "--check", "--backup=x",
-                                      "--access_file", access, "--new_token=a:submit"}));
+      RunProgram(ServerCommand(home, {"--data-dir", home.Path("data"), "--check", "--backup=x",
+                                      "--access-file", access, "--new-token=a:submit"}));
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new_token exclude each other"));
+  EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new-token exclude each other"));
   EXPECT_EQ(result.out, "");
   EXPECT_FALSE(std::filesystem::exists(access));
 }
@@ -72,8 +72,8 @@ TEST(StoreCommands, OneIsDoneAtATime) {
 TEST(Limits, AreFlagsAndNameThemselves) {
   const TemporaryFolder home;
   const std::string address = "unix:" + home.Path("socket");
-  Process server(ServerCommand(home, {"--listen", address, "--data_dir", home.Path("data"),
-                                      "--max_points_per_job=2", "--max_message_bytes=2048"}));
+  Process server(ServerCommand(home, {"--listen", address, "--data-dir", home.Path("data"),
+                                      "--max-points-per-job=2", "--max-message-bytes=2048"}));
   ASSERT_TRUE(server.WaitForErr("listening on"));
   const auto ask = [&](const std::string& deltas) {
     ProcessOptions options;
@@ -92,16 +92,16 @@ TEST(Limits, AreFlagsAndNameThemselves) {
   EXPECT_EQ(ask("0.1,0.2").exit_code, 0);
   const ProcessResult points = ask("0.1,0.15,0.2");
   EXPECT_NE(points.exit_code, 0);
-  EXPECT_THAT(points.err, HasSubstr("--max_points_per_job"));
+  EXPECT_THAT(points.err, HasSubstr("--max-points-per-job"));
   EXPECT_THAT(ask("0.1:0.2:1000").err, HasSubstr("2048"));  // gRPC's words
 }
 
 TEST(Limits, AreNotNegative) {
   const TemporaryFolder home;
-  for (const std::string flag : {"--max_active_jobs=-1", "--max_samples_per_job=-2",
-                                 "--max_message_bytes=0", "--max_streams=-1"}) {
+  for (const std::string flag : {"--max-active-jobs=-1", "--max-samples-per-job=-2",
+                                 "--max-message-bytes=0", "--max-streams=-1"}) {
     const ProcessResult result =
-        RunProgram(ServerCommand(home, {"--data_dir", home.Path("data"), flag}));
+        RunProgram(ServerCommand(home, {"--data-dir", home.Path("data"), flag}));
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr(flag + " is out of range"));
   }

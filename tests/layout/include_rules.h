@@ -4,7 +4,8 @@
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
-//   server:  core and the protos.   client: the protos only.   Neither knows the other.
+//   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
+//            parsed by CLI11, which is slow to compile: in the server only command_line.cc has it.
 //   server/convert alone speaks of the core's physics and of the API's messages in one file.
 //
 // A new folder needs a row of its own in the table: a file without one is a violation.

@@ -486,7 +486,7 @@ TEST_F(LimitTest, AFullQueueRefusesWhatIsNewAndNothingElse) {
   const std::string first = Hold(kAnn, kUuid);
   Hold(kBob);
   for (const Principal& caller : {kAnn, kBob}) {
-    ExpectRefused(Create(caller, Asking(Question(2))).status(), "QUEUE_FULL", "max_active_jobs",
+    ExpectRefused(Create(caller, Asking(Question(2))).status(), "QUEUE_FULL", "max-active-jobs",
                   "2");
   }
   // A replay, and what the store can answer.
@@ -504,7 +504,7 @@ TEST_F(LimitTest, APrincipalsJobsAreItsOwn) {
   Limit({.max_active_jobs_per_principal = 1});
   Hold(kAnn);
   ExpectRefused(Create(kAnn, Asking(Question())).status(), "TOO_MANY_JOBS",
-                "max_active_jobs_per_principal", "1");
+                "max-active-jobs-per-principal", "1");
   EXPECT_TRUE(Create(kBob, Asking(Question())).ok());
 }
 
@@ -522,14 +522,14 @@ TEST_F(LimitTest, AJobMayNotHaveTooManyPoints) {
   Limit({.max_points_per_job = 3});
   EXPECT_TRUE(Create(kAnn, Asking(Equilibrium(3, 5))).ok());
   ExpectRefused(Create(kAnn, Asking(Equilibrium(4, 5))).status(), "TOO_MANY_POINTS",
-                "max_points_per_job", "3");
+                "max-points-per-job", "3");
 }
 
 TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   Limit({.max_samples_per_job = 40'000});
   EXPECT_TRUE(Create(kAnn, Asking(Equilibrium(4, 10'000))).ok());
   ExpectRefused(Create(kAnn, Asking(Equilibrium(4, 10'001))).status(), "TOO_MANY_SAMPLES",
-                "max_samples_per_job", "40000");
+                "max-samples-per-job", "40000");
   v1::EnsembleSpec by_default = Equilibrium(5, 1);
   by_default.clear_target();
   EXPECT_EQ(ReasonOf(Create(kAnn, Asking(by_default)).status()), "TOO_MANY_SAMPLES");
@@ -549,13 +549,13 @@ TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
   const std::string first = Name(kAnn, held(4, kUuid));
   const auto expect_full = [&] {
     ExpectRefused(Create(kAnn, held(3)).status(), "TOO_MANY_ACTIVE_POINTS",
-                  "max_active_points_per_principal", "6");
+                  "max-active-points-per-principal", "6");
   };
   expect_full();
   Name(kBob, held(6));
   Name({"eve", Role::kSubmit}, held(6));
   ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)).status(), "TOO_MANY_ACTIVE_POINTS",
-                "max_active_points", "20");
+                "max-active-points", "20");
   EXPECT_EQ(Name(kAnn, held(4, kUuid)), first);  // a replay
   StartAgain();
   expect_full();

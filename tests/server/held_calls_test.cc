@@ -27,7 +27,7 @@ TEST(HeldCalls, APrincipalsCallsAreItsOwn) {
   EXPECT_TRUE(calls.Begin("ann", 1, kTwoCallsOfTenBytes).ok());
   const absl::Status third = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
   EXPECT_TRUE(absl::IsResourceExhausted(third));
-  EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max_calls_per_principal)"));
+  EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max-calls-per-principal)"));
   EXPECT_TRUE(calls.Begin("bob", 1, kTwoCallsOfTenBytes).ok());
   calls.End("ann", 1);
   EXPECT_TRUE(calls.Begin("ann", 1, kTwoCallsOfTenBytes).ok());
@@ -38,7 +38,7 @@ TEST(HeldCalls, SoAreTheirBytesAndOneAloneMayHaveAnyNumber) {
   EXPECT_TRUE(calls.Begin("ann", 11, kTwoCallsOfTenBytes).ok());
   EXPECT_TRUE(calls.CheckRoom("ann", kTwoCallsOfTenBytes).ok());
   const absl::Status second = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
-  EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max_call_bytes_per_principal)"));
+  EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max-call-bytes-per-principal)"));
   calls.End("ann", 11);
   EXPECT_TRUE(calls.Begin("ann", 5, kTwoCallsOfTenBytes).ok());
   EXPECT_TRUE(calls.Begin("ann", 5, kTwoCallsOfTenBytes).ok());
@@ -121,12 +121,12 @@ class UnreadAnswers : public testing::Test {
 
 TEST_F(UnreadAnswers, CountAsCallsInProgress) {
   Start({.max_calls_per_principal = 1});
-  ExpectRefusedUntilLetGo("max_calls_per_principal");
+  ExpectRefusedUntilLetGo("max-calls-per-principal");
 }
 
 TEST_F(UnreadAnswers, CountWithTheirBytes) {
   Start({.max_call_bytes_per_principal = 100'000});
-  ExpectRefusedUntilLetGo("max_call_bytes_per_principal");
+  ExpectRefusedUntilLetGo("max-call-bytes-per-principal");
 }
 
 }  // namespace

@@ -240,7 +240,7 @@ TEST_F(MetricsTest, AddressesThatOthersReachAreRefused) {
     const auto server = BallpistonServer::Start(options);
     EXPECT_EQ(server.status().code(), absl::StatusCode::kInvalidArgument) << address;
     EXPECT_THAT(std::string(server.status().message()),
-                HasSubstr("--metrics_listen=" + std::string(address)));
+                HasSubstr("--metrics-listen=" + std::string(address)));
   }
 }
 

@@ -37,7 +37,7 @@ class NewToken : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  const NamedFile file_{"access_file", folder_.File("list")};
+  const NamedFile file_{"access-file", folder_.File("list")};
 };
 
 TEST_F(NewToken, LetsItsPrincipalInAndIsNotInTheFile) {
@@ -132,7 +132,7 @@ TEST_F(NewToken, WithoutRoomForItsWholeLineTheFileStaysAsItIs) {
 }
 
 TEST_F(NewToken, WhereNoFileCanBeMadeThereIsNone) {
-  const NamedFile nowhere{"access_file", folder_.File("no/such/list")};
+  const NamedFile nowhere{"access-file", folder_.File("no/such/list")};
   EXPECT_TRUE(absl::IsPermissionDenied(
       IssueToken(nowhere, *ParseTokenRequest("alice:read"), kNow).status()));
 }
@@ -143,7 +143,7 @@ TEST_F(NewToken, ARequestThatIsNoneIsRefused) {
         "alice:read:x", "alice:read:36501", "alice:read:1:2", "local:read"}) {
     const auto request = ParseTokenRequest(text);
     EXPECT_TRUE(absl::IsInvalidArgument(request.status())) << text;
-    EXPECT_THAT(std::string(request.status().message()), HasSubstr("--new_token"));
+    EXPECT_THAT(std::string(request.status().message()), HasSubstr("--new-token"));
   }
 }
 

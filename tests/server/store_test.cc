@@ -186,7 +186,8 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
 
 TEST_F(StoreTest, JobNumbersGrowAlsoAfterADeletion) {
   const int64_t deleted = Insert(*Open(), Record("a"));
-  ASSERT_TRUE(Open()->Commit([&](Database& database) { return DeleteJob(database, deleted); }).ok());
+  ASSERT_TRUE(
+      Open()->Commit([&](Database& database) { return DeleteJob(database, deleted); }).ok());
   EXPECT_GT(Insert(*Open(), Record("b")), deleted);
 }
 

@@ -513,7 +513,7 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(DetailsOf(refused).reason, "TOO_MANY_STREAMS");
   EXPECT_THAT(refused.error_message(),
-              testing::HasSubstr("permits 2 (--max_streams_per_principal)"));
+              testing::HasSubstr("permits 2 (--max-streams-per-principal)"));
   first->context.TryCancel();
   first.reset();
   while (!Stream(server, name).Next()) {  // until the server has heard of it

@@ -80,7 +80,7 @@ ServerProcess::~ServerProcess() {
 void ServerProcess::Spawn(const std::string& failpoint) {
   std::vector<std::string> command = {
       "/proc/self/exe", kMortal,     BALLPISTON_SERVER_BINARY,
-      "--listen",       address(),   "--data_dir",
+      "--listen",       address(),   "--data-dir",
       data_dir(),       "--workers", std::to_string(set_up_.workers)};
   command.insert(command.end(), set_up_.flags.begin(), set_up_.flags.end());
   log_start_ = log().size();
