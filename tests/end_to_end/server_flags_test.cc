@@ -16,19 +16,17 @@
 namespace ballpiston {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using Words = std::vector<std::string>;
 
-ProcessResult Run(const Words& flags) {
+ProcessResult Server(const Words& flags) {
   const TemporaryFolder home;
   return RunProgram(ServerCommand(home, flags));
 }
 
 // The one line of a command line that is refused.
 std::string Refusal(const Words& flags) {
-  const ProcessResult result = Run(flags);
+  const ProcessResult result = Server(flags);
   EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(flags) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
@@ -84,17 +82,17 @@ std::set<std::string> FlagsOf(const std::string& page) {
 }
 
 TEST(ServerFlags, HelpListsEachOnceWithDashes) {
-  const ProcessResult help = Run({"--help"});
+  const ProcessResult help = Server({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
   std::set<std::string> expected = {"--data_dir", "-h"};
   for (const std::string flag : kFlags) expected.insert("--" + flag);
   EXPECT_EQ(FlagsOf(help.out), expected);
-  EXPECT_EQ(Run({"-h"}).out, help.out);
+  EXPECT_EQ(FlagsOf(Server({"-h"}).out), expected);
 }
 
 TEST(ServerFlags, HelpTellsDefaultsAndExitCodesInLinesThatFitATerminal) {
-  const std::string page = Run({"--help"}).out;
+  const std::string page = Server({"--help"}).out;
   EXPECT_THAT(page, HasSubstr("--max-active-jobs N\n"));
   EXPECT_THAT(page, HasSubstr("jobs that have not ended, of all principals; default: 10000\n"));
   EXPECT_THAT(page, HasSubstr("default: 1e+15"));
@@ -113,7 +111,7 @@ TEST(ServerFlags, HelpAndVersionAreGivenBesideAWrongFlag) {
     for (const std::string page : {"--help", "--version"}) {
       Words flags = wrong;
       flags.push_back(page);
-      const ProcessResult result = Run(flags);
+      const ProcessResult result = Server(flags);
       EXPECT_EQ(result.exit_code, 0) << result.err;
       EXPECT_THAT(result.out, HasSubstr("ballpistond"));
     }
@@ -131,7 +129,7 @@ TEST(ServerFlags, DataDirIsAlsoSpelledWithAnUnderscore) {
         Words{"--data_dir=" + home.Path("data")}}) {
     Words flags = spelling;
     flags.push_back("--check");
-    EXPECT_THAT(Run(flags).out, HasSubstr("the store is sound"));
+    EXPECT_THAT(Server(flags).out, HasSubstr("the store is sound"));
   }
 }
 
@@ -172,7 +170,6 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
       {{"--workers=1e4"}, "--workers=1e4 is out of range; " + workers},
       {{"--workers=99999999999999999999"}, "99999999999999999999 is out of range; " + workers},
       {{"--workers=many"}, "--workers=many is not a number; " + workers},
-      {{"--workers=0x10"}, "--workers=0x10 is not a number; " + workers},
       {{"--workers="}, "--workers= is not a number; " + workers},
       {{"--workers", ""}, "--workers= is not a number; " + workers},
       {{"--drain-seconds", "-1"}, "--drain-seconds=-1 is out of range; " + seconds},
@@ -198,7 +195,11 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
       {{"--log-format=xml"}, "--log-format=xml is unknown; permitted: text, json"},
       {{"--log-level", "-1"}, "--log-level=-1 is unknown; permitted: info, warning, error"},
   };
-  for (const auto& row : table) EXPECT_THAT(Refusal(row.flags), HasSubstr(row.message));
+  for (const auto& row : table) {
+    Words flags = row.flags;
+    flags.push_back("--check");  // instead of a server, should a value be accepted
+    EXPECT_THAT(Refusal(flags), HasSubstr(row.message));
+  }
 }
 
 TEST(ServerFlags, AFlagHasOneValue) {
