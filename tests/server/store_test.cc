@@ -184,13 +184,6 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
   EXPECT_EQ(Contents(File()), before);
 }
 
-TEST_F(StoreTest, JobNumbersGrowAlsoAfterADeletion) {
-  const int64_t deleted = Insert(*Open(), Record("a"));
-  ASSERT_TRUE(
-      Open()->Commit([&](Database& database) { return DeleteJob(database, deleted); }).ok());
-  EXPECT_GT(Insert(*Open(), Record("b")), deleted);
-}
-
 TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
   const PilotPlace in_equilibrium = {.rho = 0.53, .delta = 0.1};
   const PilotPlace at_zero = {.rho = 0.53, .delta = 0.1, .epsilon = 0.0};
