@@ -26,7 +26,7 @@ start_server() {
   mkdir -p "$STATE" "$RESULTS"
   sockets=$(mktemp -d)  # a short path: that of a Unix socket may have 100 bytes
   address=unix:$sockets/server
-  "$PROGRAMS/ballpistond" --listen "$address" --data_dir "$STATE/data" >"$STATE/server.log" 2>&1 &
+  "$PROGRAMS/ballpistond" --listen "$address" --data-dir "$STATE/data" >"$STATE/server.log" 2>&1 &
   server=$!
   trap stop_server EXIT
   local deadline=$((SECONDS + 30))

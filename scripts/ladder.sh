@@ -12,7 +12,7 @@ readonly programs RHO=0.529561127988977
 
 sockets=$(mktemp -d)  # a short path: that of a Unix socket may have 100 bytes
 export BALLPISTON_SERVER=unix:$sockets/server
-"$programs/ballpistond" --listen "$BALLPISTON_SERVER" --data_dir "$sockets/data" \
+"$programs/ballpistond" --listen "$BALLPISTON_SERVER" --data-dir "$sockets/data" \
   >"$sockets/server.log" 2>&1 &
 server=$!
 stop_server() {

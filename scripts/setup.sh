@@ -16,7 +16,8 @@ readonly PACKAGES=(
   libboost-dev                                                 # its numbers of more than 64 bits
   libsqlite3-dev libssl-dev                                    # the store, the door
   prometheus-cpp-dev                                           # metrics
-  libcli11-dev gnuplot-nox)                                    # the client, its figures
+  libcli11-dev                                                 # the flags of both programs
+  gnuplot-nox)                                                 # the client's figures
 
 # The CMake that is there or, without one, that would be installed; empty if neither is known.
 cmake_version() {

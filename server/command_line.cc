@@ -1,314 +1,519 @@
 #include "server/command_line.h"
 
-#include <unistd.h>
-
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <initializer_list>
+#include <istream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "absl/flags/flag.h"
-#include "absl/flags/parse.h"
-#include "absl/flags/reflection.h"
-#include "absl/flags/usage.h"
-#include "absl/flags/usage_config.h"
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "server/version.h"
-
-namespace {
-
-constexpr ballpiston::server::Limits kLimits;
-
-int DefaultWorkers() {
-  const unsigned cores = std::thread::hardware_concurrency();
-  return cores == 0 ? 1 : static_cast<int>(cores);
-}
-
-}  // namespace
-
-ABSL_FLAG(
-    std::string, listen, "",
-    "where to listen: unix:PATH, or HOST:PORT (port 0 takes any); a host that is not loopback "
-    "(127.0.0.0/8, [::1], localhost) needs --tls_certificate, --tls_key and --access_file; "
-    "empty: the Unix socket `server.socket` in --data_dir");
-ABSL_FLAG(std::string, data_dir, ballpiston::server::DataDirectory::Default(),
-          "folder that keeps jobs and results, made if it does not exist; one server at a time");
-ABSL_FLAG(int32_t, workers, DefaultWorkers(), "threads that compute, 1 to 1024");
-ABSL_FLAG(double, idle_exit_seconds, 0,
-          "end when no job is active and no call was in progress for so long; 0: never");
-ABSL_FLAG(double, drain_seconds, 10,
-          "after SIGTERM or SIGINT: time for calls in progress to end, 0 to 3600");
-ABSL_FLAG(std::string, access_file, "",
-          "who may come in; a line each: token sha256:HEX PRINCIPAL ROLE [EXPIRES], or certificate "
-          "COMMON_NAME PRINCIPAL ROLE [EXPIRES]; a ROLE is read, submit or admin; needs TLS; read "
-          "again on SIGHUP");
-ABSL_FLAG(std::string, new_token, "",
-          "PRINCIPAL:ROLE[:DAYS]: make a token, append it, hashed, to --access_file, print it and "
-          "end");
-ABSL_FLAG(std::string, tls_certificate, "",
-          "PEM file of the server's certificate, then those between it and its authority; read "
-          "again on SIGHUP, as the next two");
-ABSL_FLAG(std::string, tls_key, "", "PEM file of the certificate's key, closed to others");
-ABSL_FLAG(
-    std::string, tls_client_ca, "",
-    "PEM file of the authorities that sign clients' certificates; when given, a client without "
-    "one is not let in");
-ABSL_FLAG(double, watch_heartbeat_seconds, 10,
-          "a watch of a job says that it lives after so long without news, 0.01 to 3600");
-ABSL_FLAG(
-    std::string, metrics_listen, "",
-    "where Prometheus collects, at /metrics: HOST:PORT with a loopback host (port 0 takes any, "
-    "and the log says which); empty: nowhere");
-ABSL_FLAG(std::string, log_format, "text", "of standard error: text, or json (an object a line)");
-ABSL_FLAG(int64_t, max_active_jobs, kLimits.max_active_jobs,
-          "jobs of all principals that have not ended; more are refused; 0: no limit");
-ABSL_FLAG(int64_t, max_active_jobs_per_principal, kLimits.max_active_jobs_per_principal,
-          "the same, of one principal");
-ABSL_FLAG(int64_t, max_active_points, kLimits.max_active_points,
-          "points of the grids of all jobs that have not ended; 0: no limit");
-ABSL_FLAG(int64_t, max_active_points_per_principal, kLimits.max_active_points_per_principal,
-          "the same, of one principal");
-ABSL_FLAG(int64_t, max_points_per_job, kLimits.max_points_per_job,
-          "points of a job's grid; 0: no limit but the engine's, 100,000");
-ABSL_FLAG(double, max_samples_per_job, kLimits.max_samples_per_job,
-          "samples or collisions of a job, over all its points; 0: no limit");
-ABSL_FLAG(int64_t, max_streams, kLimits.max_streams,
-          "open watches and comparisons of all principals; 0: no limit");
-ABSL_FLAG(int64_t, max_streams_per_principal, kLimits.max_streams_per_principal,
-          "the same, of one principal");
-ABSL_FLAG(int64_t, max_calls_per_principal, kLimits.max_calls_per_principal,
-          "calls in progress of one principal, watches and comparisons not counted; 0: no limit");
-ABSL_FLAG(int64_t, max_call_bytes_per_principal, kLimits.max_call_bytes_per_principal,
-          "bytes of their requests, and of answers that are not read yet; 0: no limit");
-ABSL_FLAG(int64_t, max_message_bytes, kLimits.max_message_bytes, "of a request, 1024 to 268435456");
-ABSL_FLAG(int64_t, max_transfer_mib, kLimits.max_transfer_mib,
-          "memory for connections and for requests that are being received, of all clients; beyond "
-          "it such calls are refused; at least 16 and twice --max_message_bytes, to 1048576; 0: no "
-          "limit");
-ABSL_FLAG(
-    bool, check, false,
-    "check the store in --data_dir, page by page and row by row, print what is in it, and end: "
-    "with exit code 0 if it is sound; a server may run meanwhile");
-ABSL_FLAG(
-    std::string, backup, "",
-    "copy the store in --data_dir to this file, checked, and end; a server may run meanwhile");
-ABSL_FLAG(std::string, log_level, "info", "the least severe lines written: info, warning, error");
 
 namespace ballpiston::server {
 namespace {
 
-constexpr char kProgram[] = "ballpistond";
-constexpr int kMaxWorkers = 1024;
-constexpr double kMaxSeconds = 1e6;
+constexpr int64_t kMostWorkers = 1024;
+constexpr double kMostSeconds = 1e6;
 constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr int64_t kLeastTransferMib = 16;
 constexpr int64_t kMostTransferMib = int64_t{1} << 20;
 
-bool parsing = false;
-bool help_asked = false;
+constexpr char kDescription[] =
+    "The server of ballpiston: computes ensembles of rarely interacting billiards.";
+constexpr char kUsage[] =
+    "\nUsage:\n"
+    "  ballpistond --listen unix:PATH | --listen 127.0.0.1:PORT [--data-dir DIR] [--workers N]\n"
+    "  ballpistond --listen 0.0.0.0:PORT --tls-certificate FILE --tls-key FILE --access-file FILE\n"
+    "  ballpistond --access-file FILE --new-token PRINCIPAL:ROLE[:DAYS]\n"
+    "  ballpistond --data-dir DIR --check | --backup FILE\n\n";
+constexpr char kExitCodes[] =
+    "Exit codes: 0 stopped or done; 1 the disk of the store is full or fails, try again; 2 a "
+    "wrong\n"
+    "flag, an address or a data folder in use, or a store that is not sound; 6 a data folder that\n"
+    "is not writable.";
 
-// Abseil ends a wrong command line, and a --help, with exit code 1; here they are 2 and 0.
-void CorrectExitCode(int code, void*) {
-  if (!parsing || code == 0) return;
-  std::fflush(nullptr);
-  _exit(help_asked ? 0 : 2);
+// ---- values ----
+
+// `value` is the text that was given. CLI11 hands the error back to Parse.
+[[noreturn]] void Refuse(const std::string& flag, const std::string& value, const std::string& why,
+                         const std::string& permitted) {
+  throw CLI::ValidationError(
+      absl::StrCat("--", flag, "=", value, " ", why, "; permitted: ", permitted));
 }
 
-void Configure() {
-  absl::SetProgramUsageMessage(
-      "The server of ballpiston: computes ensembles of rarely interacting billiards.\n"
-      "  ballpistond --listen=unix:PATH | --listen=127.0.0.1:PORT [--data_dir=DIR] [--workers=N]\n"
-      "  ballpistond --listen=0.0.0.0:PORT --tls_certificate=FILE --tls_key=FILE "
-      "--access_file=FILE\n"
-      "  ballpistond --access_file=FILE --new_token=PRINCIPAL:ROLE[:DAYS]\n"
-      "  ballpistond --data_dir=DIR --check | --backup=FILE\n"
-      "Exit codes: 0 stopped, 1 the store's disk is full or fails (try again), 2 a wrong flag, "
-      "address or data folder in use, or a store that is not sound, 6 data folder not writable.");
-  absl::FlagsUsageConfig config;
-  const auto of_this_program = [](absl::string_view file) { return file == kProgram; };
-  config.contains_helpshort_flags = of_this_program;
-  config.contains_help_flags = of_this_program;
-  config.contains_helppackage_flags = of_this_program;
-  config.normalize_filename = [](absl::string_view file) {
-    return absl::EndsWith(file, "server/command_line.cc") ? std::string(kProgram)
-                                                          : std::string(file);
+std::string Text(double number) { return absl::StrFormat("%.15g", number); }
+std::string Text(int64_t number) { return absl::StrCat(number); }
+
+template <typename Number>
+struct Range {
+  Number least;
+  Number most;
+  std::string text;
+};
+
+template <typename Number>
+Range<Number> Between(Number least, Number most, const std::string& meaning_of_least = "") {
+  const char* const kind = std::is_integral_v<Number> ? "whole numbers from " : "";
+  return {least, most, absl::StrCat(kind, Text(least), meaning_of_least, " to ", Text(most))};
+}
+
+// The greatest number is finite.
+template <typename Number>
+Range<Number> LimitRange() {
+  return Between<Number>(0, std::numeric_limits<Number>::max(), " (no limit)");
+}
+
+bool Read(const std::string& text, double& number) { return absl::SimpleAtod(text, &number); }
+
+// Also 1e6; but not nan, and nothing beyond 2^53, where a double is not exact.
+bool Read(const std::string& text, int64_t& number) {
+  if (absl::SimpleAtoi(text, &number)) return true;
+  double real = 0;
+  if (!absl::SimpleAtod(text, &real) || !(std::fabs(real) <= 0x1p53)) return false;
+  number = static_cast<int64_t>(real);
+  return static_cast<double>(number) == real;
+}
+
+// Not by CLI11, for which 010 is 8, no text is 0, and 1e30 is the greatest integer.
+template <typename Number>
+Number NumberOf(const std::string& flag, const std::string& text, const Range<Number>& range) {
+  Number number{};
+  if (Read(text, number) && number >= range.least && number <= range.most) return number;
+  double any = 0;
+  const bool is_number = Read(text, any) && !std::isnan(any);
+  Refuse(flag, text, is_number ? "is out of range" : "is not a number", range.text);
+}
+
+template <typename Value, typename Number>
+void AddNumber(CLI::App& app, const std::string& flag, Value& value, const Range<Number>& range,
+               const std::string& description) {
+  const auto set = [&value, flag, range](const std::string& text) {
+    value = static_cast<Value>(NumberOf(flag, text, range));
   };
-  config.version_string = [] { return absl::StrCat("ballpistond ", kVersion, "\n"); };
-  absl::SetFlagsUsageConfig(config);
+  app.add_option_function<std::string>("--" + flag, set, description)
+      ->type_name("N")
+      ->default_str(Text(Number{value}));
 }
 
-std::vector<char*> ParseFlags(int argc, char** argv) {
-  help_asked = std::any_of(argv, argv + argc, [](const char* argument) {
-    return absl::StartsWith(argument, "-help") || absl::StartsWith(argument, "--help");
-  });
-  parsing = true;
-  on_exit(&CorrectExitCode, nullptr);
-  std::vector<char*> positional = absl::ParseCommandLine(argc, argv);
-  parsing = false;
-  return positional;
+void AddSeconds(CLI::App& app, const std::string& flag, std::chrono::milliseconds& time,
+                const Range<double>& range, const std::string& description) {
+  const auto set = [&time, flag, range](const std::string& text) {
+    const double seconds = NumberOf(flag, text, range);
+    time = std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * seconds)));
+  };
+  app.add_option_function<std::string>("--" + flag, set, description)
+      ->type_name("SECONDS")
+      ->default_str(Text(std::chrono::duration<double>(time).count()));
 }
 
-absl::Status OutOfRange(absl::string_view flag, const std::string& value,
-                        const std::string& permitted) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("--", flag, "=", value, " is out of range; permitted: ", permitted));
-}
-
-absl::StatusOr<std::chrono::milliseconds> Seconds(const char* flag, double value, double lower,
-                                                  double upper) {
-  if (value >= lower && value <= upper) {
-    return std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * value)));
-  }
-  return OutOfRange(flag, absl::StrCat(value), absl::StrCat(lower, " to ", upper));
-}
-
-// The value that the flag's text names.
 template <typename Value>
-absl::StatusOr<Value> Named(const char* flag, const std::string& text,
-                            std::initializer_list<std::pair<const char*, Value>> values) {
-  std::string permitted;
-  for (const auto& [name, value] : values) {
-    if (text == name) return value;
-    absl::StrAppend(&permitted, permitted.empty() ? "" : ", ", name);
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+// The first choice is the default.
+template <typename Value>
+void AddChoice(CLI::App& app, const std::string& flag, Value& value, const Choices<Value>& choices,
+               const std::string& description) {
+  const auto set = [&value, flag, choices](const std::string& text) {
+    const auto chosen = std::find_if(choices.begin(), choices.end(),
+                                     [&](const auto& choice) { return choice.first == text; });
+    if (chosen != choices.end()) {
+      value = chosen->second;
+      return;
+    }
+    const auto name = [](std::string* out, const auto& choice) { out->append(choice.first); };
+    Refuse(flag, text, "is unknown", absl::StrJoin(choices, ", ", name));
+  };
+  app.add_option_function<std::string>("--" + flag, set, description)
+      ->type_name("NAME")
+      ->default_str(choices.front().first);
+}
+
+// ---- the flags, by their groups in --help ----
+
+void BeginGroup(CLI::App& app, const std::string& name) { app.option_defaults()->group(name); }
+
+void AddServerFlags(CLI::App& app, CommandLine& line) {
+  BeginGroup(app, "Server");
+  app.add_option("--listen", line.server.listen,
+                 "address of the API: unix:PATH or HOST:PORT (port 0: any free one). A host that "
+                 "other machines can reach needs --tls-certificate, --tls-key and --access-file. "
+                 "Default: the Unix socket server.socket in the data folder")
+      ->type_name("ADDRESS");
+  app.add_option("--data-dir,--data_dir", line.server.data_dir,
+                 "folder of jobs and results. It is created if it does not exist; one server at a "
+                 "time can use it")
+      ->type_name("DIR")
+      ->capture_default_str();
+  AddNumber(app, "workers", line.server.workers, Between(int64_t{1}, kMostWorkers),
+            "threads that compute, 1 to 1024");
+  AddSeconds(app, "watch-heartbeat-seconds", line.server.watch.heartbeat, Between(0.01, 3600.0),
+             "a watch without news sends a message after this time, 0.01 to 3600");
+  AddSeconds(app, "idle-exit-seconds", line.idle_exit, Between(0.0, kMostSeconds),
+             "the server stops when no job was active and no call in progress for this time, 0 to "
+             "1000000; 0: never");
+  AddSeconds(app, "drain-seconds", line.drain, Between(0.0, 3600.0),
+             "time for calls in progress to end after SIGTERM or SIGINT, 0 to 3600");
+  app.set_config("--config", "",
+                 "file of flags, read at the start: a line each, FLAG = VALUE, without the dashes. "
+                 "A flag of the command line takes precedence")
+      ->type_name("FILE");
+}
+
+void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
+  BeginGroup(app, "Security; SIGHUP makes the server read these files again");
+  app.add_option("--tls-certificate", security.tls_certificate,
+                 "PEM file: the server's certificate, then the intermediate certificates")
+      ->type_name("FILE");
+  app.add_option("--tls-key", security.tls_key,
+                 "PEM file: the certificate's private key, which other users cannot read")
+      ->type_name("FILE");
+  app.add_option("--tls-client-ca", security.tls_client_ca,
+                 "PEM file: the authorities that sign clients' certificates. With it, every client "
+                 "needs a certificate")
+      ->type_name("FILE");
+  app.add_option("--access-file", security.access_file,
+                 "who may call; needs TLS. A line for each credential: token sha256:HEX PRINCIPAL "
+                 "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
+                 "read, submit or admin")
+      ->type_name("FILE");
+}
+
+struct LimitFlag {
+  const char* flag;
+  std::variant<int64_t Limits::*, double Limits::*> limit;
+  const char* description;
+};
+
+// 0 means no limit.
+const LimitFlag kLimitFlags[] = {
+    {"max-active-jobs", &Limits::max_active_jobs, "jobs that have not ended, of all principals"},
+    {"max-active-jobs-per-principal", &Limits::max_active_jobs_per_principal,
+     "jobs that have not ended, of one principal"},
+    {"max-active-points", &Limits::max_active_points,
+     "grid points of jobs that have not ended, of all principals"},
+    {"max-active-points-per-principal", &Limits::max_active_points_per_principal,
+     "grid points of jobs that have not ended, of one principal"},
+    {"max-points-per-job", &Limits::max_points_per_job,
+     "grid points of one job; the engine permits 100,000 at most"},
+    {"max-samples-per-job", &Limits::max_samples_per_job,
+     "samples or collisions of one job, over all its points"},
+    {"max-streams", &Limits::max_streams, "open watches and comparisons of all principals"},
+    {"max-streams-per-principal", &Limits::max_streams_per_principal,
+     "open watches and comparisons of one principal"},
+    {"max-calls-per-principal", &Limits::max_calls_per_principal,
+     "calls in progress of one principal, without watches and comparisons"},
+    {"max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
+     "bytes of the requests of these calls and of their answers that were not read yet"},
+    {"max-transfer-mib", &Limits::max_transfer_mib,
+     "MiB for connections and for requests that are being received, of all clients; calls beyond "
+     "it are refused. At least 16 and twice --max-message-bytes, at most 1048576"},
+};
+
+void AddLimitFlags(CLI::App& app, Limits& limits) {
+  BeginGroup(app, "Limits; 0 means no limit");
+  for (const LimitFlag& row : kLimitFlags) {
+    const auto add = [&]<typename Number>(Number Limits::*limit) {
+      AddNumber(app, row.flag, limits.*limit, LimitRange<Number>(), row.description);
+    };
+    std::visit(add, row.limit);
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("--", flag, "=", text, " is not known; permitted: ", permitted));
+  AddNumber(app, "max-message-bytes", limits.max_message_bytes,
+            Between(kLeastMessage, kMostMessage),
+            "bytes of one request, 1024 to 268435456; always limited");
 }
 
-absl::StatusOr<LogOptions> ParseLogOptions() {
-  const auto format = Named<LogFormat>("log_format", absl::GetFlag(FLAGS_log_format),
-                                       {{"text", LogFormat::kText}, {"json", LogFormat::kJson}});
-  const auto least = Named<Severity>(
-      "log_level", absl::GetFlag(FLAGS_log_level),
-      {{"info", Severity::kInfo}, {"warning", Severity::kWarning}, {"error", Severity::kError}});
-  if (!format.ok()) return format.status();
-  if (!least.ok()) return least.status();
-  return LogOptions{.format = *format, .least = *least};
+void AddLogFlags(CLI::App& app, CommandLine& line) {
+  BeginGroup(app, "Log (on standard error) and metrics");
+  AddChoice(app, "log-format", line.log.format,
+            {{"text", LogFormat::kText}, {"json", LogFormat::kJson}},
+            "text, or json: one object a line");
+  AddChoice(
+      app, "log-level", line.log.least,
+      {{"info", Severity::kInfo}, {"warning", Severity::kWarning}, {"error", Severity::kError}},
+      "the least severe lines that are written: info, warning or error");
+  app.add_option("--metrics-listen", line.server.metrics_listen,
+                 "address of Prometheus metrics, at /metrics: HOST:PORT with a loopback host (port "
+                 "0: any free one, which the log names). Default: no metrics")
+      ->type_name("ADDRESS");
 }
 
-// A number from 0, which is no limit.
-absl::Status CheckLimit(absl::string_view flag, double value) {
-  return value >= 0 ? absl::OkStatus() : OutOfRange(flag, absl::StrCat(value), "0 (none) and more");
+void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
+  BeginGroup(app, "Commands; at most one, instead of a server");
+  app.option_defaults()->configurable(false);
+  app.add_option("--new-token", new_token,
+                 "make a token, append its hash to --access-file and print the token")
+      ->type_name("PRINCIPAL:ROLE[:DAYS]");
+  app.add_flag("--check", line.check,
+               "check all of the store in --data-dir and print a summary; the exit code is 0 if "
+               "the store is sound. A server may use it at the same time");
+  app.add_option("--backup", line.backup,
+                 "copy the store in --data-dir to this file, and check the copy. A server may use "
+                 "the store at the same time")
+      ->type_name("FILE");
+  // At once: help is given even if another flag is wrong.
+  app.add_flag_callback(
+         "-h,--help", [] { throw CLI::CallForHelp(); }, "print this page")
+      ->trigger_on_parse();
+  app.set_version_flag("--version", absl::StrCat("ballpistond ", kVersion), "print the version")
+      ->trigger_on_parse();
 }
+
+// ---- help ----
+
+// As many words a line as fit.
+std::string Wrapped(const std::string& text, size_t width) {
+  std::string lines;
+  size_t column = 0;
+  for (const std::string& word : std::vector<std::string>(absl::StrSplit(text, ' '))) {
+    const bool fits = column + 1 + word.size() <= width;
+    if (column > 0) lines += fits ? ' ' : '\n';
+    column = (column > 0 && fits ? column + 1 : 0) + word.size();
+    lines += word;
+  }
+  return lines;
+}
+
+// Each flag on a line of its own, and what it does below: CLI11's two columns leave long names and
+// long descriptions no room.
+class HelpPage : public CLI::Formatter {
+ public:
+  HelpPage() { column_width(kIndentation); }
+
+  std::string make_usage(const CLI::App*, std::string) const override { return kUsage; }
+  // Without the second blank line between two groups.
+  std::string make_group(std::string name, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    return Formatter::make_group(std::move(name), is_positional, std::move(options)).substr(1);
+  }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_items_expected_max() == 0 ? "" : absl::StrCat(" ", option->get_type_name());
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    const std::string value = option->get_default_str();
+    const std::string text = value.empty() ? "" : absl::StrCat("; default: ", value);
+    return Wrapped(option->get_description() + text, kWidth - kIndentation);
+  }
+
+ private:
+  static constexpr size_t kIndentation = 8;
+  static constexpr size_t kWidth = 96;
+};
+
+// ---- the file of --config ----
+
+// Of a flag that does not exist; `flag` is without dashes.
+std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written) {
+  const std::string dashed = "--" + absl::StrReplaceAll(flag, {{"_", "-"}});
+  const bool is_known = app.get_option_no_throw(dashed) != nullptr;
+  return absl::StrCat(written, " is not a flag; ",
+                      is_known ? absl::StrCat("it is spelled ", dashed) : "--help lists them");
+}
+
+// Lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #. Not by CLI11's own
+// reader: it takes [::1]:50051 for the beginning of a list, cuts "a#b" at the #, and ignores a
+// key's second value.
+class FlagFile : public CLI::Config {
+ public:
+  explicit FlagFile(const CLI::App& app) : app_(app) {}
+
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::vector<CLI::ConfigItem> items;
+    std::set<const CLI::Option*> given;
+    int number = 0;
+    for (std::string line; std::getline(input, line);) {
+      ++number;
+      absl::StripAsciiWhitespace(&line);
+      if (line.empty() || line.front() == '#') continue;
+      CLI::ConfigItem item = ItemOf(line, number);
+      if (!given.insert(app_.get_option("--" + item.name)).second) {
+        throw Error(number, absl::StrCat(item.name, " is given twice"));
+      }
+      items.push_back(std::move(item));
+    }
+    return items;
+  }
+
+  std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
+
+ private:
+  CLI::ConfigItem ItemOf(const std::string& line, int number) const {
+    const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits('=', 1));
+    CLI::ConfigItem item;
+    item.name = std::string(absl::StripAsciiWhitespace(parts.front()));
+    const CLI::Option* flag = app_.get_option_no_throw("--" + item.name);
+    if (flag == nullptr) throw Error(number, NoSuchFlag(app_, item.name, item.name));
+    if (!flag->get_configurable()) {
+      throw Error(number, item.name + " is permitted on the command line only");
+    }
+    const auto value = parts.size() == 2 ? ValueOf(parts[1]) : std::nullopt;
+    if (!value) throw Error(number, absl::StrCat("write ", item.name, " = \"VALUE\""));
+    item.inputs = {*value};
+    return item;
+  }
+
+  // VALUE or "VALUE", then perhaps a comment.
+  static std::optional<std::string> ValueOf(const std::string& text) {
+    const std::string value(absl::StripAsciiWhitespace(text));
+    if (!absl::StartsWith(value, "\"")) {
+      return std::string(absl::StripAsciiWhitespace(value.substr(0, value.find('#'))));
+    }
+    const size_t end = value.find('"', 1);
+    if (end == std::string::npos) return std::nullopt;
+    const std::string rest(absl::StripAsciiWhitespace(value.substr(end + 1)));
+    if (!rest.empty() && rest.front() != '#') return std::nullopt;
+    return value.substr(1, end - 1);
+  }
+
+  CLI::ConfigError Error(int line, const std::string& what) const {
+    const auto path = app_.get_config_ptr()->as<std::string>();
+    return CLI::ConfigError(absl::StrCat("--config=", path, ", line ", line, ": ", what));
+  }
+
+  const CLI::App& app_;
+};
+
+// ---- parsing ----
+
+// In the order that CLI11 wants: the last one first. An empty value, as in --listen=, becomes a
+// word of its own: CLI11 would take the next flag for the value.
+std::vector<std::string> Arguments(int argc, const char* const* argv) {
+  std::vector<std::string> arguments;
+  for (int i = 1; i < argc; ++i) {
+    std::string argument = argv[i];
+    const bool is_empty =
+        absl::StartsWith(argument, "--") && argument.find('=') == argument.size() - 1;
+    if (is_empty) argument.pop_back();
+    arguments.push_back(std::move(argument));
+    if (is_empty) arguments.emplace_back();
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
+
+// The first argument that CLI11 could not use.
+std::string Unexpected(const CLI::App& app) {
+  for (const std::string& argument : app.remaining()) {
+    if (argument == "--") continue;
+    if (!absl::StartsWith(argument, "-")) {
+      return absl::StrCat("unexpected argument \"", argument, "\"; --help lists the flags");
+    }
+    const std::string flag = argument.substr(0, argument.find('='));
+    const size_t name = std::min(flag.find_first_not_of('-'), flag.size());
+    return NoSuchFlag(app, flag.substr(name), flag);
+  }
+  return "unexpected argument; --help lists the flags";
+}
+
+std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_argument) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 1) return absl::StrCat(option->get_name(), " is given more than once");
+  }
+  return absl::StrCat(last_argument, " needs a value");
+}
+
+// Sets the flags, or `page`.
+absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::string& page) {
+  const std::string last = arguments.empty() ? "" : arguments.front();
+  try {
+    app.parse(arguments);
+  } catch (const CLI::CallForHelp&) {
+    page = app.help();
+  } catch (const CLI::CallForVersion& version) {
+    page = absl::StrCat(version.what(), "\n");
+  } catch (const CLI::ExtrasError&) {
+    return absl::InvalidArgumentError(Unexpected(app));
+  } catch (const CLI::ArgumentMismatch&) {
+    return absl::InvalidArgumentError(WrongNumberOfValues(app, last));
+  } catch (const CLI::FileError&) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--config=", app.get_config_ptr()->as<std::string>(), " is not a file that can be read"));
+  } catch (const CLI::ParseError& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+  return absl::OkStatus();
+}
+
+// ---- what flags mean together ----
 
 // Below twice the longest message, two clients could keep each other from ever sending one.
 absl::Status CheckTransfer(const Limits& limits) {
   const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
   const int64_t mib = limits.max_transfer_mib;
   if (mib == 0 || (mib >= least && mib <= kMostTransferMib)) return absl::OkStatus();
-  return OutOfRange("max_transfer_mib", absl::StrCat(mib),
-                    absl::StrCat("0 (none), or ", least, " to ", kMostTransferMib,
-                                 " with --max_message_bytes=", limits.max_message_bytes));
-}
-
-absl::StatusOr<Limits> LimitFlags() {
-  Limits limits;
-  absl::Status valid;
-  const auto read = [&valid](const auto& flag, auto& limit) {
-    limit = absl::GetFlag(flag);
-    const auto name = absl::GetFlagReflectionHandle(flag).Name();
-    if (valid.ok()) valid = CheckLimit(name, static_cast<double>(limit));
-  };
-  read(FLAGS_max_active_jobs, limits.max_active_jobs);
-  read(FLAGS_max_active_jobs_per_principal, limits.max_active_jobs_per_principal);
-  read(FLAGS_max_active_points, limits.max_active_points);
-  read(FLAGS_max_active_points_per_principal, limits.max_active_points_per_principal);
-  read(FLAGS_max_points_per_job, limits.max_points_per_job);
-  read(FLAGS_max_samples_per_job, limits.max_samples_per_job);
-  read(FLAGS_max_streams, limits.max_streams);
-  read(FLAGS_max_streams_per_principal, limits.max_streams_per_principal);
-  read(FLAGS_max_calls_per_principal, limits.max_calls_per_principal);
-  read(FLAGS_max_call_bytes_per_principal, limits.max_call_bytes_per_principal);
-  if (!valid.ok()) return valid;
-  limits.max_message_bytes = absl::GetFlag(FLAGS_max_message_bytes);
-  limits.max_transfer_mib = absl::GetFlag(FLAGS_max_transfer_mib);
-  if (limits.max_message_bytes < kLeastMessage || limits.max_message_bytes > kMostMessage) {
-    return OutOfRange("max_message_bytes", absl::StrCat(limits.max_message_bytes),
-                      absl::StrCat(kLeastMessage, " to ", kMostMessage));
-  }
-  const absl::Status transfer = CheckTransfer(limits);
-  if (!transfer.ok()) return transfer;
-  return limits;
-}
-
-SecurityOptions SecurityFlags() {
-  return {.access_file = absl::GetFlag(FLAGS_access_file),
-          .tls_certificate = absl::GetFlag(FLAGS_tls_certificate),
-          .tls_key = absl::GetFlag(FLAGS_tls_key),
-          .tls_client_ca = absl::GetFlag(FLAGS_tls_client_ca)};
-}
-
-// Each of them is done instead of everything else.
-absl::Status CheckOneMode() {
-  std::vector<std::string> given;
-  if (absl::GetFlag(FLAGS_check)) given.push_back("--check");
-  if (!absl::GetFlag(FLAGS_backup).empty()) given.push_back("--backup");
-  if (!absl::GetFlag(FLAGS_new_token).empty()) given.push_back("--new_token");
-  if (given.size() <= 1) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
-      absl::StrJoin(given, " and "), " exclude each other: give one of them, and do one thing"));
+      "--max-transfer-mib=", mib, " is out of range; permitted: 0 (no limit), or ", least, " to ",
+      kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
 }
 
-absl::StatusOr<std::optional<TokenRequest>> NewTokenFlag() {
-  const std::string text = absl::GetFlag(FLAGS_new_token);
-  if (text.empty()) return std::nullopt;
-  if (absl::GetFlag(FLAGS_access_file).empty()) {
-    return absl::InvalidArgumentError("--new_token: --access_file is missing, where it is kept");
+absl::Status CheckOneCommand(const CommandLine& line, const std::string& new_token) {
+  std::vector<std::string> given;
+  if (line.check) given.push_back("--check");
+  if (!line.backup.empty()) given.push_back("--backup");
+  if (!new_token.empty()) given.push_back("--new-token");
+  if (given.size() <= 1) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(absl::StrJoin(given, " and "), " exclude each other; give one of them"));
+}
+
+absl::Status SetNewToken(const std::string& text, CommandLine& line) {
+  if (text.empty()) return absl::OkStatus();
+  if (line.server.security.access_file.empty()) {
+    return absl::InvalidArgumentError(
+        "--new-token: --access-file is missing, the file that keeps the token's hash");
   }
-  return ParseTokenRequest(text);
+  absl::StatusOr<TokenRequest> request = ParseTokenRequest(text);
+  if (request.ok()) line.new_token = *std::move(request);
+  return request.status();
+}
+
+int DefaultWorkers() {
+  const auto cores = int64_t{std::thread::hardware_concurrency()};
+  return static_cast<int>(std::clamp(cores, int64_t{1}, kMostWorkers));
 }
 
 }  // namespace
 
-absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv) {
-  Configure();
-  const std::vector<char*> positional = ParseFlags(argc, argv);
-  if (positional.size() > 1) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("unexpected argument \"", positional[1], "\"; see --help"));
-  }
-  const auto drain = Seconds("drain_seconds", absl::GetFlag(FLAGS_drain_seconds), 0, 3600);
-  const auto idle =
-      Seconds("idle_exit_seconds", absl::GetFlag(FLAGS_idle_exit_seconds), 0, kMaxSeconds);
-  const auto heartbeat =
-      Seconds("watch_heartbeat_seconds", absl::GetFlag(FLAGS_watch_heartbeat_seconds), 0.01, 3600);
-  const auto log = ParseLogOptions();
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) {
+  CommandLine line;
+  line.server.workers = DefaultWorkers();
+  std::string new_token;
+  CLI::App app(kDescription, "ballpistond");
+  app.set_help_flag();  // one of its own comes last
+  app.footer(kExitCodes);
+  app.formatter(std::make_shared<HelpPage>());
+  app.config_formatter(std::make_shared<FlagFile>(app));
+  AddServerFlags(app, line);
+  AddSecurityFlags(app, line.server.security);
+  AddLimitFlags(app, line.server.limits);
+  AddLogFlags(app, line);
+  AddCommands(app, line, new_token);
+  absl::Status parsed = Parse(app, Arguments(argc, argv), line.page);
+  if (!parsed.ok()) return parsed;
+  if (!line.page.empty()) return line;
   for (const absl::Status& status :
-       {drain.status(), idle.status(), heartbeat.status(), log.status()}) {
+       {CheckTransfer(line.server.limits), CheckOneCommand(line, new_token),
+        SetNewToken(new_token, line)}) {
     if (!status.ok()) return status;
   }
-  if (absl::Status status = CheckOneMode(); !status.ok()) return status;
-  const auto new_token = NewTokenFlag();
-  if (!new_token.ok()) return new_token.status();
-  const auto limits = LimitFlags();
-  if (!limits.ok()) return limits.status();
-  CommandLine line;
-  line.server.limits = *limits;
-  line.check = absl::GetFlag(FLAGS_check);
-  line.backup = absl::GetFlag(FLAGS_backup);
-  line.new_token = *new_token;
-  line.server.security = SecurityFlags();
-  line.log = *log;
-  line.server.metrics_listen = absl::GetFlag(FLAGS_metrics_listen);
-  line.server.data_dir = absl::GetFlag(FLAGS_data_dir);
-  line.server.listen = absl::GetFlag(FLAGS_listen);
-  line.server.workers = absl::GetFlag(FLAGS_workers);
-  if (line.server.workers < 1 || line.server.workers > kMaxWorkers) {
-    return OutOfRange("workers", absl::StrCat(line.server.workers),
-                      absl::StrCat("1 to ", kMaxWorkers));
-  }
-  line.server.watch.heartbeat = *heartbeat;
-  if (idle->count() > 0) line.idle_exit = *idle;
-  line.drain = *drain;
   return line;
 }
 

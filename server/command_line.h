@@ -1,4 +1,4 @@
-// The flags of ballpistond.
+// The flags of ballpistond, on its command line and in the file of --config.
 #ifndef BALLPISTON_SERVER_COMMAND_LINE_H_
 #define BALLPISTON_SERVER_COMMAND_LINE_H_
 
@@ -16,18 +16,18 @@ namespace ballpiston::server {
 struct CommandLine {
   ServerOptions server;
   LogOptions log;
-  std::optional<std::chrono::milliseconds> idle_exit;
-  std::chrono::milliseconds drain{0};
+  std::chrono::milliseconds idle_exit{0};  // 0: never
+  std::chrono::milliseconds drain{10'000};
 
-  // Each instead of a server:
+  // At most one of these is given. It is done, and no server starts.
+  std::string page;  // of --help or --version: to be printed
   std::optional<TokenRequest> new_token;
   bool check = false;
-  std::string backup;  // where to; empty: no
+  std::string backup;  // the file to write
 };
 
-// Ends the program on --help, --version, and (with exit code 2) on flags that do not exist.
 // INVALID_ARGUMENT names the flag, its value and what is permitted.
-absl::StatusOr<CommandLine> ParseCommandLine(int argc, char** argv);
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
 }  // namespace ballpiston::server
 

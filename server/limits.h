@@ -1,5 +1,6 @@
-// How much of the server one request, one principal and all of them together may take. Each is a
-// flag of its name; 0 means no limit.
+// How much of the server one request, one principal and all principals together may use. The flag
+// of a limit has its name, with dashes (--max-active-jobs); 0 means no limit, except for
+// max_message_bytes.
 #ifndef BALLPISTON_SERVER_LIMITS_H_
 #define BALLPISTON_SERVER_LIMITS_H_
 

@@ -35,7 +35,7 @@ absl::StatusOr<ListenAddress> ParseSocket(const std::string& text, const std::st
   if (path.size() <= kMaxSocketPath) return address;
   return Refused(
       text, absl::StrCat("the path has ", path.size(), " bytes, a Unix socket's at most ",
-                         kMaxSocketPath, " (choose a shorter one with --listen or --data_dir)"));
+                         kMaxSocketPath, " (choose a shorter one with --listen or --data-dir)"));
 }
 
 bool IsIpv4(const std::string& host) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "absl/status/status.h"
@@ -56,7 +57,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
     const int signal = sigtimedwait(&signals, nullptr, &kLookInterval);
     if (signal == SIGHUP) Reload(server);
     if (signal == SIGTERM || signal == SIGINT) break;
-    if (line.idle_exit && server.IdleFor() >= *line.idle_exit) {
+    if (line.idle_exit.count() > 0 && server.IdleFor() >= line.idle_exit) {
       return LogInfo("nobody uses this server: stopping");
     }
   }
@@ -87,20 +88,24 @@ int Fail(const absl::Status& status) {
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
 
-// The token alone on standard output, and nowhere else.
+// On standard output.
+int Print(const std::string& text) {
+  const bool printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  return printed ? 0 : kExitUsage;
+}
+
+// Nothing but the token is printed, and it is printed nowhere else.
 int PrintNewToken(const CommandLine& line) {
   const auto token =
-      IssueToken({"access_file", line.server.security.access_file}, *line.new_token, absl::Now());
-  if (!token.ok()) return Fail(token.status());
-  std::printf("%s\n", token->c_str());
-  return std::fflush(stdout) == 0 ? 0 : kExitUsage;
+      IssueToken({"access-file", line.server.security.access_file}, *line.new_token, absl::Now());
+  return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
 // Of a check or a backup.
 int Report(const absl::StatusOr<StoreSummary>& summary) {
   if (!summary.ok()) return Fail(summary.status());
-  std::printf("%s\n", SummaryText(*summary).c_str());
-  return std::fflush(stdout) == 0 && summary->sound() ? 0 : kExitUsage;
+  const int printed = Print(SummaryText(*summary) + "\n");
+  return summary->sound() ? printed : kExitUsage;
 }
 
 std::string StoreIn(const CommandLine& line) {
@@ -108,11 +113,12 @@ std::string StoreIn(const CommandLine& line) {
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);                              // store and socket are their owner's
-  signal(SIGXFSZ, SIG_IGN);                 // a limit on a file's size is told like a full disk
-  setenv("GRPC_VERBOSITY", "NONE", false);  // what went wrong is told here, in one line
+  umask(0077);                              // only their owner can use store and socket
+  signal(SIGXFSZ, SIG_IGN);                 // a file at its size limit is an error like a full disk
+  setenv("GRPC_VERBOSITY", "NONE", false);  // this program reports errors itself, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);
   if (!line.ok()) return Fail(line.status());
+  if (!line->page.empty()) return Print(line->page);
   if (line->new_token) return PrintNewToken(*line);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));

@@ -180,8 +180,8 @@ class Starter {
     log_start_ = fs::file_size(server_.Log(), error);
     if (error) log_start_ = 0;
     absl::StatusOr<pid_t> pid =
-        StartChild({.command = {server_.program, "--listen", server_.Address(), "--data_dir",
-                                server_.folder, "--idle_exit_seconds", kIdleSeconds},
+        StartChild({.command = {server_.program, "--listen", server_.Address(), "--data-dir",
+                                server_.folder, "--idle-exit-seconds", kIdleSeconds},
                     .folder = "/",
                     .output = server_.Log(),
                     .detached = true});

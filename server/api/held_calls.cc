@@ -13,7 +13,7 @@ absl::Status TooManyCalls(const std::string& what, const std::string& flag, int6
 absl::Status TooManyBytes(const std::string& principal, int64_t bytes, int64_t limit) {
   return TooManyCalls(absl::StrCat(principal, " has calls in progress, and answers that it has not",
                                    " read, of ", bytes, " bytes"),
-                      "max_call_bytes_per_principal", limit);
+                      "max-call-bytes-per-principal", limit);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ absl::Status HeldCalls::Begin(const std::string& principal, int64_t bytes, const
   const int64_t most_bytes = limits.max_call_bytes_per_principal;
   if (most_calls > 0 && held.calls >= most_calls) {
     return TooManyCalls(absl::StrCat(principal, " has ", held.calls, " calls in progress"),
-                        "max_calls_per_principal", most_calls);
+                        "max-calls-per-principal", most_calls);
   }
   if (most_bytes > 0 && held.calls > 0 && held.bytes + bytes > most_bytes) {
     return TooManyBytes(principal, held.bytes + bytes, most_bytes);

@@ -30,12 +30,12 @@ absl::Status WatchRegistry::Add(Watch* watch, const std::string& principal, cons
   std::lock_guard lock(mutex_);
   const auto all = static_cast<int64_t>(watches_.size());
   if (IsFull(all, limits.max_streams)) {
-    return TooManyStreams(absl::StrCat("there are ", all), "max_streams", limits.max_streams);
+    return TooManyStreams(absl::StrCat("there are ", all), "max-streams", limits.max_streams);
   }
   const auto found = streams_.find(principal);
   const int64_t own = found == streams_.end() ? 0 : found->second;
   if (IsFull(own, limits.max_streams_per_principal)) {
-    return TooManyStreams(absl::StrCat(principal, " has ", own), "max_streams_per_principal",
+    return TooManyStreams(absl::StrCat(principal, " has ", own), "max-streams-per-principal",
                           limits.max_streams_per_principal);
   }
   watches_.emplace(watch, principal);

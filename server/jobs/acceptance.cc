@@ -20,12 +20,12 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
   if (!own.ok()) return own.status();
   if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
     return LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
-                         "max_active_jobs", static_cast<double>(limits.max_active_jobs));
+                         "max-active-jobs", static_cast<double>(limits.max_active_jobs));
   }
   if (limits.max_active_jobs_per_principal > 0 && *own >= limits.max_active_jobs_per_principal) {
     return LimitExceeded(
         "TOO_MANY_JOBS", absl::StrCat(principal, " has ", *own, " active jobs already"),
-        "max_active_jobs_per_principal", static_cast<double>(limits.max_active_jobs_per_principal));
+        "max-active-jobs-per-principal", static_cast<double>(limits.max_active_jobs_per_principal));
   }
   return absl::OkStatus();
 }
@@ -56,11 +56,9 @@ absl::Status Replay(Database& database, const RequestRecord& request, Acceptance
   acceptance.earlier = *std::move(job);
   acceptance.replay = true;
   acceptance.answered_from_store = request.answered_from_store;
-  // A store of an older version knows of its requests only which jobs they made.
-  const bool same = request.payload.empty()
-                        ? acceptance.earlier && acceptance.earlier->spec == acceptance.record.spec
-                        : request.payload == acceptance.request.payload;
-  if (!same) acceptance.refused = RequestIdReused(request.request_id);
+  if (request.payload != acceptance.request.payload) {
+    acceptance.refused = RequestIdReused(request.request_id);
+  }
   return absl::OkStatus();
 }
 
@@ -85,7 +83,7 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
   const double points = static_cast<double>(PointCount(spec));
   if (Exceeds(points, static_cast<double>(limits.max_points_per_job))) {
     return LimitExceeded("TOO_MANY_POINTS", absl::StrCat("the grid has ", points, " points"),
-                         "max_points_per_job", static_cast<double>(limits.max_points_per_job));
+                         "max-points-per-job", static_cast<double>(limits.max_points_per_job));
   }
   const Target& target = spec.target;
   const bool open_ended = target.tolerance || target.budget_seconds;
@@ -94,7 +92,7 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
   const double samples = points * static_cast<double>(of_a_point);
   if (!Exceeds(samples, limits.max_samples_per_job)) return absl::OkStatus();
   return LimitExceeded("TOO_MANY_SAMPLES", absl::StrCat("the job takes ", samples, " samples"),
-                       "max_samples_per_job", limits.max_samples_per_job);
+                       "max-samples-per-job", limits.max_samples_per_job);
 }
 
 absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,

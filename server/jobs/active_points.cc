@@ -17,7 +17,7 @@ absl::Status ActivePoints::Check(const std::string& principal, int64_t points,
   std::lock_guard lock(mutex_);
   if (limits.max_active_points > 0 && all_ + points > limits.max_active_points) {
     return TooMany(absl::StrCat("active jobs would have ", all_ + points, " points with this one"),
-                   "max_active_points", limits.max_active_points);
+                   "max-active-points", limits.max_active_points);
   }
   const auto found = of_principals_.find(principal);
   const int64_t own = points + (found == of_principals_.end() ? 0 : found->second);
@@ -25,7 +25,7 @@ absl::Status ActivePoints::Check(const std::string& principal, int64_t points,
   if (most == 0 || own <= most) return absl::OkStatus();
   return TooMany(
       absl::StrCat(principal, "'s active jobs would have ", own, " points with this one"),
-      "max_active_points_per_principal", most);
+      "max-active-points-per-principal", most);
 }
 
 void ActivePoints::Add(const std::string& job, const std::string& principal, int64_t points) {

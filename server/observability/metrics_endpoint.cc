@@ -23,7 +23,7 @@ absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
   absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
   if (!address.ok() || !address->socket_path.empty() || !address->IsLoopback()) {
     return absl::InvalidArgumentError(absl::StrCat(
-        "--metrics_listen=", text,
+        "--metrics-listen=", text,
         " is not a loopback address; permitted: HOST:PORT with a HOST in 127.0.0.0/8, [::1] or "
         "localhost (metrics are not encrypted; let others reach them through a proxy or a "
         "tunnel)"));
@@ -99,7 +99,7 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const st
         new MetricsEndpoint(parsed->host, std::move(exposer), std::move(collector)));
   } catch (const std::exception&) {  // its words help nobody
     return absl::FailedPreconditionError(
-        absl::StrCat("--metrics_listen=", address,
+        absl::StrCat("--metrics-listen=", address,
                      ": cannot listen there (in use, or not permitted); choose another address"));
   }
 }

@@ -26,7 +26,7 @@ namespace {
 constexpr int kMostDays = 36'500;
 
 absl::Status WrongRequest(absl::string_view why) {
-  return absl::InvalidArgumentError(absl::StrCat("--new_token: ", std::string(why),
+  return absl::InvalidArgumentError(absl::StrCat("--new-token: ", std::string(why),
                                                  " (write PRINCIPAL:ROLE or PRINCIPAL:ROLE:DAYS)"));
 }
 

@@ -18,7 +18,7 @@ struct TokenRequest {
   std::optional<int> days;  // until it expires
 };
 
-// PRINCIPAL:ROLE[:DAYS], DAYS 1 to 36500; INVALID_ARGUMENT names --new_token and what is permitted.
+// PRINCIPAL:ROLE[:DAYS], DAYS 1 to 36500; INVALID_ARGUMENT names --new-token and what is permitted.
 absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 
 // Appends the token's entry to the access file, which is made (mode 0600) if there is none, and

@@ -15,7 +15,7 @@
 namespace ballpiston::server {
 
 struct NamedFile {
-  std::string flag;  // that names it, without hyphens
+  std::string flag;  // whose value is the path; without the leading dashes
   std::string path;
 
   std::string Text() const { return "--" + flag + "=" + path; }  // for messages

@@ -24,10 +24,10 @@ bool HasTls(const SecurityOptions& options) {
 // The flags among these that are given.
 std::vector<std::string> Given(const SecurityOptions& options) {
   std::vector<std::string> given;
-  if (!options.access_file.empty()) given.push_back("--access_file");
-  if (!options.tls_certificate.empty()) given.push_back("--tls_certificate");
-  if (!options.tls_key.empty()) given.push_back("--tls_key");
-  if (!options.tls_client_ca.empty()) given.push_back("--tls_client_ca");
+  if (!options.access_file.empty()) given.push_back("--access-file");
+  if (!options.tls_certificate.empty()) given.push_back("--tls-certificate");
+  if (!options.tls_key.empty()) given.push_back("--tls-key");
+  if (!options.tls_client_ca.empty()) given.push_back("--tls-client-ca");
   return given;
 }
 
@@ -35,25 +35,25 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
   const std::vector<std::string> given = Given(options);
   if (given.empty()) return absl::OkStatus();
   return Refused(absl::StrCat("--listen=", address.Text(),
-                              ": over a Unix socket only this server's "
-                              "user and root come in, and may all; it does not go together with ",
+                              ": over a Unix socket only this server's user and root can connect, "
+                              "both as administrators; it cannot be combined with ",
                               absl::StrJoin(given, ", ")));
 }
 
 absl::Status CheckReachable(const SecurityOptions& options, const ListenAddress& address) {
   std::vector<std::string> missing;
-  if (!HasTls(options)) missing.push_back("--tls_certificate and --tls_key");
-  if (options.access_file.empty()) missing.push_back("--access_file");
+  if (!HasTls(options)) missing.push_back("--tls-certificate and --tls-key");
+  if (options.access_file.empty()) missing.push_back("--access-file");
   if (missing.empty()) return absl::OkStatus();
   return Refused(absl::StrCat("--listen=", address.Text(),
-                              ": other machines can reach this address, which needs TLS and "
+                              ": other machines can reach this address, so it needs TLS and "
                               "credentials; missing: ",
                               absl::StrJoin(missing, " and "),
                               " (or listen on a loopback address or a Unix socket)"));
 }
 
 NamedFile AccessFile(const SecurityOptions& options) {
-  return {"access_file", options.access_file};
+  return {"access-file", options.access_file};
 }
 
 // No list without an access file.
@@ -63,7 +63,7 @@ absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions
   if (!list.ok()) return list.status();
   if (list->has_certificates() && options.tls_client_ca.empty()) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
-                                ": has certificates, which need --tls_client_ca, to say who may "
+                                ": has certificates, which need --tls-client-ca, to say who may "
                                 "sign them"));
   }
   return std::make_shared<const AccessList>(*std::move(list));
@@ -71,9 +71,9 @@ absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions
 
 absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const SecurityOptions& options) {
   if (!HasTls(options)) return nullptr;
-  return ServerTls::Create({{"tls_certificate", options.tls_certificate},
-                            {"tls_key", options.tls_key},
-                            {"tls_client_ca", options.tls_client_ca}});
+  return ServerTls::Create({{"tls-certificate", options.tls_certificate},
+                            {"tls-key", options.tls_key},
+                            {"tls-client-ca", options.tls_client_ca}});
 }
 
 }  // namespace
@@ -81,19 +81,19 @@ absl::StatusOr<std::unique_ptr<ServerTls>> ReadTls(const SecurityOptions& option
 absl::Status CheckCombination(const SecurityOptions& options, const ListenAddress& address) {
   if (!address.socket_path.empty()) return CheckSocket(options, address);
   if (options.tls_certificate.empty() != options.tls_key.empty()) {
-    return Refused("--tls_certificate and --tls_key: both or neither are wanted");
+    return Refused("--tls-certificate and --tls-key: give both or neither");
   }
   if (!address.IsLoopback()) {
     if (absl::Status status = CheckReachable(options, address); !status.ok()) return status;
   }
   if (!options.access_file.empty() && !HasTls(options)) {
     return Refused(
-        "--access_file: without --tls_certificate and --tls_key tokens would travel "
-        "readable for others");
+        "--access-file needs --tls-certificate and --tls-key: without TLS, others could read the "
+        "tokens");
   }
   if (!options.tls_client_ca.empty() && (!HasTls(options) || options.access_file.empty())) {
     return Refused(
-        "--tls_client_ca needs --tls_certificate and --tls_key, and --access_file, which "
+        "--tls-client-ca needs --tls-certificate and --tls-key, and --access-file, which "
         "says who the holder of a certificate is");
   }
   return absl::OkStatus();
@@ -149,7 +149,7 @@ std::optional<absl::Time> ServerSecurity::CertificateExpiry() const {
 void ServerSecurity::WarnOfExpiry() const {
   if (tls_ == nullptr || tls_->expires() > absl::Now() + kExpiryWarning) return;
   Log(Severity::kWarning,
-      absl::StrCat("the certificate in --tls_certificate=", options_.tls_certificate,
+      absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
                    " is valid until ",
                    absl::FormatTime("%Y-%m-%d %H:%M UTC", tls_->expires(), absl::UTCTimeZone()),
                    " only: get a new one, and send SIGHUP"));

@@ -25,7 +25,7 @@
 
 namespace ballpiston::server {
 
-// Paths, as the flags of these names give them; empty: not given.
+// Paths, each the value of the flag of its name, with dashes; empty: not given.
 struct SecurityOptions {
   std::string access_file;
   std::string tls_certificate;

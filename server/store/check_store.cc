@@ -21,8 +21,6 @@ namespace {
 
 using v1::EnsembleJob;
 
-constexpr int64_t kFirstVersionWithRequests = 3;
-
 bool Ended(int64_t state) { return state >= EnsembleJob::SUCCEEDED; }
 
 // What has not been written back yet lies in the log.
@@ -153,15 +151,13 @@ class StoreCheck {
                      int{EnsembleJob::SUCCEEDED}),
         report("blocks of no point of an active job"));
     if (!blocks.ok()) return blocks;
-    if (summary_.version >= kFirstVersionWithRequests) {
-      const absl::Status requests = ForEach(
-          "SELECT job, request_id FROM requests LEFT JOIN jobs ON sequence = job"
-          " WHERE sequence IS NULL",
-          [this](const Query& row) {
-            Found(absl::StrCat("request ", row.Bytes(1), " of no job: ", row.Integer(0)));
-          });
-      if (!requests.ok()) return requests;
-    }
+    const absl::Status requests = ForEach(
+        "SELECT job, request_id FROM requests LEFT JOIN jobs ON sequence = job"
+        " WHERE sequence IS NULL",
+        [this](const Query& row) {
+          Found(absl::StrCat("request ", row.Bytes(1), " of no job: ", row.Integer(0)));
+        });
+    if (!requests.ok()) return requests;
     return ForEach(
         "SELECT DISTINCT blocks.job, blocks.point FROM blocks JOIN results"
         " ON results.job = blocks.job AND results.point = blocks.point",

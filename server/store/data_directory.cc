@@ -42,7 +42,7 @@ int Lock(int file) {
 absl::Status NotWritable(const std::string& path, int error) {
   return absl::PermissionDeniedError(absl::StrCat("data folder ", path,
                                                   " is not writable: ", std::strerror(error),
-                                                  "; choose another one with --data_dir"));
+                                                  "; choose another one with --data-dir"));
 }
 
 std::string AddressFile(const std::string& path) { return absl::StrCat(path, "/", kAddressFile); }
@@ -53,7 +53,7 @@ absl::Status InUse(const std::string& path) {
   const std::string where = address.empty() ? "" : absl::StrCat(", which listens on ", address);
   return absl::FailedPreconditionError(absl::StrCat(
       "data folder ", path, " is in use by another ballpistond", where,
-      "; let clients ask that one (--server), stop it, or choose another folder with --data_dir"));
+      "; let clients ask that one (--server), stop it, or choose another folder with --data-dir"));
 }
 
 bool IsDirectory(const std::string& path) {
@@ -106,14 +106,14 @@ absl::Status CloseToOthers(const std::string& path) {
     return OpenToOthers(
         path, found.st_mode,
         absl::StrFormat(", user %d) and not this server's own to close; choose another one with "
-                        "--data_dir",
+                        "--data-dir",
                         found.st_uid));
   }
   if (!IsAServers(path)) {
     return OpenToOthers(
         path, found.st_mode,
         absl::StrCat(") and holds other files than a server's; name a folder of the server's own "
-                     "with --data_dir, such as ",
+                     "with --data-dir, such as ",
                      path,
                      "/ballpiston, or close this one with chmod 700 if nobody else needs "
                      "what is in it"));
@@ -134,7 +134,7 @@ std::string DataDirectory::Default() {
 }
 
 absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
-  if (path.empty()) return absl::InvalidArgumentError("--data_dir is empty; name a folder");
+  if (path.empty()) return absl::InvalidArgumentError("--data-dir is empty; name a folder");
   const absl::Status made = MakeDirectories(path);
   if (!made.ok()) return made;
   if (access(path.c_str(), W_OK | X_OK) != 0) return NotWritable(path, errno);

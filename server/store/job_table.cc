@@ -82,8 +82,8 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
 absl::Status InsertJob(Database& database, JobRecord& record) {
   Query query = database.Prepare(
       "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
-      " engine_version, points, points_done, samples, work)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, ?, 0, 0, 0)");
+      " engine_version, restarts, points, points_done, samples, work)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0)");
   query.BindText(record.id).BindText(record.principal).Bind(int64_t{record.priority});
   query.BindBlob(record.spec).BindBlob(record.question).Bind(int64_t{record.state});
   query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);

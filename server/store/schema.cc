@@ -20,20 +20,35 @@ constexpr char kTables[] = R"sql(
 CREATE TABLE jobs (
   sequence INTEGER PRIMARY KEY AUTOINCREMENT,
   id TEXT NOT NULL UNIQUE,
+  principal TEXT NOT NULL,
+  priority INTEGER NOT NULL,
   spec BLOB NOT NULL,
+  question BLOB NOT NULL,
   state INTEGER NOT NULL,
   create_time INTEGER NOT NULL,
   start_time INTEGER,
   end_time INTEGER,
   error BLOB NOT NULL,
   engine_version TEXT NOT NULL,
-  request_id TEXT UNIQUE,
+  restarts INTEGER NOT NULL,
   cancel_request_id TEXT,
   points INTEGER NOT NULL,
   points_done INTEGER NOT NULL,
-  samples REAL NOT NULL
+  samples REAL NOT NULL,
+  work REAL NOT NULL
 ) STRICT;
-CREATE INDEX jobs_by_state ON jobs (state);
+CREATE INDEX jobs_by_state ON jobs (state, principal);
+CREATE INDEX jobs_by_principal ON jobs (principal, sequence);
+CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
+CREATE TABLE requests (
+  principal TEXT NOT NULL,
+  request_id TEXT NOT NULL,
+  payload BLOB NOT NULL,
+  job INTEGER NOT NULL,
+  answered_from_store INTEGER NOT NULL,
+  PRIMARY KEY (principal, request_id)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX requests_by_job ON requests (job);
 CREATE TABLE blocks (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,
@@ -46,13 +61,10 @@ CREATE TABLE results (
   point INTEGER NOT NULL,
   samples REAL NOT NULL,
   result BLOB NOT NULL,
+  finish INTEGER NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
-)sql";
-
-// By version: what makes a store of the version before into one of this.
-constexpr char kSecondVersion[] = R"sql(
-ALTER TABLE jobs ADD COLUMN work REAL NOT NULL DEFAULT 0;
+CREATE INDEX results_by_finish ON results (job, finish);
 CREATE TABLE pilots (
   engine_version TEXT NOT NULL,
   rho REAL NOT NULL,
@@ -64,63 +76,10 @@ CREATE TABLE pilots (
 ) STRICT;
 )sql";
 
-// A job gets its owner, its priority and the question that it answers; requests become rows of
-// their own; results know the order in which they came.
-constexpr char kThirdVersion[] = R"sql(
-CREATE TABLE requests (
-  principal TEXT NOT NULL,
-  request_id TEXT NOT NULL,
-  payload BLOB NOT NULL,
-  job INTEGER NOT NULL,
-  answered_from_store INTEGER NOT NULL,
-  PRIMARY KEY (principal, request_id)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX requests_by_job ON requests (job);
-CREATE TABLE new_jobs (
-  sequence INTEGER PRIMARY KEY AUTOINCREMENT,
-  id TEXT NOT NULL UNIQUE,
-  principal TEXT NOT NULL,
-  priority INTEGER NOT NULL,
-  spec BLOB NOT NULL,
-  question BLOB NOT NULL,
-  state INTEGER NOT NULL,
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  error BLOB NOT NULL,
-  engine_version TEXT NOT NULL,
-  cancel_request_id TEXT,
-  points INTEGER NOT NULL,
-  points_done INTEGER NOT NULL,
-  samples REAL NOT NULL,
-  work REAL NOT NULL
-) STRICT;
-INSERT INTO new_jobs SELECT sequence, id, 'local', 0, spec, x'', state, create_time, start_time,
-  end_time, error, engine_version, cancel_request_id, points, points_done, samples, work FROM jobs;
-INSERT INTO sqlite_sequence SELECT 'new_jobs', 0
-  WHERE NOT EXISTS (SELECT * FROM sqlite_sequence WHERE name = 'new_jobs');
-UPDATE sqlite_sequence SET seq = (SELECT coalesce(max(seq), 0) FROM sqlite_sequence
-  WHERE name IN ('jobs', 'new_jobs')) WHERE name = 'new_jobs';
-INSERT INTO requests SELECT 'local', request_id, x'', sequence, 0 FROM jobs
-  WHERE request_id IS NOT NULL;
-DROP TABLE jobs;
-ALTER TABLE new_jobs RENAME TO jobs;
-CREATE INDEX jobs_by_state ON jobs (state, principal);
-CREATE INDEX jobs_by_principal ON jobs (principal, sequence);
-CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
-ALTER TABLE results ADD COLUMN finish INTEGER NOT NULL DEFAULT 0;
-UPDATE results SET finish = rowid;
-CREATE INDEX results_by_finish ON results (job, finish);
-)sql";
-
-constexpr char kFourthVersion[] = R"sql(
-ALTER TABLE jobs ADD COLUMN restarts INTEGER NOT NULL DEFAULT 0;
-)sql";
-
 absl::Status Refused(const std::string& path, const std::string& why) {
   return absl::FailedPreconditionError(
       absl::StrCat("store ", path, " ", why,
-                   "; it was left as it is: move it away, or choose another --data_dir"));
+                   "; it was left as it is: move it away, or choose another --data-dir"));
 }
 
 // The disk is full, or fails, or the file is not this user's: nothing is said of what is in it.
@@ -241,10 +200,9 @@ absl::Status MakeTables(Database& database) {
   const auto version = database.Integer("PRAGMA user_version");
   if (!version.ok()) return version.status();
   if (*version == kSchemaVersion) return absl::OkStatus();
-  const absl::Status made = database.Execute(absl::StrCat(
-      "BEGIN IMMEDIATE;", *version < 1 ? kTables : "", *version < 2 ? kSecondVersion : "",
-      *version < 3 ? kThirdVersion : "", kFourthVersion, "PRAGMA application_id = ", kApplicationId,
-      "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
+  const absl::Status made = database.Execute(
+      absl::StrCat("BEGIN IMMEDIATE;", kTables, "PRAGMA application_id = ", kApplicationId,
+                   "; PRAGMA user_version = ", kSchemaVersion, "; COMMIT;"));
   if (!made.ok()) database.Execute("ROLLBACK").IgnoreError();
   return made;
 }

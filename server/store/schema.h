@@ -20,7 +20,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 4;
+inline constexpr int64_t kSchemaVersion = 1;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints, to a store that was checked, or made if there was
@@ -31,8 +31,8 @@ inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
                                                         const std::string& vfs = std::string());
 
-// A read-only connection to a store of this version or an older one. Errors as above, but damage is
-// only seen as far as opening it looks; NOT_FOUND if there is no such file.
+// A read-only connection to a store. Errors as above, but only the damage is found that opening the
+// file comes across; NOT_FOUND if there is no such file.
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
                                                           const std::string& vfs = std::string());
 

@@ -41,7 +41,7 @@ class Security : public ::testing::Test {
   // A new token, which is also in the file `token_NAME`.
   std::string NewToken(const std::string& name, const std::string& request) {
     const ProcessResult made =
-        RunServer(home_, {"--access_file", home_.File("access"), "--new_token", request});
+        RunServer(home_, {"--access-file", home_.File("access"), "--new-token", request});
     EXPECT_THAT(made, ExitsWith(0));
     EXPECT_EQ(made.err, "");
     Write("token_" + name, made.out);
@@ -49,8 +49,8 @@ class Security : public ::testing::Test {
   }
 
   Words TlsFlags() const {
-    return {"--tls_certificate",      home_.File("server.pem"), "--tls_key",
-            home_.File("server.key"), "--access_file",          home_.File("access")};
+    return {"--tls-certificate",      home_.File("server.pem"), "--tls-key",
+            home_.File("server.key"), "--access-file",          home_.File("access")};
   }
 
   void Start(const Words& flags) {
@@ -149,7 +149,7 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
 TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
   Write("access", "certificate Ada alice read\n");
   const KeyAndCertificate own = authority_.Issue("Ada");
-  Start(Joined({TlsFlags(), {"--tls_client_ca", home_.File("ca.pem")}}));
+  Start(Joined({TlsFlags(), {"--tls-client-ca", home_.File("ca.pem")}}));
   const Words ca = {"--ca", home_.File("ca.pem")};
   const Words known = {"--cert", Write("ada.pem", own.certificate), "--key",
                        Write("ada.key", own.key)};
@@ -169,7 +169,7 @@ TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresWrongOnes) {
   EXPECT_THAT(List(Known("bob")), ExitsWith(0));
   Write("access", "nonsense\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->AwaitLog("not read again, the old stays: --access_file="));
+  ASSERT_TRUE(server_->AwaitLog("not read again, the old stays: --access-file="));
   EXPECT_THAT(List(Known("bob")), ExitsWith(0));
   EXPECT_EQ(server_->Stop(), 0);
 }
@@ -183,10 +183,10 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
     EXPECT_THAT(result.err, HasSubstr(text));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
-  expect({"--listen", "0.0.0.0:0"}, "missing: --tls_certificate and --tls_key and --access_file");
-  expect({"--listen", "127.0.0.1:0", "--access_file", home_.File("access")}, "readable for others");
+  expect({"--listen", "0.0.0.0:0"}, "missing: --tls-certificate and --tls-key and --access-file");
+  expect({"--listen", "127.0.0.1:0", "--access-file", home_.File("access")}, "readable for others");
   expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}), "over a Unix socket");
-  expect({"--new_token", "alice:read"}, "--access_file is missing");
+  expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
   expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to others");
 }

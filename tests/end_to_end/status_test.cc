@@ -45,7 +45,7 @@ TEST(Status, CountsJobsAndSamples) {
 }
 
 TEST(Status, LogLinesAreJsonOnRequest) {
-  TestServer server({.flags = {"--log_format", "json", "--metrics_listen", "127.0.0.1:0"}});
+  TestServer server({.flags = {"--log-format", "json", "--metrics-listen", "127.0.0.1:0"}});
   EXPECT_EQ(server.Stop(), 0);
   const std::string log = server.log();
   EXPECT_TRUE(log.ends_with("\n"));
@@ -75,7 +75,7 @@ class FullPipe {
 TEST(Status, AServerWhoseLogNobodyReadsGoesOn) {
   const TemporaryFolder home;
   const FullPipe log(home.File("log"));
-  ServerProcess server({.flags = {"--drain_seconds", "1"},
+  ServerProcess server({.flags = {"--drain-seconds", "1"},
                         .launcher = {"sh", "-c", "exec \"$@\" 2>\"$0\"", home.File("log")}});
   server.Spawn();
   const auto ask = [&](const std::string& words) {
@@ -91,9 +91,9 @@ TEST(Status, AServerWhoseLogNobodyReadsGoesOn) {
 TEST(Status, MetricsForOtherMachinesAreRejected) {
   const TemporaryFolder home;
   const ProcessResult result =
-      RunServer(home, {"--data_dir", home.File("data"), "--metrics_listen", "0.0.0.0:9090"});
+      RunServer(home, {"--data_dir", home.File("data"), "--metrics-listen", "0.0.0.0:9090"});
   EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--metrics_listen=0.0.0.0:9090 is not a loopback address"));
+  EXPECT_THAT(result.err, HasSubstr("--metrics-listen=0.0.0.0:9090 is not a loopback address"));
 }
 
 }  // namespace

@@ -57,30 +57,30 @@ TEST(StoreCommands, ExcludeEachOther) {
   const TemporaryFolder home;
   const std::string access = home.File("access");
   const ProcessResult result =
-      RunServer(home, {"--data_dir", home.File("data"), "--check", "--backup=x", "--access_file",
-                       access, "--new_token=a:submit"});
+      RunServer(home, {"--data_dir", home.File("data"), "--check", "--backup=x", "--access-file",
+                       access, "--new-token=a:submit"});
   EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new_token exclude each other"));
+  EXPECT_THAT(result.err, HasSubstr("--check and --backup and --new-token exclude each other"));
   EXPECT_EQ(result.out, "");
   EXPECT_FALSE(std::filesystem::exists(access));
 }
 
 TEST(Limits, ErrorsNameTheFlagOfTheLimit) {
-  const TestServer server({.flags = {"--max_points_per_job=2", "--max_message_bytes=2048"}});
+  const TestServer server({.flags = {"--max-points-per-job=2", "--max-message-bytes=2048"}});
   const auto ask = [&](const std::string& deltas) {
     return server.Client({"submit", "equilibrium", "--rho", "0.53", "--delta", deltas});
   };
   EXPECT_THAT(ask("0.1,0.2"), ExitsWith(0));
   const ProcessResult points = ask("0.1,0.15,0.2");
   EXPECT_NE(points.exit_code, 0);
-  EXPECT_THAT(points.err, HasSubstr("--max_points_per_job"));
+  EXPECT_THAT(points.err, HasSubstr("--max-points-per-job"));
   EXPECT_THAT(ask("0.1:0.2:1000").err, HasSubstr("2048"));  // gRPC's words
 }
 
 TEST(Limits, NegativeOnesAreRejected) {
   const TemporaryFolder home;
-  for (const std::string flag : {"--max_active_jobs=-1", "--max_samples_per_job=-2",
-                                 "--max_message_bytes=0", "--max_streams=-1"}) {
+  for (const std::string flag : {"--max-active-jobs=-1", "--max-samples-per-job=-2",
+                                 "--max-message-bytes=0", "--max-streams=-1"}) {
     const ProcessResult result = RunServer(home, {"--data_dir", home.File("data"), flag});
     EXPECT_THAT(result, ExitsWith(2));
     EXPECT_THAT(result.err, HasSubstr(flag + " is out of range"));

@@ -1,4 +1,4 @@
-// Who may come in: the access file, what a call shows for itself, and --new_token. What is refused
+// Who may come in: the access file, what a call shows for itself, and --new-token. What is refused
 // is told without what was found.
 #include "server/security/access_list.h"
 
@@ -57,12 +57,12 @@ void RequireSilence(const absl::Status& error, const std::string& text) {
 }
 
 void CheckAccessList(const std::string& text) {
-  const auto list = server::AccessList::Parse({"access_file", "FILE"}, text);
+  const auto list = server::AccessList::Parse({"access-file", "FILE"}, text);
   if (list.ok()) {
     CheckCalls(*list, text);
   } else {
     Require(absl::IsInvalidArgument(list.status()), "what is wrong is the argument");
-    Require(absl::StartsWith(list.status().message(), "--access_file=FILE, line "),
+    Require(absl::StartsWith(list.status().message(), "--access-file=FILE, line "),
             "flag and line are named");
     RequireSilence(list.status(), text);
   }

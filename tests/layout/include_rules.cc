@@ -42,6 +42,7 @@ const std::vector<Rule>& Rules() {
       {"core/model_choice/", {"core/", "Eigen/", "absl/"}, false},
       {"core/method_comparison/", {"core/", "Eigen/", "absl/", "hwy/"}, false},
       {"core/engine_version.h", {}, false},
+      {"server/command_line.cc", {"server/", "absl/", "CLI/"}, true},
       {"server/security/", {"server/", "absl/", "grpc/", "grpcpp/", "openssl/"}, true},
       {"server/",
        {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h",

@@ -4,7 +4,8 @@
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
-//   server:  core and the protos.   client: the protos only.   Neither knows the other.
+//   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
+//            parsed by CLI11, which is slow to compile: in the server only command_line.cc has it.
 //   tools:   the core only. Only their tests know them.
 //   server/convert alone includes the core's physics and the API's messages in one file.
 //   tests:   of a layer know that layer, and tests/support; running_server.h there is for tests

@@ -167,7 +167,6 @@ TEST(IncludeRules, TheClientKnowsTheProtosOnly) {
 
 TEST(IncludeRules, TheServerKnowsNoClient) {
   ExpectWrong("server/api/x.cc", "\"client/library/client.h\"");
-  ExpectWrong("server/api/x.cc", "<CLI/CLI.hpp>");
   ExpectWrong("server/api/x.cc", "\"tests/layout/include_rules.h\"");
 }
 
@@ -192,6 +191,14 @@ TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
     ExpectWrong(path, tool);
   }
   ExpectWrong("tests/tools/stability/x.cc", "\"server/store/store.h\"");
+}
+
+TEST(IncludeRules, OneFileOfTheServerParsesFlags) {
+  EXPECT_THAT(WrongIncludes("server/command_line.cc", "#include <CLI/CLI.hpp>\n"), IsEmpty());
+  ExpectWrong("server/command_line.cc", "\"core/experiment/block_plan.h\"");
+  for (const char* path : {"server/api/x.cc", "server/command_line.h", "server/main.cc"}) {
+    ExpectWrong(path, "<CLI/CLI.hpp>");
+  }
 }
 
 TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {

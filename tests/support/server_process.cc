@@ -15,11 +15,6 @@ namespace {
 
 constexpr char kReady[] = "listening on ";
 
-ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {
-  flags.insert(flags.begin(), ServerProgram());
-  return {.command = std::move(flags), .environment = CleanEnvironment(home)};
-}
-
 }  // namespace
 
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home) {
@@ -29,6 +24,11 @@ std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home)
           {"BALLPISTON_TLS", ""},        {"BALLPISTON_TOKEN", ""},
           {"BALLPISTON_TOKEN_FILE", ""}, {"BALLPISTON_SERVER_PROGRAM", ""},
           {"BALLPISTON_FAILPOINT", ""}};
+}
+
+ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {
+  flags.insert(flags.begin(), ServerProgram());
+  return {.command = std::move(flags), .environment = CleanEnvironment(home)};
 }
 
 ProcessResult RunServer(const TemporaryFolder& home, std::vector<std::string> flags) {

@@ -20,6 +20,9 @@ namespace ballpiston {
 // variables is set.
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home);
 
+// `ballpistond FLAGS...`
+ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags);
+
 // Runs the server program to its end: with flags that it rejects, or that make it do one thing.
 ProcessResult RunServer(const TemporaryFolder& home, std::vector<std::string> flags);
 

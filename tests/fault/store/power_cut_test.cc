@@ -21,7 +21,6 @@
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/requests.h"
-#include "tests/server/store/first_store_version.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -242,40 +241,21 @@ TEST(PowerCut, ADeletedJobThatComesBackIsDetected) {
               testing::Contains("job 2 was deleted and is back"));
 }
 
-// ---- a store of an older version that is taken over ----
-
-constexpr char kRowsOfVersion1[] = R"sql(
-INSERT INTO jobs VALUES (7, 'old', x'', 6, 1700000000123456789, 1700000001000000000,
-  1700000002000000000, x'', '0.2', 'request', NULL, 3, 0, 12.5);
-)sql";
-
-DiskFiles StoreOfVersion1() {
+// Every cut in both forms: a store is made at the beginning of the trace, where the short form has
+// one or two cuts.
+TEST(PowerCut, AStoreThatWasBeingMadeIsMadeAtTheNextStart) {
   FaultDisk disk;
-  {
-    const auto database = Database::Open(kStorePath, Database::Mode::kReadWrite, disk.vfs());
-    EXPECT_TRUE((*database)->Execute("PRAGMA journal_mode = WAL").ok());
-    EXPECT_TRUE((*database)->Execute(kTablesOfVersion1).ok());
-    EXPECT_TRUE((*database)->Execute(kRowsOfVersion1).ok());
-    EXPECT_TRUE(
-        (*database)->Execute(absl::StrCat("PRAGMA application_id = ", kApplicationId)).ok());
-  }
-  return AfterPowerCut({}, disk.operations(), disk.operation_count(), Survival::kEverything, 0);
-}
-
-TEST(PowerCut, AStoreThatIsTakenOverIsOldOrNewAndKeepsItsJobs) {
-  const DiskFiles old = StoreOfVersion1();
-  FaultDisk disk(old);
   ASSERT_TRUE(OpenStoreFile(kStorePath, disk.vfs()).ok());
   const std::vector<DiskOperation> operations = disk.operations();
   ASSERT_GT(operations.size(), 10u);
   for (size_t cut = 0; cut <= operations.size(); ++cut) {
     for (const Survival survival : kSurvivals) {
-      FaultDisk left(AfterPowerCut(old, operations, cut, survival, 1));
+      FaultDisk left(AfterPowerCut({}, operations, cut, survival, 1));
       const auto database = OpenStoreFile(kStorePath, left.vfs());
       ASSERT_TRUE(database.ok()) << database.status() << " at " << cut;
       EXPECT_EQ((*database)->Text("PRAGMA integrity_check").value_or(""), "ok");
       EXPECT_EQ((*database)->Integer("PRAGMA user_version").value_or(0), kSchemaVersion);
-      EXPECT_EQ((*database)->Text("SELECT id FROM jobs").value_or(""), "old");
+      EXPECT_EQ((*database)->Integer("SELECT count(*) FROM jobs").value_or(-1), 0);
     }
   }
 }

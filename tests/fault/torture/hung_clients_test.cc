@@ -83,7 +83,7 @@ class CallWithoutMessage {
 class HungClients : public testing::Test {
  protected:
   HungClients()
-      : server_({.workers = 2, .flags = {absl::StrFormat("--drain_seconds=%g", kDrainSeconds)}}) {
+      : server_({.workers = 2, .flags = {absl::StrFormat("--drain-seconds=%g", kDrainSeconds)}}) {
     server_.Start();
     const client::EnsembleClient client(server_.Connect());
     name_ = OrThrow(client.Create(ManyPoints(20'000, 1'000))).name();

@@ -111,7 +111,7 @@ class LiveWatchers : public testing::Test {
   LiveWatchers()
       : queue_(Size(100, 1000)),
         server_({.workers = 2,
-                 .flags = {absl::StrFormat("--max_active_jobs_per_principal=%d", queue_)}}) {
+                 .flags = {absl::StrFormat("--max-active-jobs-per-principal=%d", queue_)}}) {
     server_.Start();
     for (size_t i = 0; i < kConnectionsOfWatchers; ++i) {
       stubs_.push_back(v1::EnsembleService::NewStub(server_.Connect()));

@@ -29,7 +29,7 @@ TEST(HeldCalls, EachPrincipalHasItsOwnCalls) {
   EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
   const absl::Status third = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
   EXPECT_THAT(third, StatusIs(absl::StatusCode::kResourceExhausted));
-  EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max_calls_per_principal)"));
+  EXPECT_THAT(std::string(third.message()), HasSubstr("permits 2 (--max-calls-per-principal)"));
   EXPECT_OK(calls.Begin("bob", 1, kTwoCallsOfTenBytes));
   calls.End("ann", 1);
   EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
@@ -40,7 +40,7 @@ TEST(HeldCalls, BytesAreLimitedExceptOfASingleCall) {
   EXPECT_OK(calls.Begin("ann", 11, kTwoCallsOfTenBytes));
   EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
   const absl::Status second = calls.Begin("ann", 1, kTwoCallsOfTenBytes);
-  EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max_call_bytes_per_principal)"));
+  EXPECT_THAT(std::string(second.message()), HasSubstr("10 (--max-call-bytes-per-principal)"));
   calls.End("ann", 11);
   EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
   EXPECT_OK(calls.Begin("ann", 5, kTwoCallsOfTenBytes));
@@ -112,12 +112,12 @@ class UnreadAnswers : public testing::Test {
 
 TEST_F(UnreadAnswers, CountAsCallsInProgress) {
   Start({.max_calls_per_principal = 1});
-  ExpectRefusedUntilLetGo("max_calls_per_principal");
+  ExpectRefusedUntilLetGo("max-calls-per-principal");
 }
 
 TEST_F(UnreadAnswers, CountWithTheirBytes) {
   Start({.max_call_bytes_per_principal = 100'000});
-  ExpectRefusedUntilLetGo("max_call_bytes_per_principal");
+  ExpectRefusedUntilLetGo("max-call-bytes-per-principal");
 }
 
 }  // namespace

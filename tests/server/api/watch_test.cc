@@ -456,7 +456,7 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   const grpc::Status refused = third.reader->Finish();
   EXPECT_THAT(refused, IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
   EXPECT_THAT(refused.error_message(),
-              testing::HasSubstr("permits 2 (--max_streams_per_principal)"));
+              testing::HasSubstr("permits 2 (--max-streams-per-principal)"));
   first->context.TryCancel();
   first.reset();
   while (!WatchStream(server, name).Next()) {  // until the server has heard of it

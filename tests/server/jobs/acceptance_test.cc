@@ -451,7 +451,7 @@ TEST_F(LimitTest, AFullQueueRefusesOnlyNewJobs) {
   const std::string first = Hold(kAnn, kUuid);
   Hold(kBen);
   for (const Principal& caller : {kAnn, kBen}) {
-    ExpectRefused(Create(caller, CreateRequest(Question(2))), "QUEUE_FULL", "max_active_jobs", "2");
+    ExpectRefused(Create(caller, CreateRequest(Question(2))), "QUEUE_FULL", "max-active-jobs", "2");
   }
   // A replay, and what the store can answer.
   EXPECT_EQ(Name(kAnn, FreshRequest(Question(kHeldSeed), kUuid)), first);
@@ -468,7 +468,7 @@ TEST_F(LimitTest, JobsAreCountedByPrincipal) {
   Limit({.max_active_jobs_per_principal = 1});
   Hold(kAnn);
   ExpectRefused(Create(kAnn, CreateRequest(Question())), "TOO_MANY_JOBS",
-                "max_active_jobs_per_principal", "1");
+                "max-active-jobs-per-principal", "1");
   EXPECT_OK(Create(kBen, CreateRequest(Question())));
 }
 
@@ -486,14 +486,14 @@ TEST_F(LimitTest, AJobMayNotHaveTooManyPoints) {
   Limit({.max_points_per_job = 3});
   EXPECT_OK(Create(kAnn, CreateRequest(Equilibrium(3, 5))));
   ExpectRefused(Create(kAnn, CreateRequest(Equilibrium(4, 5))), "TOO_MANY_POINTS",
-                "max_points_per_job", "3");
+                "max-points-per-job", "3");
 }
 
 TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   Limit({.max_samples_per_job = 40'000});
   EXPECT_OK(Create(kAnn, CreateRequest(Equilibrium(4, 10'000))));
   ExpectRefused(Create(kAnn, CreateRequest(Equilibrium(4, 10'001))).status(), "TOO_MANY_SAMPLES",
-                "max_samples_per_job", "40000");
+                "max-samples-per-job", "40000");
   v1::EnsembleSpec by_default = Equilibrium(5, 1);
   by_default.clear_target();
   EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(by_default))), "TOO_MANY_SAMPLES");
@@ -511,13 +511,13 @@ TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
   const std::string first = Name(kAnn, held(4, kUuid));
   const auto expect_full = [&] {
     ExpectRefused(Create(kAnn, held(3)), "TOO_MANY_ACTIVE_POINTS",
-                  "max_active_points_per_principal", "6");
+                  "max-active-points-per-principal", "6");
   };
   expect_full();
   Name(kBen, held(6));
   Name({"eve", Role::kSubmit}, held(6));
   ExpectRefused(Create({"zoe", Role::kSubmit}, held(5)), "TOO_MANY_ACTIVE_POINTS",
-                "max_active_points", "20");
+                "max-active-points", "20");
   EXPECT_EQ(Name(kAnn, held(4, kUuid)), first);  // a replay
   StartAgain();
   expect_full();

@@ -126,7 +126,6 @@ TEST(Job, FinishedPointsComeInTheirOrderAndTheNewestAreKept) {
   EXPECT_TRUE(job.FinishedAfter(300, 10)->empty());
 }
 
-// A store of an older version numbers results with gaps.
 TEST(Job, RestoredPointsAreNotKept) {
   Job job(JobWithPoints(1000), nullptr);
   job.AddRestoredPoints(3, 12, 70);

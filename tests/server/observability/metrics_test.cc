@@ -224,7 +224,7 @@ TEST_F(MetricsTest, OnlyLoopbackAddressesAreAccepted) {
     const absl::Status error = StartError({.metrics_listen = address});
     EXPECT_THAT(error, StatusIs(absl::StatusCode::kInvalidArgument)) << address;
     EXPECT_THAT(std::string(error.message()),
-                HasSubstr("--metrics_listen=" + std::string(address)));
+                HasSubstr("--metrics-listen=" + std::string(address)));
   }
 }
 

@@ -20,7 +20,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const NamedFile kFile{"access_file", "list"};
+const NamedFile kFile{"access-file", "list"};
 const absl::Time kNoon = absl::FromCivil(absl::CivilSecond(2030, 6, 1, 12), absl::UTCTimeZone());
 
 std::string HashText(const std::string& token) { return "sha256:" + HexOf(HashOf(token)); }
@@ -145,7 +145,7 @@ TEST(AccessList, ErrorsNameTheLineAndShowNoneOfItsWords) {
       {"certificate " + secret + std::string(300, 'x') + " alice read", "at most 256"}};
   for (const auto& [line, permitted] : cases) {
     EXPECT_THAT(ErrorOf("# first\n" + line + "\n"),
-                AllOf(HasSubstr("--access_file=list, line 2: "), HasSubstr(permitted),
+                AllOf(HasSubstr("--access-file=list, line 2: "), HasSubstr(permitted),
                       Not(HasSubstr("hunter2"))));
   }
 }
@@ -167,7 +167,7 @@ class AccessFile : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  NamedFile file_{"access_file", folder_.File("list")};
+  NamedFile file_{"access-file", folder_.File("list")};
 };
 
 TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
@@ -196,7 +196,7 @@ TEST_F(AccessFile, OnlyARegularFileIsRead) {
   ASSERT_EQ(mkfifo(file_.path.c_str(), 0600), 0);  // would wait for a writer
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()),
               HasSubstr("is not a regular file"));
-  EXPECT_THAT(AccessList::Read({"access_file", folder_.path()}),
+  EXPECT_THAT(AccessList::Read({"access-file", folder_.path()}),
               StatusIs(absl::StatusCode::kInvalidArgument));
 }
 

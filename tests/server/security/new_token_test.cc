@@ -36,7 +36,7 @@ class NewToken : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  const NamedFile file_{"access_file", folder_.File("list")};
+  const NamedFile file_{"access-file", folder_.File("list")};
 };
 
 TEST_F(NewToken, AuthenticatesItsPrincipalAndIsNotInTheFile) {
@@ -127,7 +127,7 @@ TEST_F(NewToken, OnAFullDiskTheFileStaysUnchanged) {
 }
 
 TEST_F(NewToken, WithoutItsFolderNoFileIsMade) {
-  const NamedFile nowhere{"access_file", folder_.File("no/such/list")};
+  const NamedFile nowhere{"access-file", folder_.File("no/such/list")};
   EXPECT_THAT(IssueToken(nowhere, *ParseTokenRequest("alice:read"), kIssueTime),
               StatusIs(absl::StatusCode::kPermissionDenied));
 }
@@ -137,7 +137,7 @@ TEST_F(NewToken, MalformedRequestsAreRefused) {
        {"", "alice", "alice:", ":read", "alice:root", "alice:read:", "a b:read", "alice:read:0",
         "alice:read:x", "alice:read:36501", "alice:read:1:2", "local:read"}) {
     const auto request = ParseTokenRequest(text);
-    EXPECT_THAT(request, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--new_token")))
+    EXPECT_THAT(request, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--new-token")))
         << text;
   }
 }

@@ -75,20 +75,20 @@ TEST(SecurityCombination, OfAllSixteenOnlySafeOnesAreAccepted) {
 
 TEST(SecurityCombination, ARefusalNamesWhatIsMissing) {
   EXPECT_THAT(Refusal("0.0.0.0:1", ""),
-              HasSubstr("missing: --tls_certificate and --tls_key and --access_file"));
-  EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access_file"));
-  EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls_certificate"));
-  EXPECT_THAT(Refusal("127.0.0.1:1", "a"), HasSubstr("tokens would travel readable"));
+              HasSubstr("missing: --tls-certificate and --tls-key and --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access-file"));
+  EXPECT_THAT(Refusal("0.0.0.0:1", "a"), HasSubstr("missing: --tls-certificate"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "a"), HasSubstr("others could read the tokens"));
   EXPECT_THAT(Refusal("127.0.0.1:1", "c"), HasSubstr("both or neither"));
-  EXPECT_THAT(Refusal("127.0.0.1:1", "ckm"), HasSubstr("--access_file"));
-  EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls_certificate, --tls_key"));
+  EXPECT_THAT(Refusal("127.0.0.1:1", "ckm"), HasSubstr("--access-file"));
+  EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls-certificate, --tls-key"));
 }
 
 TEST(SecurityCombination, CertificatesOnTheListNeedAnAuthorityOfClients) {
   const LaboratoryFiles files;
   files.WriteAccessFile("certificate box box read\n");
   const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
-  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--tls_client_ca"));
+  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--tls-client-ca"));
 }
 
 TEST(Start, APublicAddressWithoutCredentialsIsRefused) {
@@ -109,9 +109,9 @@ TEST(Start, APublicAddressWithCredentialsIsServed) {
 class TlsFilesTest : public ::testing::Test {
  protected:
   std::string Error() const {
-    const auto identity = ReadTlsIdentity({{"tls_certificate", files_.options().tls_certificate},
-                                           {"tls_key", files_.options().tls_key},
-                                           {"tls_client_ca", files_.options().tls_client_ca}},
+    const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
+                                           {"tls-key", files_.options().tls_key},
+                                           {"tls-client-ca", files_.options().tls_client_ca}},
                                           absl::Now());
     if (identity.ok()) return "";
     EXPECT_THAT(identity, StatusIs(absl::StatusCode::kInvalidArgument, Not(HasSubstr("BEGIN"))));
@@ -126,8 +126,8 @@ TEST_F(TlsFilesTest, AGoodSetIsAccepted) { EXPECT_EQ(Error(), ""); }
 
 TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
   files_.Write("server.key", other_.Issue("x").key);
-  EXPECT_THAT(Error(), HasSubstr("--tls_key="));
-  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls_certificate="));
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
+  EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
 }
 
 TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRefused) {
@@ -146,19 +146,19 @@ TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
 TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
   for (const char* text : {"", "nonsense", "-----BEGIN CERTIFICATE-----\nAAAA\n"}) {
     files_.Write("server.pem", text);
-    EXPECT_THAT(Error(), HasSubstr("--tls_certificate")) << text;
+    EXPECT_THAT(Error(), HasSubstr("--tls-certificate")) << text;
   }
   const KeyAndCertificate good = files_.authority().Issue("good");
   files_.WriteCertificate({good.certificate, "nonsense"});
   EXPECT_THAT(Error(), HasSubstr("has no private key"));
   files_.WriteCertificate(good);
   files_.Write("clients.pem", "nonsense");
-  EXPECT_THAT(Error(), HasSubstr("--tls_client_ca"));
+  EXPECT_THAT(Error(), HasSubstr("--tls-client-ca"));
 }
 
 TEST_F(TlsFilesTest, AMissingFileIsNamed) {
   unlink(files_.options().tls_key.c_str());
-  EXPECT_THAT(Error(), HasSubstr("--tls_key="));
+  EXPECT_THAT(Error(), HasSubstr("--tls-key="));
   EXPECT_THAT(Error(), HasSubstr("No such file"));
 }
 
@@ -205,9 +205,9 @@ TEST(ServerTls, WhenThereIsRoomForOneFileOnlyBothStayOld) {
   const LaboratoryFiles files(true);
   const SecurityOptions& options = files.options();
   ASSERT_OK_AND_ASSIGN(const auto tls,
-                       ServerTls::Create({{"tls_certificate", options.tls_certificate},
-                                          {"tls_key", options.tls_key},
-                                          {"tls_client_ca", options.tls_client_ca}}));
+                       ServerTls::Create({{"tls-certificate", options.tls_certificate},
+                                          {"tls-key", options.tls_key},
+                                          {"tls-client-ca", options.tls_client_ca}}));
   const KeyAndCertificate next = files.authority().Issue("server-2");
   files.WriteCertificate(next);
   rlimit before{};
@@ -294,7 +294,7 @@ TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
 
 TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
   files_.Write("server.key", files_.authority().Issue("x").key);
-  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls_key="));
+  EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
   files_.WriteCertificate(files_.authority().Issue("good"));
   files_.WriteAccessFile("nonsense\n");
   EXPECT_FALSE(Reload().ok());  // of the access file; the certificate is taken

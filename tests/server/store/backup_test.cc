@@ -85,7 +85,7 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
       {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},
       {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result of no point"},
       {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1", "the result of job 1"},
-      {"INSERT INTO results (job, point, samples, result) VALUES (77, 0, 1, x'')",
+      {"INSERT INTO results (job, point, samples, result, finish) VALUES (77, 0, 1, x'', 1)",
        "a result of no point: job 77, point 0"},
       {"INSERT INTO blocks VALUES (1, 0, 0, x'')", "blocks of no point of an active job"},
       {"INSERT INTO blocks VALUES (2, 2, 99, x'ff')", "block 99 of job 2, point 2"},

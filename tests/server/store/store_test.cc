@@ -18,11 +18,9 @@
 #include "server/store/data_directory.h"
 #include "server/store/job_table.h"
 #include "server/store/pilot_table.h"
-#include "server/store/request_table.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/files.h"
-#include "tests/server/store/first_store_version.h"
 #include "tests/server/store_access.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -96,12 +94,6 @@ class StoreTest : public testing::Test {
     return ReadFrom(store, [&](Database& database) { return FindPilot(database, engine, place); });
   }
 
-  static std::optional<RequestRecord> StoredRequest(Store& store, const std::string& principal,
-                                                    const std::string& request_id) {
-    return ReadFrom(
-        store, [&](Database& database) { return FindRequest(database, principal, request_id); });
-  }
-
   static JobState End(Store& store, int64_t job, JobState wish) {
     JobState state{};
     EXPECT_OK(store.Commit([&](Database& database) {
@@ -158,79 +150,6 @@ TEST_F(StoreTest, ANewerVersionIsRefusedAndUntouched) {
   const auto store = Store::Open(File(), {});
   EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("version 99")));
   EXPECT_EQ(Contents(File()), before);
-}
-
-// A job, a block and a result.
-constexpr char kRowsOfVersion1[] = R"sql(
-INSERT INTO jobs VALUES (7, 'old', x'73706563', 4, 1700000000123456789, 1700000001000000000,
-  1700000002000000000, x'', '0.2', 'request', NULL, 3, 2, 12.5);
-INSERT INTO blocks VALUES (7, 2, 0, x'72');
-INSERT INTO results VALUES (7, 1, 12.5, x'72');
-)sql";
-
-void MakeStoreOfVersion1(const std::string& path) {
-  auto database = Database::Open(path, Database::Mode::kReadWrite);
-  ASSERT_TRUE(database.ok()) << database.status();
-  ASSERT_TRUE((*database)->Execute(kTablesOfVersion1).ok());
-  ASSERT_TRUE((*database)->Execute(kRowsOfVersion1).ok());
-  ASSERT_TRUE(
-      (*database)->Execute("PRAGMA application_id = " + std::to_string(kApplicationId)).ok());
-}
-
-TEST_F(StoreTest, AStoreOfTheFirstVersionIsTakenOverWithAllThatIsInIt) {
-  MakeStoreOfVersion1(File());
-  for (int opened = 0; opened < 2; ++opened) {  // the second time it is of this version
-    const auto store = Open();
-    ASSERT_TRUE(store);
-    const auto found = Find(*store, "old");
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->sequence, 7);
-    EXPECT_EQ(found->spec, "spec");
-    EXPECT_EQ(found->state, v1::EnsembleJob::SUCCEEDED);
-    EXPECT_EQ(found->create_time, Record("a").create_time);
-    EXPECT_EQ(found->principal, "local");
-    EXPECT_EQ(found->priority, 0);
-    const auto request = StoredRequest(*store, "local", "request");
-    ASSERT_TRUE(request);
-    EXPECT_EQ(request->job, 7);
-    EXPECT_EQ(request->payload, "");
-    EXPECT_EQ(found->points_done, 2);
-    EXPECT_EQ(found->samples, 12.5);
-    EXPECT_EQ(found->work, 0);
-    EXPECT_THAT(Blocks(*store, 7, 2), testing::ElementsAre("0r"));
-    EXPECT_THAT(Results(*store, 7), testing::ElementsAre("1r"));
-    int64_t version = 0;
-    ASSERT_TRUE(store
-                    ->Read([&](Database& database) {
-                      version = database.Integer("PRAGMA user_version").value_or(0);
-                      return absl::OkStatus();
-                    })
-                    .ok());
-    EXPECT_EQ(version, kSchemaVersion);
-  }
-  EXPECT_GT(Insert(*Open(), Record("new")), 7);
-}
-
-TEST_F(StoreTest, AStoreOfTheThirdVersionIsTakenOver) {
-  Insert(*Open(), Record("a"));
-  {
-    auto database = Database::Open(File(), Database::Mode::kReadWrite);
-    ASSERT_TRUE(database.ok()) << database.status();
-    ASSERT_TRUE((*database)
-                    ->Execute("ALTER TABLE jobs DROP COLUMN restarts; PRAGMA user_version = 3")
-                    .ok());
-  }
-  const auto found = Find(*Open(), "a");
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->restarts, 0);
-}
-
-TEST_F(StoreTest, AStoreTakenOverKeepsPilotsAndWork) {
-  MakeStoreOfVersion1(File());
-  const auto store = Open();
-  const PilotPlace place = {.rho = 0.53, .delta = 0.1};
-  KeepPilot(*store, "2", place, {.difference = 0.01, .standard_error = 0.002});
-  EXPECT_TRUE(StoredPilot(*store, "2", place));
 }
 
 TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
@@ -346,6 +265,7 @@ TEST_F(StoreTest, EveryKindOfWrongFileIsRefusedAndUntouched) {
       {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 4096); }},
       {"damaged", [](const std::string& path) { std::filesystem::resize_file(path, 10); }},
       {"version -1", [](const std::string& path) { WriteAt(path, 60, "\xff\xff\xff\xff"); }},
+      {"version 0", [](const std::string& path) { WriteAt(path, 60, std::string(4, '\0')); }},
       {"newer", [](const std::string& path) { WriteAt(path, 60, std::string("\0\0\1\0", 4)); }},
       {"not a ballpiston store", [](const std::string& path) { WriteAt(path, 68, "cake"); }},
   };
@@ -386,7 +306,7 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   const auto broken = [](Database& database) {
     return database.Execute(
-        "INSERT INTO results (job, point, samples, result) VALUES (1, 1, NULL, x'00')");
+        "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
   };
   absl::Status told;
   store->RecordBlock(1, 0, 0, [] { return "before"; });

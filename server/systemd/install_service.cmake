@@ -1,0 +1,26 @@
+# Run by `cmake --install`; CMakeLists.txt sets `source` and `bindir`.
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(etc /etc)
+else()
+  set(etc "${CMAKE_INSTALL_PREFIX}/etc")
+endif()
+
+function(install_with_paths file destination name)
+  file(READ "${source}/${file}" text)
+  string(REPLACE "/usr/bin" "${CMAKE_INSTALL_PREFIX}/${bindir}" text "${text}")
+  string(REPLACE "/etc/ballpiston" "${etc}/ballpiston" text "${text}")
+  message(STATUS "Installing: $ENV{DESTDIR}${destination}/${name}")
+  file(WRITE "$ENV{DESTDIR}${destination}/${name}" "${text}")
+  file(CHMOD "$ENV{DESTDIR}${destination}/${name}"
+    PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+  list(APPEND CMAKE_INSTALL_MANIFEST_FILES "${destination}/${name}")
+  set(CMAKE_INSTALL_MANIFEST_FILES "${CMAKE_INSTALL_MANIFEST_FILES}" PARENT_SCOPE)
+endfunction()
+
+install_with_paths(ballpistond.service "${CMAKE_INSTALL_PREFIX}/lib/systemd/system"
+  ballpistond.service)
+install_with_paths(ballpistond.sysusers "${CMAKE_INSTALL_PREFIX}/lib/sysusers.d" ballpistond.conf)
+# The laboratory edits this file: an upgrade keeps it.
+if(NOT EXISTS "$ENV{DESTDIR}${etc}/ballpiston/ballpistond.conf")
+  install_with_paths(ballpistond.conf "${etc}/ballpiston" ballpistond.conf)
+endif()
