@@ -9,18 +9,19 @@
 #include <tuple>
 #include <vector>
 
+#include "core/geometry/paper.h"
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr uint64_t kHits = 12;
+constexpr uint64_t kRecordedHits = 12;
 
-PairGeometry Geometry() { return *PairGeometry::Create(0.529561127988977, 0.1); }
+PairGeometry Geometry() { return *PairGeometry::Create(kPaperRho, 0.1); }
 
 // Balls on the middle of their disc's arc.
-std::vector<LaneFrame> Starts(size_t count) {
+std::vector<LaneFrame> MiddleStarts(size_t count) {
   const double rho = Geometry().rho();
   std::vector<LaneFrame> starts;
   for (size_t i = 0; i < count; ++i) {
@@ -41,20 +42,21 @@ auto Bits(const LaneHit& hit) {
 
 std::vector<LaneHit> Flown(const std::vector<LaneFrame>& starts, size_t records) {
   std::vector<LaneHit> recorded(starts.size() * records);
-  FlyLaneBalls(Geometry(), starts, kHits, recorded);
+  FlyLaneBalls(Geometry(), starts, kRecordedHits, recorded);
   return recorded;
 }
 
 TEST(LaneBalls, FewerRecordsAreTheLastHitsOfEqualStretches) {
   ForEachTarget([](int64_t) {
-    const std::vector<LaneFrame> starts = Starts(100);
-    const std::vector<LaneHit> all = Flown(starts, kHits);
+    const std::vector<LaneFrame> starts = MiddleStarts(100);
+    const std::vector<LaneHit> all = Flown(starts, kRecordedHits);
     for (const size_t records : {size_t{1}, size_t{4}}) {
       const std::vector<LaneHit> some = Flown(starts, records);
-      const size_t between = kHits / records;
+      const size_t between = kRecordedHits / records;
       for (size_t i = 0; i < starts.size(); ++i) {
         for (size_t j = 0; j < records; ++j) {
-          ASSERT_EQ(Bits(some[i * records + j]), Bits(all[i * kHits + (j + 1) * between - 1]));
+          ASSERT_EQ(Bits(some[i * records + j]),
+                    Bits(all[i * kRecordedHits + (j + 1) * between - 1]));
         }
       }
     }
@@ -64,7 +66,7 @@ TEST(LaneBalls, FewerRecordsAreTheLastHitsOfEqualStretches) {
 // Numbers of balls that leave vectors, groups and batches incomplete, for vectors of 2 to 8.
 TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
   ForEachTarget([](int64_t) {
-    const std::vector<LaneFrame> starts = Starts(100);
+    const std::vector<LaneFrame> starts = MiddleStarts(100);
     for (const size_t count : {1, 5, 7, 13, 25, 49, 100}) {
       const std::vector<LaneFrame> some(starts.begin(),
                                         starts.begin() + static_cast<std::ptrdiff_t>(count));
@@ -78,7 +80,7 @@ TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
 
 // Place and abscissa are two roads to the same x, of some rounded terms below 1 each.
 TEST(LaneBalls, TheAbscissaIsThatOfThePlace) {
-  for (const LaneHit& hit : Flown(Starts(100), kHits)) {
+  for (const LaneHit& hit : Flown(MiddleStarts(100), kRecordedHits)) {
     ASSERT_NEAR(hit.x, PositionInCell(hit.frame).x(), 8 * 0x1p-53);
   }
 }
