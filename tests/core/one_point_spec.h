@@ -10,8 +10,9 @@
 
 namespace ballpiston {
 
-inline PointParameters PaperPoint(double delta, std::optional<double> epsilon = {}) {
-  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon};
+inline PointParameters PaperPoint(double delta, std::optional<double> epsilon = {},
+                                  std::optional<double> exponent = {}) {
+  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon, .exponent = exponent};
 }
 
 inline EnsembleSpec SpecOf(Experiment experiment, const PointParameters& point,

@@ -79,10 +79,9 @@ TEST_P(Engines, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
   for (const double delta : {0.325, 0.1, 0.05}) {
     for (const double epsilon : {0.03125, 0.125, 0.25, 0.375, 0.46875}) {
       SCOPED_TRACE(testing::Message() << "delta " << delta << ", epsilon " << epsilon);
-      PointParameters point = PaperPoint(delta, epsilon);
-      point.exponent = 1;
-      const PointSummary summary = RunPoint(
-          SpecOf(Experiment::kFirstHit, point, {.samples = samples}, GetParam(), kSeedOfEngines));
+      const PointSummary summary =
+          RunPoint(SpecOf(Experiment::kFirstHit, PaperPoint(delta, epsilon, 1),
+                          {.samples = samples}, GetParam(), kSeedOfEngines));
       ExpectCredible(summary);
       const KlDivergence& kl = *summary.kl_divergence;
       const double error_of_noise =

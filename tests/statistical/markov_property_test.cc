@@ -27,22 +27,19 @@ Estimates At(double delta, int64_t collisions) {
   return estimates;
 }
 
-// By index of kDeltas, sampled once for all tests.
-const std::vector<Estimates>& Measured() {
-  static const auto* const measured = [] {
-    auto* const all = new std::vector<Estimates>;
-    for (const double delta : kDeltas) {
-      all->push_back(At(delta, 4'000'000));
-      std::cout << "delta " << delta << std::setprecision(3);
-      for (const auto& [name, estimate] : all->back()) {
-        std::cout << "  " << name << " " << estimate.value << " +- " << *estimate.standard_error;
-        if (estimate.noise_floor) std::cout << " (" << *estimate.noise_floor << ")";
-      }
-      std::cout << "\n";
+// By index of kDeltas.
+std::vector<Estimates> Measured() {
+  std::vector<Estimates> measured;
+  for (const double delta : kDeltas) {
+    measured.push_back(At(delta, 4'000'000));
+    std::cout << "delta " << delta << std::setprecision(3);
+    for (const auto& [name, estimate] : measured.back()) {
+      std::cout << "  " << name << " " << estimate.value << " +- " << *estimate.standard_error;
+      if (estimate.noise_floor) std::cout << " (" << *estimate.noise_floor << ")";
     }
-    return all;
-  }();
-  return *measured;
+    std::cout << "\n";
+  }
+  return measured;
 }
 
 // Distance above the noise floor, in standard errors.
@@ -52,8 +49,8 @@ double Signal(const Estimate& estimate) {
 
 // At every delta, as the invariant law at fixed energies is its own ingoing law: 4 standard errors
 // of the noise, 6e-5 false alarms each.
-TEST(MarkovProperty, TransitionsFollowTheKernelAtEveryDelta) {
-  for (const Estimates& at : Measured()) {
+void ExpectTransitionsOfTheKernel(const std::vector<Estimates>& measured) {
+  for (const Estimates& at : measured) {
     EXPECT_LT(std::fabs(Signal(at.at("transition_divergence"))), 4);
   }
 }
@@ -61,10 +58,10 @@ TEST(MarkovProperty, TransitionsFollowTheKernelAtEveryDelta) {
 // As delta^2, within a factor of two (there is a logarithm beside it): each distance at most (and
 // at least) what the step in delta makes of the one before. The least is 5 noise floors: no false
 // alarm to speak of.
-TEST(MarkovProperty, HittingTimesBecomeExponential) {
+void ExpectHittingTimesToBecomeExponential(const std::vector<Estimates>& measured) {
   for (size_t i = 1; i < std::size(kDeltas); ++i) {
-    const Estimate& before = Measured()[i - 1].at("hitting_time_ks_distance");
-    const Estimate& here = Measured()[i].at("hitting_time_ks_distance");
+    const Estimate& before = measured[i - 1].at("hitting_time_ks_distance");
+    const Estimate& here = measured[i].at("hitting_time_ks_distance");
     const double step = std::pow(kDeltas[i] / kDeltas[i - 1], 2);
     EXPECT_LT(here.value, 2 * step * before.value) << kDeltas[i];
     EXPECT_GT(here.value, 0.5 * step * before.value) << kDeltas[i];
@@ -74,17 +71,24 @@ TEST(MarkovProperty, HittingTimesBecomeExponential) {
 
 // Well above the noise at delta = 0.3 and less by more than 4 standard errors at each smaller one
 // as long as anything can be seen: 6e-5 false alarms each.
-TEST(MarkovProperty, MemoryFadesWithDelta) {
+void ExpectMemoryToFade(const std::vector<Estimates>& measured) {
   for (const char* name : {"memory_divergence", "memory_correlation"}) {
-    EXPECT_GT(Signal(Measured()[0].at(name)), 40) << name;
+    EXPECT_GT(Signal(measured[0].at(name)), 40) << name;
     for (size_t i = 1; i < std::size(kDeltas); ++i) {
-      const Estimate& before = Measured()[i - 1].at(name);
-      const Estimate& here = Measured()[i].at(name);
+      const Estimate& before = measured[i - 1].at(name);
+      const Estimate& here = measured[i].at(name);
       const double error = std::hypot(*before.standard_error, *here.standard_error);
       if (Signal(before) < 10) break;
       EXPECT_LT(here.value, before.value - 4 * error) << name << " at " << kDeltas[i];
     }
   }
+}
+
+TEST(MarkovProperty, HoldsInTheLimitOfSmallDelta) {
+  const std::vector<Estimates> measured = Measured();
+  ExpectTransitionsOfTheKernel(measured);
+  ExpectHittingTimesToBecomeExponential(measured);
+  ExpectMemoryToFade(measured);
 }
 
 }  // namespace

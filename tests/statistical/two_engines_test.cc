@@ -20,7 +20,7 @@
 namespace ballpiston {
 namespace {
 
-constexpr uint64_t kSamples = 1'000'000;
+constexpr uint64_t kSamples = 400'000;
 constexpr uint64_t kSamplesOfARun = 50'000;  // as many as a block may have, about
 constexpr size_t kBins = 1000;
 

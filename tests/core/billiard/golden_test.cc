@@ -31,6 +31,7 @@
 #include "tests/core/billiard/golden_bits.h"
 #include "tests/core/billiard/recorded_contacts.h"
 #include "tests/core/geometries.h"
+#include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
 namespace {
@@ -124,21 +125,15 @@ TEST_P(Golden, Orbits) {
 }
 
 std::vector<EnsembleSpec> SpecsOf(Engine engine) {
-  const Grid pair = {.rho = {kPaperRho}, .delta = {0.2}};
-  Grid energy = pair, whole = pair, fraction = pair, slow = pair;
-  energy.epsilon = whole.epsilon = fraction.epsilon = {0.125};
-  whole.exponent = {5}, fraction.exponent = {2.5};
-  slow.epsilon = {0.01};
+  const Target collisions = {.collisions = 1000}, samples = {.samples = 1000};
   std::vector<EnsembleSpec> specs = {
-      {.experiment = Experiment::kEquilibrium, .grid = pair, .target = {.collisions = 1000}},
-      {.experiment = Experiment::kConditionalMeanFreeTime,
-       .grid = energy,
-       .target = {.samples = 1000}},
-      {.experiment = Experiment::kFirstHit, .grid = whole, .target = {.samples = 1000}},
-      {.experiment = Experiment::kFirstHit, .grid = fraction, .target = {.samples = 1000}},
-      {.experiment = Experiment::kEnergyRelaxation, .grid = pair, .target = {.samples = 100}},
-      {.experiment = Experiment::kEnergyRelaxation, .grid = slow, .target = {.samples = 200}},
-      {.experiment = Experiment::kMarkovProperty, .grid = pair, .target = {.collisions = 5000}}};
+      SpecOf(Experiment::kEquilibrium, PaperPoint(0.2), collisions),
+      SpecOf(Experiment::kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), samples),
+      SpecOf(Experiment::kFirstHit, PaperPoint(0.2, 0.125, 5), samples),
+      SpecOf(Experiment::kFirstHit, PaperPoint(0.2, 0.125, 2.5), samples),
+      SpecOf(Experiment::kEnergyRelaxation, PaperPoint(0.2), {.samples = 100}),
+      SpecOf(Experiment::kEnergyRelaxation, PaperPoint(0.2, 0.01), {.samples = 200}),
+      SpecOf(Experiment::kMarkovProperty, PaperPoint(0.2), {.collisions = 5000})};
   for (EnsembleSpec& spec : specs) {
     spec.seed = 42;
     spec.model = engine == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;

@@ -22,27 +22,29 @@ EnsembleSpec SpecOfOrbits(const PointParameters& point, Model model, int64_t sam
   return SpecOf(Experiment::kEnergyRelaxation, point, {.samples = samples}, model);
 }
 
+EnergyRelaxation RelaxationAt(double delta, std::optional<double> epsilon = {}) {
+  return {PaperGeometry(delta), PaperPoint(delta, epsilon)};
+}
+
 TEST(EnergyRelaxation, OrbitsLastAsLongAsWhatIsMeasured) {
   const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
-  const EnergyRelaxation decay(PaperGeometry(0.1), PaperPoint(0.1, 0.01));
-  const EnergyRelaxation equilibrium(PaperGeometry(0.1), PaperPoint(0.1, {}));
+  const EnergyRelaxation decay = RelaxationAt(0.1, 0.01);
+  const EnergyRelaxation equilibrium = RelaxationAt(0.1);
   EXPECT_NEAR(decay.orbit_time() / tau, kWindowTimes, 1e-8);
   EXPECT_NEAR(equilibrium.orbit_time() / tau, kOriginTimes + kWindowTimes, 1e-8);
   EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1, 0.01)), kWindowTimes);
-  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1, {})), kOriginTimes + kWindowTimes);
+  EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1)), kOriginTimes + kWindowTimes);
 }
 
 // Of an orbit that stays at its energy: the curve is flat, and the integral the window times it.
 TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
   constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
   const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
-  const std::vector<double> decay =
-      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, kEnergy)).Measure(StepFunction(kEnergy));
+  const std::vector<double> decay = RelaxationAt(0.1, kEnergy).Measure(StepFunction(kEnergy));
   ASSERT_EQ(decay.size(), 1 + kLags);
   EXPECT_NEAR(decay[0], kOff * kWindowTimes * tau, 1e-8 * tau);
   for (size_t i = 0; i < kLags; ++i) EXPECT_EQ(decay[1 + i], kEnergy);
-  const std::vector<double> equilibrium =
-      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, {})).Measure(StepFunction(kEnergy));
+  const std::vector<double> equilibrium = RelaxationAt(0.1).Measure(StepFunction(kEnergy));
   ASSERT_EQ(equilibrium.size(), 1 + kLags);
   EXPECT_NEAR(equilibrium[0], 45 * kOff * kOff * kWindowTimes * tau, 1e-7 * tau);
   for (size_t i = 0; i < kLags; ++i) EXPECT_NEAR(equilibrium[1 + i], 45 * kOff * kOff, 1e-12);
@@ -53,7 +55,7 @@ TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
 TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
   constexpr double kOff = 0.1;
   constexpr size_t kJumpAtLag = 64;  // of the 128 steps of origins
-  const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, {}));
+  const EnergyRelaxation relaxation = RelaxationAt(0.1);
   const double lag = 4 * relaxation.unit() * kWindowTimes / (kLags - 1);
   StepFunction energy(kMeanPistonEnergy + kOff);
   // Half a lag more, so that rounding does not decide on which side a sample lies.
@@ -77,10 +79,8 @@ TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
     const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
     const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
     CounterRandom random(spec.seed, PointStream(spec.experiment, point), 0);
-    ReferenceFlow flow(PaperGeometry(0.2),
-                       DrawFromFlowMeasureAt(PaperGeometry(0.2), epsilon, random));
-    const double lag =
-        4 * EnergyRelaxation(PaperGeometry(0.2), point).unit() * kWindowTimes / (kLags - 1);
+    ReferenceFlow flow(kPaperPair, DrawFromFlowMeasureAt(kPaperPair, epsilon, random));
+    const double lag = 4 * EnergyRelaxation(kPaperPair, point).unit() * kWindowTimes / (kLags - 1);
     double time = 0, integral = 0;
     double energy = std::pow(flow.state().piston_velocity, 2) / 2;
     for (size_t i = 0; i < kLags;) {
@@ -106,7 +106,7 @@ TEST(EnergyRelaxation, AWalkIsThatOfTheJumpProcess) {
   const PointParameters point = PaperPoint(0.2, kEpsilon);
   const EnsembleSpec spec = SpecOfOrbits(point, Model::kMarkov, 1);
   const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
-  const EnergyRelaxation relaxation(PaperGeometry(0.2), point);
+  const EnergyRelaxation relaxation(kPaperPair, point);
   const uint64_t stream = ~PointStream(spec.experiment, point);
   JumpWalkers walker(spec.seed, stream, 0, {std::sqrt(2 * kEpsilon)});
   StepFunction energy(kEpsilon);
@@ -146,7 +146,7 @@ TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
 TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
   for (const std::optional<double> epsilon :
        {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
-    const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, epsilon));
+    const EnergyRelaxation relaxation = RelaxationAt(0.1, epsilon);
     EXPECT_TRUE(HasRelaxationTime(epsilon));
     const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
     EXPECT_EQ(limit[0].name, "relaxation_time");
@@ -157,7 +157,7 @@ TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
     EXPECT_NEAR(limit[1].value, limit[0].value * (*epsilon - kMeanPistonEnergy), 1e-9);
   }
   for (const double epsilon : {0.121, 1.0 / 6, 0.199}) {
-    const EnergyRelaxation relaxation(PaperGeometry(0.1), PaperPoint(0.1, epsilon));
+    const EnergyRelaxation relaxation = RelaxationAt(0.1, epsilon);
     EXPECT_FALSE(HasRelaxationTime(epsilon));
     const std::vector<Estimate> limit = relaxation.EstimatesOfLimit();
     ASSERT_EQ(limit.size(), 1u);
@@ -171,7 +171,7 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
   for (const double delta : {0.2, 0.01}) {
     for (const std::optional<double> epsilon :
          {std::optional<double>(), std::optional(0.01), std::optional(0.4)}) {
-      const EnergyRelaxation relaxation(PaperGeometry(delta), PaperPoint(delta, epsilon));
+      const EnergyRelaxation relaxation = RelaxationAt(delta, epsilon);
       BlockResult nothing_but_the_remainder;
       nothing_but_the_remainder.samples = 2;
       nothing_but_the_remainder.moments.resize(1 + kLags);
@@ -185,9 +185,8 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
 TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
   const double unit = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston / 4;
-  const Curve correlation =
-      EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, {})).CurveOfLimit();
-  const Curve decay = EnergyRelaxation(PaperGeometry(0.1), PaperPoint(0.1, 0.4)).CurveOfLimit();
+  const Curve correlation = RelaxationAt(0.1).CurveOfLimit();
+  const Curve decay = RelaxationAt(0.1, 0.4).CurveOfLimit();
   EXPECT_EQ(correlation.name, "energy_autocorrelation");
   EXPECT_EQ(decay.name, "mean_energy");
   ASSERT_EQ(correlation.points.size(), kLags);

@@ -25,16 +25,14 @@ namespace {
 // Of each experiment by the billiard in lanes, which is what AUTO takes here, then by the reference
 // and by the jump process.
 std::vector<EnsembleSpec> OneOfEach() {
-  const PointParameters pair = PaperPoint(0.2), energy = PaperPoint(0.2, 0.125);
-  PointParameters outgoing = energy;
-  outgoing.exponent = 5;
+  const PointParameters pair = PaperPoint(0.2);
   const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
   std::vector<EnsembleSpec> specs;
   for (const Model model : {Model::kAuto, Model::kBilliardReference, Model::kMarkov}) {
     for (const auto& [experiment, point, target] :
          {std::tuple(Experiment::kEquilibrium, pair, collisions),
-          {Experiment::kConditionalMeanFreeTime, energy, samples},
-          {Experiment::kFirstHit, outgoing, samples},
+          {Experiment::kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), samples},
+          {Experiment::kFirstHit, PaperPoint(0.2, 0.125, 5), samples},
           {Experiment::kEnergyRelaxation, pair, samples},
           {Experiment::kEnergyRelaxation, PaperPoint(0.2, 0.01), samples},
           {Experiment::kMarkovProperty, pair, collisions}}) {

@@ -36,9 +36,8 @@ inline Machine SlowerMachine() {
 
 inline EnsembleSpec Asked(Experiment experiment, double delta, const Target& target = {}) {
   PointParameters point = PaperPoint(delta);
-  const bool first_hit = experiment == Experiment::kFirstHit;
-  if (first_hit || experiment == Experiment::kConditionalMeanFreeTime) point.epsilon = 0.125;
-  if (first_hit) point.exponent = 1;
+  if (experiment == Experiment::kConditionalMeanFreeTime) point = PaperPoint(delta, 0.125);
+  if (experiment == Experiment::kFirstHit) point = PaperPoint(delta, 0.125, 1);
   return SpecOf(experiment, point, target);
 }
 
