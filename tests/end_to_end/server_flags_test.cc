@@ -305,7 +305,7 @@ TEST_F(ConfigFile, HasToBeAFileThatCanBeRead) {
   const std::string missing = home_.File("missing.conf");
   EXPECT_THAT(Refusal({"--config", missing}),
               HasSubstr("--config=" + missing + " is not a file that can be read"));
-  const std::string folder = home_.path().string();
+  const std::string folder = home_.path();
   EXPECT_THAT(Refusal({"--config", folder}),
               HasSubstr("--config=" + folder + " is not a file that can be read"));
 }
