@@ -12,10 +12,16 @@
 
 namespace ballpiston::oracle {
 
+// A chi^2 as the normal variable of the same probability, by Wilson's and Hilferty's cube root:
+// above 4 in 3e-5 of all cases.
+inline double NormalScoreOfChiSquare(double square, double degrees) {
+  const double width = 2 / (9 * degrees);
+  return (std::cbrt(square / degrees) - (1 - width)) / std::sqrt(width);
+}
+
 // Of two histograms over the same cells: sum over cells of (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m),
 // with N and M in all, is distributed as chi^2 with one degree of freedom less than cells. Given
-// here as the normal variable of the same probability, by Wilson and Hilferty's cube root: above 4
-// in 3e-5 of all cases. Neighbouring cells are joined until they hold kFewest.
+// here as a normal score. Neighbouring cells are joined until they hold kFewest.
 inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const uint64_t> second) {
   constexpr double kFewest = 20;
   double totals[2] = {0, 0};
@@ -30,8 +36,7 @@ inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const ui
     square += difference * difference / (n + m);
     cells += 1, n = 0, m = 0;
   }
-  const double degrees = cells - 1, width = 2 / (9 * degrees);
-  return (std::cbrt(square / degrees) - (1 - width)) / std::sqrt(width);
+  return NormalScoreOfChiSquare(square, cells - 1);
 }
 
 // Kolmogorov's and Smirnov's: the largest distance of the two distribution functions, times

@@ -1,4 +1,4 @@
-// The billiard in lanes against the reference, in law: two independent samples of a million first
+// The billiard in lanes against the reference, in law: two independent samples of 400,000 first
 // hits each, at twenty points from cusps to vanishing cells, over energies and outgoing laws.
 #include <gtest/gtest.h>
 
@@ -95,7 +95,9 @@ double Score(const Moments& first, const Moments& second) {
 class TwoEngines : public testing::TestWithParam<Point> {};
 
 // Means within 4 combined standard errors, 6e-5 false alarms each; the ingoing law by chi^2, 3e-5,
-// the law of the return times by Kolmogorov and Smirnov, 5e-5: over the 20 points 0.5 percent.
+// the law of the return times by Kolmogorov and Smirnov, 5e-5: over the 20 points 0.5 percent. A
+// difference of 0.5 % between the distribution functions of the times shows, and one of 0.9 % of
+// the standard deviation between means.
 TEST_P(TwoEngines, AgreeInMeansAndLaws) {
   const FirstHits reference = Sample(Engine::kReference, GetParam());
   const FirstHits lanes = Sample(Engine::kLanes, GetParam());

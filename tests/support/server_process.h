@@ -2,8 +2,6 @@
 #ifndef BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
 #define BALLPISTON_TESTS_SUPPORT_SERVER_PROCESS_H_
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <map>
 #include <memory>

@@ -80,7 +80,7 @@ TEST_F(SecurityFiles, ATokenFileHoldsOneWord) {
 }
 
 TEST_F(SecurityFiles, ATokenFileThatOthersCanReadIsRejected) {
-  for (const mode_t mode : {0640, 0604, 0644, 0660, 0666}) {
+  for (const mode_t mode : {0640u, 0604u, 0644u, 0660u, 0666u}) {
     EXPECT_THAT(WithToken(kSecret, mode), StatusIs(kDenied, HasSubstr("chmod 600")));
   }
 }

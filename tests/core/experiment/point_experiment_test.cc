@@ -124,31 +124,23 @@ TEST(PointExperiment, OneSampleIsEnoughForAnAnswerWithoutErrors) {
   }
 }
 
-double RelativeError(const PointExperiment& point, const BlockResult& merged) {
-  const Estimate estimate = point.FirstEstimate(merged);
-  return *estimate.standard_error / std::fabs(estimate.value);
-}
-
 TEST(PointExperiment, ToleranceEndsThePointAtItsFirstBlockWithinIt) {
   for (EnsembleSpec spec : OneOfEach()) {
+    if (spec.experiment == Experiment::kMarkovProperty) continue;  // takes no tolerance
     SCOPED_TRACE(Described(spec));
-    // Not what tends to 0, nor by the slower engine.
-    if (spec.experiment == Experiment::kMarkovProperty) continue;
-    if (spec.model == Model::kBilliardReference) continue;
-    // An orbit of a relaxation says as little as a return, and takes 40 of them.
-    const double tolerance = spec.experiment == Experiment::kEnergyRelaxation ? 0.06 : 0.02;
-    spec.target = {.tolerance = tolerance};
-    const auto point = PointExperiment::Create(spec, 0);
-    BlockResult merged;
-    uint64_t blocks = 0;
-    double before_last = 1;
-    while (!point->TargetReached(blocks, merged)) {
-      if (blocks > kMinBlocks) before_last = RelativeError(*point, merged);
-      merged.Merge(*point->RunBlock(blocks++, {}));
-    }
-    EXPECT_LE(RelativeError(*point, merged), tolerance);
-    EXPECT_GT(before_last, tolerance);
-    EXPECT_GE(blocks, kMinBlocks);
+    const auto sampled = PointExperiment::Create(spec, 0);
+    const BlockResult merged = RunBlocks(*sampled);
+    const Estimate estimate = sampled->FirstEstimate(merged);
+    const double error = *estimate.standard_error / std::fabs(estimate.value);
+    spec.target = {.tolerance = 1.01 * error};
+    const auto within = PointExperiment::Create(spec, 0);
+    EXPECT_FALSE(within->TargetReached(kMinBlocks - 1, merged));
+    EXPECT_TRUE(within->TargetReached(kMinBlocks, merged));
+    spec.target = {.tolerance = 0.99 * error};
+    const auto beyond = PointExperiment::Create(spec, 0);
+    const uint64_t blocks = beyond->plan().Blocks();
+    EXPECT_FALSE(beyond->TargetReached(blocks - 1, merged));
+    EXPECT_TRUE(beyond->TargetReached(blocks, merged));
   }
 }
 
