@@ -57,5 +57,9 @@ TEST(TimeLimit, UsualLimitIsAMinute) {
   EXPECT_EQ(TimeLimitOf("Suite.Name"), std::chrono::seconds(60));
 }
 
+TEST(TimeLimit, TestsThatNeedLongerAreNamed) {
+  EXPECT_EQ(TimeLimitOf("Kills.LoseNothing"), std::chrono::seconds(300));
+}
+
 }  // namespace
 }  // namespace ballpiston
