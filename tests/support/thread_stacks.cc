@@ -59,6 +59,7 @@ std::string ThreadStacks() {
   backtrace(frames.data(), 1);  // loads the unwinder, which no signal handler may do
   struct sigaction action = {};
   action.sa_handler = &RecordStack;
+  action.sa_flags = SA_RESTART;  // a thread that waits goes on waiting
   sigaction(SIGRTMAX, &action, nullptr);
   std::string text;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
