@@ -378,7 +378,7 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
     ServiceOnDisk service(disk);
     if (!service.status().ok()) return disk.refusals() > 0;  // refused to start: no false success
     service.WriteLogBackOften();
-    for (const uint64_t seed : {7, 8, 9}) {
+    for (const uint64_t seed : {7u, 8u, 9u}) {
       EXPECT_EQ(service.AwaitEnd(CreateAtLast(service, seed)).state(), EnsembleJob::SUCCEEDED);
     }
     const std::vector<DiskOperation> done = disk.operations();
@@ -386,7 +386,7 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
       FaultDisk left(AfterPowerCut({}, done, done.size(), survival, at));
       ServiceOnDisk again(left);
       EXPECT_OK(again.status());
-      for (const uint64_t seed : {7, 8, 9}) EXPECT_EQ(Scene::Count(again, seed), 1);
+      for (const uint64_t seed : {7u, 8u, 9u}) EXPECT_EQ(Scene::Count(again, seed), 1);
       for (const EnsembleJob& job : again.List()) {
         EXPECT_EQ(job.state(), EnsembleJob::SUCCEEDED);
         if (job.spec().seed() == 7) {

@@ -77,7 +77,7 @@ TEST(OrderedMerge, ABlockCountsOnce) {
 TEST(OrderedMerge, FinishKeepsThePrefixAndDropsWaitingBlocks) {
   const auto experiment = ExperimentOfBlocks();
   OrderedMerge merge(experiment);
-  for (const uint64_t block : {0, 1, 3, 4}) {
+  for (const uint64_t block : {0u, 1u, 3u, 4u}) {
     merge.Add(block, *experiment->RunBlock(block, {}), nullptr);
   }
   merge.Finish();

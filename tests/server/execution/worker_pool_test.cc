@@ -81,7 +81,7 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
   const EnsembleSpec spec = FakeSpec(2, 30);
   auto journal = std::make_shared<RecordingJournal>();
   const auto experiment = FakeExperiments()(spec, 1, std::stop_token());
-  for (const uint64_t block : {0, 1, 2, 7, 9}) {  // with gaps: an early block was stored
+  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) {  // with gaps: an early block was stored
     journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
   }
   std::mutex mutex;
@@ -94,7 +94,7 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
   ASSERT_OK(journal->AwaitEnd());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed.size(), 25u);
-  for (const uint64_t block : {0, 1, 2, 7, 9}) EXPECT_FALSE(computed.contains(block));
+  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) EXPECT_FALSE(computed.contains(block));
 }
 
 TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {

@@ -195,7 +195,7 @@ TEST_F(JobJournalTest, NothingIsSentThatIsNotOnDisk) {
 }
 
 TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
-  for (const size_t point : {2, 0, 1}) Finish(point);
+  for (const size_t point : {2u, 0u, 1u}) Finish(point);
   Finish(0);  // the first writer wins: no number for this one
   ASSERT_OK(store_->Flush());
   std::vector<std::pair<int64_t, int64_t>> stored;
@@ -212,7 +212,7 @@ TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
 
 // The results are told, and counted as told, only after the end was written down.
 TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
-  for (const size_t point : {0, 1, 2}) Finish(point);
+  for (const size_t point : {0u, 1u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
   const auto ended =
@@ -223,7 +223,7 @@ TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
 }
 
 TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
-  for (const size_t point : {0, 2}) Finish(point);
+  for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
   const EnsembleJob job = job_->Message();

@@ -174,7 +174,7 @@ TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
   EXPECT_OK(With(0600));
   EXPECT_OK(With(0400));
   EXPECT_OK(With(0640));
-  for (const mode_t mode : {0604, 0644, 0660, 0620, 0602, 0666, 0777}) {
+  for (const mode_t mode : {0604u, 0644u, 0660u, 0620u, 0602u, 0666u, 0777u}) {
     EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to others")) << mode;
   }
 }

@@ -83,7 +83,7 @@ class Socket : public ::testing::Test {
   void Listen(std::set<uid_t> permitted) {
     ASSERT_OK_AND_ASSIGN(listener_,
                          SocketListener::Listen(*ParseListenAddress("unix:" + path_), permitted));
-    listener_->Start([this](int descriptor) {
+    listener_->Start([](int descriptor) {
       EXPECT_EQ(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, FD_CLOEXEC);
       EXPECT_EQ(fcntl(descriptor, F_GETFL) & O_NONBLOCK, O_NONBLOCK);
       [[maybe_unused]] const ssize_t written = write(descriptor, "x", 1);

@@ -37,7 +37,7 @@ TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
 }
 
 TEST_F(DataFolder, AnOpenEmptyFolderIsClosedAndThatIsLogged) {
-  for (const mode_t mode : {0755, 0750, 0711, 0777, 0770}) {
+  for (const mode_t mode : {0755u, 0750u, 0711u, 0777u, 0770u}) {
     Make(mode);
     ::testing::internal::CaptureStderr();
     EXPECT_OK(DataDirectory::Open(path_));
