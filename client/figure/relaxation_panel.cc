@@ -263,19 +263,20 @@ std::string RelaxationPanelScript(const Measurements& measurements) {
   const auto [work, error] = ExtentOf(measurements, floors);
   const Range shown = {error.low * kBelow, error.high * kAbove};
   return absl::StrReplaceAll(
-      kPanel, Substitutions{{"$$", "$"},
-                            {"$CHANCE_LINES", ChanceLines(measurements, floors)},
-                            {"$WALKERS", ChanceOfWalkers(measurements, floors.front())},
-                            {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
-                            {"$CROSSINGS", Crossings(floors)},
-                            {"$DELTA_LABELS", DeltaLabels(floors, work.high * kDeltaLabelAt, shown)},
-                            {"$FEWEST", absl::StrCat(kFewestOrbits)},
-                            {"$DELTAS", DeltasOf(floors)},
-                            {"$SHADES", ShadesOf(floors)},
-                            {"$EDGE", ExactText(shown.low)},
-                            {"$TOP", ExactText(shown.high)},
-                            {"$FROM", ExactText(work.low * kBelow)},
-                            {"$TO", ExactText(work.high * kRoomForDeltas)}});
+      kPanel,
+      Substitutions{{"$$", "$"},
+                    {"$CHANCE_LINES", ChanceLines(measurements, floors)},
+                    {"$WALKERS", ChanceOfWalkers(measurements, floors.front())},
+                    {"$FLOOR_LINES", FloorLines(floors, work.high * kFloorEnd)},
+                    {"$CROSSINGS", Crossings(floors)},
+                    {"$DELTA_LABELS", DeltaLabels(floors, work.high * kDeltaLabelAt, shown)},
+                    {"$FEWEST", absl::StrCat(kFewestOrbits)},
+                    {"$DELTAS", DeltasOf(floors)},
+                    {"$SHADES", ShadesOf(floors)},
+                    {"$EDGE", ExactText(shown.low)},
+                    {"$TOP", ExactText(shown.high)},
+                    {"$FROM", ExactText(work.low * kBelow)},
+                    {"$TO", ExactText(work.high * kRoomForDeltas)}});
 }
 
 std::string RelaxationLegendScript(const Measurements& measurements) {

@@ -57,8 +57,8 @@ void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
          "priority\n";
   for (const v1::EnsembleJob& job : jobs) {
-    out << absl::StrJoin(CellsOf(job), ",") << ',' << Quoted(job.principal()) << ',' << job.priority()
-        << '\n';
+    out << absl::StrJoin(CellsOf(job), ",") << ',' << Quoted(job.principal()) << ','
+        << job.priority() << '\n';
   }
 }
 

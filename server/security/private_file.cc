@@ -60,14 +60,15 @@ absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file) {
 absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, uid_t user) {
   if (status.st_uid != user && status.st_uid != 0) {
     return Unusable(file, absl::StrFormat("belongs to user %d; permitted: this server's user (%d) "
-                                         "or root",
-                                         status.st_uid, user));
+                                          "or root",
+                                          status.st_uid, user));
   }
   constexpr mode_t kForOthers = S_IWGRP | S_IXGRP | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
-  return Unusable(file, absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
-                                       "most (chmod 600 it)",
-                                       status.st_mode & 07777));
+  return Unusable(file,
+                  absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
+                                  "most (chmod 600 it)",
+                                  status.st_mode & 07777));
 }
 
 }  // namespace ballpiston::server

@@ -63,7 +63,7 @@ absl::Status CheckDates(const NamedFile& file, const X509& certificate, absl::Ti
   const absl::Time until = TimeOf(X509_get0_notAfter(&certificate));
   if (from <= now && now < until) return absl::OkStatus();
   return Unusable(file, absl::StrCat("the certificate is valid from ", absl::FormatTime(from),
-                                    " to ", absl::FormatTime(until), " only"));
+                                     " to ", absl::FormatTime(until), " only"));
 }
 
 // As TLS itself would: certificate and key in a context of their own.
@@ -75,8 +75,8 @@ absl::Status TryOut(const TlsFiles& files, X509* certificate, EVP_PKEY* key) {
   if (SSL_CTX_use_PrivateKey(context.get(), key) != 1 ||
       SSL_CTX_check_private_key(context.get()) != 1) {
     ERR_clear_error();
-    return Unusable(files.key,
-                   absl::StrCat("is not the key of the certificate in ", files.certificate.Text()));
+    return Unusable(
+        files.key, absl::StrCat("is not the key of the certificate in ", files.certificate.Text()));
   }
   return absl::OkStatus();
 }
