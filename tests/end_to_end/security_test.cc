@@ -184,7 +184,8 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   expect({"--listen", "0.0.0.0:0"}, "missing: --tls-certificate and --tls-key and --access-file");
-  expect({"--listen", "127.0.0.1:0", "--access-file", home_.File("access")}, "readable for others");
+  expect({"--listen", "127.0.0.1:0", "--access-file", home_.File("access")},
+         "others could read the tokens");
   expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}), "over a Unix socket");
   expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
