@@ -10,9 +10,10 @@ TEST_PACKAGES := libgtest-dev libgmock-dev
 PROGRAMS := ballpiston ballpistond
 
 .DEFAULT_GOAL := build
+.NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
 .PHONY: build test demo chart ladder bench stability stability-table torture asan tsan fuzz nightly format check-format tidy setup clean help
 
-build: build/release/.programs ## Build the programs, optimised, in build/release/bin (the default)
+build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
 
 test: test-release test-asan ## Build, then run all tests: the fast ones under the address sanitizer (15 minutes)
@@ -26,24 +27,22 @@ chart: build ## Chart speed against accuracy for every method, on this machine (
 ladder: build ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
-bench: setup ## Build, then run the benchmarks on one core
-	@scripts/setup.sh libbenchmark-dev $(TEST_PACKAGES)
-	@cmake --preset release -DBALLPISTON_TESTS=ON -DBALLPISTON_BENCHMARKS=ON >/dev/null
+bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchmarks on one core
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
+stability: build/release/.$(PRESETS_PREFIX)programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.programs ## The same, written into core/README.md (10 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## The same, written into core/README.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into core/README.md
 
-torture: build/release/.tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
+torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
-	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/store_fault_test --gtest_brief=1
-	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/torture_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/store_fault_test --gtest_brief=1
+	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/torture_test --gtest_brief=1
 
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
@@ -52,7 +51,7 @@ tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
 fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS or FUZZ_SECONDS a target
 	@scripts/setup.sh clang libclang-rt-14-dev
-	@$(MAKE) build/fuzz/.tests
+	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
@@ -69,12 +68,13 @@ check-format: ## Say which lines are not formatted
 
 tidy: ## Compile every file alone with Clang, warnings as errors, and run clang-tidy over all
 	@scripts/setup.sh clang clang-tidy libbenchmark-dev
-	@$(MAKE) build/single/.tests
+	@$(MAKE) build/single/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset single
-	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests|tools)/' 2>/dev/null
+	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests|tools)/' \
+	  >build/single/tidy.log 2>&1 || { cat build/single/tidy.log; exit 1; }
 
 clean: ## Remove everything that was built, and the output of demo, chart and stability
-	@rm -rf build demo chart stability.md
+	@rm -rf build demo chart '$(STABILITY_OUT)'
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
@@ -83,23 +83,32 @@ setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
 
 .PHONY: test-release test-asan test-tsan
-test-release: build/release/.tests
+test-release: build/release/.$(PRESETS_PREFIX)tests
 	@cmake --build build/release --target slow_tests
 	@ctest --preset release -j$(TEST_JOBS)
 
-test-asan test-tsan: test-%: build/%/.tests
+test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@cmake --build build/$* --target fast_tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
-# build/PRESET/.programs: configured, perhaps without the tests; build/PRESET/.tests: with them.
-configure = mkdir -p $(@D); cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \
+# build/PRESET/.programs: configured, perhaps without the tests; .tests: with them; .benchmarks: with
+# both. In their names is the prefix of the presets, so that these are never mixed up. Without a
+# stamp the folder is configured again: also after an attempt that failed.
+configure = mkdir -p $(@D); \
+  rm -f $(foreach prefix,'' ci-,$(foreach stamp,programs tests benchmarks,$(@D)/.$(prefix)$(stamp))); \
+  cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \
   || { cat $(@D)/configure.log; exit 1; }
 
-build/%/.programs: CMakePresets.json | setup
+build/%/.$(PRESETS_PREFIX)programs: CMakePresets.json | setup
 	@$(call configure,-DBALLPISTON_TESTS=OFF)
-	@rm -f build/$*/.tests; touch $@
+	@touch $@
 
-build/%/.tests: CMakePresets.json | setup
+build/%/.$(PRESETS_PREFIX)tests: CMakePresets.json | setup
 	@scripts/setup.sh $(TEST_PACKAGES)
 	@$(call configure,-DBALLPISTON_TESTS=ON)
-	@touch build/$*/.programs $@
+	@touch $(@D)/.$(PRESETS_PREFIX)programs $@
+
+build/%/.$(PRESETS_PREFIX)benchmarks: CMakePresets.json | setup
+	@scripts/setup.sh libbenchmark-dev $(TEST_PACKAGES)
+	@$(call configure,-DBALLPISTON_TESTS=ON -DBALLPISTON_BENCHMARKS=ON)
+	@touch $(@D)/.$(PRESETS_PREFIX)programs $(@D)/.$(PRESETS_PREFIX)tests $@

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Charts speed against accuracy: every method of computing the pair, from a naive one with fixed
-# time steps to the closed form and the limit of rare collisions. Takes two minutes or so.
+# time steps to the closed form and the limit of rare collisions. Takes a minute or so.
 #
 #   scripts/chart.sh FOLDER_OF_PROGRAMS
 #

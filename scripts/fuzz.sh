@@ -4,7 +4,7 @@
 #   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
 #
 # FUZZ_RUNS (100000) is the number of executions of each; with FUZZ_SECONDS each runs for that time
-# instead. FUZZ_SEED (1) makes them repeatable. Inputs that broke something stay in build/fuzz/found,
+# instead. FUZZ_SEED (1) makes a number of executions repeatable. Inputs that broke something stay in build/fuzz/found,
 # the others that it went on from in build/fuzz/corpus. Exits with 1 if any target failed.
 set -euo pipefail
 folder=$1

@@ -4,7 +4,8 @@
 #
 #   scripts/setup.sh [FURTHER_PACKAGE...]
 #
-# With SKIP_SETUP=1 in the environment it does nothing: for those who bring the libraries themselves.
+# With SKIP_SETUP=1 in the environment it installs nothing: for those who bring the libraries
+# themselves. A CMake that is too old is refused all the same.
 set -euo pipefail
 
 readonly LEAST_CMAKE=3.25
@@ -24,7 +25,7 @@ cmake_version() {
   if command -v cmake >/dev/null; then
     cmake --version | awk 'NR == 1 {print $3}'
   elif command -v apt-cache >/dev/null; then
-    apt-cache policy cmake | awk '/Candidate:/ && $2 != "(none)" {sub(/-[^-]*$/, "", $2); print $2}'
+    LC_ALL=C apt-cache policy cmake | awk '/Candidate:/ && $2 != "(none)" {sub(/-[^-]*$/, "", $2); print $2}'
   fi
 }
 

@@ -15,7 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
-#include "server/command_line.h"
+#include "server/command_line/command_line.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/security/new_token.h"

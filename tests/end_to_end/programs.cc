@@ -3,8 +3,6 @@
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "absl/strings/str_split.h"
@@ -65,11 +63,6 @@ std::string PointsOf(const std::string& document) {
   const size_t begin = document.find("\"points\": [");
   EXPECT_NE(begin, std::string::npos) << document.substr(0, 500);
   return begin == std::string::npos ? "" : document.substr(begin);
-}
-
-std::string Contents(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace ballpiston

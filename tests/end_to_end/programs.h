@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gmock/gmock.h"
+#include "tests/support/files.h"
 #include "tests/support/process.h"
 #include "tests/support/server_process.h"
 #include "tests/support/temporary_folder.h"
@@ -26,12 +27,6 @@ inline const Words kQuickQuestion = Split(
     "first-hit --rho 0.53 --delta 0.2,0.1 --epsilon 0.1 --exponent 1 --samples 2000 --seed 7");
 inline const Words kEndlessQuestion =
     Split("equilibrium --rho 0.53 --delta 0.05 --collisions 1000000000000 --model billiard");
-
-// Of a ProcessResult; shows standard error if it is another code.
-MATCHER_P(ExitsWith, code, "") {
-  *result_listener << "whose exit code is " << arg.exit_code << " and standard error\n" << arg.err;
-  return arg.exit_code == code;
-}
 
 // `ballpiston WORDS...`
 ProcessOptions ClientCommand(const TemporaryFolder& home, Words words);
@@ -84,9 +79,6 @@ int Length(const google::protobuf::Value& list);
 
 // The bytes of "points" in a document of `result --format json`.
 std::string PointsOf(const std::string& document);
-
-// Of a file.
-std::string Contents(const std::string& path);
 
 }  // namespace ballpiston
 

@@ -68,8 +68,8 @@ const char* const kFlags[] = {"listen",
                               "help"};
 
 // What --help describes: --NAME at the beginning of a line.
-std::set<std::string> FlagsOf(const std::string& page) {
-  std::set<std::string> flags;
+std::multiset<std::string> FlagsOf(const std::string& page) {
+  std::multiset<std::string> flags;
   std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("  -")) continue;
@@ -85,7 +85,7 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
   const ProcessResult help = Server({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
-  std::set<std::string> expected = {"--data_dir", "-h"};
+  std::multiset<std::string> expected = {"--data_dir", "-h"};
   for (const std::string flag : kFlags) expected.insert("--" + flag);
   EXPECT_EQ(FlagsOf(help.out), expected);
   EXPECT_EQ(FlagsOf(Server({"-h"}).out), expected);
@@ -100,7 +100,8 @@ TEST(ServerFlags, HelpTellsDefaultsAndExitCodesInLinesThatFitATerminal) {
   EXPECT_THAT(page, HasSubstr("default: 10\n"));
   EXPECT_THAT(page, HasSubstr("default: text\n"));
   EXPECT_THAT(page, HasSubstr(".local/state/ballpiston\n"));
-  EXPECT_THAT(page, HasSubstr("Exit codes: 0 stopped or done; 1 "));
+  EXPECT_THAT(page, HasSubstr("threads that compute; whole numbers from 1 to 1024; default: "));
+  EXPECT_THAT(page, HasSubstr("Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 "));
   std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
 }
@@ -165,7 +166,8 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
       {{"--workers=0"}, "--workers=0 is out of range; " + workers},
       {{"--workers=1025"}, "--workers=1025 is out of range; " + workers},
       {{"--workers", "-1"}, "--workers=-1 is out of range; " + workers},
-      {{"--workers=2.5"}, "--workers=2.5 is out of range; " + workers},
+      {{"--workers=2.5"}, "--workers=2.5 is not a whole number; " + workers},
+      {{"--workers=0.5"}, "--workers=0.5 is out of range; " + workers},
       {{"--workers=02000"}, "--workers=02000 is out of range; " + workers},  // not octal: 1024
       {{"--workers=1e4"}, "--workers=1e4 is out of range; " + workers},
       {{"--workers=99999999999999999999"}, "99999999999999999999 is out of range; " + workers},
@@ -178,7 +180,7 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
       {{"--drain-seconds=1e300"}, "--drain-seconds=1e300 is out of range; " + seconds},
       {{"--drain-seconds=10s"}, "--drain-seconds=10s is not a number; " + seconds},
       {{"--idle-exit-seconds=1e7"},
-       "--idle-exit-seconds=1e7 is out of range; permitted: 0 to 1000000"},
+       "--idle-exit-seconds=1e7 is out of range; permitted: 0 (never) to 1000000"},
       {{"--watch-heartbeat-seconds=0"}, "permitted: 0.01 to 3600"},
       {{"--max-active-jobs", "-1"}, "--max-active-jobs=-1 is out of range; " + limit},
       {{"--max-active-jobs=1e30"}, "--max-active-jobs=1e30 is out of range; " + limit},
@@ -212,11 +214,14 @@ TEST(ServerFlags, AFlagHasOneValue) {
   EXPECT_THAT(Refusal({"--config=a", "--config=b"}), HasSubstr("--config is given more than once"));
 }
 
-TEST(ServerFlags, AnEmptyValueDoesNotTakeTheNextFlag) {
-  EXPECT_THAT(Refusal({"--listen=", "--data-dir=/nowhere", "--check"}),
-              HasSubstr("/nowhere/store.sqlite3"));
-  EXPECT_THAT(Refusal({"--listen", "", "--data-dir", "/nowhere", "--check"}),
-              HasSubstr("/nowhere/store.sqlite3"));
+// As an unset variable of a shell leaves it: it is neither the default nor the next flag.
+TEST(ServerFlags, AnEmptyValueIsRefused) {
+  for (const std::string flag : {"--listen", "--data-dir", "--config", "--access-file",
+                                 "--tls-certificate", "--metrics-listen", "--backup"}) {
+    for (const Words& flags : {Words{flag + "=", "--workers=1"}, Words{flag, "", "--workers=1"}}) {
+      EXPECT_THAT(Refusal(flags), HasSubstr(flag + " needs a value"));
+    }
+  }
 }
 
 // ---- the file of --config ----

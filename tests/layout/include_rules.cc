@@ -42,7 +42,7 @@ const std::vector<Rule>& Rules() {
       {"core/model_choice/", {"core/", "Eigen/", "absl/"}, false},
       {"core/method_comparison/", {"core/", "Eigen/", "absl/", "hwy/"}, false},
       {"core/engine_version.h", {}, false},
-      {"server/command_line.cc", {"server/", "absl/", "CLI/"}, true},
+      {"server/command_line/", {"server/", "absl/", "CLI/"}, true},
       {"server/security/", {"server/", "absl/", "grpc/", "grpcpp/", "openssl/"}, true},
       {"server/",
        {"core/", "server/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "sqlite3.h",
@@ -52,10 +52,6 @@ const std::vector<Rule>& Rules() {
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
        true},
       {"tools/", {"core/", "tools/", "Eigen/", "absl/", "hwy/"}, true},
-      {"tests/support/running_server",
-       {"server/", "tests/support/", "tests/server/fake_experiments.h", "ballpiston/v1/", "google/",
-        "absl/", "grpc/", "grpcpp/", "gtest/", "gmock/"},
-       true},
       {"tests/support/", {"tests/support/", "absl/", "gtest/", "gmock/"}, true},
       {"tests/core/",
        {"core/", "tests/core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/",
@@ -108,13 +104,7 @@ bool IsOperatingSystemHeader(std::string_view include) {
          StartsWithAny(include, {"sys/", "arpa/", "netinet/"});
 }
 
-// A test of a layer that does not know the server may not start one in its process.
-bool BringsTheServer(std::string_view include) {
-  return include.starts_with("tests/support/running_server");
-}
-
 bool IsAllowed(const Rule& rule, std::string_view include) {
-  if (BringsTheServer(include) && !StartsWithAny("server/", rule.may_include)) return false;
   return IsStandardHeader(include) || StartsWithAny(include, rule.may_include) ||
          (rule.operating_system && IsOperatingSystemHeader(include));
 }

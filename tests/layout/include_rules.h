@@ -5,11 +5,10 @@
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
-//            parsed by CLI11, which is slow to compile: in the server only command_line.cc has it.
+//            parsed by CLI11, which is slow to compile: in the server only command_line/ has it.
 //   tools:   the core only. Only their tests know them.
 //   server/convert alone includes the core's physics and the API's messages in one file.
-//   tests:   of a layer know that layer, and tests/support; running_server.h there is for tests
-//            that know the server.
+//   tests:   of a layer know that layer, and tests/support.
 //
 // A new folder needs a row in the table: a file without one is a violation.
 #ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_

@@ -10,6 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/layout/include_rules.h"
+#include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston {
@@ -21,11 +22,6 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-std::string ReadFile(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // Text by path, of all C++ files of the project.
 std::map<std::string, std::string> SourceFiles() {
   const std::filesystem::path root = SourcePath("");
@@ -34,7 +30,7 @@ std::map<std::string, std::string> SourceFiles() {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension();
       if (extension != ".h" && extension != ".cc") continue;
-      files[entry.path().lexically_relative(root)] = ReadFile(entry.path());
+      files[entry.path().lexically_relative(root)] = Contents(entry.path());
     }
   }
   return files;
@@ -193,10 +189,10 @@ TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
   ExpectWrong("tests/tools/stability/x.cc", "\"server/store/store.h\"");
 }
 
-TEST(IncludeRules, OneFileOfTheServerParsesFlags) {
-  EXPECT_THAT(WrongIncludes("server/command_line.cc", "#include <CLI/CLI.hpp>\n"), IsEmpty());
-  ExpectWrong("server/command_line.cc", "\"core/experiment/block_plan.h\"");
-  for (const char* path : {"server/api/x.cc", "server/command_line.h", "server/main.cc"}) {
+TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
+  EXPECT_THAT(WrongIncludes("server/command_line/x.cc", "#include <CLI/CLI.hpp>\n"), IsEmpty());
+  ExpectWrong("server/command_line/x.cc", "\"core/experiment/block_plan.h\"");
+  for (const char* path : {"server/api/x.cc", "server/main.cc"}) {
     ExpectWrong(path, "<CLI/CLI.hpp>");
   }
 }
@@ -232,10 +228,7 @@ TEST(IncludeRules, SupportOfTestsIsForTestsOfAllLayers) {
 }
 
 TEST(IncludeRules, ARunningServerIsForTestsThatKnowTheServer) {
-  const std::string text =
-      "#include \"server/ballpiston_server.h\"\n#include \"grpcpp/channel.h\"\n";
-  EXPECT_THAT(WrongIncludes("tests/support/running_server.h", text), IsEmpty());
-  const std::string include = "\"tests/support/running_server.h\"";
+  const std::string include = "\"tests/server/running_server.h\"";
   EXPECT_THAT(WrongIncludes("tests/server/x.cc", "#include " + include + "\n"), IsEmpty());
   for (const char* path : {"tests/core/geometry/x.cc", "tests/statistical/x.cc", "tests/oracle/x.h",
                            "tests/benchmark/x.cc", "tests/client/x.cc", "tests/support/paths.cc"}) {

@@ -10,7 +10,7 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
 #include "tests/server/store_access.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {

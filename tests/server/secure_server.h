@@ -17,7 +17,7 @@
 #include "grpcpp/security/credentials.h"
 #include "server/security/principal.h"
 #include "tests/credentials/test_authority.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {

@@ -14,9 +14,9 @@
 #include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/files.h"
+#include "tests/support/files.h"
 #include "tests/server/requests.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 

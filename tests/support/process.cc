@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -44,7 +45,12 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
   return pointers;
 }
 
+// Until the text or the reader ends.
 void WriteAll(int descriptor, const std::string& text) {
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);  // of this thread, which writes nothing else
   size_t written = 0;
   while (written < text.size()) {
     const ssize_t n = write(descriptor, text.data() + written, text.size() - written);
@@ -52,6 +58,14 @@ void WriteAll(int descriptor, const std::string& text) {
     written += static_cast<size_t>(n);
   }
   close(descriptor);
+}
+
+// Repeats a system call that a signal has interrupted.
+template <typename Call>
+auto Uninterrupted(Call call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
 }
 
 }  // namespace
@@ -71,7 +85,7 @@ Process::Process(const ProcessOptions& options) {
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : {in.read, out.write, err.write}) close(end);
   if (error != 0) throw std::runtime_error("cannot start " + command[0]);
-  WriteAll(in.write, options.input);
+  writer_ = std::thread([input = options.input, end = in.write] { WriteAll(end, input); });
   out_.descriptor = out.read;
   err_.descriptor = err.read;
   for (Stream* stream : {&out_, &err_}) {
@@ -124,7 +138,8 @@ bool Process::EndsWithin(std::chrono::milliseconds time) const {
   if (waited_) return true;
   pollfd end{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
   if (end.fd < 0) throw std::runtime_error("pidfd_open failed");
-  const bool ended = poll(&end, 1, static_cast<int>(time.count())) > 0;
+  const bool ended =
+      Uninterrupted([&] { return poll(&end, 1, static_cast<int>(time.count())); }) > 0;
   close(end.fd);
   return ended;
 }
@@ -132,9 +147,12 @@ bool Process::EndsWithin(std::chrono::milliseconds time) const {
 ProcessResult Process::Wait() {
   if (!waited_) {
     int status = 0;
-    waitpid(pid_, &status, 0);
+    if (Uninterrupted([&] { return waitpid(pid_, &status, 0); }) != pid_) {
+      throw std::runtime_error("waitpid failed");
+    }
     exit_code_ = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     waited_ = true;
+    writer_.join();
     for (Stream* stream : {&out_, &err_}) {
       stream->reader.join();
       close(stream->descriptor);

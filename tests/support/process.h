@@ -15,6 +15,8 @@
 #include <thread>
 #include <vector>
 
+#include "gmock/gmock.h"
+
 namespace ballpiston {
 
 struct ProcessOptions {
@@ -28,6 +30,12 @@ struct ProcessResult {
   std::string out;
   std::string err;
 };
+
+// Of a ProcessResult; shows standard error if it is another code.
+MATCHER_P(ExitsWith, code, "") {
+  *result_listener << "whose exit code is " << arg.exit_code << " and standard error\n" << arg.err;
+  return arg.exit_code == code;
+}
 
 // Killed, if it still runs, when the object ends.
 class Process {
@@ -68,6 +76,7 @@ class Process {
   mutable std::mutex mutex_;
   std::condition_variable news_;
   Stream out_, err_;
+  std::thread writer_;  // of standard input
 };
 
 template <typename Wanted>

@@ -31,8 +31,7 @@ struct ServerSetUp {
   std::vector<std::string> launcher = {};  // a command that is given the server's as arguments
 };
 
-// One thread starts, stops and waits. Any thread may read address, data folder and what is
-// measured.
+// One thread starts and stops the server. While it does neither, others may use the const functions.
 class ServerProcess {
  public:
   explicit ServerProcess(ServerSetUp set_up = {});  // does not start the server

@@ -7,9 +7,11 @@
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <thread>
 
 #include "absl/debugging/symbolize.h"
@@ -21,11 +23,25 @@ namespace {
 constexpr int kMaxDepth = 64;
 constexpr std::chrono::seconds kPatience(1);
 
-// The stack of the thread that took the signal last. One thread is asked at a time.
-std::array<void*, kMaxDepth> frames;
-std::atomic<int> depth = 0;
+pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
-void RecordStack(int) { depth = backtrace(frames.data(), kMaxDepth); }
+// Never given back: a thread may answer after its second.
+struct Request {
+  pid_t thread = 0;
+  std::array<void*, kMaxDepth> frames = {};
+  std::atomic<int> depth = 0;
+};
+
+std::atomic<Request*> asked = nullptr;
+
+void RecordStack(int) {
+  const int error = errno;
+  Request* const request = asked.load();
+  if (request != nullptr && request->thread == ThisThread()) {
+    request->depth = backtrace(request->frames.data(), kMaxDepth);
+  }
+  errno = error;
+}
 
 std::string NameOf(pid_t thread) {
   std::string name;
@@ -34,41 +50,48 @@ std::string NameOf(pid_t thread) {
 }
 
 // False if the thread did not answer in time.
-bool Record(pid_t thread) {
-  depth = 0;
-  if (syscall(SYS_tgkill, getpid(), thread, SIGRTMAX) != 0) return false;
+bool Record(Request& request) {
+  asked = &request;
+  if (syscall(SYS_tgkill, getpid(), request.thread, SIGRTMAX) != 0) return false;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (depth == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  return depth > 0;
+  while (request.depth == 0 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  return request.depth > 0;
 }
 
-std::string RecordedStack() {
+std::string StackOf(const Request& request) {
   std::string text;
   char name[512];
-  for (int i = 0; i < depth; ++i) {
+  for (int i = 0; i < request.depth; ++i) {
     // An address of return lies behind the call, which may be the function's last instruction.
-    const void* const call = static_cast<char*>(frames[static_cast<size_t>(i)]) - 1;
+    const void* const call = static_cast<char*>(request.frames[static_cast<size_t>(i)]) - 1;
     absl::StrAppend(&text, "    ", absl::Symbolize(call, name, sizeof(name)) ? name : "?", "\n");
   }
   return text;
 }
 
+void Write(int descriptor, const std::string& text) {
+  [[maybe_unused]] const ssize_t written = write(descriptor, text.data(), text.size());
+}
+
 }  // namespace
 
-std::string ThreadStacks() {
-  backtrace(frames.data(), 1);  // loads the unwinder, which no signal handler may do
+void WriteThreadStacks(int descriptor) {
+  void* frame = nullptr;
+  backtrace(&frame, 1);  // loads the unwinder, which no signal handler may do
   struct sigaction action = {};
   action.sa_handler = &RecordStack;
   action.sa_flags = SA_RESTART;  // a thread that waits goes on waiting
   sigaction(SIGRTMAX, &action, nullptr);
-  std::string text;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
-    const pid_t thread = std::stoi(entry.path().filename());
-    if (thread == static_cast<pid_t>(syscall(SYS_gettid))) continue;
-    absl::StrAppend(&text, "  thread ", thread, " (", NameOf(thread), ")\n");
-    absl::StrAppend(&text, Record(thread) ? RecordedStack() : "    does not answer\n");
+    Request& request = *new Request;
+    request.thread = std::stoi(entry.path().filename());
+    if (request.thread == ThisThread()) continue;
+    Write(descriptor,
+          absl::StrCat("  thread ", request.thread, " (", NameOf(request.thread), ")\n"));
+    Write(descriptor, Record(request) ? StackOf(request) : "    does not answer\n");
   }
-  return text;
 }
 
 }  // namespace ballpiston

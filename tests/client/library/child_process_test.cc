@@ -4,10 +4,9 @@
 #include <signal.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -24,10 +23,7 @@ class ChildProcessTest : public ::testing::Test {
     EXPECT_OK(status);
     return status.value_or(-1);
   }
-  std::string Output() const {
-    std::ifstream in(folder_.File("output"));
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string Output() const { return Contents(folder_.File("output")); }
 
   const TemporaryFolder folder_;
 };

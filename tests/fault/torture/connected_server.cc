@@ -1,14 +1,14 @@
 #include "tests/fault/torture/connected_server.h"
 
+#include "tests/server/own_channel.h"
+
 namespace ballpiston::torture {
 
 std::shared_ptr<grpc::Channel> ConnectedServer::Connect() {
   grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 200);
-  auto channel =
-      grpc::CreateCustomChannel(address(), grpc::InsecureChannelCredentials(), arguments);
+  auto channel = server::OwnChannel(address(), nullptr, arguments);
   const std::lock_guard lock(mutex_);
   channels_.push_back(channel);
   return channel;

@@ -16,7 +16,8 @@
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
-#include "tests/support/running_server.h"
+#include "tests/server/own_channel.h"
+#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -181,7 +182,7 @@ TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
                           .RegisterService(&service)
                           .AddListeningPort(address, grpc::InsecureServerCredentials())
                           .BuildAndStart();
-  TestClient client(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
+  TestClient client(OwnChannel(address));
   for (int i = 0; i < 20; ++i) {
     EXPECT_THAT(client.Create(CreateRequest(Equilibrium(1, 1))),
                 IsError(grpc::StatusCode::UNAVAILABLE, "STORE_FAILED"));

@@ -9,7 +9,7 @@
 
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "gtest/gtest.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 
 namespace ballpiston::server {
 

@@ -12,7 +12,7 @@
 #include "server/observability/log.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

@@ -10,7 +10,7 @@
 #include "tests/server/requests.h"
 #include "tests/server/secure_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

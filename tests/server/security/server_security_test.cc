@@ -24,10 +24,11 @@
 #include "server/security/tls_files.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
-#include "tests/server/files.h"
+#include "tests/support/files.h"
 #include "tests/server/http_get.h"
 #include "tests/server/secure_server.h"
-#include "tests/support/running_server.h"
+#include "tests/server/own_channel.h"
+#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -101,7 +102,7 @@ TEST(Start, APublicAddressWithCredentialsIsServed) {
   const LaboratoryFiles files;
   RunningServer server(Secure(files, {.listen = "0.0.0.0:0"}));
   const std::string address = "localhost" + server.address().substr(7);
-  const auto channel = grpc::CreateChannel(address, files.Credentials());
+  const auto channel = OwnChannel(address, files.Credentials());
   EXPECT_OK(CallByName(channel, kListJobs, "", Bearer(kAlice)));
   EXPECT_FALSE(CallByName(channel, kListJobs).ok());
 }

@@ -5,7 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/http_get.h"
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 
 namespace ballpiston::server {
 namespace {

@@ -20,7 +20,7 @@
 #include "server/store/pilot_table.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/files.h"
+#include "tests/support/files.h"
 #include "tests/server/store_access.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"

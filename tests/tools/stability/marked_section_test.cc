@@ -5,7 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/tools/stability/text_file.h"
+#include "tests/support/files.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -22,9 +22,9 @@ class MarkedSection : public ::testing::Test {
   // Checks, then replaces, the section `table` of a page. Returns the error, which must be the
   // same.
   std::string ErrorWith(const std::string& page) const {
-    WriteText(path_, page);
+    WriteFile(path_, page);
     const absl::Status checked = CheckMarkedSection(path_, "table");
-    EXPECT_EQ(ReadText(path_), page);
+    EXPECT_EQ(Contents(path_), page);
     EXPECT_EQ(ReplaceMarkedSection(path_, "table", "new\n"), checked);
     return checked.ok() ? "" : checked.ToString();
   }
@@ -35,7 +35,7 @@ class MarkedSection : public ::testing::Test {
 
 TEST_F(MarkedSection, OnlyWhatIsBetweenTheMarkersIsReplaced) {
   EXPECT_EQ(ErrorWith(kPage), "");
-  EXPECT_EQ(ReadText(path_),
+  EXPECT_EQ(Contents(path_),
             "before\n<!-- table:begin -->\nnew\n<!-- table:end -->\n"
             "after\n<!-- other:begin -->\nother\n<!-- other:end -->\n");
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("page.md"));
@@ -48,7 +48,7 @@ TEST_F(MarkedSection, APageWithoutBothMarkersInOrderStaysAsItIs) {
     EXPECT_THAT(ErrorWith(page),
                 HasSubstr(path_ + " lacks the lines <!-- table:begin --> and <!-- table:end -->"))
         << page;
-    EXPECT_EQ(ReadText(path_), page);
+    EXPECT_EQ(Contents(path_), page);
   }
 }
 

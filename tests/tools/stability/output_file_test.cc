@@ -11,7 +11,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/tools/stability/text_file.h"
+#include "tests/support/files.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -32,18 +32,18 @@ TEST_F(OutputFile, ANewFileHoldsTheText) {
   EXPECT_TRUE(CheckWritable(File("new.md")).ok());
   EXPECT_THAT(NamesIn(folder_.path()), IsEmpty());
   EXPECT_TRUE(WriteWholeFile(File("new.md"), "text\n").ok());
-  EXPECT_EQ(ReadText(File("new.md")), "text\n");
+  EXPECT_EQ(Contents(File("new.md")), "text\n");
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("new.md"));
 }
 
 TEST_F(OutputFile, AnExistingFileIsReplacedAndKeepsItsPermissions) {
   const std::string path = File("old.md");
-  WriteText(path, "an older and longer text\n");
+  WriteFile(path, "an older and longer text\n");
   ASSERT_EQ(chmod(path.c_str(), 0640), 0);
   EXPECT_TRUE(CheckWritable(path).ok());
-  EXPECT_EQ(ReadText(path), "an older and longer text\n");
+  EXPECT_EQ(Contents(path), "an older and longer text\n");
   EXPECT_TRUE(WriteWholeFile(path, "text\n").ok());
-  EXPECT_EQ(ReadText(path), "text\n");
+  EXPECT_EQ(Contents(path), "text\n");
   struct stat now = {};
   ASSERT_EQ(stat(path.c_str(), &now), 0);
   EXPECT_EQ(now.st_mode & 07777, 0640u);
@@ -51,10 +51,10 @@ TEST_F(OutputFile, AnExistingFileIsReplacedAndKeepsItsPermissions) {
 }
 
 TEST_F(OutputFile, TheFileBehindALinkIsReplaced) {
-  WriteText(File("old.md"), "old\n");
+  WriteFile(File("old.md"), "old\n");
   std::filesystem::create_symlink("old.md", File("link.md"));
   EXPECT_TRUE(WriteWholeFile(File("link.md"), "text\n").ok());
-  EXPECT_EQ(ReadText(File("old.md")), "text\n");
+  EXPECT_EQ(Contents(File("old.md")), "text\n");
   EXPECT_TRUE(std::filesystem::is_symlink(File("link.md")));
   EXPECT_THAT(NamesIn(folder_.path()), UnorderedElementsAre("link.md", "old.md"));
 }
@@ -69,7 +69,7 @@ void ExpectRefused(const std::string& path, const std::string& reason) {
 }
 
 TEST_F(OutputFile, PlacesWhereNoFileCanBeAreRefused) {
-  WriteText(File("file"), "");
+  WriteFile(File("file"), "");
   ExpectRefused(File("missing/new.md"), "there is no folder " + File("missing"));
   ExpectRefused(File("file/new.md"), "there is no folder " + File("file"));
   ExpectRefused(folder_.path(), "not a regular file");
@@ -95,7 +95,7 @@ class OrdinaryUser {
 };
 
 TEST_F(OutputFile, WithoutPermissionItIsRefused) {
-  WriteText(File("old.md"), "old\n");
+  WriteFile(File("old.md"), "old\n");
   ASSERT_EQ(chmod(File("old.md").c_str(), 0444), 0);
   ASSERT_EQ(chmod(folder_.path().c_str(), 0777), 0);  // so that only the file refuses
   {
@@ -131,14 +131,14 @@ class SizeLimit {
 };
 
 TEST_F(OutputFile, AWriteThatFailsHalfwayLeavesTheOldFile) {
-  WriteText(File("old.md"), "old\n");
+  WriteFile(File("old.md"), "old\n");
   absl::Status status;
   {
     const SizeLimit limit(1000);
     status = WriteWholeFile(File("old.md"), std::string(2000, 'x'));
   }
   EXPECT_THAT(std::string(status.message()), HasSubstr(File("old.md")));
-  EXPECT_EQ(ReadText(File("old.md")), "old\n");
+  EXPECT_EQ(Contents(File("old.md")), "old\n");
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("old.md"));
 }
 

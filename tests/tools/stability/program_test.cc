@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/tools/stability/text_file.h"
+#include "tests/support/files.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -87,29 +87,29 @@ TEST_F(Program, QuickTakesAThousandthOfTheStarts) {
 
 TEST_F(Program, OutWritesANewFileAndTellsWhere) {
   EXPECT_EQ(Run({"--out", path_}), 0);
-  EXPECT_EQ(ReadText(path_), kTables);
+  EXPECT_EQ(Contents(path_), kTables);
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("stability.md"));
   EXPECT_EQ(out_.str(), "");
   EXPECT_EQ(error_.str(), "stability: the tables are in " + path_ + "\n");
 }
 
 TEST_F(Program, OutReplacesAnExistingFileAfterTheTablesAreComputed) {
-  WriteText(path_, "older tables\n");
-  while_computing_ = [this] { EXPECT_EQ(ReadText(path_), "older tables\n"); };
+  WriteFile(path_, "older tables\n");
+  while_computing_ = [this] { EXPECT_EQ(Contents(path_), "older tables\n"); };
   EXPECT_EQ(Run({"--out", path_}), 0);
-  EXPECT_EQ(ReadText(path_), kTables);
+  EXPECT_EQ(Contents(path_), kTables);
 }
 
 TEST_F(Program, IntoReplacesTheSectionNamedStability) {
-  WriteText(path_, "before\n<!-- stability:begin -->\nold\n<!-- stability:end -->\nafter\n");
+  WriteFile(path_, "before\n<!-- stability:begin -->\nold\n<!-- stability:end -->\nafter\n");
   EXPECT_EQ(Run({"--into", path_}), 0);
-  EXPECT_EQ(ReadText(path_),
+  EXPECT_EQ(Contents(path_),
             "before\n<!-- stability:begin -->\n| tables |\n<!-- stability:end -->\nafter\n");
   EXPECT_EQ(error_.str(), "stability: the tables are in " + path_ + "\n");
 }
 
 TEST_F(Program, AFileThatCannotBeWrittenIsRefusedBeforeComputing) {
-  WriteText(path_, "a page without the section\n");
+  WriteFile(path_, "a page without the section\n");
   const std::vector<std::vector<std::string>> refused = {{"--out", folder_.File("missing/new.md")},
                                                          {"--out", "/proc/new.md"},
                                                          {"--out", folder_.path()},
@@ -134,7 +134,7 @@ TEST_F(Program, TablesOfWhichTheFolderIsGoneArePrinted) {
 TEST_F(Program, ComplaintsExitWithOneAndTheTablesAreWrittenNonetheless) {
   report_.complaints = {"lanes fails: grazing"};
   EXPECT_EQ(Run({"--out", path_}), 1);
-  EXPECT_EQ(ReadText(path_), kTables);
+  EXPECT_EQ(Contents(path_), kTables);
   EXPECT_THAT(error_.str(), HasSubstr("stability: lanes fails: grazing\n"));
 }
 

@@ -1,30 +1,21 @@
-#include "server/command_line.h"
+#include "server/command_line/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <istream>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <set>
 #include <string>
 #include <thread>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
-#include "absl/strings/str_split.h"
+#include "server/command_line/flag_file.h"
+#include "server/command_line/flag_values.h"
+#include "server/command_line/help_page.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -36,116 +27,6 @@ constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr int64_t kLeastTransferMib = 16;
 constexpr int64_t kMostTransferMib = int64_t{1} << 20;
-
-constexpr char kDescription[] =
-    "The server of ballpiston: computes ensembles of rarely interacting billiards.";
-constexpr char kUsage[] =
-    "\nUsage:\n"
-    "  ballpistond --listen unix:PATH | --listen 127.0.0.1:PORT [--data-dir DIR] [--workers N]\n"
-    "  ballpistond --listen 0.0.0.0:PORT --tls-certificate FILE --tls-key FILE --access-file FILE\n"
-    "  ballpistond --access-file FILE --new-token PRINCIPAL:ROLE[:DAYS]\n"
-    "  ballpistond --data-dir DIR --check | --backup FILE\n\n";
-constexpr char kExitCodes[] =
-    "Exit codes: 0 stopped or done; 1 the disk of the store is full or fails, try again; 2 a "
-    "wrong\n"
-    "flag, an address or a data folder in use, or a store that is not sound; 6 a data folder that\n"
-    "is not writable.";
-
-// ---- values ----
-
-// `value` is the text that was given. CLI11 hands the error back to Parse.
-[[noreturn]] void Refuse(const std::string& flag, const std::string& value, const std::string& why,
-                         const std::string& permitted) {
-  throw CLI::ValidationError(
-      absl::StrCat("--", flag, "=", value, " ", why, "; permitted: ", permitted));
-}
-
-std::string Text(double number) { return absl::StrFormat("%.15g", number); }
-std::string Text(int64_t number) { return absl::StrCat(number); }
-
-template <typename Number>
-struct Range {
-  Number least;
-  Number most;
-  std::string text;
-};
-
-template <typename Number>
-Range<Number> Between(Number least, Number most, const std::string& meaning_of_least = "") {
-  const char* const kind = std::is_integral_v<Number> ? "whole numbers from " : "";
-  return {least, most, absl::StrCat(kind, Text(least), meaning_of_least, " to ", Text(most))};
-}
-
-// The greatest number is finite.
-template <typename Number>
-Range<Number> LimitRange() {
-  return Between<Number>(0, std::numeric_limits<Number>::max(), " (no limit)");
-}
-
-bool Read(const std::string& text, double& number) { return absl::SimpleAtod(text, &number); }
-
-// Also 1e6; but not nan, and nothing beyond 2^53, where a double is not exact.
-bool Read(const std::string& text, int64_t& number) {
-  if (absl::SimpleAtoi(text, &number)) return true;
-  double real = 0;
-  if (!absl::SimpleAtod(text, &real) || !(std::fabs(real) <= 0x1p53)) return false;
-  number = static_cast<int64_t>(real);
-  return static_cast<double>(number) == real;
-}
-
-// Not by CLI11, for which 010 is 8, no text is 0, and 1e30 is the greatest integer.
-template <typename Number>
-Number NumberOf(const std::string& flag, const std::string& text, const Range<Number>& range) {
-  Number number{};
-  if (Read(text, number) && number >= range.least && number <= range.most) return number;
-  double any = 0;
-  const bool is_number = Read(text, any) && !std::isnan(any);
-  Refuse(flag, text, is_number ? "is out of range" : "is not a number", range.text);
-}
-
-template <typename Value, typename Number>
-void AddNumber(CLI::App& app, const std::string& flag, Value& value, const Range<Number>& range,
-               const std::string& description) {
-  const auto set = [&value, flag, range](const std::string& text) {
-    value = static_cast<Value>(NumberOf(flag, text, range));
-  };
-  app.add_option_function<std::string>("--" + flag, set, description)
-      ->type_name("N")
-      ->default_str(Text(Number{value}));
-}
-
-void AddSeconds(CLI::App& app, const std::string& flag, std::chrono::milliseconds& time,
-                const Range<double>& range, const std::string& description) {
-  const auto set = [&time, flag, range](const std::string& text) {
-    const double seconds = NumberOf(flag, text, range);
-    time = std::chrono::milliseconds(static_cast<int64_t>(std::ceil(1000 * seconds)));
-  };
-  app.add_option_function<std::string>("--" + flag, set, description)
-      ->type_name("SECONDS")
-      ->default_str(Text(std::chrono::duration<double>(time).count()));
-}
-
-template <typename Value>
-using Choices = std::vector<std::pair<std::string, Value>>;
-
-// The first choice is the default.
-template <typename Value>
-void AddChoice(CLI::App& app, const std::string& flag, Value& value, const Choices<Value>& choices,
-               const std::string& description) {
-  const auto set = [&value, flag, choices](const std::string& text) {
-    const auto chosen = std::find_if(choices.begin(), choices.end(),
-                                     [&](const auto& choice) { return choice.first == text; });
-    if (chosen != choices.end()) {
-      value = chosen->second;
-      return;
-    }
-    const auto name = [](std::string* out, const auto& choice) { out->append(choice.first); };
-    Refuse(flag, text, "is unknown", absl::StrJoin(choices, ", ", name));
-  };
-  app.add_option_function<std::string>("--" + flag, set, description)
-      ->type_name("NAME")
-      ->default_str(choices.front().first);
-}
 
 // ---- the flags, by their groups in --help ----
 
@@ -163,19 +44,15 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
                  "time can use it")
       ->type_name("DIR")
       ->capture_default_str();
-  AddNumber(app, "workers", line.server.workers, Between(int64_t{1}, kMostWorkers),
-            "threads that compute, 1 to 1024");
+  AddInteger(app, "workers", line.server.workers, Between(int64_t{1}, kMostWorkers),
+             "threads that compute");
   AddSeconds(app, "watch-heartbeat-seconds", line.server.watch.heartbeat, Between(0.01, 3600.0),
-             "a watch without news sends a message after this time, 0.01 to 3600");
-  AddSeconds(app, "idle-exit-seconds", line.idle_exit, Between(0.0, kMostSeconds),
-             "the server stops when no job was active and no call in progress for this time, 0 to "
-             "1000000; 0: never");
+             "a watch without news sends a message after this time");
+  AddSeconds(app, "idle-exit-seconds", line.idle_exit, Between(0.0, kMostSeconds, " (never)"),
+             "the server stops when no job was active and no call in progress for this time");
   AddSeconds(app, "drain-seconds", line.drain, Between(0.0, 3600.0),
-             "time for calls in progress to end after SIGTERM or SIGINT, 0 to 3600");
-  app.set_config("--config", "",
-                 "file of flags, read at the start: a line each, FLAG = VALUE, without the dashes. "
-                 "A flag of the command line takes precedence")
-      ->type_name("FILE");
+             "time for calls in progress to end after SIGTERM or SIGINT");
+  AddFlagFile(app);
 }
 
 void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
@@ -236,9 +113,8 @@ void AddLimitFlags(CLI::App& app, Limits& limits) {
     };
     std::visit(add, row.limit);
   }
-  AddNumber(app, "max-message-bytes", limits.max_message_bytes,
-            Between(kLeastMessage, kMostMessage),
-            "bytes of one request, 1024 to 268435456; always limited");
+  AddInteger(app, "max-message-bytes", limits.max_message_bytes,
+             Between(kLeastMessage, kMostMessage), "bytes of one request");
 }
 
 void AddLogFlags(CLI::App& app, CommandLine& line) {
@@ -276,120 +152,6 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
   app.set_version_flag("--version", absl::StrCat("ballpistond ", kVersion), "print the version")
       ->trigger_on_parse();
 }
-
-// ---- help ----
-
-// As many words a line as fit.
-std::string Wrapped(const std::string& text, size_t width) {
-  std::string lines;
-  size_t column = 0;
-  for (const std::string& word : std::vector<std::string>(absl::StrSplit(text, ' '))) {
-    const bool fits = column + 1 + word.size() <= width;
-    if (column > 0) lines += fits ? ' ' : '\n';
-    column = (column > 0 && fits ? column + 1 : 0) + word.size();
-    lines += word;
-  }
-  return lines;
-}
-
-// Each flag on a line of its own, and what it does below: CLI11's two columns leave long names and
-// long descriptions no room.
-class HelpPage : public CLI::Formatter {
- public:
-  HelpPage() { column_width(kIndentation); }
-
-  std::string make_usage(const CLI::App*, std::string) const override { return kUsage; }
-  // Without the second blank line between two groups.
-  std::string make_group(std::string name, bool is_positional,
-                         std::vector<const CLI::Option*> options) const override {
-    return Formatter::make_group(std::move(name), is_positional, std::move(options)).substr(1);
-  }
-  std::string make_option_opts(const CLI::Option* option) const override {
-    return option->get_items_expected_max() == 0 ? "" : absl::StrCat(" ", option->get_type_name());
-  }
-  std::string make_option_desc(const CLI::Option* option) const override {
-    const std::string value = option->get_default_str();
-    const std::string text = value.empty() ? "" : absl::StrCat("; default: ", value);
-    return Wrapped(option->get_description() + text, kWidth - kIndentation);
-  }
-
- private:
-  static constexpr size_t kIndentation = 8;
-  static constexpr size_t kWidth = 96;
-};
-
-// ---- the file of --config ----
-
-// Of a flag that does not exist; `flag` is without dashes.
-std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written) {
-  const std::string dashed = "--" + absl::StrReplaceAll(flag, {{"_", "-"}});
-  const bool is_known = app.get_option_no_throw(dashed) != nullptr;
-  return absl::StrCat(written, " is not a flag; ",
-                      is_known ? absl::StrCat("it is spelled ", dashed) : "--help lists them");
-}
-
-// Lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #. Not by CLI11's own
-// reader: it takes [::1]:50051 for the beginning of a list, cuts "a#b" at the #, and ignores a
-// key's second value.
-class FlagFile : public CLI::Config {
- public:
-  explicit FlagFile(const CLI::App& app) : app_(app) {}
-
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> items;
-    std::set<const CLI::Option*> given;
-    int number = 0;
-    for (std::string line; std::getline(input, line);) {
-      ++number;
-      absl::StripAsciiWhitespace(&line);
-      if (line.empty() || line.front() == '#') continue;
-      CLI::ConfigItem item = ItemOf(line, number);
-      if (!given.insert(app_.get_option("--" + item.name)).second) {
-        throw Error(number, absl::StrCat(item.name, " is given twice"));
-      }
-      items.push_back(std::move(item));
-    }
-    return items;
-  }
-
-  std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
-
- private:
-  CLI::ConfigItem ItemOf(const std::string& line, int number) const {
-    const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits('=', 1));
-    CLI::ConfigItem item;
-    item.name = std::string(absl::StripAsciiWhitespace(parts.front()));
-    const CLI::Option* flag = app_.get_option_no_throw("--" + item.name);
-    if (flag == nullptr) throw Error(number, NoSuchFlag(app_, item.name, item.name));
-    if (!flag->get_configurable()) {
-      throw Error(number, item.name + " is permitted on the command line only");
-    }
-    const auto value = parts.size() == 2 ? ValueOf(parts[1]) : std::nullopt;
-    if (!value) throw Error(number, absl::StrCat("write ", item.name, " = \"VALUE\""));
-    item.inputs = {*value};
-    return item;
-  }
-
-  // VALUE or "VALUE", then perhaps a comment.
-  static std::optional<std::string> ValueOf(const std::string& text) {
-    const std::string value(absl::StripAsciiWhitespace(text));
-    if (!absl::StartsWith(value, "\"")) {
-      return std::string(absl::StripAsciiWhitespace(value.substr(0, value.find('#'))));
-    }
-    const size_t end = value.find('"', 1);
-    if (end == std::string::npos) return std::nullopt;
-    const std::string rest(absl::StripAsciiWhitespace(value.substr(end + 1)));
-    if (!rest.empty() && rest.front() != '#') return std::nullopt;
-    return value.substr(1, end - 1);
-  }
-
-  CLI::ConfigError Error(int line, const std::string& what) const {
-    const auto path = app_.get_config_ptr()->as<std::string>();
-    return CLI::ConfigError(absl::StrCat("--config=", path, ", line ", line, ": ", what));
-  }
-
-  const CLI::App& app_;
-};
 
 // ---- parsing ----
 
@@ -430,6 +192,16 @@ std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_arg
   return absl::StrCat(last_argument, " needs a value");
 }
 
+// For CLI11 an empty value of a text is as good as none.
+absl::Status CheckValuesAreGiven(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const bool takes_value = option->get_items_expected_max() > 0;
+    if (!takes_value || option->count() == 0 || !option->results().front().empty()) continue;
+    return absl::InvalidArgumentError(absl::StrCat(option->get_name(), " needs a value"));
+  }
+  return absl::OkStatus();
+}
+
 // Sets the flags, or `page`.
 absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::string& page) {
   const std::string last = arguments.empty() ? "" : arguments.front();
@@ -449,7 +221,7 @@ absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::strin
   } catch (const CLI::ParseError& error) {
     return absl::InvalidArgumentError(error.what());
   }
-  return absl::OkStatus();
+  return CheckValuesAreGiven(app);
 }
 
 // ---- what flags mean together ----
@@ -496,11 +268,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   CommandLine line;
   line.server.workers = DefaultWorkers();
   std::string new_token;
-  CLI::App app(kDescription, "ballpistond");
+  CLI::App app("", "ballpistond");
   app.set_help_flag();  // one of its own comes last
-  app.footer(kExitCodes);
-  app.formatter(std::make_shared<HelpPage>());
-  app.config_formatter(std::make_shared<FlagFile>(app));
+  SetHelpPage(app);
   AddServerFlags(app, line);
   AddSecurityFlags(app, line.server.security);
   AddLimitFlags(app, line.server.limits);

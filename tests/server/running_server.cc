@@ -1,11 +1,11 @@
-#include "tests/support/running_server.h"
+#include "tests/server/running_server.h"
 
 #include <stdexcept>
 #include <utility>
 
 #include "grpc/grpc.h"
-#include "grpcpp/create_channel.h"
 #include "gtest/gtest.h"
+#include "tests/server/own_channel.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -36,17 +36,6 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.metrics_listen = options.metrics_listen;
   all.store = {.delay = std::chrono::milliseconds(1), .stall = kNeverStalls};
   return all;
-}
-
-// A connection of its own: gRPC shares one among channels to the same address otherwise, also with
-// a server that is gone.
-std::shared_ptr<grpc::Channel> ChannelTo(
-    const std::string& address, const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-  return grpc::CreateCustomChannel(
-      address, credentials != nullptr ? credentials : grpc::InsecureChannelCredentials(),
-      arguments);
 }
 
 template <typename Response, typename Request, typename Fetch>
@@ -183,7 +172,7 @@ RunningServer::RunningServer(const TestServerOptions& options)
 
 RunningServer::RunningServer(Started started,
                              const std::shared_ptr<grpc::ChannelCredentials>& credentials)
-    : TestClient(ChannelTo(started.server->address(), credentials)),
+    : TestClient(OwnChannel(started.server->address(), credentials)),
       folder_(std::move(started.folder)),
       server_(std::move(started.server)) {}
 
@@ -200,7 +189,7 @@ RunningServer::Started RunningServer::Start(const TestServerOptions& options) {
 
 std::shared_ptr<grpc::Channel> RunningServer::NewChannel(
     const std::shared_ptr<grpc::ChannelCredentials>& credentials) const {
-  return ChannelTo(address(), credentials);
+  return OwnChannel(address(), credentials);
 }
 
 absl::Status StartError(const TestServerOptions& options) {

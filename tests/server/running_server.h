@@ -5,8 +5,8 @@
 //   EXPECT_EQ(server.AwaitEnd(name).state(), v1::EnsembleJob::SUCCEEDED);
 //
 //   RunningServer small({.workers = 1, .limits = {.max_active_jobs = 1}});
-#ifndef BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_
-#define BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_
+#ifndef BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
+#define BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_
 
 #include <chrono>
 #include <memory>
@@ -110,4 +110,4 @@ absl::Status StartError(const TestServerOptions& options);
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_TESTS_SUPPORT_RUNNING_SERVER_H_
+#endif  // BALLPISTON_TESTS_SERVER_RUNNING_SERVER_H_

@@ -1,0 +1,18 @@
+// The file of --config: lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #.
+#ifndef BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_
+#define BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace ballpiston::server {
+
+// Adds --config, and the reader of its file. Errors name the file and the line.
+void AddFlagFile(CLI::App& app);
+
+// The error about a flag that does not exist: `flag` without dashes, and as it was written.
+std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_COMMAND_LINE_FLAG_FILE_H_

@@ -1,0 +1,30 @@
+// A channel with a connection of its own. Other channels to one address share a connection, also one
+// to a server that is gone.
+#ifndef BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
+#define BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
+
+#include <memory>
+#include <string>
+
+#include "grpc/grpc.h"
+#include "grpcpp/channel.h"
+#include "grpcpp/create_channel.h"
+#include "grpcpp/security/credentials.h"
+#include "grpcpp/support/channel_arguments.h"
+
+namespace ballpiston::server {
+
+// `credentials` null: none.
+inline std::shared_ptr<grpc::Channel> OwnChannel(
+    const std::string& address,
+    const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr,
+    grpc::ChannelArguments arguments = {}) {
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  return grpc::CreateCustomChannel(
+      address, credentials != nullptr ? credentials : grpc::InsecureChannelCredentials(),
+      arguments);
+}
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_

@@ -1,0 +1,47 @@
+// Whole files as texts, and what the file system says of them.
+#ifndef BALLPISTON_TESTS_SUPPORT_FILES_H_
+#define BALLPISTON_TESTS_SUPPORT_FILES_H_
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "gtest/gtest.h"
+
+namespace ballpiston {
+
+// Empty if the file cannot be read.
+inline std::string Contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void WriteFile(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  EXPECT_TRUE(file) << path;
+}
+
+// Permissions, and the bits before them.
+inline mode_t ModeOf(const std::string& path) {
+  struct stat found {};
+  EXPECT_EQ(stat(path.c_str(), &found), 0) << path;
+  return found.st_mode & 07777;
+}
+
+inline std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename());
+  }
+  return names;
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SUPPORT_FILES_H_

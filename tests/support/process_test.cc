@@ -1,0 +1,43 @@
+#include "tests/support/process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <memory>
+#include <thread>
+
+namespace ballpiston {
+namespace {
+
+TEST(Process, DiesWithTheThreadThatStartedIt) {
+  std::unique_ptr<Process> process;
+  std::thread([&] {
+    process = std::make_unique<Process>(
+        ProcessOptions{.command = {"sh", "-c", "echo started >&2; exec sleep 1000"}});
+    process->WaitForErr("started");
+  }).join();
+  EXPECT_THAT(process->Wait(), ExitsWith(128 + SIGKILL));
+}
+
+// More than a pipe holds.
+const std::string kLongInput(size_t{1} << 20, 'x');
+
+TEST(Process, LongInputAndOutputDoNotWaitForEachOther) {
+  EXPECT_EQ(RunProgram({.command = {"cat"}, .input = kLongInput}).out, kLongInput);
+}
+
+TEST(Process, AProgramMayEndWithoutReadingItsInput) {
+  EXPECT_THAT(RunProgram({.command = {"true"}, .input = kLongInput}), ExitsWith(0));
+}
+
+TEST(Process, EndsWithinTellsWhetherItRuns) {
+  Process process({.command = {"sleep", "1000"}});
+  EXPECT_FALSE(process.EndsWithin(std::chrono::milliseconds(0)));
+  process.Signal(SIGTERM);
+  EXPECT_TRUE(process.EndsWithin(std::chrono::minutes(10)));
+  EXPECT_THAT(process.Wait(), ExitsWith(128 + SIGTERM));
+}
+
+}  // namespace
+}  // namespace ballpiston
