@@ -2,7 +2,7 @@
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
 TEST_JOBS ?= $(shell nproc)
-# ci-: the same presets with warnings as errors.
+# The prefix ci- selects the same presets with warnings as errors.
 PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 
@@ -23,7 +23,7 @@ demo: build ## Run the paper's sweep with a real server and client (1 minute)
 chart: build ## Chart speed against accuracy for every method, on this machine (1 minute)
 	@scripts/chart.sh build/release/bin
 
-ladder: build ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
+ladder: build ## Compare planned and measured cost and error of a dozen questions, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
 bench: setup ## Build, then run the benchmarks on one core
@@ -32,15 +32,15 @@ bench: setup ## Build, then run the benchmarks on one core
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
+stability: build/release/.programs ## Count the failures of all methods; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.programs ## The same, written into core/README.md (10 minutes)
+stability-table: build/release/.programs ## Count the same and write the tables into core/README.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into core/README.md
 
-torture: build/release/.tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
+torture: build/release/.tests ## Simulate power cuts, kill the server a thousand times, break its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=100 build/release/bin/torture_test --gtest_brief=1
@@ -50,13 +50,13 @@ asan: test-asan ## Run the fast tests under the address and undefined-behaviour 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS or FUZZ_SECONDS a target
+fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds a target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-nightly: ## What takes hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
+nightly: ## Run the checks that take hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
 	@status=0; for task in tsan tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
@@ -64,16 +64,16 @@ nightly: ## What takes hours: tsan, tidy, torture, stability, and ten minutes of
 format: ## Format all C++ and proto files
 	@scripts/format.sh
 
-check-format: ## Say which lines are not formatted
+check-format: ## Print the lines that are not formatted
 	@scripts/format.sh --check
 
-tidy: ## Compile every file alone with Clang, warnings as errors, and run clang-tidy over all
+tidy: ## Compile every file alone with Clang and warnings as errors, and run clang-tidy on all files
 	@scripts/setup.sh clang clang-tidy libbenchmark-dev
 	@$(MAKE) build/single/.tests
 	@cmake --build --preset single
 	@run-clang-tidy -quiet -p build/single '$(CURDIR)/(core|server|client|tests|tools)/' 2>/dev/null
 
-clean: ## Remove everything that was built, and the output of demo, chart and stability
+clean: ## Remove all build files, and the output of demo, chart and stability
 	@rm -rf build demo chart stability.md
 
 help: ## Show this list
@@ -91,7 +91,8 @@ test-asan test-tsan: test-%: build/%/.tests
 	@cmake --build build/$* --target fast_tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
-# build/PRESET/.programs: configured, perhaps without the tests; build/PRESET/.tests: with them.
+# build/PRESET/.programs marks a configured preset, with or without the tests; build/PRESET/.tests
+# marks one with the tests.
 configure = mkdir -p $(@D); cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \
   || { cat $(@D)/configure.log; exit 1; }
 

@@ -3,9 +3,9 @@
 #
 #   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
 #
-# FUZZ_RUNS (100000) is the number of executions of each; with FUZZ_SECONDS each runs for that time
-# instead. FUZZ_SEED (1) makes them repeatable. Inputs that broke something stay in build/fuzz/found,
-# the others that it went on from in build/fuzz/corpus. Exits with 1 if any target failed.
+# FUZZ_RUNS (100000) is the number of executions of each target; with FUZZ_SECONDS each target runs
+# for that time instead. FUZZ_SEED (1) makes the runs repeatable. Inputs that make a target fail are
+# kept in build/fuzz/found, the corpus in build/fuzz/corpus. Exits with 1 if a target failed.
 set -euo pipefail
 folder=$1
 shift

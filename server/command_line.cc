@@ -53,7 +53,7 @@ constexpr char kExitCodes[] =
 
 // ---- values ----
 
-// `value` is the text that was given. CLI11 hands the error back to Parse.
+// Throws an error that Parse catches. `value` is the text of the command line or the file.
 [[noreturn]] void Refuse(const std::string& flag, const std::string& value, const std::string& why,
                          const std::string& permitted) {
   throw CLI::ValidationError(
@@ -76,7 +76,7 @@ Range<Number> Between(Number least, Number most, const std::string& meaning_of_l
   return {least, most, absl::StrCat(kind, Text(least), meaning_of_least, " to ", Text(most))};
 }
 
-// The greatest number is finite.
+// The greatest permitted number is the largest finite one.
 template <typename Number>
 Range<Number> LimitRange() {
   return Between<Number>(0, std::numeric_limits<Number>::max(), " (no limit)");
@@ -84,7 +84,7 @@ Range<Number> LimitRange() {
 
 bool Read(const std::string& text, double& number) { return absl::SimpleAtod(text, &number); }
 
-// Also 1e6; but not nan, and nothing beyond 2^53, where a double is not exact.
+// Accepts 1e6 too. Rejects nan, and numbers like 1e16 beyond 2^53, where a double is not exact.
 bool Read(const std::string& text, int64_t& number) {
   if (absl::SimpleAtoi(text, &number)) return true;
   double real = 0;
@@ -93,7 +93,8 @@ bool Read(const std::string& text, int64_t& number) {
   return static_cast<double>(number) == real;
 }
 
-// Not by CLI11, for which 010 is 8, no text is 0, and 1e30 is the greatest integer.
+// CLI11 is not used to read numbers: it reads 010 as 8, an empty text as 0, and 1e30 as the
+// greatest integer.
 template <typename Number>
 Number NumberOf(const std::string& flag, const std::string& text, const Range<Number>& range) {
   Number number{};
@@ -269,7 +270,7 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
                  "copy the store in --data-dir to this file, and check the copy. A server may use "
                  "the store at the same time")
       ->type_name("FILE");
-  // At once: help is given even if another flag is wrong.
+  // trigger_on_parse: --help prints the help even if another flag is wrong.
   app.add_flag_callback(
          "-h,--help", [] { throw CLI::CallForHelp(); }, "print this page")
       ->trigger_on_parse();
@@ -279,7 +280,7 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
 
 // ---- help ----
 
-// As many words a line as fit.
+// `text` with line breaks between words, so that no line is longer than `width` if words permit.
 std::string Wrapped(const std::string& text, size_t width) {
   std::string lines;
   size_t column = 0;
@@ -292,14 +293,14 @@ std::string Wrapped(const std::string& text, size_t width) {
   return lines;
 }
 
-// Each flag on a line of its own, and what it does below: CLI11's two columns leave long names and
-// long descriptions no room.
+// Prints each flag on a line of its own and its description below it. CLI11's default layout has
+// two columns, which are too narrow for long names and long descriptions.
 class HelpPage : public CLI::Formatter {
  public:
   HelpPage() { column_width(kIndentation); }
 
   std::string make_usage(const CLI::App*, std::string) const override { return kUsage; }
-  // Without the second blank line between two groups.
+  // Removes the second of two blank lines between groups.
   std::string make_group(std::string name, bool is_positional,
                          std::vector<const CLI::Option*> options) const override {
     return Formatter::make_group(std::move(name), is_positional, std::move(options)).substr(1);
@@ -320,7 +321,7 @@ class HelpPage : public CLI::Formatter {
 
 // ---- the file of --config ----
 
-// Of a flag that does not exist; `flag` is without dashes.
+// The error for an unknown flag. `flag` is its name without dashes.
 std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written) {
   const std::string dashed = "--" + absl::StrReplaceAll(flag, {{"_", "-"}});
   const bool is_known = app.get_option_no_throw(dashed) != nullptr;
@@ -328,9 +329,9 @@ std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::
                       is_known ? absl::StrCat("it is spelled ", dashed) : "--help lists them");
 }
 
-// Lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #. Not by CLI11's own
-// reader: it takes [::1]:50051 for the beginning of a list, cuts "a#b" at the #, and ignores a
-// key's second value.
+// Reads lines FLAG = VALUE or FLAG = "VALUE", and comments, which begin with #. CLI11's own reader
+// is not used: it reads [::1]:50051 as the beginning of a list, cuts "a#b" at the #, and ignores
+// the second value of a key.
 class FlagFile : public CLI::Config {
  public:
   explicit FlagFile(const CLI::App& app) : app_(app) {}
@@ -370,7 +371,7 @@ class FlagFile : public CLI::Config {
     return item;
   }
 
-  // VALUE or "VALUE", then perhaps a comment.
+  // `text` is VALUE or "VALUE", optionally followed by a comment.
   static std::optional<std::string> ValueOf(const std::string& text) {
     const std::string value(absl::StripAsciiWhitespace(text));
     if (!absl::StartsWith(value, "\"")) {
@@ -393,8 +394,8 @@ class FlagFile : public CLI::Config {
 
 // ---- parsing ----
 
-// In the order that CLI11 wants: the last one first. An empty value, as in --listen=, becomes a
-// word of its own: CLI11 would take the next flag for the value.
+// The arguments in reverse order, as CLI11 expects them. An empty value, as in --listen=, becomes
+// an argument of its own; otherwise CLI11 would use the next flag as the value.
 std::vector<std::string> Arguments(int argc, const char* const* argv) {
   std::vector<std::string> arguments;
   for (int i = 1; i < argc; ++i) {
@@ -430,7 +431,7 @@ std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_arg
   return absl::StrCat(last_argument, " needs a value");
 }
 
-// Sets the flags, or `page`.
+// Sets the flags; for --help and --version sets `page` instead.
 absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::string& page) {
   const std::string last = arguments.empty() ? "" : arguments.front();
   try {
@@ -452,9 +453,10 @@ absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::strin
   return absl::OkStatus();
 }
 
-// ---- what flags mean together ----
+// ---- combinations of flags ----
 
-// Below twice the longest message, two clients could keep each other from ever sending one.
+// With less memory than two messages of the greatest length, two clients that send such messages
+// could block each other for ever.
 absl::Status CheckTransfer(const Limits& limits) {
   const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
   const int64_t mib = limits.max_transfer_mib;
@@ -497,7 +499,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   line.server.workers = DefaultWorkers();
   std::string new_token;
   CLI::App app(kDescription, "ballpistond");
-  app.set_help_flag();  // one of its own comes last
+  app.set_help_flag();  // removes CLI11's; AddCommands adds one as the last group
   app.footer(kExitCodes);
   app.formatter(std::make_shared<HelpPage>());
   app.config_formatter(std::make_shared<FlagFile>(app));

@@ -1,4 +1,4 @@
-// The processes of these tests.
+// Class Process, which starts the programs of these tests.
 #include "tests/support/process.h"
 
 #include <gmock/gmock.h>

@@ -108,7 +108,7 @@ bool IsOperatingSystemHeader(std::string_view include) {
          StartsWithAny(include, {"sys/", "arpa/", "netinet/"});
 }
 
-// A test of a layer that does not know the server may not start one in its process.
+// Only tests that may include the server may start one in their process.
 bool BringsTheServer(std::string_view include) {
   return include.starts_with("tests/support/running_server");
 }

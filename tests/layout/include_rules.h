@@ -1,17 +1,19 @@
-// Which folder of the project may include what, as a table.
+// Rules for the includes of each folder of the project.
 //
 //   core:    geometry <- closed_form, sampling <- billiard, markov <- experiment <-
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.
-//   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
-//            parsed by CLI11, which is slow to compile: in the server only command_line.cc has it.
-//   tools:   the core only. Only their tests know them.
-//   server/convert alone includes the core's physics and the API's messages in one file.
-//   tests:   of a layer know that layer, and tests/support; running_server.h there is for tests
-//            that know the server.
+//   server:  core and the protos.   client: the protos only.   Neither includes the
+//            other. CLI11 parses the flags and is slow to compile; in the server only
+//            command_line.cc includes it.
+//   tools:   the core only. Only their tests include them.
+//   server/convert: only here a file may include both the core's physics and the API's messages.
+//   tests:   the tests of a layer include that layer and tests/support; running_server.h there is
+//            only for tests that may include the server.
 //
-// A new folder needs a row in the table: a file without one is a violation.
+// A new folder needs a row in the table of include_rules.cc: a file of a folder without a row is a
+// violation.
 #ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 #define BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 
@@ -21,10 +23,10 @@
 
 namespace ballpiston {
 
-// What the text includes, in order, without quotes or angle brackets.
+// The included files, in order, without quotes or angle brackets.
 std::vector<std::string> IncludesOf(std::string_view text);
 
-// One sentence for each include of the file that points the wrong way. `path` is relative to the
+// One sentence for each include that is not permitted. `path` is relative to the
 // repository's root.
 std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text);
 

@@ -26,7 +26,7 @@ std::string ReadFile(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Text by path, of all C++ files of the project.
+// The texts of all C++ files of the project, by path.
 std::map<std::string, std::string> SourceFiles() {
   const std::filesystem::path root = SourcePath("");
   std::map<std::string, std::string> files;

@@ -1,4 +1,4 @@
-// What tests ask about a file.
+// Contents and mode of a file.
 #ifndef BALLPISTON_TESTS_SERVER_FILES_H_
 #define BALLPISTON_TESTS_SERVER_FILES_H_
 
@@ -17,7 +17,7 @@ inline std::string Contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Permissions, and the bits before them.
+// The permissions and the setuid, setgid and sticky bits.
 inline mode_t ModeOf(const std::string& path) {
   struct stat found {};
   EXPECT_EQ(stat(path.c_str(), &found), 0) << path;

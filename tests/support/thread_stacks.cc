@@ -21,7 +21,7 @@ namespace {
 constexpr int kMaxDepth = 64;
 constexpr std::chrono::seconds kPatience(1);
 
-// The stack of the thread that took the signal last. One thread is asked at a time.
+// The stack of the thread that handled the signal last. Only one thread gets the signal at a time.
 std::array<void*, kMaxDepth> frames;
 std::atomic<int> depth = 0;
 
@@ -46,7 +46,8 @@ std::string RecordedStack() {
   std::string text;
   char name[512];
   for (int i = 0; i < depth; ++i) {
-    // An address of return lies behind the call, which may be the function's last instruction.
+    // A return address is after the call. If the call is the function's last instruction, the
+    // return address is outside the function; therefore the 1 is subtracted.
     const void* const call = static_cast<char*>(frames[static_cast<size_t>(i)]) - 1;
     absl::StrAppend(&text, "    ", absl::Symbolize(call, name, sizeof(name)) ? name : "?", "\n");
   }
@@ -56,10 +57,10 @@ std::string RecordedStack() {
 }  // namespace
 
 std::string ThreadStacks() {
-  backtrace(frames.data(), 1);  // loads the unwinder, which no signal handler may do
+  backtrace(frames.data(), 1);  // loads the unwinder; a signal handler must not load it
   struct sigaction action = {};
   action.sa_handler = &RecordStack;
-  action.sa_flags = SA_RESTART;  // a thread that waits goes on waiting
+  action.sa_flags = SA_RESTART;  // interrupted system calls continue
   sigaction(SIGRTMAX, &action, nullptr);
   std::string text;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {

@@ -1,4 +1,4 @@
-// Where every thread of this process is.
+// The stacks of all threads of this process.
 #ifndef BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
 #define BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
 
@@ -6,10 +6,10 @@
 
 namespace ballpiston {
 
-// The stack of each thread but the caller, innermost function first, under the thread's name. A
-// thread that does not answer within a second, because it is stopped in the kernel, is named
-// without its stack. For a process that is about to end: the signal SIGRTMAX is taken for good, and
-// a thread that holds the allocator's lock may make the caller wait for ever.
+// The name and the stack of each thread except the caller, innermost function first. The stack is
+// missing if the thread does not handle a signal within a second, because it is blocked in the
+// kernel. Call this only before the process exits: it replaces the handler of SIGRTMAX, and it may
+// wait for ever if a thread holds the allocator's lock.
 std::string ThreadStacks();
 
 }  // namespace ballpiston

@@ -20,12 +20,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Limit {
-  std::string_view tests;  // names that begin so
+  std::string_view tests;  // the beginning of their full names
   std::chrono::seconds time;
 };
 
 constexpr std::chrono::seconds kUsual(60);
-// They took 60, 46, 24 and 19 s with ten processes at work on two cores.
+// Measured with ten processes at work on two cores: 60, 46, 24 and 19 s.
 constexpr Limit kLonger[] = {
     {"BadInputTest.", std::chrono::seconds(300)},
     {"Kills.", std::chrono::seconds(300)},
@@ -46,7 +46,7 @@ double TimeScale() {
   _exit(1);  // child processes end with this one (process.h)
 }
 
-// Watches the time of what the program does now. Lives until the process is gone.
+// Limits the time of the current test or set-up, or of the program's end. It is never destroyed.
 class Watchdog {
  public:
   Watchdog() {

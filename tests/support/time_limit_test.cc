@@ -1,4 +1,4 @@
-// That a hanging test says so, by letting this program hang as a process of its own.
+// The tests run this program as a process of its own and let it hang.
 #include "tests/support/time_limit.h"
 
 #include <future>
@@ -11,7 +11,7 @@
 
 namespace ballpiston {
 
-// In a namespace with a name, and not inlined, so that the stacks can show them.
+// These two functions are in a named namespace and not inlined, so that the stacks show them.
 [[gnu::noinline]] void WaitForAnAnswerThatNeverComes() {
   std::promise<void> answer;
   answer.get_future().wait();

@@ -1,4 +1,4 @@
-// Whole files as texts, and what lies in a folder.
+// Reads and writes whole files, and lists the files of a folder.
 #ifndef BALLPISTON_TESTS_TOOLS_STABILITY_TEXT_FILE_H_
 #define BALLPISTON_TESTS_TOOLS_STABILITY_TEXT_FILE_H_
 
