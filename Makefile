@@ -2,7 +2,7 @@
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
 TEST_JOBS ?= $(shell nproc)
-# ci-: the same presets with warnings as errors.
+# The prefix ci- selects the same presets with warnings as errors.
 PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 
@@ -24,7 +24,7 @@ demo: build ## Run the paper's sweep with a real server and client (1 minute)
 chart: build ## Chart speed against accuracy for every method, on this machine (1 minute)
 	@scripts/chart.sh build/release/bin
 
-ladder: build ## Ask a dozen questions: planned and measured cost and error, on this machine (1 minute)
+ladder: build ## Compare planned and measured cost and error of a dozen questions, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
 bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchmarks on one core
@@ -49,13 +49,13 @@ asan: test-asan ## Run the fast tests under the address and undefined-behaviour 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-fuzz: ## Run libFuzzer over every reader of requests, stored bytes and answers; FUZZ_RUNS or FUZZ_SECONDS a target
+fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds a target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-nightly: ## What takes hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
+nightly: ## Run the checks that take hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
 	@status=0; for task in tsan tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
@@ -63,10 +63,10 @@ nightly: ## What takes hours: tsan, tidy, torture, stability, and ten minutes of
 format: ## Format all C++ and proto files
 	@scripts/format.sh
 
-check-format: ## Say which lines are not formatted
+check-format: ## Print the lines that are not formatted
 	@scripts/format.sh --check
 
-tidy: ## Compile every file alone with Clang, warnings as errors, and run clang-tidy over all
+tidy: ## Compile every file alone with Clang and warnings as errors, and run clang-tidy on all files
 	@scripts/setup.sh clang clang-tidy libbenchmark-dev
 	@$(MAKE) build/single/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset single

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs the Debian packages that the programs and the demo need: only those that are missing, so
-# that a second run changes nothing and needs no network.
+# Installs the Debian packages that the programs and the demo need. It installs only missing
+# packages, so a second run changes nothing and needs no network.
 #
 #   scripts/setup.sh [FURTHER_PACKAGE...]
 #
@@ -20,7 +20,7 @@ readonly PACKAGES=(
   libcli11-dev                                                 # the flags of both programs
   gnuplot-nox)                                                 # the client's figures
 
-# The CMake that is there or, without one, that would be installed; empty if neither is known.
+# The version of the installed CMake or, without one, of the package; empty if neither is known.
 cmake_version() {
   if command -v cmake >/dev/null; then
     cmake --version | awk 'NR == 1 {print $3}'

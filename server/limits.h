@@ -1,6 +1,5 @@
-// How much of the server one request, one principal and all principals together may use. The flag
-// of a limit has its name, with dashes (--max-active-jobs); 0 means no limit, except for
-// max_message_bytes.
+// Limits of a request, of a principal and of all principals together. The flag of a limit is its
+// name with dashes (--max-active-jobs). 0 means no limit; max_message_bytes is always limited.
 #ifndef BALLPISTON_SERVER_LIMITS_H_
 #define BALLPISTON_SERVER_LIMITS_H_
 

@@ -143,7 +143,7 @@ absl::Status ClearSocketPath(const ListenAddress& address) {
                                             "taken away (",
                                             std::strerror(errno), ")"));
     default:
-      return Occupied(address, absl::StrCat("whether a server listens there cannot be told (",
+      return Occupied(address, absl::StrCat("cannot find out whether a server listens there (",
                                             std::strerror(error), ")"));
   }
 }

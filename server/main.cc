@@ -88,20 +88,20 @@ int Fail(const absl::Status& status) {
   return absl::IsPermissionDenied(status) ? kExitNotPermitted : kExitUsage;
 }
 
-// On standard output.
+// Prints to standard output; returns the exit code.
 int Print(const std::string& text) {
   const bool printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
   return printed ? 0 : kExitUsage;
 }
 
-// Nothing but the token is printed, and it is printed nowhere else.
+// Prints the token and nothing else to standard output. The log does not hold the token.
 int PrintNewToken(const CommandLine& line) {
   const auto token =
       IssueToken({"access-file", line.server.security.access_file}, *line.new_token, absl::Now());
   return token.ok() ? Print(*token + "\n") : Fail(token.status());
 }
 
-// Of a check or a backup.
+// Prints the result of a check or a backup; returns the exit code.
 int Report(const absl::StatusOr<StoreSummary>& summary) {
   if (!summary.ok()) return Fail(summary.status());
   const int printed = Print(SummaryText(*summary) + "\n");
@@ -113,7 +113,7 @@ std::string StoreIn(const CommandLine& line) {
 }
 
 int Main(int argc, char** argv) {
-  umask(0077);                              // only their owner can use store and socket
+  umask(0077);                              // only the server's user can use store and socket
   signal(SIGXFSZ, SIG_IGN);                 // a file at its size limit is an error like a full disk
   setenv("GRPC_VERBOSITY", "NONE", false);  // this program reports errors itself, in one line
   const absl::StatusOr<CommandLine> line = ParseCommandLine(argc, argv);

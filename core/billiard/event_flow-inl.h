@@ -156,7 +156,7 @@ inline typename EventFlow<Real>::Encounter EventFlow<Real>::Meet(int disc) const
   const Real foot = state_.direction.dot(to_centre);
   const Real impact = Plane::Cross(state_.direction, to_centre);
   const Real square = rho_ * rho_ - impact * impact;
-  // Bit by bit: each of them alone would be a jump that is mispredicted.
+  // The operator is & and not &&: && makes a branch for each condition, and those are mispredicted.
   const int hit = int{disc != last_disc_} & int{foot > 0} & int{square > 0};
   const Real half_chord = sqrt(hit ? square : Real(0));
   const Real distance = std::max(foot - half_chord, Real(0));

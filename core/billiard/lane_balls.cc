@@ -36,13 +36,13 @@ class LaneBalls {
     }
   }
 
-  // Both groups, however few the balls: a number of groups that the compiler does not know made a
-  // flight up to 1.7 times as long.
+  // Always flies both groups, even for few balls. With a number of groups that the compiler does
+  // not know, a flight took up to 1.7 times as long.
   void FlyAll() {
     for (size_t group = 0; group < kGroups; ++group) FlyGroup(group * LanesInGroup());
   }
 
-  // Where the balls are now: before Hit() is asked.
+  // Computes LaneHit::x of all balls. Call it before Hit().
   void FindAbscissae() {
     for (size_t group = 0; group < kGroups; ++group) FindAbscissaeOfGroup(group * LanesInGroup());
   }

@@ -1,5 +1,6 @@
-// Arithmetic with 113 bits, to judge a double by: a formula may lose eighteen digits in it and is
-// still the better one. For tests and for the stability tables; no answer is computed in it.
+// Arithmetic with 113 bits, the reference for results in double: a formula that loses eighteen
+// digits here still has as many correct digits as a double. Only tests and the stability tables use
+// it; the engines compute no result in it.
 //
 // On x86 this is __float128 with the compiler's libquadmath, elsewhere a long double of the same
 // format. The functions are declared here because quadmath.h lies in a folder of GCC's own, which

@@ -145,7 +145,7 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
                  "copy the store in --data-dir to this file, and check the copy. A server may use "
                  "the store at the same time")
       ->type_name("FILE");
-  // At once: help is given even if another flag is wrong.
+  // trigger_on_parse: --help prints the help even if another flag is wrong.
   app.add_flag_callback(
          "-h,--help", [] { throw CLI::CallForHelp(); }, "print this page")
       ->trigger_on_parse();
@@ -155,8 +155,8 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
 
 // ---- parsing ----
 
-// In the order that CLI11 wants: the last one first. An empty value, as in --listen=, becomes a
-// word of its own: CLI11 would take the next flag for the value.
+// The arguments in reverse order, as CLI11 expects them. An empty value, as in --listen=, becomes
+// an argument of its own; otherwise CLI11 would use the next flag as the value.
 std::vector<std::string> Arguments(int argc, const char* const* argv) {
   std::vector<std::string> arguments;
   for (int i = 1; i < argc; ++i) {
@@ -224,9 +224,10 @@ absl::Status Parse(CLI::App& app, std::vector<std::string> arguments, std::strin
   return CheckValuesAreGiven(app);
 }
 
-// ---- what flags mean together ----
+// ---- combinations of flags ----
 
-// Below twice the longest message, two clients could keep each other from ever sending one.
+// With less memory than two messages of the greatest length, two clients that send such messages
+// could block each other for ever.
 absl::Status CheckTransfer(const Limits& limits) {
   const int64_t least = std::max(kLeastTransferMib, (2 * limits.max_message_bytes) >> 20);
   const int64_t mib = limits.max_transfer_mib;

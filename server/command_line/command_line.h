@@ -19,14 +19,14 @@ struct CommandLine {
   std::chrono::milliseconds idle_exit{0};  // 0: never
   std::chrono::milliseconds drain{10'000};
 
-  // At most one of these is given. It is done, and no server starts.
-  std::string page;  // of --help or --version: to be printed
+  // At most one of these is set. The program then executes this command and starts no server.
+  std::string page;  // the text that --help or --version prints
   std::optional<TokenRequest> new_token;
   bool check = false;
   std::string backup;  // the file to write
 };
 
-// INVALID_ARGUMENT names the flag, its value and what is permitted.
+// INVALID_ARGUMENT names the flag, its value and the permitted values.
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv);
 
 }  // namespace ballpiston::server

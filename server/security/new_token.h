@@ -1,4 +1,4 @@
-// Making a token: 256 random bits, told once to whoever asked and kept only as a hash.
+// Makes a token of 256 random bits. It is printed once; the access file keeps only its hash.
 #ifndef BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
 #define BALLPISTON_SERVER_SECURITY_NEW_TOKEN_H_
 
@@ -18,7 +18,8 @@ struct TokenRequest {
   std::optional<int> days;  // until it expires
 };
 
-// PRINCIPAL:ROLE[:DAYS], DAYS 1 to 36500; INVALID_ARGUMENT names --new-token and what is permitted.
+// Parses PRINCIPAL:ROLE[:DAYS], where DAYS is 1 to 36500. INVALID_ARGUMENT names --new-token and
+// the permitted values.
 absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 
 // Appends the token's entry to the access file, which is made (mode 0600) if there is none, and

@@ -15,7 +15,7 @@
 namespace ballpiston::server {
 
 struct NamedFile {
-  std::string flag;  // whose value is the path; without the leading dashes
+  std::string flag;  // the flag with this path as its value; without the leading dashes
   std::string path;
 
   std::string Text() const { return "--" + flag + "=" + path; }  // for messages
@@ -31,7 +31,8 @@ inline constexpr size_t kMaxSecurityFile = size_t{1} << 20;
 // not, or cannot be read.
 absl::StatusOr<std::string> ReadPublicFile(const NamedFile& file);
 
-// The same of one that has a secret, or decides who comes in: it has to be kept from others.
+// The same for a file with a secret or with access rights. It has to belong to the server's user or
+// to root, with mode 0600, or 0640 at most.
 absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file);
 
 // Whether a file with this status is kept from others: its owner is `user` or root, nobody else

@@ -63,8 +63,8 @@ absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions
   if (!list.ok()) return list.status();
   if (list->has_certificates() && options.tls_client_ca.empty()) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
-                                ": has certificates, which need --tls-client-ca, to say who may "
-                                "sign them"));
+                                ": has certificates; these need --tls-client-ca, the "
+                                "authorities that sign them"));
   }
   return std::make_shared<const AccessList>(*std::move(list));
 }

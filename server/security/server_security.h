@@ -25,7 +25,8 @@
 
 namespace ballpiston::server {
 
-// Paths, each the value of the flag of its name, with dashes; empty: not given.
+// The paths that the flags --access-file, --tls-certificate, --tls-key and --tls-client-ca give;
+// empty if a flag is absent.
 struct SecurityOptions {
   std::string access_file;
   std::string tls_certificate;

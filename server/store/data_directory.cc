@@ -51,9 +51,10 @@ absl::Status InUse(const std::string& path) {
   std::string address;
   std::getline(std::ifstream(AddressFile(path)), address);
   const std::string where = address.empty() ? "" : absl::StrCat(", which listens on ", address);
-  return absl::FailedPreconditionError(absl::StrCat(
-      "data folder ", path, " is in use by another ballpistond", where,
-      "; let clients ask that one (--server), stop it, or choose another folder with --data-dir"));
+  return absl::FailedPreconditionError(
+      absl::StrCat("data folder ", path, " is in use by another ballpistond", where,
+                   "; use that server (ballpiston --server), stop it, or choose another folder "
+                   "with --data-dir"));
 }
 
 bool IsDirectory(const std::string& path) {
@@ -105,7 +106,7 @@ absl::Status CloseToOthers(const std::string& path) {
   if (!is_ours) {
     return OpenToOthers(
         path, found.st_mode,
-        absl::StrFormat(", user %d) and not this server's own to close; choose another one with "
+        absl::StrFormat(", user %d) and is not this server's own; choose another one with "
                         "--data-dir",
                         found.st_uid));
   }

@@ -23,16 +23,16 @@ namespace ballpiston::server {
 inline constexpr int64_t kSchemaVersion = 1;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
-// The connection that writes and checkpoints, to a store that was checked, or made if there was
-// none. Whatever keeps it from being used, the file is left as it is:
+// The connection that writes and checkpoints. Checks an existing store; creates a store if there is
+// none. On an error the file is unchanged:
 //   FAILED_PRECONDITION  damaged, of a newer version, or of another program
 //   UNAVAILABLE          its disk is full or fails, or it may not be read
 //   PERMISSION_DENIED    it may not be written
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
                                                         const std::string& vfs = std::string());
 
-// A read-only connection to a store. Errors as above, but only the damage is found that opening the
-// file comes across; NOT_FOUND if there is no such file.
+// A read-only connection to a store. Errors as above, except that only the pages that opening reads
+// are checked for damage. NOT_FOUND if there is no such file.
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreToRead(const std::string& path,
                                                           const std::string& vfs = std::string());
 

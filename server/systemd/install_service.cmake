@@ -20,7 +20,7 @@ endfunction()
 install_with_paths(ballpistond.service "${CMAKE_INSTALL_PREFIX}/lib/systemd/system"
   ballpistond.service)
 install_with_paths(ballpistond.sysusers "${CMAKE_INSTALL_PREFIX}/lib/sysusers.d" ballpistond.conf)
-# The laboratory edits this file: an upgrade keeps it.
+# The laboratory edits this file, so an upgrade keeps it.
 if(NOT EXISTS "$ENV{DESTDIR}${etc}/ballpiston/ballpistond.conf")
   install_with_paths(ballpistond.conf "${etc}/ballpiston" ballpistond.conf)
 endif()

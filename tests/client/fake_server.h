@@ -18,7 +18,8 @@
 
 namespace ballpiston::client {
 
-// What one watch is sent: messages, then the end; with `hangs` the end comes when the server stops.
+// The messages and the final status that the server sends to one watch. With `hangs` it sends the
+// final status only when the server stops.
 struct WatchScript {
   std::vector<v1::WatchEnsembleJobResponse> messages;
   grpc::Status end;
@@ -27,17 +28,17 @@ struct WatchScript {
 
 class FakeEnsembleService final : public v1::EnsembleService::Service {
  public:
-  // The answers. Set before the server is used.
-  std::vector<WatchScript> watches;  // further watches are sent the last one
+  // The answers. Tests set them before they use the server.
+  std::vector<WatchScript> watches;  // one for each watch; the last one also for further watches
   std::vector<v1::EnsembleJob> jobs;
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_attempts = 0;  // so many attempts to create or cancel a job fail first
+  int unavailable_attempts = 0;  // this many attempts to create or cancel a job fail first
   grpc::Status create_end;
-  bool answers_from_store = false;  // the field of that name in what Create answers
-  int page_size = 2;                // whatever size the client asks for
-  int unavailable_later_pages = 0;  // so many attempts to list results after the first page fail
+  bool answers_from_store = false;  // Create answers with this value of answered_from_store
+  int page_size = 2;                // the size that the client asks for is ignored
+  int unavailable_later_pages = 0;  // this many attempts to list a page after the first one fail
 
   // The requests so far.
   struct Requests {
@@ -89,7 +90,7 @@ class FakeAnalyticService final : public v1::AnalyticService::Service {
 
 class FakeMethodService final : public v1::MethodService::Service {
  public:
-  // The answers; with `hangs` sent again and again until the client ends the call.
+  // The answers. With `hangs` they are repeated until the client ends the call.
   std::vector<v1::MethodMeasurement> measurements;
   grpc::Status end;
   bool hangs = false;
@@ -125,7 +126,7 @@ class FakeServer {
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }
   std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it
-  void Start();                                    // listens; the answers are set before
+  void Start();                                    // listens; set the answers before
 
  private:
   const TemporaryFolder folder_;
@@ -141,7 +142,7 @@ grpc::Status LimitExceeded(const std::string& reason, const std::string& message
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);
 
-inline constexpr char kJobName[] = "ensembleJobs/abc";  // of JobIn
+inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token);
 v1::WatchEnsembleJobResponse SnapshotMessage(double samples, const std::string& token);

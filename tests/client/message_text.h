@@ -1,4 +1,4 @@
-// Messages as tests write them: in the text format of Protocol Buffers.
+// Parses messages that tests write in the text format of Protocol Buffers.
 #ifndef BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
 #define BALLPISTON_TESTS_CLIENT_MESSAGE_TEXT_H_
 

@@ -1,4 +1,4 @@
-// Geometries that are valid.
+// Geometries for tests. They have to be valid.
 #ifndef BALLPISTON_TESTS_CORE_GEOMETRIES_H_
 #define BALLPISTON_TESTS_CORE_GEOMETRIES_H_
 
@@ -13,10 +13,10 @@ inline PairGeometry GeometryOf(double rho, double delta) {
 
 inline PairGeometry PaperGeometry(double delta) { return GeometryOf(kPaperRho, delta); }
 
-// At the gas bound, where collisions are frequent: one in 15 units of time.
+// At the gas bound. Collisions are frequent here: one in 15 units of time.
 inline const PairGeometry kPaperPair = PaperGeometry(0.2);
 
-// With delta a share of its bound.
+// delta is `share` times its bound.
 inline PairGeometry GeometryAtShare(double rho, double share) {
   return GeometryOf(rho, share * PairDeltaBound(rho));
 }

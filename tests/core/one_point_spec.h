@@ -1,4 +1,4 @@
-// A question about one point.
+// Specifications of one point.
 #ifndef BALLPISTON_TESTS_CORE_ONE_POINT_SPEC_H_
 #define BALLPISTON_TESTS_CORE_ONE_POINT_SPEC_H_
 

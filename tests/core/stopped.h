@@ -1,4 +1,4 @@
-// The token of work that was stopped before it began.
+// A stop token that is already stopped.
 #ifndef BALLPISTON_TESTS_CORE_STOPPED_H_
 #define BALLPISTON_TESTS_CORE_STOPPED_H_
 

@@ -1,5 +1,5 @@
-// The same question again: the answer comes from the store, and the client says so; with --fresh it
-// is computed again.
+// The answer to a repeated question comes from the store, and the client says so. With --fresh the
+// answer is computed again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Words Asking(const std::string& verb, const Words& flags = {}) {
 
 int JobsOf(const TestServer& server) { return Length(At(server.Json({"list"}), "jobs")); }
 
-// The question is repeated after a restart, too: the answer is in the store.
+// The question is repeated before and after a restart.
 TEST(AnsweredAgain, RunPrintsTheStoredAnswerAndNamesItsJob) {
   TestServer server;
   const ProcessResult first = server.Client(Asking("run", {"--format", "json"}));

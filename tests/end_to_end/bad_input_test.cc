@@ -1,4 +1,4 @@
-// Wrong commands of every kind: a clear message, the right exit code, and an unharmed server.
+// Wrong commands of every kind give a clear message and the right exit code; the server goes on.
 //
 // Prints the table: command, exit code, message.
 #include <gmock/gmock.h>
@@ -245,7 +245,7 @@ TEST_F(BadInputTest, EachIsRejectedWithAMessageAndItsExitCode) {
     const ProcessResult result = Run(input.command);
     Print(input, result);
     EXPECT_THAT(result, ExitsWith(input.exit_code)) << input.command;
-    // The accuracy that was reached is printed, though it is too low.
+    // The result is printed even if its accuracy is too low.
     const bool computed = input.command.find("--budget 0.05") != std::string::npos;
     EXPECT_EQ(result.out.empty(), !computed) << input.command << "\n" << result.out;
     EXPECT_THAT(result.err, StartsWith("ballpiston: ")) << input.command;
@@ -253,7 +253,7 @@ TEST_F(BadInputTest, EachIsRejectedWithAMessageAndItsExitCode) {
       EXPECT_THAT(result.err, HasSubstr(Replaced(part))) << input.command;
     }
   }
-  // No other job was made but the one that missed its tolerance.
+  // Only one command created a job: the one that missed its tolerance.
   EXPECT_EQ(Length(At(server_.Json({"list"}), "jobs")), 2);
 }
 

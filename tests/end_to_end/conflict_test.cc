@@ -1,4 +1,4 @@
-// Two servers that want the same folder or address: the second one says so and ends.
+// A second server with the folder or the address of the first one prints an error and exits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(TwoServers, DoNotShareADataFolder) {
       RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data_dir", first.data_dir()});
   EXPECT_THAT(second, ExitsWith(2));
   EXPECT_THAT(second.err, HasSubstr(first.data_dir()));
-  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));  // unharmed
+  EXPECT_THAT(first.Client({"list"}), ExitsWith(0));  // the first server still answers
 }
 
 TEST(TwoServers, DoNotShareASocket) {

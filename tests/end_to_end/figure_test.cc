@@ -41,7 +41,7 @@ int64_t RowsWithZScore(const std::string& csv) {
 TEST(Figure, LeavesDataScriptAndPicture) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const TestServer server;
-  const std::string folder = server.folder().File("out/figure");  // made, parents too
+  const std::string folder = server.folder().File("out/figure");  // created with its parents
   const ProcessResult result = server.Client(MeanFreeTime(folder));
   EXPECT_THAT(result, ExitsWith(0));
   const std::string csv = Contents(folder + "/mean-free-time.csv");
@@ -56,7 +56,7 @@ TEST(Figure, LeavesDataScriptAndPicture) {
   EXPECT_THAT(result.out, HasSubstr(folder + "/mean-free-time.svg\n"));
 }
 
-// So little time that the numbers mean nothing: the test shows that they arrive.
+// The measured times are too short for meaningful numbers. The test checks that there are numbers.
 TEST(Figure, SpeedIsChartedAgainstAccuracy) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const TestServer server;
@@ -86,7 +86,7 @@ TEST(Figure, CtrlCEndsAComparisonOnTheServerToo) {
   client->Signal(SIGINT);
   EXPECT_THAT(client->Wait(), ExitsWith(130));
   ProcessResult next;
-  do {  // the server may not have noticed the end yet
+  do {  // the server may not have noticed yet that the client ended
     next = server.Client({"figure", "speed-accuracy", "--out", folder, "--seconds", "0.01"});
   } while (next.err.find("COMPARISON_RUNNING") != std::string::npos);
   EXPECT_THAT(next, ExitsWith(0));

@@ -1,4 +1,4 @@
-// Ctrl-C while a job is followed.
+// Ctrl-C while the client watches a job.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -19,8 +19,8 @@ constexpr char kHint[] = "Press Ctrl-C again within 5 s to cancel the job.";
 
 constexpr std::chrono::seconds kWindow(5);
 
-// On a busy machine an attempt may last longer than the window, which proves nothing: it is
-// repeated.
+// On a busy machine an attempt may last longer than the window. Such an attempt shows nothing and
+// is repeated.
 constexpr int kAttempts = 20;
 
 class Stopwatch {
@@ -59,7 +59,7 @@ TEST_F(InterruptTest, WithoutASecondPressTheClientEndsAndTheJobGoesOn) {
   EXPECT_THAT(result, ExitsWith(130));
   EXPECT_THAT(result.err,
               HasSubstr("ballpiston watch " + job_ + " --server " + server_.address() + "\\n"));
-  // A program can read every line.
+  // Every line is JSON.
   for (const auto line : absl::StrSplit(result.err, '\n', absl::SkipEmpty())) {
     EXPECT_FALSE(ParseJson(std::string(line)).fields().empty()) << line;
   }
@@ -67,8 +67,8 @@ TEST_F(InterruptTest, WithoutASecondPressTheClientEndsAndTheJobGoesOn) {
   EXPECT_EQ(State(), "RUNNING");
 }
 
-// The client's window begins after the first press was sent: a second one that was sent in this
-// test's window is in the client's.
+// The client's window begins after the test sends the first press. A second press within the test's
+// window is therefore within the client's window too.
 TEST_F(InterruptTest, ASecondPressCancels) {
   bool in_window = false;
   for (int i = 0; i < kAttempts && !in_window; ++i) {
@@ -88,7 +88,7 @@ TEST_F(InterruptTest, ASecondPressCancels) {
   EXPECT_EQ(State(), "CANCELLED");
 }
 
-// Another client cancels the job while this one waits for the second press.
+// Another client cancels the job while the first one waits for the second press.
 TEST_F(InterruptTest, AJobThatEndsBeforeTheSecondPressIsPrinted) {
   for (int i = 0; i < kAttempts; ++i) {
     if (i > 0) StartRun();

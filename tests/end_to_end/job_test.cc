@@ -154,7 +154,7 @@ TEST(Result, OfAnActiveJobHoldsTheFinishedPoints) {
 }
 
 // The reader takes one line and ends: `ballpiston result JOB | head -n 1`.
-TEST(Result, AReaderThatClosesThePipeIsNoError) {
+TEST(Result, ClosedPipeExitsWithZero) {
   const TestServer server;
   const std::string job =
       server.Submit(Split("equilibrium --rho 0.53 --delta 0.01:0.2:2000 --collisions 1"));

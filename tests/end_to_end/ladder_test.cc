@@ -1,5 +1,5 @@
-// Questions that leave the choice of the model to the service: it takes the cheapest model that
-// answers, and says why.
+// Questions that leave the choice of the model to the service. It chooses the cheapest model that
+// can answer, and gives its reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -154,8 +154,8 @@ TEST_F(LadderTest, ABudgetEndsARunAndItSucceeds) {
   EXPECT_GT(At(Estimate(answer, "mean_hit_time"), "standard_error").number_value(), 0);
 }
 
-// The result tells how many samples the budget allowed; a job of so many samples repeats its
-// numbers.
+// The result holds the number of samples that the budget permitted. A job with this number of
+// samples gives the same values.
 TEST_F(LadderTest, TheSamplesOfABudgetGiveTheSameNumbersAgain) {
   const std::string question =
       std::string("run first-hit --delta 0.2 --epsilon 0.1 --exponent 1 --seed 4") + kRadius;
@@ -164,7 +164,7 @@ TEST_F(LadderTest, TheSamplesOfABudgetGiveTheSameNumbersAgain) {
   const auto again = Ask(question + " --samples " + std::to_string(samples));
   const Value& first = Estimate(answer, "mean_hit_time");
   const Value& second = Estimate(again, "mean_hit_time");
-  // Cut into other blocks, the same samples are summed in another order.
+  // The blocks differ, so the same samples are summed in another order.
   EXPECT_NEAR(At(first, "value").number_value() / At(second, "value").number_value(), 1, 1e-12);
 }
 
@@ -185,7 +185,7 @@ TEST_F(LadderTest, AToleranceBeyondTheBudgetFailsAndPrintsTheAccuracyReached) {
   EXPECT_NEAR(told / reached, 1, 0.05);  // two digits
 }
 
-// The limit's error is established by a pilot, some seconds of it, and then the spectrum answers.
+// A pilot of some seconds measures the error of the limit. Then the spectrum answers.
 TEST_F(LadderTest, APilotLetsTheSpectrumAnswerATolerance) {
   const std::string question = "energy-relaxation --rho 0.5296 --delta 0.005 --tolerance 0.02";
   const auto plan = Ask("plan " + question);
@@ -201,7 +201,7 @@ TEST_F(LadderTest, APilotLetsTheSpectrumAnswerATolerance) {
   const double error = At(time, "model_error").number_value();
   EXPECT_GT(error, 0);
   EXPECT_LT(error, 0.02 * At(time, "value").number_value());
-  // The pilot is stored: no other one runs.
+  // The pilot is stored, so no second pilot runs.
   EXPECT_THAT(ReasonOf(Ask("plan " + question)), HasSubstr("two sigma of a pilot at delta = "));
   const ProcessResult again = server_.Client(words);
   EXPECT_EQ(PointsOf(again.out), PointsOf(first.out));

@@ -1,4 +1,4 @@
-// The server that the client starts by itself.
+// The private server, which the client starts itself.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   EXPECT_EQ(Servers().size(), 1u);
 }
 
-// From these a client knows that a server is starting or stopping.
+// A client uses the lock and the address to see that a server is starting or stopping.
 TEST_F(PrivateServerTest, AServerLocksItsFolderAndWritesItsAddressThere) {
   ASSERT_THAT(Client(kRun), ExitsWith(0));
   const int lock = open(State("lock").c_str(), O_RDONLY | O_CLOEXEC);
@@ -90,7 +90,7 @@ TEST_F(PrivateServerTest, TheNextCommandFindsTheSameServer) {
 }
 
 TEST_F(PrivateServerTest, ManyClientsAtOnceEndUpOnOneServer) {
-  const ProcessOptions run = Command(Joined({kRun, {"--fresh"}}));  // each makes a job
+  const ProcessOptions run = Command(Joined({kRun, {"--fresh"}}));  // each run creates a job
   std::vector<std::unique_ptr<Process>> clients;
   for (int i = 0; i < 6; ++i) clients.push_back(std::make_unique<Process>(run));
   for (const auto& client : clients) {
@@ -112,7 +112,7 @@ TEST_F(PrivateServerTest, AKilledServerIsReplacedAndItsJobsAreThere) {
   EXPECT_EQ(At(ParseJson(list.out), "jobs", 0, "state").string_value(), "SUCCEEDED");
 }
 
-// The watch starts the server again, which goes on with the job.
+// The watching client starts the server again. The server resumes the job.
 TEST_F(PrivateServerTest, TheWatchingClientStartsAKilledServerAgain) {
   Process run(
       Command(Split("run equilibrium --rho 0.53 --delta 0.2,0.1 --collisions 300000 "

@@ -1,4 +1,4 @@
-// What the tests say to the programs, and how they read the answers.
+// Runs the programs with the tests' arguments and reads their output.
 #ifndef BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
 #define BALLPISTON_TESTS_END_TO_END_PROGRAMS_H_
 
@@ -19,10 +19,10 @@ namespace ballpiston {
 
 using Words = std::vector<std::string>;
 
-Words Split(const std::string& text);  // at blanks
+Words Split(const std::string& text);  // at spaces
 Words Joined(std::initializer_list<Words> parts);
 
-// A question that takes a moment, answered by sampling, and one that takes years.
+// A question that sampling answers in a moment, and one that takes years.
 inline const Words kQuickQuestion = Split(
     "first-hit --rho 0.53 --delta 0.2,0.1 --epsilon 0.1 --exponent 1 --samples 2000 --seed 7");
 inline const Words kEndlessQuestion =
@@ -40,14 +40,15 @@ class TestServer : public ServerProcess {
   ProcessOptions Command(Words words) const;
   ProcessResult Client(Words words, const std::string& input = "") const;
   std::unique_ptr<Process> StartClient(Words words) const;
-  // What the client prints with `--format json`; a test failure unless it exits with 0.
+  // Runs the client with `--format json` and returns its output. The test fails unless the client
+  // exits with 0.
   google::protobuf::Struct Json(Words words) const;
   std::string Submit(Words words) const;  // the name that `submit` prints
 };
 
-// Strict JSON; a test failure, and an empty object, if it is not.
+// Parses strict JSON. If the text is not JSON, the test fails and the object is empty.
 google::protobuf::Struct ParseJson(const std::string& text);
-// By keys and indices: At(json, "points", 0, "model").
+// The value at these keys and indices: At(json, "points", 0, "model").
 const google::protobuf::Value& At(const google::protobuf::Value& value);
 template <typename... Rest>
 const google::protobuf::Value& At(const google::protobuf::Value& value, const char* key,

@@ -65,8 +65,8 @@ bool HasSucceeded(const TestServer& server, const std::string& job) {
   return At(newest, "state").string_value() == "SUCCEEDED";
 }
 
-// Kills the server when the watching client has printed that so many points are finished, or a
-// moment later, and starts it again. False: the job had ended before.
+// Waits until the watching client prints that `finished` points are finished, then kills the server
+// and starts it again. False if the job had ended before the kill.
 bool KillInTheMidst(TestServer& server, const std::string& job, Process& watch, int finished) {
   const auto points_done = [](const std::string& line) {
     return static_cast<int>(At(ParseJson(line), "progress", "points_done").number_value());
@@ -79,9 +79,8 @@ bool KillInTheMidst(TestServer& server, const std::string& job, Process& watch, 
   return points_done(line) < kPoints && !HasSucceeded(server, job);
 }
 
-// The server is killed when one point is finished, and again when a second one is; the watching
-// client attaches again by itself. If a kill came too late, after the job's end, the next question
-// is twice as large.
+// The server is killed when one point is finished, and again when a second one is. The watching
+// client reattaches itself. If the job ended before a kill, the next one has twice as many samples.
 TEST(SameBytes, ThroughKillNineAndRestart) {
   for (int samples = kSamples; samples <= 8 * kSamples; samples *= 2) {
     TestServer server(1);
@@ -97,7 +96,7 @@ TEST(SameBytes, ThroughKillNineAndRestart) {
   FAIL() << "always killed too late";
 }
 
-// Shows that the tests above can fail.
+// The comparison of the tests above can fail.
 TEST(SameBytes, AnotherSeedGivesOtherBytes) {
   const TestServer server;
   std::string points[2];

@@ -76,7 +76,7 @@ class Security : public ::testing::Test {
   const TemporaryFolder home_;
   const TestAuthority authority_{"authority"};
   std::optional<TestServer> server_;
-  std::string client_output_;  // of all clients
+  std::string client_output_;  // the output of all clients
 };
 
 TEST_F(Security, AJobIsHiddenFromOtherTokens) {
@@ -107,7 +107,7 @@ TEST_F(Security, TheEnvironmentReplacesFlags) {
       List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN_FILE", home_.File("token_alice")}}),
       ExitsWith(0));
   EXPECT_THAT(List({}, {{"BALLPISTON_CA", ca}, {"BALLPISTON_TOKEN", token}}), ExitsWith(0));
-  // A flag has precedence over its variable, and the token file over the token.
+  // A flag takes precedence over its variable, and the token file over the token.
   EXPECT_THAT(List(Known("alice"), {{"BALLPISTON_CA", "/none"}, {"BALLPISTON_TOKEN", "wrong"}}),
               ExitsWith(0));
   EXPECT_THAT(List({}, {{"BALLPISTON_CA", ca}}), ExitsWith(6));
@@ -198,7 +198,7 @@ TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   Start(TlsFlags());
   EXPECT_THAT(Client(Joined({{"run"}, kQuickQuestion, Known("alice")})), ExitsWith(0));
   EXPECT_THAT(Client(Joined({{"submit"}, kQuickQuestion, Known("reader")})), ExitsWith(6));
-  // A token that the server no longer knows, and one in a file that it cannot read.
+  // First the access file lacks the token; then the file is malformed and holds the token itself.
   const std::string access = Contents(home_.File("access"));
   Write("access", access.substr(0, access.find('\n') + 1));
   server_->Signal(SIGHUP);

@@ -1,5 +1,4 @@
-// The flags of ballpistond: how they are spelled, what values they permit, and the file of
-// --config.
+// The flags of ballpistond: their spelling, their permitted values, and the file of --config.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ ProcessResult Server(const Words& flags) {
   return RunServer(home, flags);
 }
 
-// The one line of a command line that is refused.
+// Runs the server with flags that it refuses, and returns its error, which is one line.
 std::string Refusal(const Words& flags) {
   const ProcessResult result = Server(flags);
   EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(flags) << result.err;
@@ -199,7 +198,7 @@ TEST(ServerFlags, AValueOutOfRangeIsNamedWithTheRange) {
   };
   for (const auto& row : table) {
     Words flags = row.flags;
-    flags.push_back("--check");  // instead of a server, should a value be accepted
+    flags.push_back("--check");  // starts no server, even if a value is accepted by mistake
     EXPECT_THAT(Refusal(flags), HasSubstr(row.message));
   }
 }
@@ -231,7 +230,7 @@ class ConfigFile : public testing::Test {
   void Write(const std::string& text) const { std::ofstream(Path()) << text; }
   std::string Path() const { return home_.File("ballpistond.conf"); }
 
-  // Of a server that reads the text.
+  // The error of a server with `text` as its file of --config.
   std::string RefusalOf(const std::string& text, Words flags = {}) const {
     Write(text);
     flags.insert(flags.begin(), {"--config", Path()});
@@ -258,7 +257,7 @@ TEST_F(ConfigFile, GivesTheFlagsOfAServer) {
   EXPECT_THAT(server.Wait().err, testing::StartsWith("{"));
 }
 
-TEST_F(ConfigFile, GivesWayToTheCommandLine) {
+TEST_F(ConfigFile, CommandLineTakesPrecedence) {
   const std::string text = "data-dir = /of/the/file\nworkers = 0\n";
   EXPECT_THAT(RefusalOf(text, {"--data-dir=/of/the/line", "--workers=1", "--check"}),
               HasSubstr("/of/the/line/store.sqlite3"));
@@ -315,12 +314,12 @@ TEST_F(ConfigFile, HasToBeAFileThatCanBeRead) {
               HasSubstr("--config=" + folder + " is not a file that can be read"));
 }
 
-TEST_F(ConfigFile, OfTheSystemdUnitNamesTheFilesThatAServerForOthersNeeds) {
+TEST_F(ConfigFile, ShippedFileNamesTheFilesThatAPublicServerNeeds) {
   const std::string shipped = SourcePath("server/systemd/ballpistond.conf");
   const std::string refusal =
       Refusal({"--config", shipped, "--data-dir", home_.File("data"), "--access-file",
                home_.File("access"), "--tls-certificate", home_.File("certificate.pem")});
-  // All flags are taken; the files are not there.
+  // All flags are accepted; only the files do not exist.
   EXPECT_THAT(refusal, HasSubstr(home_.File("access") + ": cannot be opened"));
 }
 

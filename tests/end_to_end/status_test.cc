@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr char kIdle[] = "workers   0 of 2 busy\n";
 
-// A worker whose last block ended the job is busy for a moment more.
+// Asks until all workers are idle: a worker may be busy for a moment after the end of the job.
 ProcessResult StatusOfIdle(const TestServer& server) {
   ProcessResult table;
   do {
@@ -57,7 +57,7 @@ TEST(Status, LogLinesAreJsonOnRequest) {
   EXPECT_THAT(log, HasSubstr("metrics at http://127.0.0.1:"));
 }
 
-// A pipe that nobody reads any more.
+// A full pipe without a reader.
 class FullPipe {
  public:
   explicit FullPipe(const std::string& path) {
@@ -72,7 +72,7 @@ class FullPipe {
   int descriptor_ = -1;
 };
 
-TEST(Status, AServerWhoseLogNobodyReadsGoesOn) {
+TEST(Status, TheServerGoesOnWhenNobodyReadsItsLog) {
   const TemporaryFolder home;
   const FullPipe log(home.File("log"));
   ServerProcess server({.flags = {"--drain-seconds", "1"},

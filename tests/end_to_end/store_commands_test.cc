@@ -41,7 +41,7 @@ TEST(StoreCommands, AStoreIsCheckedCopiedAndRestored) {
   EXPECT_EQ(PointsOf(after.out), PointsOf(before.out));
 }
 
-TEST(StoreCommands, AFileThatIsNoStoreIsRejectedWithExitCodeTwo) {
+TEST(StoreCommands, AFileOfAnotherFormatIsRejectedWithExitCodeTwo) {
   TestServer server;
   server.Stop();
   std::ofstream(server.data_dir() + "/store.sqlite3") << "no store at all";

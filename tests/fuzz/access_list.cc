@@ -1,5 +1,4 @@
-// Who may come in: the access file, what a call shows for itself, and --new-token. What is refused
-// is told without what was found.
+// The access file, the credentials of a call, and --new-token. Errors do not show the refused text.
 #include "server/security/access_list.h"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Which folder of the project may include what, as a table.
+// Rules for the includes of each folder of the project.
 //
 //   core:    geometry <- closed_form, sampling <- billiard, markov <- experiment <-
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
@@ -10,7 +10,8 @@
 //   server/convert alone includes the core's physics and the API's messages in one file.
 //   tests:   of a layer know that layer, and tests/support.
 //
-// A new folder needs a row in the table: a file without one is a violation.
+// A new folder needs a row in the table of include_rules.cc: a file of a folder without a row is a
+// violation.
 #ifndef BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 #define BALLPISTON_TESTS_LAYOUT_INCLUDE_RULES_H_
 
@@ -20,10 +21,10 @@
 
 namespace ballpiston {
 
-// What the text includes, in order, without quotes or angle brackets.
+// The included files, in order, without quotes or angle brackets.
 std::vector<std::string> IncludesOf(std::string_view text);
 
-// One sentence for each include of the file that points the wrong way. `path` is relative to the
+// One sentence for each include that is not permitted. `path` is relative to the
 // repository's root.
 std::vector<std::string> WrongIncludes(std::string_view path, std::string_view text);
 

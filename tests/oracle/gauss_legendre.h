@@ -55,7 +55,8 @@ Quad Integrate(Integrand integrand, Quad a, Quad b) {
   return sum * (b - a) / 2;
 }
 
-// From a to b where the integrand has powers of sqrt(b - x): with x = b - v^2 it is smooth.
+// The integral from a to b of a function with powers of sqrt(b - x), which is smooth in v with
+// x = b - v^2.
 template <typename Integrand>
 Quad IntegrateToRoot(Integrand integrand, Quad a, Quad b) {
   return Integrate([&](Quad v) { return 2 * v * integrand(b - v * v); }, 0, Sqrt(b - a));

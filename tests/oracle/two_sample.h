@@ -12,16 +12,17 @@
 
 namespace ballpiston::oracle {
 
-// A chi^2 as the normal variable of the same probability, by Wilson's and Hilferty's cube root:
-// above 4 in 3e-5 of all cases.
+// Converts a chi^2 into the normal variable of the same probability, by Wilson's and Hilferty's
+// cube root. It exceeds 4 in 3e-5 of all cases.
 inline double NormalScoreOfChiSquare(double square, double degrees) {
   const double width = 2 / (9 * degrees);
   return (std::cbrt(square / degrees) - (1 - width)) / std::sqrt(width);
 }
 
-// Of two histograms over the same cells: sum over cells of (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m),
-// with N and M in all, is distributed as chi^2 with one degree of freedom less than cells. Given
-// here as a normal score. Neighbouring cells are joined until they hold kFewest.
+// Compares two histograms over the same cells. The sum over cells of
+// (sqrt(M/N) n - sqrt(N/M) m)^2/(n + m), with totals N and M, is distributed as chi^2 with one
+// degree of freedom less than cells. The result is its normal score. Neighbouring cells are joined
+// until they hold kFewest.
 inline double ChiSquareScore(std::span<const uint64_t> first, std::span<const uint64_t> second) {
   constexpr double kFewest = 20;
   double totals[2] = {0, 0};

@@ -19,14 +19,14 @@ inline constexpr char kWatchHealth[] = "/grpc.health.v1.Health/Watch";
 inline constexpr char kReflection[] =
     "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 
-// A request of a watch of health, by hand: field 1, empty, asks for the whole server.
+// A request of a health watch, encoded by hand: an empty field 1 asks for the whole server.
 inline const std::string kWholeServer("\x0a\0", 2);
 
-// A request of reflection, by hand: field 7 asks for the list of services.
+// A request of reflection, encoded by hand: field 7 asks for the list of services.
 inline constexpr char kListServices[] = "\x3a\x01*";
 
-// Sends one request, `bytes` serialized, with such headers `authorization`; reads to the end. Ends
-// after 10 min with DEADLINE_EXCEEDED.
+// Sends one request with the serialized message `bytes` and with these headers `authorization`, and
+// reads to the end. Ends after 10 min with DEADLINE_EXCEEDED.
 grpc::Status CallByName(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                         const std::string& bytes = "",
                         const std::vector<std::string>& authorization = {});

@@ -1,4 +1,4 @@
-// What an error says beside its code and message.
+// The details of an error beside its code and message.
 //
 //   EXPECT_THAT(server.Delete(name), IsError(grpc::StatusCode::NOT_FOUND, "JOB_NOT_FOUND"));
 #ifndef BALLPISTON_TESTS_SERVER_ERROR_DETAILS_H_
@@ -16,10 +16,10 @@
 namespace ballpiston::server {
 
 struct ErrorDetails {
-  std::string reason;  // of google.rpc.ErrorInfo, as the next two
+  std::string reason;  // this and the next two are from google.rpc.ErrorInfo
   std::string domain;
   std::map<std::string, std::string> metadata;
-  std::vector<std::string> fields;  // of the violations in google.rpc.BadRequest
+  std::vector<std::string> fields;  // the fields of the violations in google.rpc.BadRequest
 };
 
 ErrorDetails DetailsOf(const grpc::Status& status);

@@ -30,7 +30,7 @@ class Gate {
   int waiting_ = 0;
 };
 
-// Called at the start of each block; what it throws, the block throws.
+// Called at the start of each block. If it throws, the block throws the same exception.
 using BeforeBlock = std::function<void(size_t point, uint64_t block, std::stop_token stop)>;
 
 inline constexpr uint64_t kFakeSamplesPerBlock = 4;
@@ -40,12 +40,12 @@ inline constexpr uint64_t kFakeSamplesPerBlock = 4;
 // at most.
 ExperimentFactory FakeExperiments(BeforeBlock before_block = nullptr);
 
-// The same, told the seed of the specification: it tells one run from another.
+// The same with the seed of the specification as an argument, which identifies the run.
 using BeforeBlockOfSeed =
     std::function<void(uint64_t seed, size_t point, uint64_t block, std::stop_token stop)>;
 ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block);
 
-// Fake experiments whose blocks from number `first_block` on wait at the gate.
+// Fake experiments. Blocks with the number `first_block` or a greater one wait at the gate.
 ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block = 0);
 
 // The core's experiments, held up.

@@ -87,7 +87,8 @@ TEST(ListenAddress, AFileThatIsNotASocketStays) {
   EXPECT_TRUE(std::filesystem::exists(folder.File("precious")));
 }
 
-// Only a socket that nobody listens on is removed; of a datagram socket this cannot be known.
+// The server removes only a socket without a listener. For a datagram socket it cannot find out
+// whether there is one.
 TEST(ListenAddress, ADatagramSocketStays) {
   TemporaryFolder folder;
   const std::string path = folder.File("datagrams");
@@ -97,7 +98,8 @@ TEST(ListenAddress, ADatagramSocketStays) {
   path.copy(local.sun_path, sizeof(local.sun_path) - 1);
   ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)), 0);
   const absl::Status status = ClearSocketPath(*ParseListenAddress("unix:" + path));
-  EXPECT_THAT(status, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("cannot be told")));
+  EXPECT_THAT(status,
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("cannot find out")));
   EXPECT_TRUE(std::filesystem::exists(path));
   close(descriptor);
 }

@@ -1,4 +1,4 @@
-// What tests ask a server for.
+// Specifications and requests of the tests.
 #ifndef BALLPISTON_TESTS_SERVER_REQUESTS_H_
 #define BALLPISTON_TESTS_SERVER_REQUESTS_H_
 
@@ -14,10 +14,10 @@ namespace ballpiston::server {
 inline constexpr char kUuid[] = "123e4567-e89b-12d3-a456-426614174000";
 inline constexpr char kOtherUuid[] = "123e4567-e89b-12d3-a456-426614174001";
 
-// For the fake experiments (fake_experiments.h): so many points of so many blocks each.
+// For the fake experiments (fake_experiments.h): `points` points of `blocks` blocks each.
 v1::EnsembleSpec Equilibrium(int points, int64_t blocks, uint64_t seed = 1);
 
-// 90,000 points of one block. It has 720 kB: more than a connection takes that nobody reads from.
+// 90,000 points of one block: 720 kB, more than a connection buffers while nobody reads.
 v1::EnsembleSpec LargeEquilibrium();
 
 // For the core's experiments: six points of 4096 samples.
@@ -25,11 +25,11 @@ v1::EnsembleSpec SmallFirstHit();
 
 v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,
                                            const std::string& request_id = "");
-// The same, not to be answered from the store.
+// The same, but the answer must not come from the store.
 v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
                                           const std::string& request_id = "");
 
-// Of all methods, at one point.
+// Compares all methods at one point.
 v1::CompareMethodsRequest SomeComparison();
 
 }  // namespace ballpiston::server

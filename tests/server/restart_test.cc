@@ -18,7 +18,7 @@ namespace {
 
 using v1::EnsembleJob;
 
-// A server that other servers take over from.
+// Options of a server on a folder that later servers use too.
 TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,
                            ExperimentFactory factory = FakeExperiments()) {
   return {.data_dir = folder.path(), .workers = workers, .factory = std::move(factory)};
@@ -67,7 +67,7 @@ std::vector<v1::EnsembleSpec> AllExperiments() {
           SmallRelaxation(v1::EnsembleSpec::BILLIARD), SmallMarkovProperty()};
 }
 
-// Null: with the core's experiments.
+// The results of a server. If `factory` is null, it runs the core's experiments.
 std::vector<std::string> BytesAt(int workers, const v1::EnsembleSpec& spec,
                                  ExperimentFactory factory = nullptr) {
   RunningServer server({.workers = workers, .factory = std::move(factory)});
@@ -98,7 +98,7 @@ TEST(Restart, TheSameBytesWithATolerance) {
   EXPECT_EQ(BytesAt(8, spec, FakeExperiments()), one);
 }
 
-// What the first process found at point 0 decides how the second ends the job.
+// The first process misses the tolerance at point 0. The second one ends the job as failed.
 TEST(Restart, AToleranceMissedBeforeTheStopStaysMissed) {
   v1::EnsembleSpec spec = Equilibrium(2, 0);
   spec.mutable_target()->set_tolerance(1e-4);
@@ -156,7 +156,7 @@ TEST(Restart, AStoppedServerResumesToTheSameBytes) {
   }
 }
 
-// What a kill or a power failure leaves: the files as they are at one moment.
+// The copy has the files as they are at one moment, as after a kill or a power failure.
 TEST(Restart, ACopyTakenInTheMiddleResumesToTheSameBytes) {
   TemporaryFolder folder, copy;
   const v1::EnsembleSpec spec = FirstHitByBilliard();
@@ -269,7 +269,7 @@ TEST(Restart, AJobWithDamagedBlocksFailsAndTheServerStays) {
   server.Succeeded(Equilibrium(1, 5));
 }
 
-// Even if its number of points would take all memory.
+// One of the rows has a number of points that does not fit into memory.
 TEST(Restart, AJobWithImpossibleRowsFailsAndTheServerStays) {
   for (const char* damage :
        {"UPDATE jobs SET points = -1", "UPDATE jobs SET points = 1 << 60",

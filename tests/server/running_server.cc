@@ -11,14 +11,14 @@
 namespace ballpiston::server {
 namespace {
 
-// With the last server of a process gRPC shuts itself down, which after large answers may wait 10 s
-// for a poller of its own: it is held open here.
+// gRPC shuts down with the last server of a process. After large answers this may wait 10 s for one
+// of gRPC's pollers. The reference that grpc_init takes here keeps gRPC open.
 [[maybe_unused]] const bool kGrpcStaysOpen = [] {
   grpc_init();
   return true;
 }();
 
-// A busy machine may take long for a commit, although no disk hangs.
+// On a busy machine a commit may take long although the disk does not hang.
 constexpr std::chrono::hours kNeverStalls(1);
 
 ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& options) {

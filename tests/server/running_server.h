@@ -29,7 +29,7 @@ namespace ballpiston::server {
 
 // ServerOptions with the defaults that tests want.
 struct TestServerOptions {
-  std::string data_dir = {};  // empty: a temporary folder that ends with the server
+  std::string data_dir = {};  // empty: a temporary folder, removed with the server
   std::string listen = {};    // empty: a Unix socket in the data folder
   SecurityOptions security = {};
   std::set<uid_t> socket_users = OwnUserAndRoot();
@@ -40,10 +40,10 @@ struct TestServerOptions {
   ConnectionTiming connections = {};
   Limits limits = {};
   std::string metrics_listen = {};
-  std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // of its client; null: none
+  std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
-// A channel, and the calls that many tests make on it. Those that return no status expect OK.
+// A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {
  public:
   explicit TestClient(std::shared_ptr<grpc::Channel> channel);
@@ -55,8 +55,8 @@ class TestClient {
 
   grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job = nullptr);
   v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request);
-  std::string Submit(const v1::EnsembleSpec& spec);     // a fresh job's name
-  std::string Succeeded(const v1::EnsembleSpec& spec);  // the same, when it has succeeded
+  std::string Submit(const v1::EnsembleSpec& spec);     // creates a new job; its name
+  std::string Succeeded(const v1::EnsembleSpec& spec);  // the same, and waits for success
   v1::EnsembleJob Get(const std::string& name);
   grpc::Status Cancel(const std::string& name, const std::string& request_id = "");
   grpc::Status Delete(const std::string& name);
@@ -65,10 +65,10 @@ class TestClient {
 
   v1::ListEnsembleJobsResponse List(const v1::ListEnsembleJobsRequest& request = {});
   v1::ListResultsResponse Results(const v1::ListResultsRequest& request);
-  // All pages from that of `request` on.
+  // All pages, beginning with the page of `request`.
   std::vector<v1::ListEnsembleJobsResponse> Pages(v1::ListEnsembleJobsRequest request);
   std::vector<v1::ListResultsResponse> Pages(v1::ListResultsRequest request);
-  // Of a job, all results, each serialized.
+  // All results of a job, each serialized.
   std::vector<std::string> ResultBytes(const std::string& name);
 
  private:
@@ -86,7 +86,7 @@ class RunningServer : public TestClient {
 
   BallpistonServer& server() { return *server_; }
   std::string address() const { return server_->address(); }
-  // A connection of its own; null: without credentials.
+  // A channel with a connection of its own. Null: without credentials.
   std::shared_ptr<grpc::Channel> NewChannel(
       const std::shared_ptr<grpc::ChannelCredentials>& credentials = nullptr) const;
   void Shutdown(std::chrono::milliseconds drain = std::chrono::milliseconds(0)) {
@@ -95,7 +95,7 @@ class RunningServer : public TestClient {
 
  private:
   struct Started {
-    std::unique_ptr<TemporaryFolder> folder;  // null: the test's
+    std::unique_ptr<TemporaryFolder> folder;  // null: the test owns the folder
     std::unique_ptr<BallpistonServer> server;
   };
   static Started Start(const TestServerOptions& options);
@@ -105,7 +105,7 @@ class RunningServer : public TestClient {
   std::unique_ptr<BallpistonServer> server_;
 };
 
-// Why a server with these options does not start. OK: it starts.
+// The error of a server that does not start with these options. OK if it starts.
 absl::Status StartError(const TestServerOptions& options);
 
 }  // namespace ballpiston::server

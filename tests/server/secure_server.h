@@ -28,12 +28,13 @@ inline constexpr char kAliceOnce[] = "token-of-alice-that-expired";
 inline constexpr char kBob[] = "token-of-bob-0123456789";
 inline constexpr char kOps[] = "token-of-ops-0123456789";
 
-// Of an access file: one token, and all five.
+// A line of an access file for one token, and the lines of all five tokens.
 std::string TokenLine(const std::string& token, const Principal& principal,
                       absl::Time expires = absl::InfiniteFuture());
 std::string LaboratoryTokens();
 
-// TLS to a server whose authority is `ca` (PEM). `own` is the client's certificate, if it has one.
+// TLS to a server with a certificate by the authority `ca` (PEM). `own` is the client's
+// certificate; it may be empty.
 std::shared_ptr<grpc::ChannelCredentials> TlsCredentials(const std::string& ca,
                                                          const KeyAndCertificate& own = {});
 
@@ -51,8 +52,8 @@ class LaboratoryFiles {
   void WriteAccessFile(const std::string& text) const { Write("access", text); }
   void WriteCertificate(const KeyAndCertificate& made) const;
 
-  // Of a client that trusts the laboratory's authority and shows the token with each call; empty:
-  // none.
+  // The credentials of a client that trusts the laboratory's authority and sends the token with
+  // each call. If `token` is empty, the client sends none.
   std::shared_ptr<grpc::ChannelCredentials> Credentials(const std::string& token = "",
                                                         const KeyAndCertificate& own = {}) const;
 
@@ -62,16 +63,16 @@ class LaboratoryFiles {
   SecurityOptions options_;
 };
 
-// These options at any free port of this machine, behind the laboratory's TLS. The server's own
-// client shows no token, unless the options have credentials.
+// These options with the laboratory's TLS, at any free port of this machine. The client of the
+// RunningServer sends no token, unless the options have credentials.
 TestServerOptions Secure(const LaboratoryFiles& files, TestServerOptions options = {});
 
-// A client that makes TLS and says nothing.
+// A client that completes the TLS handshake and then sends nothing.
 class SilentTlsConnection {
  public:
   explicit SilentTlsConnection(const std::string& address);
 
-  // The common name in the certificate that the server showed; empty if they made no TLS.
+  // The common name in the server's certificate; empty if the handshake failed.
   const std::string& served_common_name() const { return served_common_name_; }
 
  private:

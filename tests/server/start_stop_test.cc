@@ -27,7 +27,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// That a server with these options does not start; the error is one line.
+// Expects that a server with these options does not start, and that the error is one line.
 void ExpectStartRefused(const TestServerOptions& options, const std::string& why) {
   const absl::Status error = StartError(options);
   EXPECT_FALSE(error.ok());
@@ -79,7 +79,7 @@ TEST(StartStop, ADamagedStoreIsRefused) {
   ExpectStartRefused({.data_dir = folder.path()}, "damaged");
 }
 
-// Three blocks that never end are given up, and no other is begun.
+// The server drops three blocks that never end, and begins no other one.
 TEST(StartStop, StoppingDoesNotWaitForAnEndlessBlock) {
   Gate gate;
   std::atomic<int> begun = 0;

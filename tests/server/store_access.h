@@ -1,4 +1,4 @@
-// A store, read and changed without a server.
+// Reads and changes a store without a server.
 #ifndef BALLPISTON_TESTS_SERVER_STORE_ACCESS_H_
 #define BALLPISTON_TESTS_SERVER_STORE_ACCESS_H_
 
@@ -12,7 +12,7 @@
 
 namespace ballpiston::server {
 
-// What `find`, which returns a StatusOr, finds in an open store.
+// The value that `find` returns for an open store. `find` returns a StatusOr.
 template <typename Find>
 auto ReadFrom(Store& store, Find find) {
   typename std::invoke_result_t<Find, Database&>::value_type found{};

@@ -44,10 +44,11 @@ Eigen::VectorXd Thinned(size_t first, ValueAt value_at) {
 
 struct Blocks {
   PointSummary summary;
-  std::vector<Eigen::VectorXd> curves;  // of each
+  std::vector<Eigen::VectorXd> curves;  // one for each block
 };
 
-// The jump process at delta = 0.1, in so many blocks of an open end, which are small: 4096 orbits.
+// Runs `blocks` blocks of the jump process at delta = 0.1. A tolerance as target keeps the blocks
+// small: 4096 orbits.
 Blocks RunInBlocks(uint64_t blocks, size_t first_lag, std::optional<double> epsilon = {}) {
   const auto point =
       PointExperiment::Create(SpecOf(Experiment::kEnergyRelaxation, PaperPoint(0.1, epsilon),
@@ -106,15 +107,15 @@ void Print(const Curve& curve) {
   }
 }
 
-// 2 million orbits, 80 million jumps. Scores: of the curve 3e-5, of a lag 33 * 6.8e-6, of the
-// integral 6e-5: 3e-4 false alarms in all.
+// 2 million orbits, 80 million jumps. False alarms: 3e-5 for the curve, 33 * 6.8e-6 for the lags,
+// 6e-5 for the integral; 3e-4 in all.
 TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
   const Blocks blocks = RunInBlocks(512, 0);
   const PointSummary& summary = blocks.summary;
   const Curve& curve = summary.curves.front();
   Print(curve);
   EXPECT_GT(curve.points.front().value, 0.99);
-  // Down to 1e-3 every point is seen, by more than five errors.
+  // Down to 1e-3 every point differs from zero by more than five standard errors.
   EXPECT_LT(*curve.points.back().limit, 1e-3);
   for (const CurvePoint& at : curve.points) {
     EXPECT_TRUE(*at.limit < 1e-3 || at.value > 5 * *at.standard_error) << at.time;
@@ -129,7 +130,7 @@ TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
   EXPECT_LT(LargestScore(curve, 0), 4.5);
   EXPECT_LT(std::fabs(*time.ZScore()), 4);
   EXPECT_LT(*time.standard_error, 1e-3 * time.value);
-  // A law whose times are 0.5 % shorter is told apart.
+  // The test detects a law with times that are 0.5 % shorter.
   EXPECT_GT(HotellingScore(blocks.curves, limit.array().pow(1.005)), 10);
 }
 
@@ -149,7 +150,7 @@ TEST(EnergyRelaxation, JumpProcessForgetsItsEnergyAsTheSpectrumSays) {
     EXPECT_LT(score, 4);
     EXPECT_LT(LargestScore(curve, 1), 4.5);
     EXPECT_LT(std::fabs(*time.ZScore()), 4);
-    // A curve that is 2 % nearer to its end is told apart.
+    // The test detects a curve that is 2 % nearer to its end.
     const Eigen::VectorXd nearer = 0.98 * limit.array() + 0.02 * kMeanPistonEnergy;
     EXPECT_GT(HotellingScore(blocks.curves, nearer), 5);
   }

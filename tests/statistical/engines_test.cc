@@ -1,5 +1,5 @@
-// Both engines against the closed forms, wherever there are some. The reference, which takes some
-// ten times as long, has a tenth of the samples.
+// Compares both engines with all closed forms that exist. The reference has a tenth of the samples,
+// because it takes some ten times as long.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,14 +25,14 @@ void ExpectCredible(const PointSummary& summary) {
     if (const auto z = estimate.ZScore()) {
       EXPECT_LT(std::fabs(*z), 4.5) << estimate.name;
     } else if (estimate.exact) {
-      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // where nothing scatters
+      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // an exact value without scatter
     }
   }
 }
 
 struct RadiusAndShare {
   double rho;
-  double share;  // of the bound on delta
+  double share;  // delta as a fraction of its bound
 };
 
 class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusAndShare>> {
@@ -45,12 +45,12 @@ class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusA
 };
 
 // Three means in equilibrium and one at each of six energies: 180 comparisons in all, one false
-// alarm in 800 choices of the seed. Means that are off by 1 % (lanes) or 3 % (reference) show.
+// alarm in 800 choices of the seed. The test detects errors of 1 % (lanes) or 3 % (reference).
 TEST_P(EngineAtGeometry, GivesTheMeansOfTheClosedForms) {
   const Target collisions = {.collisions = SamplesBy(model(), 200'000)};
   ExpectCredible(
       RunPoint(SpecOf(Experiment::kEquilibrium, point(), collisions, model(), kSeedOfEngines)));
-  // At epsilon = 1/2 the ball rests, and the mean is that of the volume which is visited.
+  // At epsilon = 1/2 the ball rests, and the mean is over the part of the volume that is visited.
   for (const double epsilon : {1.0 / 3200, 0.125, 0.25, 0.375, 0.5 - 1.0 / 3200, 0.5}) {
     SCOPED_TRACE(epsilon);
     PointParameters at_energy = point();

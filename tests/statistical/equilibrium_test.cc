@@ -1,4 +1,4 @@
-// Whether the errors of mean free times in equilibrium are honest.
+// The standard errors of mean free times in equilibrium agree with the scatter of the estimates.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// The first-hit experiment against an independent program's table.
+// Compares the first-hit experiment with a table that an independent program computed.
 #include <gtest/gtest.h>
 
 #include <cmath>

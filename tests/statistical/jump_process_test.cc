@@ -19,8 +19,8 @@ constexpr uint64_t kSeed = 11;
 
 enum Stream : uint64_t { kRelaxation, kLag };
 
-// sqrt(N) times the largest distance to the uniform distribution function (Kolmogorov, Smirnov):
-// above 2.3 in 5e-5 of all cases.
+// sqrt(N) times the largest distance to the uniform distribution function (Kolmogorov, Smirnov). It
+// exceeds 2.3 in 5e-5 of all cases.
 double DistanceToUniform(std::vector<double> sample) {
   std::sort(sample.begin(), sample.end());
   const auto n = static_cast<double>(sample.size());
@@ -32,7 +32,7 @@ double DistanceToUniform(std::vector<double> sample) {
   return largest * std::sqrt(n);
 }
 
-// Where independent walkers are after a time.
+// The values u of independent walkers after a time.
 std::vector<double> After(double time, Stream stream, std::vector<double> starts) {
   constexpr size_t kTogether = 5000;
   std::vector<double> reached;
@@ -57,8 +57,8 @@ std::vector<double> After(double time, Stream stream, std::vector<double> starts
   return reached;
 }
 
-// The distribution function of Beta(1/2, 1) at 2 ep is sqrt(2 ep) = u: uniform. From a point,
-// what is left of the start after 60 is exp(-0.152 * 60) = 1e-4, a tenth of the error.
+// The distribution function of Beta(1/2, 1) at 2 ep is sqrt(2 ep) = u, so u is uniform. After a
+// time 60 the influence of the start has decayed to exp(-0.152 * 60) = 1e-4, a tenth of the error.
 TEST(JumpProcess, StationaryLawOfTwiceTheEnergyIsBeta) {
   for (const double start : {0.0, 0.9}) {
     const std::vector<double> us = After(60, kRelaxation, std::vector<double>(1'000'000, start));
@@ -66,7 +66,7 @@ TEST(JumpProcess, StationaryLawOfTwiceTheEnergyIsBeta) {
   }
 }
 
-// Before that time it is not: the test can tell.
+// The law is not stationary after a time 10, and the test detects it.
 TEST(JumpProcess, IsNotStationaryBeforeItRelaxes) {
   EXPECT_GT(DistanceToUniform(After(10, kRelaxation, std::vector<double>(1'000'000, 0.9))), 5);
 }
@@ -75,7 +75,7 @@ constexpr size_t kCells = 20;
 
 size_t CellOf(double u) { return std::min(static_cast<size_t>(u * kCells), kCells - 1); }
 
-// Of starts and of where the walkers are after a time 5.
+// Counts pairs of cells: the cell of the start, and the cell after a time 5.
 std::vector<double> CountsOfPairs(const std::vector<double>& starts) {
   const std::vector<double> later = After(5, kLag, starts);
   std::vector<double> counts(kCells * kCells);
@@ -85,9 +85,9 @@ std::vector<double> CountsOfPairs(const std::vector<double>& starts) {
   return counts;
 }
 
-// Asymmetry of a table of counts of pairs: sum of (n_ij - n_ji)^2/(n_ij + n_ji) over i < j, chi^2
-// with as many degrees of freedom as pairs of cells, as a normal score: above 4 in 3e-5 of all
-// cases.
+// Asymmetry of a table of counts of pairs: the sum of (n_ij - n_ji)^2/(n_ij + n_ji) over i < j. It
+// is distributed as chi^2 with one degree of freedom for each pair of cells. The result is its
+// normal score, which exceeds 4 in 3e-5 of all cases.
 double Asymmetry(const std::vector<double>& counts) {
   double square = 0, degrees = 0;
   for (size_t i = 0; i < kCells; ++i) {
@@ -101,7 +101,7 @@ double Asymmetry(const std::vector<double>& counts) {
   return oracle::NormalScoreOfChiSquare(square, degrees);
 }
 
-// u is uniform in equilibrium. From another law the pairs are not in balance: the test can tell.
+// u is uniform in equilibrium. With starts of another law the test detects the imbalance.
 TEST(JumpProcess, PairsAtATimeApartAreInDetailedBalance) {
   std::vector<double> starts(2'000'000);
   for (size_t i = 0; i < starts.size(); ++i) starts[i] = CounterRandom(kSeed, kLag, i).Uniform();

@@ -27,7 +27,7 @@ Estimates At(double delta, int64_t collisions) {
   return estimates;
 }
 
-// By index of kDeltas.
+// The estimates at each delta of kDeltas, in the same order.
 std::vector<Estimates> Measured() {
   std::vector<Estimates> measured;
   for (const double delta : kDeltas) {

@@ -1,5 +1,6 @@
-// The billiard in lanes against the reference, in law: two independent samples of 400,000 first
-// hits each, at twenty points from cusps to vanishing cells, over energies and outgoing laws.
+// Compares the laws of the billiard in lanes and of the reference. Each has an independent sample
+// of 400,000 first hits at twenty points from cusps to vanishing cells, over energies and outgoing
+// laws.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -94,10 +95,11 @@ double Score(const Moments& first, const Moments& second) {
 
 class TwoEngines : public testing::TestWithParam<Point> {};
 
-// Means within 4 combined standard errors, 6e-5 false alarms each; the ingoing law by chi^2, 3e-5,
-// the law of the return times by Kolmogorov and Smirnov, 5e-5: over the 20 points 0.5 percent. A
-// difference of 0.5 % between the distribution functions of the times shows, and one of 0.9 % of
-// the standard deviation between means.
+// Means agree within 4 combined standard errors, with 6e-5 false alarms each. The ingoing law is
+// compared by chi^2 (3e-5), the law of the return times by Kolmogorov and Smirnov (5e-5). Over the
+// 20 points this makes 0.5 percent of false alarms. The test detects a difference of 0.5 % between
+// the distribution functions of the times, and one of 0.9 % of the standard deviation between
+// means.
 TEST_P(TwoEngines, AgreeInMeansAndLaws) {
   const FirstHits reference = Sample(Engine::kReference, GetParam());
   const FirstHits lanes = Sample(Engine::kLanes, GetParam());

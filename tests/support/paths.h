@@ -1,4 +1,4 @@
-// Where the project's files and programs are.
+// Paths of the project's files and programs.
 #ifndef BALLPISTON_TESTS_SUPPORT_PATHS_H_
 #define BALLPISTON_TESTS_SUPPORT_PATHS_H_
 
@@ -6,10 +6,11 @@
 
 namespace ballpiston {
 
-// A file or folder of the project, by its path from the project's folder: "tests/data/kernel.csv".
+// The path of a file or folder of the project. `relative` is its path in the project, such as
+// "tests/data/kernel.csv".
 std::string SourcePath(const std::string& relative);
 
-// The same of the build that this test belongs to.
+// The same for a file or folder of this test's build folder.
 std::string BuildPath(const std::string& relative);
 
 std::string ServerProgram();  // ballpistond

@@ -1,7 +1,7 @@
-// One running program: its output as it comes, its exit code at the end.
+// Runs a program and reads its output and its exit code.
 //
-// The program dies with the thread that started it (`setpriv --pdeathsig`), so that a test that
-// crashes or is killed leaves no process behind: start it in the test's main thread.
+// The program is killed when the thread that started it ends (`setpriv --pdeathsig`). A test that
+// crashes or is killed therefore leaves no process. Start the program in the test's main thread.
 #ifndef BALLPISTON_TESTS_SUPPORT_PROCESS_H_
 #define BALLPISTON_TESTS_SUPPORT_PROCESS_H_
 
@@ -21,12 +21,12 @@ namespace ballpiston {
 
 struct ProcessOptions {
   std::vector<std::string> command;                     // path, arguments
-  std::map<std::string, std::string> environment = {};  // added to the test's own; empty: removed
+  std::map<std::string, std::string> environment = {};  // added to the test's; empty: removed
   std::string input = {};                               // on standard input
 };
 
 struct ProcessResult {
-  int exit_code = -1;  // 128 + signal if one killed it
+  int exit_code = -1;  // 128 + signal if a signal killed it
   std::string out;
   std::string err;
 };
@@ -45,9 +45,9 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  void Signal(int signal) const;  // nothing if the program's end was waited for
+  void Signal(int signal) const;  // no effect after Wait
   pid_t pid() const { return pid_; }
-  std::string Output() const;  // standard output, then standard error, as far as they have come
+  std::string Output() const;  // standard output, then standard error, so far
 
   // Waits until standard error holds the text. False if the program ended without it.
   bool WaitForErr(const std::string& text);

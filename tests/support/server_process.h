@@ -14,21 +14,22 @@
 
 namespace ballpiston {
 
-// HOME is this folder, so that a program touches nothing of the user's, and none of the project's
-// variables is set.
+// An environment with `home` as HOME, so that programs do not use the user's files, and without the
+// project's variables.
 std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home);
 
 // `ballpistond FLAGS...`
 ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags);
 
-// Runs the server program to its end: with flags that it rejects, or that make it do one thing.
+// Runs the server program until it exits: with flags that it rejects, or with --check, --backup
+// etc.
 ProcessResult RunServer(const TemporaryFolder& home, std::vector<std::string> flags);
 
 struct ServerSetUp {
   int workers = 2;
-  std::vector<std::string> flags = {};     // further ones
+  std::vector<std::string> flags = {};     // beside --listen, --data-dir and --workers
   std::string listen = {};                 // empty: a Unix socket in the server's folder
-  std::vector<std::string> launcher = {};  // a command that is given the server's as arguments
+  std::vector<std::string> launcher = {};  // a command that runs the server's command line
 };
 
 // One thread starts and stops the server. While it does neither, others may use the const functions.
@@ -45,16 +46,17 @@ class ServerProcess {
 
   void Signal(int signal) const { process_->Signal(signal); }
   bool AwaitLog(const std::string& text) { return process_->WaitForErr(text); }
-  // The exit code, 128 + signal if one killed the server. After `limit` empty if it still runs.
+  // The exit code, or 128 + signal if a signal killed the server. Empty if it still runs after
+  // `limit`.
   std::optional<int> AwaitEnd(std::chrono::milliseconds limit);
   int AwaitEnd();
   int Stop();  // SIGTERM
   void KillHard();
 
-  const std::string& address() const { return address_; }  // of a TCP port when it is ready
+  const std::string& address() const { return address_; }  // with a TCP port once it is ready
   std::string data_dir() const { return folder_.File("data"); }
   const TemporaryFolder& folder() const { return folder_; }
-  std::string log() const;  // all that its processes wrote
+  std::string log() const;  // the logs of all its processes
 
   double ResidentMiB() const;
   double ProcessorSeconds() const;  // of the living threads
@@ -66,7 +68,7 @@ class ServerProcess {
   const ServerSetUp set_up_;
   const TemporaryFolder folder_;
   std::string address_;
-  std::string ended_log_;  // of the processes before this one
+  std::string ended_log_;  // the logs of the earlier processes
   std::unique_ptr<Process> process_;
 };
 

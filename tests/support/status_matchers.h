@@ -17,8 +17,9 @@
 
 namespace ballpiston {
 
-// The status of a Status, a StatusOr or a grpc::Status, whose codes have the same numbers. The last
-// is recognised by its member functions: tests of the core know no gRPC.
+// The status of a Status, a StatusOr or a grpc::Status; their codes have the same numbers. This
+// function recognises a grpc::Status by its member functions, because tests of the core do not
+// include gRPC.
 template <typename Result>
 absl::Status StatusOf(const Result& result) {
   if constexpr (requires { result.error_code(); }) {
@@ -61,7 +62,7 @@ MATCHER_P(IsOkAndHolds, value, "") {
 #define EXPECT_OK(expression) EXPECT_THAT(expression, ::ballpiston::IsOk())
 #define ASSERT_OK(expression) ASSERT_THAT(expression, ::ballpiston::IsOk())
 
-// Declares or assigns the value of a StatusOr; ends the test if the StatusOr has none.
+// Declares or assigns the value of a StatusOr. Ends the test if it has no value.
 #define ASSERT_OK_AND_ASSIGN(variable, expression)                                        \
   BALLPISTON_ASSERT_OK_AND_ASSIGN_(BALLPISTON_JOIN_(result_in_line_, __LINE__), variable, \
                                    expression)

@@ -1,4 +1,4 @@
-// A folder that exists as long as the object, with a path short enough for a Unix socket in it.
+// A folder that exists as long as the object. Its path is short enough for a Unix socket in it.
 #ifndef BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define BALLPISTON_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
@@ -9,7 +9,7 @@ namespace ballpiston {
 class TemporaryFolder {
  public:
   TemporaryFolder();   // throws std::runtime_error if no folder can be made
-  ~TemporaryFolder();  // removes the folder with all that is in it
+  ~TemporaryFolder();  // removes the folder and its contents
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 

@@ -82,7 +82,7 @@ void WriteThreadStacks(int descriptor) {
   backtrace(&frame, 1);  // loads the unwinder, which no signal handler may do
   struct sigaction action = {};
   action.sa_handler = &RecordStack;
-  action.sa_flags = SA_RESTART;  // a thread that waits goes on waiting
+  action.sa_flags = SA_RESTART;  // interrupted system calls continue
   sigaction(SIGRTMAX, &action, nullptr);
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
     Request& request = *new Request;

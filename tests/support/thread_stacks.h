@@ -1,4 +1,4 @@
-// Where every thread of this process is.
+// The stacks of all threads of this process.
 #ifndef BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
 #define BALLPISTON_TESTS_SUPPORT_THREAD_STACKS_H_
 

@@ -28,7 +28,7 @@ struct Limit {
 };
 
 constexpr std::chrono::seconds kUsual(60);
-// They took 60, 46, 24 and 19 s with ten processes at work on two cores.
+// Measured with ten processes at work on two cores: 60, 46, 24 and 19 s.
 constexpr Limit kLonger[] = {
     {"end_to_end_test", "BadInputTest", std::chrono::seconds(300)},
     {"torture_test", "Kills", std::chrono::seconds(300)},
@@ -59,7 +59,7 @@ void Write(const std::string& text) {
   _exit(1);
 }
 
-// Watches the time of what the program does now. Lives until the process is gone.
+// Limits the time of the current test or set-up, or of the program's end. It is never destroyed.
 class Watchdog {
  public:
   Watchdog() {

@@ -1,4 +1,4 @@
-// That a hanging test says so, by letting this program hang as a process of its own.
+// The tests run this program as a process of its own and let it hang.
 #include "tests/support/time_limit.h"
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The stability tables: every place where methods fail, every engine in every precision, and the
-// naive methods beside them. Arguments and exit status: program.h.
+// Computes the stability tables: in each situation where methods fail, every engine in every
+// precision, and the naive methods. program.h describes the arguments and the exit status.
 #include <iostream>
 #include <string>
 #include <vector>

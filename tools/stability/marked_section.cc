@@ -15,8 +15,8 @@ namespace {
 
 struct MarkedFile {
   std::string text;
-  size_t begin;  // of the section, after its first marker
-  size_t end;    // before its last
+  size_t begin;  // after the line of the first marker
+  size_t end;    // before the second marker
 };
 
 absl::StatusOr<MarkedFile> Read(const std::string& path, const std::string& name) {

@@ -1,5 +1,4 @@
-// The part of a text file between two lines of their own, <!-- NAME:begin --> and
-// <!-- NAME:end -->.
+// The part of a text file between the lines <!-- NAME:begin --> and <!-- NAME:end -->.
 #ifndef BALLPISTON_TOOLS_STABILITY_MARKED_SECTION_H_
 #define BALLPISTON_TOOLS_STABILITY_MARKED_SECTION_H_
 
@@ -9,12 +8,12 @@
 
 namespace ballpiston::stability {
 
-// Whether the file has such a section and can be written: OK, or the error that
-// ReplaceMarkedSection would return.
+// OK if the file has this section and can be written; otherwise the error that ReplaceMarkedSection
+// would return.
 absl::Status CheckMarkedSection(const std::string& path, const std::string& name);
 
-// Replaces what is between the markers; the file is written as a whole (output_file.h). NOT_FOUND
-// if it cannot be read or lacks one of the markers.
+// Replaces the text between the markers. The file is written as a whole (output_file.h). NOT_FOUND
+// if the file cannot be read or lacks one of the markers.
 absl::Status ReplaceMarkedSection(const std::string& path, const std::string& name,
                                   const std::string& text);
 

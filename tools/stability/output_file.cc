@@ -22,9 +22,9 @@ absl::Status CannotWrite(const std::string& path, const std::string& reason) {
 
 std::string ErrorText(int error) { return std::generic_category().message(error); }
 
-// What is to be replaced, or made.
+// The file that is to be replaced or created.
 struct Target {
-  std::string path;                   // of no symbolic link
+  std::string path;                   // all symbolic links are resolved
   std::optional<mode_t> permissions;  // of the old file, if there is one
 };
 
@@ -37,7 +37,7 @@ absl::StatusOr<Target> FindTarget(const std::string& path) {
 
   struct stat old = {};
   if (stat(target.path.c_str(), &old) == 0) {
-    // To rename a file over a device, say, would remove the device.
+    // Renaming a file to the name of, say, a device would remove the device.
     if (!S_ISREG(old.st_mode)) return CannotWrite(path, "it is not a regular file");
     if (faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0) {
       return CannotWrite(path, ErrorText(errno));
@@ -50,7 +50,8 @@ absl::StatusOr<Target> FindTarget(const std::string& path) {
   return target;
 }
 
-// The file beside the target until it has the target's name; removed if it never gets it.
+// A temporary file beside the target. RenameTo gives it the target's name; the destructor removes
+// it if it was not renamed.
 class PartFile {
  public:
   explicit PartFile(const Target& target)
@@ -67,7 +68,7 @@ class PartFile {
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  // Of the first step that failed, 0 if none has; no step is taken after one that failed.
+  // The errno of the first step that failed, 0 if none failed. After a failure no step is executed.
   int error() const { return error_; }
 
   void Write(std::string_view text) {
@@ -81,7 +82,7 @@ class PartFile {
     }
   }
 
-  // After a power cut the name must not stand for less than the text.
+  // Syncs the file before the rename, so that after a power cut the name never has a partial text.
   void RenameTo(const std::string& path) {
     if (error_ == 0 && fsync(file_) != 0) error_ = errno;
     if (error_ == 0 && rename(path_.c_str(), path.c_str()) != 0) error_ = errno;

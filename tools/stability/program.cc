@@ -14,9 +14,9 @@ constexpr char kSection[] = "stability";
 constexpr char kHelp[] =
     R"(usage: stability [--quick] [--out FILE | --into FILE]
 
-Runs every engine, in every precision, and naive methods beside them, where methods fail; counts the
-failures; prints tables as Markdown. This takes some ten minutes on one core. The starts are fixed:
-the same program gives the same tables.
+Runs every engine in every precision, and naive methods, in the situations where methods fail.
+Counts the failures and prints tables in Markdown. This takes some ten minutes on one core. The
+starts are fixed: the same program gives the same tables.
 
   --quick      run a thousandth of the starts: seconds instead of minutes
   --out FILE   write the tables to FILE instead; an existing FILE is replaced
@@ -25,14 +25,15 @@ the same program gives the same tables.
                  <!-- stability:end -->
   --help       print this text
 
-Exit status: 0 success; 1 an engine failed where it must not, or FILE cannot be written; 2 wrong
-arguments. What is counted, and how: tools/stability/README.md.
+Exit status: 0 success; 1 an engine failed where it must not, or no method showed one kind of
+failure, or FILE cannot be written; 2 wrong arguments. tools/stability/README.md explains what is
+counted.
 )";
 
 struct Options {
   bool help = false;
   bool quick = false;
-  std::string out;  // not both
+  std::string out;  // at most one of `out` and `into` is not empty
   std::string into;
 };
 
@@ -75,7 +76,7 @@ absl::Status Print(const std::string& text, std::ostream& out) {
   return out ? absl::OkStatus() : absl::DataLossError("cannot write to standard output");
 }
 
-// Errors go to `error`. False if the tables are not where the options want them.
+// Writes the tables to their destination, and errors to `error`. False if this destination failed.
 bool Deliver(const Options& options, const std::string& text, std::ostream& out,
              std::ostream& error) {
   const bool to_file = !options.out.empty() || !options.into.empty();

@@ -1,12 +1,12 @@
-// The program around the tables: its arguments, where the tables go, its exit status.
+// The arguments, the output and the exit status of the program `stability`.
 //
 //   stability [--quick] [--out FILE | --into FILE]
 //
-// Whether FILE can be written is checked before anything is computed, which takes minutes. If it
-// can no longer be written in the end, the tables go to standard output, so that they are not lost.
+// The computation takes minutes, so the program first checks that FILE can be written. If FILE
+// cannot be written at the end, the tables go to standard output, so that they are not lost.
 //
-// Exit status: 0; 1 if FILE cannot be written or the report has complaints, with which the tables
-// are written nonetheless; 2 for wrong arguments.
+// Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (the tables
+// are written all the same); 2 for wrong arguments.
 #ifndef BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 #define BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 
@@ -19,8 +19,8 @@
 
 namespace ballpiston::stability {
 
-// `make_report` computes, given the fraction of the starts. `out` and `error` are the program's
-// standard output and standard error.
+// `make_report` computes the tables; `effort` is the fraction of the starts. `out` and `error` are
+// the program's standard output and standard error.
 int RunProgram(const std::vector<std::string>& arguments,
                const std::function<Report(double effort)>& make_report, std::ostream& out,
                std::ostream& error);

@@ -1,4 +1,4 @@
-// All tables of a run, and what in them must not be.
+// All tables of a run, and complaints about their contents.
 #ifndef BALLPISTON_TOOLS_STABILITY_REPORT_H_
 #define BALLPISTON_TOOLS_STABILITY_REPORT_H_
 
@@ -9,12 +9,12 @@ namespace ballpiston::stability {
 
 struct Report {
   std::string text;  // Markdown
-  // A sentence for each promise that is broken, and for each look that found no failure of any
-  // method: its zeros would say nothing.
+  // A sentence for each broken promise of an engine (no failures, no loss of energy), and for each
+  // kind of failure that was found for no method: its zeros prove nothing.
   std::vector<std::string> complaints;
 };
 
-// `effort` is the fraction of the starts: 1 takes minutes. Tells on standard error how far it is.
+// `effort` is the fraction of the starts; 1 takes minutes. Prints progress on standard error.
 Report MakeReport(double effort);
 
 }  // namespace ballpiston::stability

@@ -15,8 +15,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-// A thread that does not block SIGINT would end the program. Every thread of this one inherits the
-// mask, the time limit's and gRPC's too: it is set before main. The client itself constructs
+// If one thread does not block SIGINT, the signal ends the program. The mask is set before main, so
+// that all threads inherit it, those of the time limit and of gRPC too. The client constructs
 // Interrupts before it starts a thread.
 [[maybe_unused]] const bool kSigintIsBlocked = [] {
   sigset_t sigint;
@@ -27,7 +27,7 @@ using ::testing::ElementsAre;
 
 void PressCtrlC() { kill(getpid(), SIGINT); }
 
-// The reactions, in order.
+// Records the calls of the reactions, in order.
 class Events {
  public:
   InterruptReactions Of(const std::string& scope) {
@@ -36,7 +36,7 @@ class Events {
             .on_no_second = [this, scope] { Add(scope + ": no second"); }};
   }
 
-  // All of them, when there are so many.
+  // Waits until there are `count` events, and returns all.
   std::vector<std::string> Await(size_t count) {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [&] { return events_.size() >= count; });
@@ -55,7 +55,7 @@ class Events {
   std::vector<std::string> events_;
 };
 
-TEST(Interrupts, EverySecondPressIsASecondPress) {
+TEST(Interrupts, PressesAreFirstAndSecondInTurn) {
   Interrupts interrupts(absl::Minutes(5));
   Events events;
   const Interrupts::Scope scope(interrupts, events.Of("job"));
@@ -66,7 +66,7 @@ TEST(Interrupts, EverySecondPressIsASecondPress) {
   EXPECT_THAT(events.Await(3), ElementsAre("job: first", "job: second", "job: first"));
 }
 
-TEST(Interrupts, WithoutASecondPressTheTimeRunsOutAndTheNextPressIsAFirst) {
+TEST(Interrupts, AfterATimeoutTheNextPressIsAFirstPress) {
   Interrupts interrupts(absl::Milliseconds(10));
   Events events;
   const Interrupts::Scope scope(interrupts, events.Of("job"));
@@ -78,7 +78,7 @@ TEST(Interrupts, WithoutASecondPressTheTimeRunsOutAndTheNextPressIsAFirst) {
               ElementsAre("job: first", "job: no second", "job: first", "job: no second"));
 }
 
-// A press that was meant for one job says nothing about the next.
+// A first press for one job does not count for the next job.
 TEST(Interrupts, TheEndOfAScopeForgetsTheFirstPress) {
   Interrupts interrupts(absl::Minutes(5));
   Events events;

@@ -14,7 +14,7 @@
 namespace ballpiston::client {
 namespace {
 
-// So many attempts of one call does the channel make by itself.
+// The channel itself attempts a call up to this many times.
 constexpr int kAttemptsOfChannel = 4;
 
 // A job of five points on three pages; the first attempts to list the second page fail.

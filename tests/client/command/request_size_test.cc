@@ -54,7 +54,7 @@ TEST(RequestSize, ErrorOfATooLargeMessageNamesItsSize) {
             absl::InvalidArgumentError("spec: has 4200025 bytes; at most 4193280 are permitted"));
 }
 
-// The fields of the request beside the specification fit into the server's limit, too.
+// The other fields of the request fit into the server's limit beside the specification.
 TEST(RequestSize, TheLargestPermittedSpecFitsWithARequestId) {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = LargeSpec(99'300);

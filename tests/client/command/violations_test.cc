@@ -15,7 +15,7 @@ using ::testing::StartsWith;
 
 absl::Status Invalid(const std::string& text) { return absl::InvalidArgumentError(text); }
 
-TEST(Violations, WithoutOneTheReportIsOk) {
+TEST(Violations, WithoutViolationsTheReportIsOk) {
   const Violations none({absl::OkStatus(), absl::OkStatus()});
   EXPECT_OK(none.Lines());
   EXPECT_OK(none.Report());
@@ -42,7 +42,7 @@ TEST(Violations, ARepeatedOneCountsOnce) {
             Invalid("--rho: ''"));
 }
 
-// As from a JSON parser, which quotes the place.
+// A JSON parser's message is such a text: it quotes the line with the error.
 TEST(Violations, ATextOfSeveralLinesIsOneViolation) {
   EXPECT_EQ(Violations({Invalid("no value\n{\n ^")}).Report(), Invalid("no value\n{\n ^"));
 }

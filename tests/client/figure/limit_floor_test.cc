@@ -59,8 +59,8 @@ TEST(LimitFloor, TooFewOrbitsTellNoCrossing) {
   EXPECT_FALSE(FloorsOf({billiard, Spectrum(0.2, 0.5, 0.25)}).front().crossing_work);
 }
 
-// The error of a run is its own scatter and that of the truth; the spectrum has that of the truth
-// alone.
+// The error of a run combines its own statistical error and that of the reference value. The error
+// of the spectrum is that of the reference value alone.
 TEST(LimitFloor, TheErrorOfTheTruthIsSubtracted) {
   const LimitFloor floor = FloorsOf({Spectrum(0.2, 0.5, 3)}).front();
   EXPECT_EQ(OwnError(RelaxationTime(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 5), floor), 4);

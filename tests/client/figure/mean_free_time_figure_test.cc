@@ -42,7 +42,7 @@ TEST(MeanFreeTimeFigure, AsksForThePapersSweep) {
   EXPECT_EQ(equilibrium.target().collisions(), 100'000);
 }
 
-// Without a model the service would answer with the closed forms, which the figure is to test.
+// Without a model the service would answer with the closed forms, but the figure tests those.
 TEST(MeanFreeTimeFigure, AsksForTheBilliardByName) {
   EXPECT_EQ(ConditionalSpec({}).model(), v1::EnsembleSpec::BILLIARD);
   EXPECT_EQ(EquilibriumSpec({}).model(), v1::EnsembleSpec::BILLIARD);
@@ -112,7 +112,7 @@ TEST(MeanFreeTimeFigure, FindsTheLargestDeviationOfAll) {
   EXPECT_EQ(largest.estimates, 2);
 }
 
-// A script can be moved and run again: it holds no path but the names of files beside it.
+// A script can be moved and run again: it holds only names of files in its own folder, no paths.
 TEST(MeanFreeTimeScript, NamesFilesBesideIt) {
   const std::string script = MeanFreeTimeScript({0.2, 0.05});
   EXPECT_THAT(script, HasSubstr("deltas = \"0.2 0.05\""));

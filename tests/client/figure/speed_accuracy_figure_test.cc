@@ -184,7 +184,7 @@ TEST_F(SpeedAccuracyScriptTest, WithoutRelaxationTimesThereIsNoPanelD) {
   EXPECT_TRUE(files.script.ends_with("unset multiplot\n"));
 }
 
-// A script can be moved and run again: it holds no path but the names of files beside it.
+// A script can be moved and run again: it holds only names of files in its own folder, no paths.
 TEST_F(SpeedAccuracyScriptTest, NamesFilesBesideIt) {
   EXPECT_THAT(script_, HasSubstr("\"speed-accuracy.csv\""));
   EXPECT_THAT(script_, Not(HasSubstr("/speed-accuracy")));

@@ -56,7 +56,7 @@ class SecurityFiles : public ::testing::Test {
     chmod(path.c_str(), mode);
     return path;
   }
-  // Never shows the secret.
+  // The error does not show the secret.
   absl::Status Check(const ChannelSecurity& security) {
     absl::Status status = CredentialsOf(security).status();
     EXPECT_THAT(std::string(status.message()), Not(HasSubstr(kSecret)));

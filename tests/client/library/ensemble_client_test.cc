@@ -40,7 +40,7 @@ class EnsembleClientTest : public ::testing::Test {
   FakeServer server_;
 };
 
-// The channel repeats the call; by its request id the server recognises it.
+// The channel repeats the call. The server recognises the repetition by the request id.
 TEST_F(EnsembleClientTest, CreateIsRepeatedWithTheSameRequestId) {
   server_.ensemble.unavailable_attempts = 2;
   v1::EnsembleSpec spec;
@@ -103,7 +103,7 @@ TEST_F(EnsembleClientTest, ErrorsKeepCodeAndReason) {
 }
 
 TEST_F(EnsembleClientTest, WithoutAServerIsUnavailable) {
-  const EnsembleClient client(server_.Channel());  // not started
+  const EnsembleClient client(server_.Channel());  // the server is not started
   EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
   EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
 }
@@ -127,7 +127,7 @@ TEST_F(EnsembleClientTest, ARepeatedCancelSendsTheSameRequestId) {
   EXPECT_EQ(asked[1].request_id(), id);
 }
 
-// By default a gRPC server takes 4 MiB.
+// By default a gRPC server accepts messages of up to 4 MiB.
 TEST_F(EnsembleClientTest, ErrorOfATooLargeSpecificationHasPlainWords) {
   v1::EnsembleSpec spec;
   spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);

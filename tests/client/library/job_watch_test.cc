@@ -100,7 +100,7 @@ TEST_F(JobWatch, PassesTheLastResumeTokenOn) {
   EXPECT_THAT(pauses_, SizeIs(3));
 }
 
-// The stream breaks after the terminal state, and the server repeats it: the callback gets one.
+// The server sends the terminal state twice, then the stream breaks: on_job is called once.
 TEST_F(JobWatch, ShowsTheTerminalStateOnce) {
   const auto last = JobMessage(JobIn(Job::CANCELLED), "t1");
   Start({Unavailable({last, last}), {{last}, grpc::Status::OK}});
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(JobWatch, ErrorOfWatch,
                                            grpc::StatusCode::UNAUTHENTICATED,
                                            grpc::StatusCode::RESOURCE_EXHAUSTED));
 
-// As during a restart: no server listens at the address for a while.
+// No server listens at the address for a while, as during a restart.
 TEST_F(JobWatch, WaitsForAnAbsentServer) {
   server_.ensemble.watches = {Succeeded()};
   after_disconnect_ = [this] {
@@ -139,7 +139,7 @@ TEST_F(JobWatch, WaitsForAnAbsentServer) {
   EXPECT_THAT(pauses_, SizeIs(Ge(3)));
 }
 
-// The number of attempts within the time depends on the machine; other tests count attempts.
+// This test does not count attempts: their number within the time depends on the machine.
 TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
   Start({Unavailable()});
   options_.give_up_after = absl::Milliseconds(50);
@@ -156,8 +156,8 @@ TEST_F(JobWatch, AttachesAgainToAnUnavailableServer) {
   EXPECT_THAT(Tokens(), SizeIs(4));
 }
 
-// Each attempt fails after a message: the server is alive. The time to give up starts again
-// together with the pauses (reattach_pace_test.cc).
+// Each attempt receives a message before it fails: the server is alive. The message restarts both
+// the pauses and the time to give up (reattach_pace_test.cc).
 TEST_F(JobWatch, ThePaceStartsAgainWithEveryMessage) {
   std::vector<WatchScript> watches(100, Unavailable({SnapshotMessage(1, "t")}));
   watches.push_back(Succeeded());

@@ -30,7 +30,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// An empty HOME, and none of the variables that choose the server.
+// Runs with an empty HOME, and without the variables that choose the server.
 class LocalServerTest : public ::testing::Test {
  protected:
   LocalServerTest() {
@@ -152,15 +152,15 @@ class FolderInUse {
   int lock_;
 };
 
-// Until the file exists, or the client has given up.
+// Waits until the file exists or a stop is requested.
 void Await(const fs::path& file, const std::stop_token& stop) {
   while (!fs::exists(file) && !stop.stop_requested()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
-// The started program exits, because another server holds the folder; that server listens a second
-// later, after more than the first pause. No second program is started meanwhile.
+// The started program exits, because another server holds the folder. That server listens a second
+// later, which is longer than the first pause. The client starts no second program meanwhile.
 TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   FakeServer other;
   const FolderInUse in_use(home_);
@@ -186,7 +186,7 @@ absl::Duration TimeToFail(const LocalServer& server) {
   return absl::Now() - start;
 }
 
-// To wait a minute for it would take 15 times as long as without that server.
+// A client that waits a minute for that server takes 15 times as long as without it.
 TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
   const LocalServer server{
       .folder = home_.string(), .socket = home_ / "socket", .program = Program("echo why; exit 2")};

@@ -33,7 +33,7 @@ TEST(MethodClient, ReportsTheMeasurementsInOrder) {
 TEST(MethodClient, AStopEndsTheComparison) {
   FakeServer server;
   server.method.measurements = {WithSamples(1)};
-  server.method.hangs = true;  // until the client has left
+  server.method.hangs = true;  // until the client ends the call
   server.Start();
   std::stop_source stop;
   const auto request_stop = [&](const auto&) { stop.request_stop(); };
@@ -41,7 +41,7 @@ TEST(MethodClient, AStopEndsTheComparison) {
               StatusIs(absl::StatusCode::kCancelled));
 }
 
-// A second attempt could be rejected because the first one is still running.
+// The server could reject a second attempt because the first one still runs.
 TEST(MethodClient, AComparisonIsNotRepeated) {
   FakeServer server;
   server.method.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "not now");

@@ -130,7 +130,7 @@ TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
   EXPECT_THAT(text, HasSubstr("\rsucceeded: 100 of 100 points, 2000 samples\x1b[K\n"));
 }
 
-// For comparison with the plan.
+// The user can compare the work with the plan.
 TEST(ProgressBar, EndsWithTheWorkIfTheServerSendsIt) {
   std::ostringstream err;
   const auto reporter = NewProgressReporter(ProgressStyle::kBar, err);
@@ -166,7 +166,7 @@ v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
   return snapshot;
 }
 
-// When no point is being computed, as at the end of a job with one worker.
+// At the end of a job with one worker no point is being computed.
 TEST(ProgressBar, HasThePointThatFinishedLast) {
   std::ostringstream err;
   NewProgressReporter(ProgressStyle::kBar, err)->OnSnapshot(WithFinishedPoints(0));

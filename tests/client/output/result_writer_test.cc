@@ -48,7 +48,7 @@ std::string Written(Format format, const std::vector<v1::PointResult>& points = 
   return out.str();
 }
 
-// Two models, and every field of an estimate.
+// Points by two models, with every field of an estimate.
 std::vector<v1::PointResult> PointsOfTheLadder() {
   return {FromText<v1::PointResult>(R"(
             index: 0 parameters { rho: 0.53 delta: 0.1 } model: BILLIARD samples: 1e6

@@ -29,7 +29,7 @@ inline void ForEachTarget(const std::function<void(int64_t target)>& test) {
   hwy::GetChosenTarget().DeInit();
 }
 
-// The same under those with fused multiply-add, of which each has to give the same bits.
+// The same for the targets with fused multiply-add only; these must all give the same bits.
 inline void ForEachFusedTarget(const std::function<void()>& test) {
   int targets = 0;
   ForEachTarget([&](int64_t target) {

@@ -1,6 +1,6 @@
 // What the orbits and experiments of golden_test.cc gave when their bits were last meant to change.
-// The lines are what `statistical_test --gtest_filter='*Golden*' | grep '^{'` prints after a
-// difference.
+// If the bits differ, this command prints the new lines:
+//   statistical_test --gtest_filter='*Golden*' | grep '^{'
 #ifndef BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
 #define BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_
 

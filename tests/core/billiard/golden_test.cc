@@ -1,13 +1,14 @@
 // The same question gives the same bits: under every instruction set with fused multiply-add, in
-// any number of threads, in any order of the blocks, and as the last time.
+// any number of threads, in any order of the blocks, and in every later version with the same
+// kEngineVersion.
 //
-// When bits change on purpose: raise kEngineVersion in core/engine_version.h, so that nobody merges
-// blocks of the two, run `statistical_test --gtest_filter='*Golden*'`, and put the lines that it
-// prints into golden_bits.h. A change that nobody meant is a defect.
+// To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that blocks of the
+// two versions are not merged. Then run `statistical_test --gtest_filter='*Golden*'` and put the
+// lines that it prints into golden_bits.h. An unintended change of bits is a defect.
 //
-// Of a summary, the closed forms beside the estimates and the relative entropy are not looked at:
-// their sines and logarithms are the C library's. Nor is that of the experiments that are compared
-// with the limit, whose spectrum adds to the estimates.
+// The closed forms beside the estimates and the relative entropy are not compared: their sines and
+// logarithms come from the C library. The summaries of experiments that are compared with the limit
+// are not compared either: the spectrum contributes to their estimates.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What is recorded of balls in lanes. That each flight is right: single_flight_test.cc.
+// Tests the records of FlyLaneBalls. single_flight_test.cc tests the flights themselves.
 #include "core/billiard/lane_balls.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::vector<LaneFrame> MiddleStarts(size_t count) {
   std::vector<LaneFrame> starts;
   for (size_t i = 0; i < count; ++i) {
     CounterRandom random(17, 0, i);
-    const double angle = (random.Uniform() - 0.5) * 3;  // to the normal
+    const double angle = (random.Uniform() - 0.5) * 3;  // between direction and normal
     const Eigen::Vector2d normal = Eigen::Vector2d(1, 1).normalized();
     const Eigen::Vector2d across(-normal.y(), normal.x());
     starts.push_back(FrameOfBallOnWall(Eigen::Vector2d(-0.5, -0.5) + rho * normal,
@@ -46,7 +46,7 @@ std::vector<LaneHit> Flown(const std::vector<LaneFrame>& starts, size_t records)
   return recorded;
 }
 
-TEST(LaneBalls, FewerRecordsAreTheLastHitsOfEqualStretches) {
+TEST(LaneBalls, FewerRecordsAreEveryNthHit) {
   ForEachTarget([](int64_t) {
     const std::vector<LaneFrame> starts = MiddleStarts(100);
     const std::vector<LaneHit> all = Flown(starts, kRecordedHits);
@@ -63,7 +63,7 @@ TEST(LaneBalls, FewerRecordsAreTheLastHitsOfEqualStretches) {
   });
 }
 
-// Numbers of balls that leave vectors, groups and batches incomplete, for vectors of 2 to 8.
+// The numbers of balls leave vectors, groups and batches incomplete, for vectors of 2 to 8 lanes.
 TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
   ForEachTarget([](int64_t) {
     const std::vector<LaneFrame> starts = MiddleStarts(100);
@@ -78,8 +78,8 @@ TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
   });
 }
 
-// Place and abscissa are two roads to the same x, of some rounded terms below 1 each.
-TEST(LaneBalls, TheAbscissaIsThatOfThePlace) {
+// Both are computed from the same frame, as sums of a few rounded terms below 1.
+TEST(LaneBalls, AbscissaAgreesWithThePosition) {
   for (const LaneHit& hit : Flown(MiddleStarts(100), kRecordedHits)) {
     ASSERT_NEAR(hit.x, PositionInCell(hit.frame).x(), 8 * 0x1p-53);
   }

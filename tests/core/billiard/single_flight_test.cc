@@ -1,5 +1,5 @@
-// One flight in lanes against one of the reference and both against one of 64 bits and more, from
-// half a million states: anywhere, and where arcs meet or are touched.
+// Compares one flight in lanes with one of the reference, and both with one of 64 bits or more,
+// from half a million states: anywhere, and where arcs meet or are touched.
 //
 // The bound. With u the rounding of a number next to 1, 2^-53 or in single precision 2^-24, an
 // engine knows the ray's impact parameter c' on the next disc to some u: the cross product with the

@@ -14,8 +14,8 @@ using oracle::Integrate;
 using oracle::IntegrateToRoot;
 
 // Integral of g(eb, ep) over the canonical density, in the total energy E and u = sqrt(ep/E):
-// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2. E runs to
-// 50/beta in five pieces, beyond which is exp(-50).
+// deb dep = 2 E u dE du. The kink at eb = ep, u = 1/sqrt(2), is a power 3/2 or 5/2. E is
+// integrated to 50/beta in five pieces; the rest is of the order exp(-50).
 template <typename Function>
 double CanonicalAverage(double beta, Function g) {
   const auto at_energy = [&](Quad energy) {

@@ -100,8 +100,8 @@ TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
   }
 }
 
-// Followed by hand, too: from the walker of the first sample, in a stream that no billiard uses.
-TEST(EnergyRelaxation, AWalkIsThatOfTheJumpProcess) {
+// The test follows the walker of the first sample itself, in a stream that no billiard uses.
+TEST(EnergyRelaxation, AWalkFollowsTheJumpProcess) {
   constexpr double kEpsilon = 0.01;
   const PointParameters point = PaperPoint(0.2, kEpsilon);
   const EnsembleSpec spec = SpecOfOrbits(point, Model::kMarkov, 1);
@@ -120,7 +120,7 @@ TEST(EnergyRelaxation, AWalkIsThatOfTheJumpProcess) {
   }
 }
 
-// The same 2048 walks in blocks of fewer and of more than walk in step.
+// Runs the same 2048 walks in blocks of fewer and of more than 256, the number that walk in step.
 TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
   for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
     const auto merged_of = [epsilon](int64_t samples) {

@@ -22,8 +22,8 @@
 namespace ballpiston {
 namespace {
 
-// Of each experiment by the billiard in lanes, which is what AUTO takes here, then by the reference
-// and by the jump process.
+// One specification of each experiment by the billiard in lanes (AUTO chooses it here), then by the
+// reference and by the jump process.
 std::vector<EnsembleSpec> OneOfEach() {
   const PointParameters pair = PaperPoint(0.2);
   const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
@@ -126,7 +126,7 @@ TEST(PointExperiment, OneSampleIsEnoughForAnAnswerWithoutErrors) {
 
 TEST(PointExperiment, ToleranceEndsThePointAtItsFirstBlockWithinIt) {
   for (EnsembleSpec spec : OneOfEach()) {
-    if (spec.experiment == Experiment::kMarkovProperty) continue;  // takes no tolerance
+    if (spec.experiment == Experiment::kMarkovProperty) continue;  // does not accept a tolerance
     SCOPED_TRACE(Described(spec));
     const auto sampled = PointExperiment::Create(spec, 0);
     const BlockResult merged = RunBlocks(*sampled);
@@ -144,10 +144,10 @@ TEST(PointExperiment, ToleranceEndsThePointAtItsFirstBlockWithinIt) {
   }
 }
 
-// Ball and piston meet once in 1e13 time units here: no block of the billiard could end.
+// Ball and piston collide once in 1e13 time units here, so only the stop ends a billiard's block.
 TEST(PointExperiment, StopEndsABlock) {
   for (EnsembleSpec spec : OneOfEach()) {
-    // Whose blocks are short.
+    // Its blocks are short even here.
     if (spec.experiment == Experiment::kMarkovProperty && spec.model == Model::kMarkov) continue;
     spec.grid.delta = {1e-7};
     EXPECT_FALSE(PointExperiment::Create(spec, 0)->RunBlock(0, Stopped())) << Described(spec);

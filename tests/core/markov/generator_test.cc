@@ -108,8 +108,8 @@ Eigen::VectorXd IsolatedRates(const Eigen::VectorXd& rates) {
   return isolated;
 }
 
-// From 200, 400 and 800 cells, extrapolated: 2e-10 off for the gap, up to ten times that for the
-// next ones: 2e-8.
+// The reference is extrapolated from 200, 400 and 800 cells. Its error is 2e-10 for the gap, and up
+// to ten times that for the next rates; their tolerance is 2e-8.
 TEST(Generator, IsolatedRatesAreThoseOfEnergyCells) {
   const Eigen::VectorXd rates = IsolatedRates(InUse().rates());
   const Eigen::VectorXd cells = oracle::FromEnergyCells(
@@ -162,7 +162,7 @@ TEST(Generator, DirichletFormOfTheEnergyIsHalfTheSecondMoment) {
   const auto h = [](Quad u) {
     return PairSquaredEnergyTransfer(std::pow(static_cast<double>(u), 2) / 2);
   };
-  // h has powers of a root at 1/sqrt(2).
+  // At u = 1/sqrt(2) h has powers of a square root.
   const Quad mean =
       oracle::IntegrateToRoot(h, 0, M_SQRT1_2) + oracle::Integrate(h, Quad{M_SQRT1_2}, 1);
   const Eigen::VectorXd energy = EnergyOf(InUse());

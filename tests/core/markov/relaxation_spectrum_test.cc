@@ -75,7 +75,7 @@ TEST(RelaxationSpectrum, CorrelationTimeIsThatOfEnergyCells) {
   EXPECT_NEAR(Spectrum().CorrelationTime(kForEver).value, 2.165550673728, 1e-11);
 }
 
-// <h> over the stationary law, uniform in u; h has powers of a root at 1/sqrt(2).
+// <h> over the stationary law, uniform in u. At u = 1/sqrt(2) h has powers of a square root.
 double MeanSquaredTransfer() {
   const auto h = [](Quad u) {
     return PairSquaredEnergyTransfer(std::pow(static_cast<double>(u), 2) / 2);

@@ -37,7 +37,7 @@ TEST(LimitError, GrowsTowardsSlowPartners) {
   }
   EXPECT_GT(ExpectedLimitError(PaperPoint(0.05, 0.5)), ExpectedLimitError(PaperPoint(0.05, 0.4)));
   for (const double epsilon : {0.0, 0.5}) {
-    EXPECT_GE(ExpectedLimitError(PaperPoint(0.05, epsilon)), 1);  // no limit at all
+    EXPECT_GE(ExpectedLimitError(PaperPoint(0.05, epsilon)), 1);  // the limit does not apply
     EXPECT_LE(ExpectedLimitError(PaperPoint(1e-6, epsilon)), 10);
   }
 }

@@ -35,7 +35,7 @@ struct TracedJob {
   TracedCall create;
   TracedCall cancel;
   TracedCall remove;
-  TracedCall success;                // seen, with its results
+  TracedCall success;                // the client has seen it, with its results
   std::vector<std::string> results;  // of an undisturbed run
 };
 

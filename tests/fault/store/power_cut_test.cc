@@ -241,8 +241,8 @@ TEST(PowerCut, ADeletedJobThatComesBackIsDetected) {
               testing::Contains("job 2 was deleted and is back"));
 }
 
-// Every cut in both forms: a store is made at the beginning of the trace, where the short form has
-// one or two cuts.
+// Both forms try every cut here. The store is created at the beginning of the trace, where the
+// short form of the other tests has only one or two cuts.
 TEST(PowerCut, AStoreThatWasBeingMadeIsMadeAtTheNextStart) {
   FaultDisk disk;
   ASSERT_TRUE(OpenStoreFile(kStorePath, disk.vfs()).ok());

@@ -1,4 +1,4 @@
-// These tests break disks; the log would report every failure.
+// Switches the log off. These tests make disks fail, and the log would report every failure.
 #include "gtest/gtest.h"
 #include "server/observability/log.h"
 

@@ -33,7 +33,7 @@ Channels ConnectionsTo(ConnectedServer& server) {
   return channels;
 }
 
-// The name of the job, also if the server is killed meanwhile; otherwise the error.
+// Repeats the call while the server is down. Returns the name of the job, or another error.
 std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
                            const v1::EnsembleSpec& spec, const std::string& request_id) {
   const client::EnsembleClient client(channel);
@@ -42,7 +42,7 @@ std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
     if (job.ok()) return job->name();
     if (!absl::IsUnavailable(job.status())) return job.status().ToString();
     std::this_thread::sleep_for(kPauseBeforeRepeating);
-    // Without a caller that waits, gRPC looks only every 5 s whether it is connected again.
+    // If no caller waits, gRPC checks only every 5 s whether the channel is connected again.
     channel->WaitForConnected(std::chrono::system_clock::now() + kPauseBeforeRepeating);
   }
 }
@@ -98,7 +98,7 @@ class BatchOfCreates : public testing::Test {
     ASSERT_OK_AND_ASSIGN(const auto jobs, client.List());
     EXPECT_EQ(jobs.size(), made_.size());
     findings_.Count("replays after a kill");
-    // The next server then writes nothing until a client calls it.
+    // The job is cancelled, so that the next server writes nothing until a client calls it.
     client.Cancel(name).status().IgnoreError();
     EXPECT_OK(client.Watch(name, {}));
     server_.KillHard();

@@ -23,12 +23,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The pause between attempts that the test's watch makes at most.
+// The longest pause between two attempts of the test's watch.
 constexpr absl::Duration kMostBackoff = absl::Milliseconds(500);
-// From the server's being ready to the watch's first message, beside that pause.
+// The longest time from a ready server to the watch's first message, without that pause.
 constexpr double kMostSecondsToHear = 1;
 
-// How often the watch reported the job: at first, and after each restart.
+// Counts the watch's reports of the job: one at first, and one after each restart.
 class Told {
  public:
   void Add() {

@@ -14,7 +14,7 @@ std::shared_ptr<grpc::Channel> ConnectedServer::Connect() {
   return channel;
 }
 
-// Without it gRPC would wait for the end of the pause after the last attempt that failed.
+// Ends the pause that gRPC makes after a failed attempt to connect.
 void ConnectedServer::OnReady() {
   const std::lock_guard lock(mutex_);
   for (const std::weak_ptr<grpc::Channel>& channel : channels_) {

@@ -13,15 +13,15 @@
 
 namespace ballpiston::torture {
 
-// Before a client repeats a call that the server did not answer.
+// The pause before a client repeats a call that the server did not answer.
 inline constexpr std::chrono::milliseconds kPauseBeforeRepeating(20);
 
 class ConnectedServer : public ServerProcess {
  public:
   using ServerProcess::ServerProcess;
 
-  // With a connection of its own, even beside others to the same server, and connected again as
-  // soon as a new process is ready.
+  // A channel with a connection of its own, not shared with other channels to the server. It
+  // reconnects as soon as a new process is ready.
   std::shared_ptr<grpc::Channel> Connect();
 
  private:

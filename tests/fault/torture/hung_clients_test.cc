@@ -27,7 +27,7 @@ namespace {
 constexpr double kDrainSeconds = 1;
 constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";  // of every HTTP/2 connection
 
-// A connection on which these bytes are sent, and no more.
+// A connection that sends these bytes and then nothing.
 class HalfOpenConnection {
  public:
   HalfOpenConnection(const std::string& address, const std::string& bytes)

@@ -1,6 +1,6 @@
-// Clients that hang: a process that opens watches and then stops (SIGSTOP), so that nothing of what
-// the server sends is read any more, neither by the watches nor from the sockets. Every other one
-// has not even read its first message, which is as large as the job.
+// Clients that hang: a process that opens watches and then stops (SIGSTOP). After that, neither the
+// watches nor gRPC read what the server sends. Every other watch has not read its first message
+// either, which is as large as the job.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_HUNG_READERS_H_
 
@@ -17,14 +17,14 @@ inline constexpr char kHungReaders[] = "--hung_readers";  // COUNT ADDRESS JOB S
 int RunHungReaders(const std::string& count, const std::string& address, const std::string& job,
                    const std::string& silence_file);
 
-// The process, from outside: hangs when the constructor returns, is killed by the destructor.
+// Starts the process, which hangs when the constructor returns. The destructor kills it.
 class HungReaders {
  public:
   HungReaders(int count, const std::string& address, const std::string& job);
 
-  // Wakes them, once: each reads until it is told of at least `last` finished points. Returns how
-  // many of them find no message from the time when there were more than `first` and fewer than
-  // `last`: the server had a message waiting for these all the while, and made no other.
+  // Wakes the process; call it once. Each watch reads until a message has at least `last` finished
+  // points. Returns the number of watches that got no message with more than `first` and fewer than
+  // `last` finished points. For these the server had one message waiting and made no other one.
   int WakeAndCountSilent(int first, int last);
 
  private:

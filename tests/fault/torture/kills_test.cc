@@ -28,20 +28,21 @@ namespace ballpiston::torture {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestLife(600);
-// After this time without a pass of the failpoint the server is killed all the same.
+// If the server does not pass the failpoint within this time, the test kills it.
 constexpr std::chrono::milliseconds kWaitForFailpoint(1500);
-// A failpoint that was never passed gets so many further lives, each longer than the one before.
+// If a failpoint was never passed, the server is started up to this many times more, each time with
+// a longer wait.
 constexpr int kMostFurtherLives = 30;
 constexpr int kKilled = 128 + SIGKILL;
 
-// The most frequent ones are passed at every block, the rarest once or twice in a server's life.
+// The server passes the most frequent failpoints at every block, the rarest once or twice in all.
 int MostPasses(std::string_view failpoint) {
   if (failpoint.starts_with("store.") || failpoint.starts_with("checkpoint.")) return 30;
   if (failpoint.starts_with("block.") || failpoint == "resume.block") return 20;
   return failpoint.starts_with("stop.") ? 1 : 3;
 }
 
-// Passed when SIGTERM stops the server, if not before.
+// True if the server passes the failpoint when SIGTERM stops it, if not before.
 bool ComesWithStop(std::string_view failpoint) {
   return failpoint.starts_with("stop.") || failpoint.starts_with("checkpoint.");
 }
@@ -50,7 +51,7 @@ class Killer {
  public:
   Killer(ConnectedServer& server, Findings& findings) : server_(server), findings_(findings) {}
 
-  // One life in four is counted from the process's start, before the server is ready.
+  // In one case of four the random life begins with the process, before the server is ready.
   void KillAtRandom() {
     server_.Spawn();
     if (Pick(0, 3) != 0) server_.AwaitReady();
@@ -61,7 +62,8 @@ class Killer {
     findings_.Count("kills at random");
   }
 
-  // At the first pass, or at any one when the failpoint has killed before. Waits for it so long.
+  // Kills at the first pass of the failpoint, or at a random pass if it has killed before. Waits up
+  // to `wait` for the kill.
   void KillAt(std::string_view failpoint, std::chrono::milliseconds wait = kWaitForFailpoint) {
     server_.Spawn(Armed(failpoint));
     if (server_.AwaitReady() && ComesWithStop(failpoint)) {

@@ -1,4 +1,4 @@
-// A thousand watchers of one job, and a server that stays healthy.
+// The server stays healthy with a thousand watchers of one job.
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 

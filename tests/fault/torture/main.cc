@@ -1,4 +1,4 @@
-// The tests, or, if the first argument says so, the process of the hung readers.
+// Runs the tests or, if the first argument is kHungReaders, the process of the hung readers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What the harness asks: small specifications of each kind, and their undisturbed answers.
+// The specifications of the torture tests, and their answers by a server that is not killed.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_QUESTIONS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_QUESTIONS_H_
 
@@ -14,8 +14,8 @@
 
 namespace ballpiston::torture {
 
-// Of every experiment, by several models, of one and of many points, with numbers of samples and
-// with a tolerance; between 0.02 s and 1 s of one core each.
+// Specifications of every experiment, by several models, with one point and with many, with a
+// number of samples and with a tolerance. Each takes 0.02 s to 1 s of one core.
 std::vector<v1::EnsembleSpec> Questions();
 
 // Many points, each of much the same cost.
@@ -35,8 +35,8 @@ using Answer = std::map<int, std::string>;
 
 Answer AnswerOf(const std::vector<v1::PointResult>& points);
 
-// Each question answered once by a server that nobody disturbs. Checks that every point with a
-// number of samples has as many as the plan of its blocks says; throws if not.
+// The answers of a server that is not killed. Throws if a point with a number of samples has
+// another number than its plan of blocks gives.
 std::vector<Answer> UndisturbedAnswers(const std::vector<v1::EnsembleSpec>& questions);
 
 }  // namespace ballpiston::torture

@@ -22,7 +22,7 @@ using client::HasEnded;
 constexpr size_t kMostActive = 3;
 // Enough to find in a list, few enough to look through at the end.
 constexpr size_t kMostKept = 40;
-constexpr std::chrono::seconds kPatience(20);  // for one call, which then is repeated
+constexpr std::chrono::seconds kPatience(20);  // for one call; after that the call is repeated
 
 // A call that reaches a server just as it stops is CANCELLED by gRPC, without a reason.
 bool WasNotAnswered(const absl::Status& status) {

@@ -1,5 +1,5 @@
-// Comparing two ways of running by short windows in turn, so that whatever else the machine does
-// falls on both alike.
+// Compares two ways of running in short alternate windows, so that other load of the machine
+// affects both equally.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_WINDOWS_H_
 

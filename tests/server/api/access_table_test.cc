@@ -99,7 +99,7 @@ class AccessTable : public ::testing::Test {
   }
   std::string JobOfAlice() { return EndedJob(alice_, 1); }
 
-  // `shown`: authorization headers.
+  // `shown` holds the authorization headers.
   std::string Outcome(const MethodDescriptor& method, const std::vector<std::string>& shown) {
     return TextOf(
         CallByName(server_.channel(), PathOf(method), RequestFor(method, JobOfAlice()), shown));
@@ -161,7 +161,7 @@ TEST_F(AccessTable, ListsHoldOwnJobsAndAnAdministratorsAll) {
   EXPECT_EQ(bob_.List().jobs_size(), 0);
 }
 
-// ---- tokens and request ids that another principal was given ----
+// ---- tokens and request ids of another principal ----
 
 class ForeignTokens : public AccessTable {
  protected:
@@ -262,7 +262,7 @@ TEST_F(AccessTable, HeadersOtherThanOneBearerTokenAreInvalid) {
   }
 }
 
-// An empty request of health's Check asks for the whole server.
+// An empty request of the health service's Check asks for the whole server.
 TEST_F(AccessTable, HealthNeedsNoTokenAndReflectionDoes) {
   EXPECT_OK(CallByName(server_.channel(), kCheckHealth));
   for (const auto& shown : {Bearer(""), Bearer("no-such-token"), Bearer(kAliceOnce)}) {

@@ -134,7 +134,7 @@ TEST(EnsembleService, ConcurrentCreatesWithOneRequestIdMakeOneJob) {
   for (int i = 0; i < 64; ++i) {
     threads.emplace_back([&] {
       const EnsembleJob job = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
-      // It can be watched at once, whoever made it.
+      // Each thread can watch the job at once, also if another thread's call created it.
       EXPECT_EQ(server.AwaitEnd(job.name()).state(), EnsembleJob::SUCCEEDED);
       std::lock_guard lock(mutex);
       names.insert(job.name());
@@ -201,7 +201,7 @@ TEST(EnsembleService, MalformedNamesAreInvalid) {
 
 // ---- Cancel, Delete ----
 
-TEST(EnsembleService, ACancelledJobEndsAndKeepsWhatItFinished) {
+TEST(EnsembleService, ACancelledJobEndsAndKeepsItsFinishedPoints) {
   Gate gate;
   RunningServer server(
       {.factory = FakeExperiments([&gate](size_t point, uint64_t, std::stop_token stop) {

@@ -35,7 +35,7 @@ TEST(HeldCalls, EachPrincipalHasItsOwnCalls) {
   EXPECT_OK(calls.Begin("ann", 1, kTwoCallsOfTenBytes));
 }
 
-TEST(HeldCalls, BytesAreLimitedExceptOfASingleCall) {
+TEST(HeldCalls, BytesAreLimitedButASingleCallIsPermitted) {
   HeldCalls calls;
   EXPECT_OK(calls.Begin("ann", 11, kTwoCallsOfTenBytes));
   EXPECT_OK(calls.CheckRoom("ann", kTwoCallsOfTenBytes));
@@ -68,7 +68,7 @@ TEST(HeldCalls, AMessageWaitsUntilThereIsRoom) {
   EXPECT_FALSE(messages.TryBegin("ann", 1, 10));
 }
 
-// Answers that hold a large job.
+// Calls with unread answers, each of which holds a large job.
 class UnreadAnswers : public testing::Test {
  protected:
   grpc::Status Evaluate() {
@@ -101,7 +101,7 @@ class UnreadAnswers : public testing::Test {
     EXPECT_THAT(refused, StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
     EXPECT_THAT(refused.error_message(), HasSubstr("(--" + flag + ")"));
     unread.reset();
-    while (ReasonOf(Evaluate()) == "TOO_MANY_CALLS") {  // until the server has heard of it
+    while (ReasonOf(Evaluate()) == "TOO_MANY_CALLS") {  // until the server sees the end
     }
   }
 

@@ -123,7 +123,7 @@ TEST_F(MethodServiceTest, ASecondComparisonIsRefusedUntilTheFirstEnds) {
               IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "COMPARISON_RUNNING"));
   gate_.Open();
   EXPECT_OK(first.End());
-  EXPECT_OK(Stream(*server_).End());  // at once: no time in between
+  EXPECT_OK(Stream(*server_).End());  // at once, without a pause
 }
 
 TEST_F(MethodServiceTest, AClientThatLeavesStopsTheComparison) {
@@ -161,7 +161,7 @@ TEST_F(MethodServiceTest, AStoppingServerEndsTheComparison) {
   Start();
   Stream stream(*server_);
   ASSERT_TRUE(stream.Next());
-  server_->Shutdown(std::chrono::hours(1));  // hangs so long if the stream stays
+  server_->Shutdown(std::chrono::hours(1));  // hangs for an hour if the stream does not end
   EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
 }
 
@@ -190,7 +190,7 @@ TEST_F(MethodServiceTest, AServerIsNotIdleDuringAComparison) {
 }
 
 // More than a stalled stream takes in: some 5 MB.
-TEST_F(MethodServiceTest, AStalledReaderDelaysNobodyAndMissesNothing) {
+TEST_F(MethodServiceTest, AStalledReaderDelaysNoComparisonAndGetsEveryMeasurement) {
   constexpr uint64_t kMany = 300'000;
   Start(kMany);
   auto told = told_.get_future();

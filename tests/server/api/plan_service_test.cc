@@ -140,7 +140,8 @@ TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsByCreate) {
 
 TEST_F(PlanServiceTest, ALargeGridIsPlannedByAThousandPointsEvenlySpread) {
   v1::EnsembleSpec spec = PlanQuestion(v1::EnsembleSpec::ENERGY_RELAXATION);
-  spec.set_model(v1::EnsembleSpec::BILLIARD);  // no pilot, which is not as many as the points
+  // The billiard needs no pilots; the number of pilots is not the number of points.
+  spec.set_model(v1::EnsembleSpec::BILLIARD);
   spec.mutable_target()->set_tolerance(0.01);
   spec.mutable_grid()->clear_delta();
   for (int i = 0; i < 100'000; ++i) spec.mutable_grid()->add_delta(0.001 + 1e-6 * i);

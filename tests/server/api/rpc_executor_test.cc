@@ -14,7 +14,7 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int kThreads = 4;  // for calls that read, and as many for those that write
+constexpr int kThreads = 4;  // for calls that read; the same number for calls that write
 constexpr int kStreamThreads = kThreads / 2;
 
 class RpcExecutorTest : public testing::Test {
@@ -25,7 +25,7 @@ class RpcExecutorTest : public testing::Test {
     return [this] { gate_.Pass(std::stop_token()); };
   }
 
-  // Returns when one more task, that `post` posts, has been run.
+  // Posts one more task with `post`, and returns when it has run.
   template <typename Post>
   void AwaitAnother(Post post) {
     std::promise<void> run;
@@ -63,7 +63,7 @@ TEST_F(RpcExecutorTest, CallsThatReadDoNotWaitForThoseThatWrite) {
   EXPECT_EQ(gate_.waiting(), kThreads);
 }
 
-TEST_F(RpcExecutorTest, NobodyReadsWithMoreThanHalfOfTheThreads) {
+TEST_F(RpcExecutorTest, ReadsOfAPrincipalUseAtMostHalfOfTheThreads) {
   for (int i = 0; i < 10 * kThreads; ++i) executor_.Post("ann", Stuck());
   gate_.AwaitWaiting(kThreads / 2);
   AwaitAnother([this](RpcExecutor::Task task) { executor_.Post("bob", std::move(task)); });

@@ -1,4 +1,4 @@
-// A watch lives no longer than the credentials it was begun with.
+// A watch ends when the credentials of its call become invalid.
 #include <chrono>
 #include <string>
 
@@ -23,7 +23,7 @@ class WatchCredentialsTest : public testing::Test {
     return TestClient(server_.NewChannel(files_.Credentials(token)));
   }
 
-  // A job of alice's that waits.
+  // Submits a job of alice that waits at the gate; returns its name.
   std::string JobOfAlice() { return alice_.Submit(Equilibrium(1, 2)); }
 
   void ReplaceAccess(const std::string& lines) {
@@ -60,7 +60,7 @@ TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsAnotherPrincipals) {
   EXPECT_EQ(ReasonOf(watch.End()), "CREDENTIALS_INVALID");
 }
 
-TEST_F(WatchCredentialsTest, AFormerAdministratorSeesNoOthersJob) {
+TEST_F(WatchCredentialsTest, AFormerAdministratorLosesTheWatchOfAnothersJob) {
   WatchStream watch(ops_, JobOfAlice());
   ASSERT_TRUE(watch.Next());
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kSubmit}) +
@@ -81,7 +81,7 @@ TEST_F(WatchCredentialsTest, AWatchWithAValidTokenGoesOn) {
 
 TEST_F(WatchCredentialsTest, AStalledReaderLosesItsWatchToo) {
   WatchStream stalled(alice_, alice_.Submit(LargeEquilibrium()));
-  while (ops_.Status().streams() < 1) {  // until it is there
+  while (ops_.Status().streams() < 1) {  // until the server has the watch
   }
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));
   while (ops_.Status().streams() > 0) {

@@ -28,7 +28,7 @@ struct WatchStream {
     if (!reader->Read(&message)) return std::nullopt;
     return message;
   }
-  // Reads on until a message is like that.
+  // Reads until a message meets the condition, and returns this message.
   template <typename Condition>
   WatchMessage Until(Condition condition) {
     while (auto message = Next()) {
@@ -42,12 +42,12 @@ struct WatchStream {
     while (auto message = Next()) messages.push_back(*message);
     return messages;
   }
-  // Reads to the end, and tells how it ended.
+  // Reads to the end, and returns the final status.
   grpc::Status End() {
     ToTheEnd();
     return reader->Finish();
   }
-  // As a client does that loses interest.
+  // Cancels the watch, as a client that needs no more messages.
   void Leave() {
     context.TryCancel();
     reader->Finish();

@@ -352,7 +352,7 @@ TEST_F(WatchTest, WithATokenOnlyNewsIsSent) {
     EXPECT_FALSE(HasPoints(message));
     return message.has_heartbeat();
   });
-  WatchStream unknown(server, name, "b3RoZXI6MTox");  // another server's: everything
+  WatchStream unknown(server, name, "b3RoZXI6MTox");  // by another server: all is sent
   unknown.Until(HasPoints);
 }
 
@@ -376,7 +376,7 @@ TEST_F(WatchTest, ASlowReaderGetsEveryFinishedPoint) {
   EXPECT_EQ(last.state(), EnsembleJob::SUCCEEDED);
 }
 
-// States that are overtaken are not sent: of one point that has 10,000.
+// The point has 10,000 states. A slow reader does not get a state that a newer one has replaced.
 TEST_F(WatchTest, ASlowReaderSkipsStatesOfUnfinishedPoints) {
   RunningServer& server = Start(10'000);
   const std::string name = server.Submit(Equilibrium(1, 20'000));
@@ -415,11 +415,12 @@ TEST_F(WatchTest, AStoppingServerEndsWatchesWithUnavailable) {
   EXPECT_THAT(status, IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
 }
 
-// More than may be on their way at once: who waits has its turn when those before it have read.
+// The messages are larger than the memory for unsent messages. A reader waits until those before it
+// have read.
 TEST_F(WatchTest, ReadersOfALargeJobAreServedInTurn) {
   RunningServer& server = Start(0);
   const std::string name = server.Submit(LargeEquilibrium());
-  std::vector<std::unique_ptr<WatchStream>> readers;  // 43 MB
+  std::vector<std::unique_ptr<WatchStream>> readers;  // 43 MB in all
   for (int i = 0; i < 60; ++i) readers.push_back(std::make_unique<WatchStream>(server, name));
   std::vector<std::thread> threads;
   for (const auto& reader : readers) {
@@ -435,7 +436,7 @@ TEST_F(WatchTest, ReadersOfALargeJobAreServedInTurn) {
 TEST_F(WatchTest, AStalledReaderDoesNotDelayAStop) {
   RunningServer& server = Start();
   const std::string name = server.Submit(LargeEquilibrium());
-  std::vector<std::unique_ptr<WatchStream>> stalled;  // nobody reads 720 kB each
+  std::vector<std::unique_ptr<WatchStream>> stalled;  // 720 kB each, which nobody reads
   for (int i = 0; i < 50; ++i) stalled.push_back(std::make_unique<WatchStream>(server, name));
   server.Shutdown(std::chrono::milliseconds(500));
   for (const auto& reader : stalled) EXPECT_THAT(reader->End(), Not(IsOk()));
@@ -459,7 +460,7 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
               testing::HasSubstr("permits 2 (--max-streams-per-principal)"));
   first->context.TryCancel();
   first.reset();
-  while (!WatchStream(server, name).Next()) {  // until the server has heard of it
+  while (!WatchStream(server, name).Next()) {  // until the server knows that the watch ended
   }
 }
 

@@ -99,7 +99,7 @@ TEST_F(ModelLadderTest, AnotherServerOnTheSameStoreDoesNotRunItAgain) {
   EXPECT_EQ(second.model_error, first.model_error);
 }
 
-TEST_F(ModelLadderTest, IfThePilotFindsTheLimitTooFarOffTheBilliardIsChosen) {
+TEST_F(ModelLadderTest, TheBilliardIsChosenIfThePilotFindsALargeLimitError) {
   found_.difference = 1;
   ModelLadder ladder(*store_, 2, Runner());
   const auto experiment = Create(ladder, Relaxation());

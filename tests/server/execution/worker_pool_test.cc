@@ -81,7 +81,7 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
   const EnsembleSpec spec = FakeSpec(2, 30);
   auto journal = std::make_shared<RecordingJournal>();
   const auto experiment = FakeExperiments()(spec, 1, std::stop_token());
-  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) {  // with gaps: an early block was stored
+  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) {  // with gaps, as workers store them
     journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
   }
   std::mutex mutex;
@@ -351,7 +351,7 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   Gate gate;
   WorkerPool pool(
       1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
-        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short one is there
+        if (seed == 1 && block == 10) gate.Pass(stop);  // until the short run has been added
       }));
   const auto long_run = AddRun(pool, 1, FakeSpec(1, 1'000'000'000, 1));
   gate.AwaitWaiting(1);
@@ -400,7 +400,7 @@ TEST(Run, HasATaskUnlessItWaitsForOthersOrIsOver) {
 // on.
 TEST(WorkerPool, AHigherPriorityIsServedFirst) {
   Gate gate;
-  std::vector<uint64_t> begun;  // blocks, by the seed of their run
+  std::vector<uint64_t> begun;  // the seed of the run, for each block
   WorkerPool pool(1,
                   FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
                     begun.push_back(seed);

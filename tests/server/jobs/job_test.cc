@@ -180,7 +180,7 @@ class JobJournalTest : public testing::Test {
   std::optional<JobJournal> journal_;
 };
 
-TEST_F(JobJournalTest, NothingIsSentThatIsNotOnDisk) {
+TEST_F(JobJournalTest, OnlyStoredChangesAreSent) {
   journal_->Began();
   Finish(2);
   Finish(0);
@@ -231,7 +231,7 @@ TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
 
-TEST(LeaveOutFinished, OfAPointInBothListsOnlyTheEndIsKept) {
+TEST(LeaveOutFinished, APointInBothListsIsKeptAsFinishedOnly) {
   v1::StatisticsSnapshot message;
   for (const int index : {4, 2, 7}) message.add_points()->set_index(index);
   for (const int index : {1, 2}) message.add_finished_points()->set_index(index);

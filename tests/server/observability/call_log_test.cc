@@ -149,7 +149,7 @@ TEST_F(CallLog, ExceptionsAreLoggedAsErrorsOfTheServer) {
   EXPECT_EQ(FieldOf(lines[0], "principal"), "local");
 }
 
-TEST_F(CallLog, OnlyWhatConcernsTheOperatorIsLogged) {
+TEST_F(CallLog, OnlyEventsForTheOperatorAreLogged) {
   using absl::StatusCode;
   const auto verdict = [](StatusCode code, const char* reason = "") {
     return VerdictOn(Failure(code, reason));
@@ -168,7 +168,7 @@ TEST_F(CallLog, OnlyWhatConcernsTheOperatorIsLogged) {
   }
 }
 
-TEST_F(CallLog, AFloodOfRefusedCallsIsCountedWholeAndLoggedInPart) {
+TEST_F(CallLog, AllRefusedCallsAreCountedAndSomeAreLogged) {
   CallObserver calls;
   const auto lines = LinesOf([&] {
     for (int i = 0; i < 500; ++i) {

@@ -189,7 +189,7 @@ TEST_F(MetricsTest, LabelsNameNoJobAndNoPrincipal) {
   EXPECT_THAT(page, Not(HasSubstr("\"local\"")));
 }
 
-TEST_F(MetricsTest, MalformedRequestsHarmNobody) {
+TEST_F(MetricsTest, MalformedRequestsDoNotStopTheEndpoint) {
   Start();
   Connection silent(Address()), slow(Address());
   slow.Send("GET /met");

@@ -1,4 +1,4 @@
-// A server behind TLS stops in time, whatever its clients do, and old connections are exchanged.
+// A server with TLS stops in time although its clients hang, and it replaces old connections.
 #include <chrono>
 #include <string>
 
@@ -37,9 +37,9 @@ class TlsClients : public testing::Test {
     const auto request = CreateRequest(Equilibrium(points, 1), kUuid);
     v1::EnsembleJob job;
     grpc::Status status;
-    do {  // on a busy machine a connection may grow too old meanwhile
+    do {  // on a busy machine the connection may become too old during the call
       grpc::ClientContext context;
-      context.set_wait_for_ready(true);  // so that only such a call is repeated
+      context.set_wait_for_ready(true);  // only a call on such a connection fails then
       status = server_.ensemble().CreateEnsembleJob(&context, request, &job);
     } while (status.error_code() == grpc::StatusCode::UNAVAILABLE);
     EXPECT_OK(status);
@@ -76,7 +76,7 @@ class OldConnections : public TlsClients {
   }
 };
 
-// No call lasts as long.
+// The grace time is longer than any call.
 class OldConnectionsWithTime : public OldConnections {
  protected:
   OldConnectionsWithTime() : OldConnections(std::chrono::minutes(10)) {}
@@ -98,8 +98,8 @@ TEST_F(OldConnections, AreReplacedDuringAWatchThatGoesOn) {
   EXPECT_GE(cuts, 3);
 }
 
-// Calls are made one after the other for longer than a connection lives.
-TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsOfWhichNoneFails) {
+// The client calls repeatedly for longer than the age limit of a connection.
+TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsThatAllSucceed) {
   const std::string name = Submit(1);
   const auto enough = std::chrono::steady_clock::now() + std::chrono::seconds(2);
   while (std::chrono::steady_clock::now() < enough) {

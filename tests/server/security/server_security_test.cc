@@ -54,7 +54,7 @@ std::string Refusal(const std::string& listen, const std::string& flags) {
   return std::string(status.message());
 }
 
-TEST(SecurityCombination, OfAllSixteenOnlySafeOnesAreAccepted) {
+TEST(SecurityCombination, OnlySafeOnesOfAllSixteenAreAccepted) {
   const std::map<std::string, std::set<std::string>> accepted = {
       {"unix:/tmp/x", {""}},
       {"127.0.0.1:1", {"", "ck", "cka", "ckam"}},
@@ -259,7 +259,7 @@ TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
   const auto channel = Channel();
   ASSERT_OK(List(channel, kAlice));
   files_.WriteAccessFile("");
-  EXPECT_OK(List(channel, kAlice));  // not yet
+  EXPECT_OK(List(channel, kAlice));  // the server has not read the file again yet
   ASSERT_OK(Reload());
   EXPECT_EQ(ReasonOf(List(channel, kAlice)), "CREDENTIALS_INVALID");
   files_.WriteAccessFile(LaboratoryTokens());
@@ -298,7 +298,7 @@ TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
   EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
   files_.WriteCertificate(files_.authority().Issue("good"));
   files_.WriteAccessFile("nonsense\n");
-  EXPECT_FALSE(Reload().ok());  // of the access file; the certificate is taken
+  EXPECT_FALSE(Reload().ok());  // the access file is wrong; the certificate is used
   while (ServedCommonName() != "good") {
   }
   EXPECT_OK(List(Channel(), kAlice));
@@ -364,8 +364,8 @@ TEST_F(MutualServer, TheAuthorityOfClientsIsExchangedToo) {
   EXPECT_FALSE(List(With("Ada L."), "").ok());
 }
 
-// One that sends a byte, then nothing at all.
-TEST_F(SecureServer, AHangingConnectionDelaysNobody) {
+// The connection sends one byte and then nothing.
+TEST_F(SecureServer, AHangingConnectionDoesNotDelayOtherClients) {
   Connection hanging(server_.address());
   hanging.Send("\x16");
   EXPECT_OK(List(Channel(), kAlice));

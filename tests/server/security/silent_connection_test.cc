@@ -1,4 +1,4 @@
-// Connections at whose other end nobody is any more.
+// Connections whose client no longer answers.
 #include <chrono>
 #include <string>
 
@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-// One time of each server is short; the others are longer than any test may take.
+// In each test one time limit is short. The others are longer than any test.
 constexpr std::chrono::hours kNever(1);
 
 TestServerOptions OnPort(const ConnectionTiming& timing) {

@@ -19,8 +19,8 @@ constexpr char kPage[] =
 
 class MarkedSection : public ::testing::Test {
  protected:
-  // Checks, then replaces, the section `table` of a page. Returns the error, which must be the
-  // same.
+  // Checks and then replaces the section `table` of a page. Expects the same error from both
+  // functions, and returns it.
   std::string ErrorWith(const std::string& page) const {
     WriteFile(path_, page);
     const absl::Status checked = CheckMarkedSection(path_, "table");
@@ -33,7 +33,7 @@ class MarkedSection : public ::testing::Test {
   std::string path_ = folder_.File("page.md");
 };
 
-TEST_F(MarkedSection, OnlyWhatIsBetweenTheMarkersIsReplaced) {
+TEST_F(MarkedSection, OnlyTheTextBetweenTheMarkersIsReplaced) {
   EXPECT_EQ(ErrorWith(kPage), "");
   EXPECT_EQ(Contents(path_),
             "before\n<!-- table:begin -->\nnew\n<!-- table:end -->\n"

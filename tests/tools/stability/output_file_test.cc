@@ -59,7 +59,7 @@ TEST_F(OutputFile, TheFileBehindALinkIsReplaced) {
   EXPECT_THAT(NamesIn(folder_.path()), UnorderedElementsAre("link.md", "old.md"));
 }
 
-// Both functions, with the same error, which names the path.
+// Expects that both functions return an error with the path and the reason.
 void ExpectRefused(const std::string& path, const std::string& reason) {
   for (const absl::Status& status : {CheckWritable(path), WriteWholeFile(path, "text\n")}) {
     EXPECT_FALSE(status.ok()) << path;
@@ -73,12 +73,12 @@ TEST_F(OutputFile, PlacesWhereNoFileCanBeAreRefused) {
   ExpectRefused(File("missing/new.md"), "there is no folder " + File("missing"));
   ExpectRefused(File("file/new.md"), "there is no folder " + File("file"));
   ExpectRefused(folder_.path(), "not a regular file");
-  ASSERT_EQ(mkfifo(File("pipe").c_str(), 0600), 0);  // as a device is, but nobody misses it
+  ASSERT_EQ(mkfifo(File("pipe").c_str(), 0600), 0);  // instead of a device
   ExpectRefused(File("pipe"), "not a regular file");
-  ExpectRefused("/proc/new.md", "");  // there even root creates no file
+  ExpectRefused("/proc/new.md", "");  // even root cannot create a file there
 }
 
-// Root may write everywhere: so not as root.
+// Root can write everywhere, so the test runs as another user.
 class OrdinaryUser {
  public:
   OrdinaryUser() : before_(geteuid()) {
@@ -97,7 +97,7 @@ class OrdinaryUser {
 TEST_F(OutputFile, WithoutPermissionItIsRefused) {
   WriteFile(File("old.md"), "old\n");
   ASSERT_EQ(chmod(File("old.md").c_str(), 0444), 0);
-  ASSERT_EQ(chmod(folder_.path().c_str(), 0777), 0);  // so that only the file refuses
+  ASSERT_EQ(chmod(folder_.path().c_str(), 0777), 0);  // the folder permits all, the file does not
   {
     const OrdinaryUser user;
     ExpectRefused(File("old.md"), "Permission denied");
@@ -110,7 +110,7 @@ TEST_F(OutputFile, WithoutPermissionItIsRefused) {
   ASSERT_EQ(chmod(folder_.path().c_str(), 0755), 0);
 }
 
-// Files of this process may grow to that many bytes, as on a disk that becomes full.
+// Limits the size of this process's files, as on a disk that becomes full.
 class SizeLimit {
  public:
   explicit SizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

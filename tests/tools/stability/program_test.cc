@@ -1,4 +1,4 @@
-// The program's contract, with tables that cost nothing to compute.
+// Arguments, output and exit status of the program, with a fake report instead of computed tables.
 #include "tools/stability/program.h"
 
 #include <filesystem>
@@ -40,7 +40,7 @@ class Program : public ::testing::Test {
   Report report_ = {.text = kTables, .complaints = {}};
   std::function<void()> while_computing_ = [] {};
 
-  std::vector<double> efforts_;  // of the reports that were computed
+  std::vector<double> efforts_;  // one for each report that was made
   std::ostringstream out_;
   std::ostringstream error_;
 };
@@ -124,14 +124,14 @@ TEST_F(Program, AFileThatCannotBeWrittenIsRefusedBeforeComputing) {
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("stability.md"));
 }
 
-TEST_F(Program, TablesOfWhichTheFolderIsGoneArePrinted) {
+TEST_F(Program, TablesArePrintedIfTheFolderIsGone) {
   while_computing_ = [this] { std::filesystem::remove_all(folder_.path()); };
   EXPECT_EQ(Run({"--out", path_}), 1);
   EXPECT_EQ(out_.str(), kTables);
   EXPECT_THAT(error_.str(), HasSubstr("cannot write " + path_));
 }
 
-TEST_F(Program, ComplaintsExitWithOneAndTheTablesAreWrittenNonetheless) {
+TEST_F(Program, ComplaintsExitWithOneAfterTheTablesAreWritten) {
   report_.complaints = {"lanes fails: grazing"};
   EXPECT_EQ(Run({"--out", path_}), 1);
   EXPECT_EQ(Contents(path_), kTables);
