@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 constexpr char kProgramName[] = "ballpistond";
 constexpr char kIdleSeconds[] = "60";
 constexpr absl::Duration kAnswerTimeout = absl::Seconds(10);
-constexpr absl::Duration kStartTimeout = absl::Seconds(60);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
 
 // While another client's server holds the folder and does not answer yet. To look takes the lock
@@ -45,10 +44,9 @@ constexpr uintmax_t kMaxLogBytes = 1 << 20;
 constexpr char kLockFile[] = "lock";
 constexpr char kAddressFile[] = "server.address";
 
-// How long to look for another client's server after the own one exited, before the next attempt.
-// One that is just going idle does not answer any more: hence attempts.
-constexpr absl::Duration kAttemptPauses[] = {absl::Milliseconds(300), absl::Seconds(1),
-                                             absl::Seconds(3)};
+// The program exits if another server holds the folder. One that is going idle does not answer any
+// more, but leaves the folder.
+constexpr int kAttempts = 3;
 
 // An absolute path from the environment, else empty.
 std::string PathVariable(const char* name) {
@@ -163,11 +161,11 @@ class Starter {
   Starter(const LocalServer& server, grpc::Channel& channel) : server_(server), channel_(channel) {}
 
   absl::Status Start() {
-    for (const absl::Duration pause : kAttemptPauses) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
       if (absl::Status started = StartProgram(); !started.ok()) return started;
       if (AnswersWhileAlive()) return absl::OkStatus();
       if (!exit_status_) return Failure("does not answer");
-      if (AnswersWithin(channel_, pause) || OtherAnswersWhileAlive()) return absl::OkStatus();
+      if (OtherAnswersWhileAlive()) return absl::OkStatus();
     }
     return Failure(absl::StrCat("ended at once with exit status ", *exit_status_));
   }
@@ -198,7 +196,7 @@ class Starter {
 
   // Until it answers, or exits, or time is up.
   bool AnswersWhileAlive() {
-    const absl::Time deadline = absl::Now() + kStartTimeout;
+    const absl::Time deadline = absl::Now() + server_.start_time;
     while (absl::Now() < deadline) {
       if (AnswersWithin(channel_, kPoll)) return true;
       if ((exit_status_ = ExitStatus(pid_))) return false;
@@ -232,7 +230,7 @@ class Starter {
 
   const LocalServer& server_;
   grpc::Channel& channel_;
-  const absl::Time others_deadline_ = absl::Now() + kStartTimeout;  // for all attempts
+  const absl::Time others_deadline_ = absl::Now() + server_.start_time;  // for all attempts
   uintmax_t log_start_ = 0;
   pid_t pid_ = 0;
   std::optional<int> exit_status_;

@@ -18,6 +18,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 
 namespace ballpiston::client {
 
@@ -25,6 +26,8 @@ struct LocalServer {
   std::string folder;   // data and log
   std::string socket;   // at most kMaxSocketPath bytes long
   std::string program;  // what to start: a path, or a name to be sought in PATH
+  // To wait for a server that lives and does not answer.
+  absl::Duration start_time = absl::Minutes(1);
 
   std::string Address() const { return "unix:" + socket; }
   std::string Log() const { return folder + "/server.log"; }

@@ -16,8 +16,8 @@
 namespace ballpiston::server {
 namespace {
 
-// CLI11's own reader takes [::1]:50051 for the beginning of a list, cuts "a#b" at the #, and ignores
-// a key's second value.
+// CLI11's own reader takes [::1]:50051 for the beginning of a list, cuts "a#b" at the #, and
+// ignores a key's second value.
 class FlagFile : public CLI::Config {
  public:
   explicit FlagFile(const CLI::App& app) : app_(app) {}

@@ -1,13 +1,15 @@
-# Run by `cmake --install`; CMakeLists.txt sets `source` and `bindir`.
-if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+# Run by `cmake --install`; CMakeLists.txt sets the variables ballpiston_*.
+set(bin "${ballpiston_bindir}")
+set(etc "${ballpiston_sysconfdir}")
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND etc STREQUAL "etc")
   set(etc /etc)
-else()
-  set(etc "${CMAKE_INSTALL_PREFIX}/etc")
 endif()
+cmake_path(ABSOLUTE_PATH bin BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
+cmake_path(ABSOLUTE_PATH etc BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
 
 function(install_with_paths file destination name)
-  file(READ "${source}/${file}" text)
-  string(REPLACE "/usr/bin" "${CMAKE_INSTALL_PREFIX}/${bindir}" text "${text}")
+  file(READ "${ballpiston_source}/${file}" text)
+  string(REPLACE "/usr/bin" "${bin}" text "${text}")
   string(REPLACE "/etc/ballpiston" "${etc}/ballpiston" text "${text}")
   message(STATUS "Installing: $ENV{DESTDIR}${destination}/${name}")
   file(WRITE "$ENV{DESTDIR}${destination}/${name}" "${text}")

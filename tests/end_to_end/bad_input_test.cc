@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -210,7 +209,7 @@ class BadInputTest : public ::testing::Test {
   }
 
   void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(server_.folder().File(name)) << text;
+    WriteFile(server_.folder().File(name), text);
   }
 
   std::string Replaced(const std::string& text) const {

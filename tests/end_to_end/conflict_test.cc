@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <string>
 
 #include "tests/end_to_end/programs.h"
@@ -43,7 +42,7 @@ TEST(TwoServers, DoNotShareAPort) {
 
 TEST(Server, NeedsADataFolderItCanWriteTo) {
   const TemporaryFolder home;
-  std::ofstream(home.File("file")) << "not a folder";
+  WriteFile(home.File("file"), "not a folder");
   const ProcessResult result = RunServer(
       home, {"--listen", "unix:" + home.File("socket"), "--data_dir", home.File("file/data")});
   EXPECT_THAT(result, ExitsWith(6));

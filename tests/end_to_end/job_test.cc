@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string>
 
 #include "tests/end_to_end/programs.h"
@@ -83,7 +82,7 @@ TEST(Run, TakesASpecificationFromAFileOrStandardInput) {
   const TestServer server;
   const std::string spec = R"({"experiment": "EQUILIBRIUM", "grid": {"rho": [0.53],
                               "delta": [0.2]}, "target": {"collisions": 1000}, "seed": 5})";
-  std::ofstream(server.folder().File("spec.json")) << spec;
+  WriteFile(server.folder().File("spec.json"), spec);
   const ProcessResult file =
       server.Client({"run", "--spec", server.folder().File("spec.json"), "--format", "json"});
   const ProcessResult stdin_ = server.Client({"run", "--spec", "-", "--format", "json"}, spec);

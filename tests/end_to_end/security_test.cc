@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,7 +28,7 @@ class Security : public ::testing::Test {
   }
 
   std::string Write(const std::string& name, const std::string& text) {
-    std::ofstream(home_.File(name)) << text;
+    WriteFile(home_.File(name), text);
     chmod(home_.File(name).c_str(), 0600);
     return home_.File(name);
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -227,7 +226,7 @@ TEST(ServerFlags, AnEmptyValueIsRefused) {
 
 class ConfigFile : public testing::Test {
  protected:
-  void Write(const std::string& text) const { std::ofstream(Path()) << text; }
+  void Write(const std::string& text) const { WriteFile(Path(), text); }
   std::string Path() const { return home_.File("ballpistond.conf"); }
 
   // The error of a server with `text` as its file of --config.

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "tests/end_to_end/programs.h"
@@ -44,7 +43,7 @@ TEST(StoreCommands, AStoreIsCheckedCopiedAndRestored) {
 TEST(StoreCommands, AFileOfAnotherFormatIsRejectedWithExitCodeTwo) {
   TestServer server;
   server.Stop();
-  std::ofstream(server.data_dir() + "/store.sqlite3") << "no store at all";
+  WriteFile(server.data_dir() + "/store.sqlite3", "no store at all");
   for (const std::string flag : {"--check", "--backup=copy"}) {
     const ProcessResult result = RunBeside(server, {flag});
     EXPECT_THAT(result, ExitsWith(2));

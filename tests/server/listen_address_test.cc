@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -81,7 +81,7 @@ TEST(ListenAddress, ASocketPathThatIsTooLongIsRefused) {
 
 TEST(ListenAddress, AFileThatIsNotASocketStays) {
   TemporaryFolder folder;
-  std::ofstream(folder.File("precious")) << "x";
+  WriteFile(folder.File("precious"), "x");
   const auto address = ParseListenAddress("unix:" + folder.File("precious"));
   EXPECT_THAT(ClearSocketPath(*address), StatusIs(absl::StatusCode::kFailedPrecondition));
   EXPECT_TRUE(std::filesystem::exists(folder.File("precious")));

@@ -9,8 +9,8 @@
 #include "gtest/gtest.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
-#include "tests/server/store_access.h"
 #include "tests/server/running_server.h"
+#include "tests/server/store_access.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {

@@ -43,6 +43,14 @@ struct TestServerOptions {
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
+// Connections are closed neither for silence nor for age.
+inline constexpr ConnectionTiming kOnlyClosedByAStop = {
+    .handshake = std::chrono::hours(1),
+    .ping_interval = std::chrono::hours(1),
+    .ping_timeout = std::chrono::hours(1),
+    .certified_age = std::chrono::hours(1),
+    .certified_age_grace = std::chrono::hours(1)};
+
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {
  public:

@@ -2,10 +2,10 @@
 
 #include <sys/stat.h>
 
-#include <fstream>
 #include <utility>
 
 #include "server/security/access_entry.h"
+#include "tests/support/files.h"
 
 namespace ballpiston::server {
 
@@ -43,7 +43,7 @@ LaboratoryFiles::LaboratoryFiles(bool mutual) {
 
 std::string LaboratoryFiles::Write(const std::string& name, const std::string& text) const {
   const std::string path = Path(name);
-  std::ofstream(path) << text;
+  WriteFile(path, text);
   chmod(path.c_str(), 0600);
   return path;
 }

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <string>
 #include <thread>
@@ -14,9 +13,9 @@
 #include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/support/files.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -30,8 +29,8 @@ using ::testing::Not;
 // Expects that a server with these options does not start, and that the error is one line.
 void ExpectStartRefused(const TestServerOptions& options, const std::string& why) {
   const absl::Status error = StartError(options);
-  EXPECT_FALSE(error.ok());
-  EXPECT_THAT(std::string(error.message()), AllOf(HasSubstr(why), Not(HasSubstr("\n"))));
+  EXPECT_THAT(error, StatusIs(absl::StatusCode::kFailedPrecondition,
+                              AllOf(HasSubstr(why), Not(HasSubstr("\n")))));
 }
 
 TEST(StartStop, TheAddressHasTheChosenPort) {
@@ -75,7 +74,7 @@ TEST(StartStop, AStaleSocketIsReplacedByOneOfMode0600) {
 
 TEST(StartStop, ADamagedStoreIsRefused) {
   TemporaryFolder folder;
-  std::ofstream(folder.File("store.sqlite3")) << std::string(10'000, 'x');
+  WriteFile(folder.File("store.sqlite3"), std::string(10'000, 'x'));
   ExpectStartRefused({.data_dir = folder.path()}, "damaged");
 }
 

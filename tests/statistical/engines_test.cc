@@ -18,16 +18,21 @@ int64_t SamplesBy(Model model, int64_t samples) {
   return model == Model::kBilliardReference ? samples / 10 : samples;
 }
 
-// 4.5 standard errors: 7e-6 false alarms a comparison.
-void ExpectCredible(const PointSummary& summary) {
+// The estimates with an exact value, of which there are `count`: within 4.5 standard errors, 7e-6
+// false alarms a comparison.
+void ExpectExactMeans(const PointSummary& summary, int count) {
   EXPECT_EQ(summary.health.escapes, 0u);
+  int compared = 0;
   for (const Estimate& estimate : summary.estimates) {
+    if (!estimate.exact) continue;
+    ++compared;
     if (const auto z = estimate.ZScore()) {
       EXPECT_LT(std::fabs(*z), 4.5) << estimate.name;
-    } else if (estimate.exact) {
-      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // an exact value without scatter
+    } else {
+      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // where nothing scatters
     }
   }
+  EXPECT_EQ(compared, count);
 }
 
 struct RadiusAndShare {
@@ -48,16 +53,17 @@ class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusA
 // alarm in 800 choices of the seed. The test detects errors of 1 % (lanes) or 3 % (reference).
 TEST_P(EngineAtGeometry, GivesTheMeansOfTheClosedForms) {
   const Target collisions = {.collisions = SamplesBy(model(), 200'000)};
-  ExpectCredible(
-      RunPoint(SpecOf(Experiment::kEquilibrium, point(), collisions, model(), kSeedOfEngines)));
+  ExpectExactMeans(
+      RunPoint(SpecOf(Experiment::kEquilibrium, point(), collisions, model(), kSeedOfEngines)), 3);
   // At epsilon = 1/2 the ball rests, and the mean is over the part of the volume that is visited.
   for (const double epsilon : {1.0 / 3200, 0.125, 0.25, 0.375, 0.5 - 1.0 / 3200, 0.5}) {
     SCOPED_TRACE(epsilon);
     PointParameters at_energy = point();
     at_energy.epsilon = epsilon;
     const Target samples = {.samples = SamplesBy(model(), 20'000)};
-    ExpectCredible(RunPoint(
-        SpecOf(Experiment::kConditionalMeanFreeTime, at_energy, samples, model(), kSeedOfEngines)));
+    ExpectExactMeans(RunPoint(SpecOf(Experiment::kConditionalMeanFreeTime, at_energy, samples,
+                                     model(), kSeedOfEngines)),
+                     1);
   }
 }
 
@@ -73,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
 class Engines : public testing::TestWithParam<Model> {};
 
 // The invariant law is its own ingoing law at every delta: the divergence is noise, within 4 errors
-// of its floor, and the means are the closed forms.
+// of its floor (6e-5), and the means are the closed forms: 30 divergences and 90 means, one false
+// alarm in 400 choices of the seed.
 TEST_P(Engines, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
   const int64_t samples = SamplesBy(GetParam(), 200'000);
   for (const double delta : {0.325, 0.1, 0.05}) {
@@ -82,7 +89,7 @@ TEST_P(Engines, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
       const PointSummary summary =
           RunPoint(SpecOf(Experiment::kFirstHit, PaperPoint(delta, epsilon, 1),
                           {.samples = samples}, GetParam(), kSeedOfEngines));
-      ExpectCredible(summary);
+      ExpectExactMeans(summary, 3);
       const KlDivergence& kl = *summary.kl_divergence;
       const double error_of_noise =
           std::sqrt(2.0 * (kl.cells - 1)) / (2 * static_cast<double>(samples));

@@ -32,7 +32,8 @@ struct ServerSetUp {
   std::vector<std::string> launcher = {};  // a command that runs the server's command line
 };
 
-// One thread starts and stops the server. While it does neither, others may use the const functions.
+// One thread starts and stops the server. While it does neither, others may use the const
+// functions.
 class ServerProcess {
  public:
   explicit ServerProcess(ServerSetUp set_up = {});  // does not start the server

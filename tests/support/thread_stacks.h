@@ -5,9 +5,9 @@
 namespace ballpiston {
 
 // Writes the stack of each thread but the caller to the file descriptor, innermost function first,
-// under the thread's name, one thread after the other. A thread that does not answer within a second
-// is named without its stack: it is stopped in the kernel or, under the thread sanitizer, computes
-// without a call that the sanitizer knows.
+// under the thread's name, one thread after the other. A thread that does not answer within a
+// second is named without its stack: it is stopped in the kernel or, under the thread sanitizer,
+// computes without a call that the sanitizer knows.
 //
 // For a process that is about to end: the signal SIGRTMAX is taken for good, memory is not given
 // back, and a thread that holds the allocator's lock may make the caller wait for ever.

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "tests/client/fake_server.h"
+#include "tests/support/scoped_variable.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
@@ -42,18 +42,12 @@ class PrivateHome {
     std::filesystem::create_directory(folder_.File("ballpiston"));
     std::filesystem::create_symlink(address.substr(std::string("unix:").size()),
                                     folder_.File("ballpiston/server.socket"));
-    setenv("XDG_STATE_HOME", folder_.path().c_str(), 1);
-    setenv("BALLPISTON_SERVER_PROGRAM", "/bin/false", 1);
   }
-  ~PrivateHome() {
-    unsetenv("XDG_STATE_HOME");
-    unsetenv("BALLPISTON_SERVER_PROGRAM");
-  }
-  PrivateHome(const PrivateHome&) = delete;
-  PrivateHome& operator=(const PrivateHome&) = delete;
 
  private:
   const TemporaryFolder folder_;
+  const ScopedVariable state_home_{"XDG_STATE_HOME", folder_.path()};
+  const ScopedVariable server_program_{"BALLPISTON_SERVER_PROGRAM", "/bin/false"};
 };
 
 class CommandLineTest : public ::testing::Test {
@@ -258,9 +252,8 @@ TEST_F(CommandLineTest, SubmitPrintsTheNameAlone) {
 
 TEST_F(CommandLineTest, TheServerMayComeFromTheEnvironment) {
   server_.Start();
-  setenv("BALLPISTON_SERVER", server_.Address().c_str(), 1);
+  const ScopedVariable address("BALLPISTON_SERVER", server_.Address());
   EXPECT_EQ(Ballpiston({"list"}).code, 0);
-  unsetenv("BALLPISTON_SERVER");
 }
 
 TEST_F(CommandLineTest, RunPrintsTheResult) {

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <fstream>
 #include <string>
 
 #include "client/library/connection_hint.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -52,7 +52,7 @@ class SecurityFiles : public ::testing::Test {
  protected:
   std::string Write(const std::string& name, const std::string& text, mode_t mode = 0600) {
     const std::string path = folder_.File(name);
-    std::ofstream(path) << text;
+    WriteFile(path, text);
     chmod(path.c_str(), mode);
     return path;
   }

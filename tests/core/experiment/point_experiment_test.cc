@@ -124,7 +124,7 @@ TEST(PointExperiment, OneSampleIsEnoughForAnAnswerWithoutErrors) {
   }
 }
 
-TEST(PointExperiment, ToleranceEndsThePointAtItsFirstBlockWithinIt) {
+TEST(PointExperiment, AToleranceIsReachedWhenTheErrorIsWithinIt) {
   for (EnsembleSpec spec : OneOfEach()) {
     if (spec.experiment == Experiment::kMarkovProperty) continue;  // does not accept a tolerance
     SCOPED_TRACE(Described(spec));

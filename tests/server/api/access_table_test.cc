@@ -17,9 +17,9 @@
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
 #include "tests/server/requests.h"
+#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/paths.h"
-#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

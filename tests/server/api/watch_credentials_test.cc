@@ -8,8 +8,8 @@
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/server/requests.h"
-#include "tests/server/secure_server.h"
 #include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -88,7 +89,8 @@ TEST_F(LogSocketTest, ALineThatWasTornIsEnded) {
 }
 
 TEST_F(LogOutputTest, LinesToAClosedDescriptorAreCounted) {
-  signal(SIGPIPE, SIG_IGN);  // as the program does
+  const auto handler = signal(SIGPIPE, SIG_IGN);  // as the program does
+  const absl::Cleanup restore = [handler] { signal(SIGPIPE, handler); };
   close(std::exchange(reader_, -1));
   for (const int descriptor : {writer_, -1}) {
     LogOutput closed(descriptor);

@@ -2,7 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <fstream>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "gtest/gtest.h"
 #include "server/security/token_hash.h"
 #include "tests/server/error_details.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -161,7 +161,7 @@ class AccessFile : public ::testing::Test {
  protected:
   // The outcome of reading it with this mode.
   absl::Status With(mode_t mode) {
-    std::ofstream(file_.path) << "token " << HashText("one") << " alice read\n";
+    WriteFile(file_.path, std::string("token ") + HashText("one") + " alice read\n");
     chmod(file_.path.c_str(), mode);
     return AccessList::Read(file_).status();
   }
@@ -201,7 +201,7 @@ TEST_F(AccessFile, OnlyARegularFileIsRead) {
 }
 
 TEST_F(AccessFile, AFileThatIsTooLongIsRefused) {
-  std::ofstream(file_.path) << std::string(kMaxSecurityFile + 1, '#');
+  WriteFile(file_.path, std::string(kMaxSecurityFile + 1, '#'));
   chmod(file_.path.c_str(), 0600);
   EXPECT_THAT(std::string(AccessList::Read(file_).status().message()), HasSubstr("longer than"));
 }

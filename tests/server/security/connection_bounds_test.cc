@@ -18,8 +18,8 @@
 #include "server/security/socket_listener.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/http_get.h"
-#include "tests/server/unread_call.h"
 #include "tests/server/running_server.h"
+#include "tests/server/unread_call.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

@@ -1,6 +1,10 @@
 // A server with TLS stops in time although its clients hang, and it replaces old connections.
+#include <atomic>
 #include <chrono>
+#include <memory>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include "client/library/ensemble_client.h"
 #include "gtest/gtest.h"
@@ -8,9 +12,9 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/http_get.h"
 #include "tests/server/requests.h"
+#include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/server/unread_call.h"
-#include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -19,7 +23,7 @@ namespace {
 // A server whose jobs wait at a gate.
 class TlsClients : public testing::Test {
  protected:
-  explicit TlsClients(bool mutual = false, const ConnectionTiming& timing = {})
+  explicit TlsClients(bool mutual = false, const ConnectionTiming& timing = kOnlyClosedByAStop)
       : files_(mutual),
         own_(mutual ? files_.authority().Issue("alice") : KeyAndCertificate()),
         server_(Start(timing)) {}
@@ -52,6 +56,7 @@ class TlsClients : public testing::Test {
   RunningServer server_;
 };
 
+// A stop that waited for more than the end of the time to drain would take an hour.
 TEST_F(TlsClients, HungClientsDoNotDelayAStop) {
   v1::WatchEnsembleJobRequest request;
   request.set_name(Submit(1000));
@@ -98,11 +103,32 @@ TEST_F(OldConnections, AreReplacedDuringAWatchThatGoesOn) {
   EXPECT_GE(cuts, 3);
 }
 
-// The client calls repeatedly for longer than the age limit of a connection.
-TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsThatAllSucceed) {
+// How often a channel has lost its connection.
+class LostConnections {
+ public:
+  explicit LostConnections(std::shared_ptr<grpc::Channel> channel)
+      : watcher_([this, channel](const std::stop_token& stop) {
+          grpc_connectivity_state state = channel->GetState(false);
+          while (!stop.stop_requested()) {
+            const auto soon = std::chrono::system_clock::now() + std::chrono::milliseconds(50);
+            if (!channel->WaitForStateChange(state, soon)) continue;
+            const grpc_connectivity_state next = channel->GetState(false);
+            count_ += state == GRPC_CHANNEL_READY && next != GRPC_CHANNEL_READY;
+            state = next;
+          }
+        }) {}
+
+  int count() const { return count_; }
+
+ private:
+  std::atomic<int> count_ = 0;
+  std::jthread watcher_;
+};
+
+TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsOfWhichNoneFails) {
   const std::string name = Submit(1);
-  const auto enough = std::chrono::steady_clock::now() + std::chrono::seconds(2);
-  while (std::chrono::steady_clock::now() < enough) {
+  const LostConnections lost(server_.channel());
+  while (lost.count() < 3) {
     ASSERT_OK(client::EnsembleClient(server_.channel()).Get(name));
   }
   gate_.Open();

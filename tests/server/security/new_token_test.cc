@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <string>
 #include <thread>
@@ -63,7 +62,7 @@ TEST_F(NewToken, ExpiresAfterItsDays) {
 }
 
 TEST_F(NewToken, IsAppendedAfterALineWithoutAnEnd) {
-  std::ofstream(file_.path) << "certificate box box read";
+  WriteFile(file_.path, "certificate box box read");
   chmod(file_.path.c_str(), 0600);
   Issue("alice:read");
   ASSERT_OK_AND_ASSIGN(const auto list, AccessList::Read(file_));
@@ -81,13 +80,13 @@ TEST_F(NewToken, ConcurrentTokensAreAllKeptAndAllDifferent) {
 }
 
 TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
-  std::ofstream(file_.path) << "certificate box box read\n";
+  WriteFile(file_.path, "certificate box box read\n");
   chmod(file_.path.c_str(), 0644);
   const TokenRequest request = *ParseTokenRequest("alice:read");
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("open to others"));
   chmod(file_.path.c_str(), 0600);
-  std::ofstream(file_.path) << "nonsense\n";
+  WriteFile(file_.path, "nonsense\n");
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
               HasSubstr("line 1"));
   EXPECT_EQ(Contents(file_.path), "nonsense\n");

@@ -24,11 +24,11 @@
 #include "server/security/tls_files.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/error_details.h"
-#include "tests/support/files.h"
 #include "tests/server/http_get.h"
-#include "tests/server/secure_server.h"
 #include "tests/server/own_channel.h"
 #include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {

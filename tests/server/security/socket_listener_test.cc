@@ -23,8 +23,8 @@
 #include "gtest/gtest.h"
 #include "server/security/peer_user.h"
 #include "tests/server/call_by_name.h"
-#include "tests/support/files.h"
 #include "tests/server/running_server.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 

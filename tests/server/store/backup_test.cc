@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,10 +13,10 @@
 #include "server/store/check_store.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/support/files.h"
 #include "tests/server/requests.h"
-#include "tests/server/store_access.h"
 #include "tests/server/running_server.h"
+#include "tests/server/store_access.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -94,7 +93,7 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
   MakeStore();
   const std::string sound = Contents(Store());
   for (const auto& damage : damages) {
-    std::ofstream(Store(), std::ios::binary) << sound;
+    WriteFile(Store(), sound);
     EXPECT_THAT(Problems(), IsEmpty());
     ChangeStore(Store(), damage.sql);
     EXPECT_THAT(Problems(), Contains(HasSubstr(damage.sentence))) << damage.sql;
@@ -105,7 +104,7 @@ TEST_F(BackupTest, ADamagedPageIsReported) {
   MakeStore();
   std::string contents = Contents(Store());
   for (size_t at = 5 * 4096; at < contents.size(); ++at) contents[at] = 'x';
-  std::ofstream(Store(), std::ios::binary) << contents;
+  WriteFile(Store(), contents);
   ASSERT_OK_AND_ASSIGN(const auto summary, CheckStore(Store()));
   EXPECT_FALSE(summary.sound());
   EXPECT_THAT(SummaryText(summary), HasSubstr("the store is damaged"));
@@ -115,7 +114,7 @@ TEST_F(BackupTest, ADamagedPageIsReported) {
 
 TEST_F(BackupTest, OnlyAStoreIsChecked) {
   EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kNotFound));
-  std::ofstream(Store()) << std::string(5000, 'x');
+  WriteFile(Store(), std::string(5000, 'x'));
   EXPECT_THAT(CheckStore(Store()), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
@@ -132,7 +131,7 @@ TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
 
 TEST_F(BackupTest, NothingIsOverwritten) {
   MakeStore();
-  std::ofstream(Copy()) << "precious";
+  WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
   EXPECT_EQ(Contents(Copy()), "precious");
 }
@@ -169,7 +168,7 @@ TEST_F(BackupTest, ACopyRestoredBesideAnOldLogIsRefused) {
   }
   ASSERT_GT(log.size(), 1000u);
   std::filesystem::copy_file(Copy(), Store(), std::filesystem::copy_options::overwrite_existing);
-  std::ofstream(Store() + "-wal", std::ios::binary) << log;
+  WriteFile(Store() + "-wal", log);
   const auto opened = OpenStoreFile(Store());
   EXPECT_THAT(opened, StatusIs(absl::StatusCode::kFailedPrecondition,
                                HasSubstr("the log of another store")));

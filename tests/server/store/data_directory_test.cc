@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -49,8 +48,8 @@ TEST_F(DataFolder, AnOpenEmptyFolderIsClosedAndThatIsLogged) {
 TEST_F(DataFolder, AnOpenFolderOfAServerIsClosedWhateverElseIsInIt) {
   for (const char* name : {"lock", "store.sqlite3"}) {
     Make(0755);
-    std::ofstream(path_ + "/" + name);
-    std::ofstream(path_ + "/notes.txt");
+    WriteFile(path_ + "/" + name, "");
+    WriteFile(path_ + "/notes.txt", "");
     EXPECT_OK(DataDirectory::Open(path_)) << name;
     EXPECT_EQ(Mode(), 0700u) << name;
     std::filesystem::remove_all(path_);
@@ -60,7 +59,7 @@ TEST_F(DataFolder, AnOpenFolderOfAServerIsClosedWhateverElseIsInIt) {
 // A client that starts a server has made its log before.
 TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
   Make(0755);
-  std::ofstream(path_ + "/server.log");
+  WriteFile(path_ + "/server.log", "");
   EXPECT_OK(DataDirectory::Open(path_));
   EXPECT_EQ(Mode(), 0700u);
 }
@@ -68,7 +67,7 @@ TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
 // Somebody else may be reading them.
 TEST_F(DataFolder, AnOpenFolderWithOtherFilesIsRefusedAndUnchanged) {
   Make(0755);
-  std::ofstream(path_ + "/thesis.tex");
+  WriteFile(path_ + "/thesis.tex", "");
   std::filesystem::create_symlink("/run/lock", path_ + "/lock");  // as in /var
   const auto directory = DataDirectory::Open(path_);
   EXPECT_THAT(directory, StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("mode 0755")));
@@ -78,7 +77,7 @@ TEST_F(DataFolder, AnOpenFolderWithOtherFilesIsRefusedAndUnchanged) {
 
 TEST_F(DataFolder, AClosedFolderWithOtherFilesIsAccepted) {
   Make(0700);
-  std::ofstream(path_ + "/thesis.tex");
+  WriteFile(path_ + "/thesis.tex", "");
   EXPECT_OK(DataDirectory::Open(path_));
 }
 

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <new>
@@ -20,8 +19,8 @@
 #include "server/store/pilot_table.h"
 #include "server/store/schema.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/support/files.h"
 #include "tests/server/store_access.h"
+#include "tests/support/files.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -185,7 +184,7 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
 }
 
 TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
-  std::ofstream(File()) << std::string(5000, 'x');
+  WriteFile(File(), std::string(5000, 'x'));
   const auto store = Store::Open(File(), {});
   EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
   EXPECT_EQ(Contents(File()), std::string(5000, 'x'));
@@ -200,7 +199,7 @@ TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
   ASSERT_GT(contents.size(), 20000u);
   // The second page on: the first holds the schema.
   contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
-  std::ofstream(File(), std::ios::binary) << contents;
+  WriteFile(File(), contents);
   const auto store = Store::Open(File(), {});
   EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
   EXPECT_EQ(Contents(File()), contents);
@@ -286,7 +285,7 @@ TEST_F(StoreTest, AFolderInItsPlaceIsRefused) {
 }
 
 TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
-  std::ofstream(File()).close();
+  WriteFile(File(), "");
   EXPECT_GT(Insert(*Open(), Record("a")), 0);
 }
 
@@ -603,7 +602,7 @@ TEST(DataDirectory, IsHeldByOneAtATime) {
 
 TEST(DataDirectory, AFileInItsPlaceIsNotWritable) {
   TemporaryFolder folder;
-  std::ofstream(folder.File("file")) << "x";
+  WriteFile(folder.File("file"), "x");
   EXPECT_THAT(DataDirectory::Open(folder.File("file")),
               StatusIs(absl::StatusCode::kPermissionDenied));
   EXPECT_THAT(DataDirectory::Open(folder.File("file/below")),

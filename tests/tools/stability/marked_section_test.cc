@@ -4,8 +4,8 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::stability {
 namespace {
