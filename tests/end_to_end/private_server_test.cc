@@ -61,13 +61,27 @@ class PrivateServerTest : public ::testing::Test {
   TemporaryFolder home_;
 };
 
+TEST(Server, StopsByItselfWhenNobodyUsesIt) {
+  const TemporaryFolder home;
+  const ProcessResult result =
+      RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data-dir", home.File("data"),
+                       "--idle-exit-seconds", "0.1"});
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_THAT(result.err, testing::HasSubstr("nobody uses this server: stopping"));
+}
+
 TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
   const ProcessResult result = Client(kRun);
   ASSERT_THAT(result, ExitsWith(0));
   EXPECT_EQ(At(ParseJson(result.out), "job", "state").string_value(), "SUCCEEDED");
   EXPECT_TRUE(fs::exists(State("server.log")));
   EXPECT_EQ(fs::status(State("")).permissions(), fs::perms::owner_all);
-  EXPECT_EQ(Servers().size(), 1u);
+  ASSERT_EQ(Servers().size(), 1u);
+  const std::string flags = Contents("/proc/" + std::to_string(Servers()[0]) + "/cmdline");
+  EXPECT_NE(flags.find(std::string("--idle-exit-seconds\0"
+                                   "60\0",
+                                   23)),
+            std::string::npos);
 }
 
 // A client uses the lock and the address to see that a server is starting or stopping.
