@@ -187,7 +187,7 @@ std::string NameOf(absl::string_view made_by, const EnsembleSpec& spec) {
 
 void ExpectGoldenInThreads(const EnsembleSpec& spec, absl::string_view made_by) {
   const auto point = PointExperiment::Create(spec, 0);
-  for (const size_t threads : {1, 2, 8}) {
+  for (const size_t threads : {1u, 2u, 8u}) {
     SCOPED_TRACE(absl::StrCat(threads, " threads"));
     const BlockResult merged = RunInThreads(*point, threads);
     Fingerprint fingerprint;

@@ -152,7 +152,7 @@ TEST_P(Horizon, IsThatOfAnExactOrbitOffByTheUnitOfRounding) {
     ASSERT_LT(column.horizon, kHits);
   }
   Print(rho, columns);
-  for (const auto& [engine, beside] : {std::pair{0, 2}, {1, 2}, {3, 4}}) {
+  for (const auto& [engine, beside] : {std::pair{0u, 2u}, {1u, 2u}, {3u, 4u}}) {
     EXPECT_GE(columns[engine].horizon + 3, columns[beside].horizon) << columns[engine].name;
     EXPECT_LE(columns[engine].horizon, columns[beside].horizon + 1) << columns[engine].name;
   }

@@ -67,7 +67,7 @@ TEST(LaneBalls, FewerRecordsAreEveryNthHit) {
 TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
   ForEachTarget([](int64_t) {
     const std::vector<LaneFrame> starts = MiddleStarts(100);
-    for (const size_t count : {1, 5, 7, 13, 25, 49, 100}) {
+    for (const size_t count : {1u, 5u, 7u, 13u, 25u, 49u, 100u}) {
       const std::vector<LaneFrame> some(starts.begin(),
                                         starts.begin() + static_cast<std::ptrdiff_t>(count));
       const std::vector<LaneHit> together = Flown(some, 1);

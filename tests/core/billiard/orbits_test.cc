@@ -18,7 +18,8 @@ namespace {
 TEST(Orbits, EveryOrbitComesToItsEnd) {
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
-    for (const uint64_t orbits : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 1000}) {
+    for (const uint64_t orbits :
+         {1u, 2u, 7u, 8u, 9u, 15u, 16u, 17u, 31u, 32u, 33u, 63u, 64u, 65u, 1000u}) {
       const RecordedContacts recorded = Recorded(engine, geometry, orbits, 3);
       for (const auto& contacts : recorded.by_orbit()) ASSERT_EQ(contacts.size(), 3u);
     }
@@ -119,7 +120,7 @@ TEST(Orbits, TimeLimitEndsPairsThatDoNotMeet) {
   constexpr double kLimit = 1000;
   for (const Engine engine : kEngines) {
     for (const PairState& pair : PairsApart(geometry)) {
-      for (const uint64_t orbits : {1, 70}) {
+      for (const uint64_t orbits : {1u, 70u}) {
         WithTimeLimit source(pair, kLimit, orbits);
         ASSERT_TRUE(RunOrbits(engine, geometry, orbits, source, {}));
         for (const std::vector<Contact>& ends : source.ends()) {

@@ -308,7 +308,7 @@ TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
   MadeUpPilots none(std::nullopt), known(pilot);
   const Ladder without = LadderFor(spec, point, SomeMachine(), none.source());
   const Ladder with = LadderFor(spec, point, SomeMachine(), known.source());
-  for (const size_t i : {1, 2}) {
+  for (const size_t i : {1u, 2u}) {
     EXPECT_EQ(without.rungs[i].model_error, ExpectedLimitError(point));
     EXPECT_THAT(without.rungs[i].reason, HasSubstr("expected"));
     EXPECT_EQ(with.rungs[i].model_error, LimitErrorBound(pilot, PilotPlaceFor(point), point));

@@ -32,7 +32,7 @@ TEST(KolmogorovSmirnov, OneSampleHasADistanceAndAnError) {
 // false alarms 6e-5 each. Without the bins' correction the mean would be off by 0.073 and 0.018.
 TEST(KolmogorovSmirnov, NoiseFloorIsTheMeanDistanceOfUniformSamples) {
   std::mt19937_64 bits(5);
-  for (const size_t bins : {64, 1024}) {
+  for (const size_t bins : {64u, 1024u}) {
     Moments distances;
     KolmogorovSmirnov last;
     for (int i = 0; i < 2000; ++i) {

@@ -55,8 +55,8 @@ TEST(StepFunction, IntegralIsExact) {
   constexpr size_t kRest = 2000;
   CounterRandom random(11, 0, 0);
   for (const int pieces : {0, 1, 2, 5, 40, 200}) {
-    for (const size_t origins : {1, 3, 50, 900}) {
-      for (const size_t window : {0, 1, 2, 30, 1000}) {
+    for (const size_t origins : {1u, 3u, 50u, 900u}) {
+      for (const size_t window : {0u, 1u, 2u, 30u, 1000u}) {
         const OnGrid of = RandomOnGrid(random, pieces, kRest);
         const double mean = 0.3, span = static_cast<double>(origins) * kStep,
                      length = static_cast<double>(window) * kStep;
