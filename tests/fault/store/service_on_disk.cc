@@ -71,7 +71,7 @@ void Turnstile::AwaitWaiting(std::unique_lock<std::mutex>& lock) {
 
 // ---- ServiceOnDisk ----
 
-ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) : turnstile_(turnstile) {
+ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
   auto store = Store::Open(kStorePath, StoreOptions(disk));
   status_ = store.status();
   if (!status_.ok()) return;

@@ -73,7 +73,6 @@ class ServiceOnDisk {
  private:
   void OnStateChange();
 
-  Turnstile* const turnstile_;
   std::mutex mutex_;
   std::condition_variable changed_;
   uint64_t changes_ = 0;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "tests/server/own_channel.h"
 
 namespace ballpiston::torture {
 namespace {
