@@ -16,7 +16,7 @@ PROGRAMS := ballpiston ballpistond
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
 
-test: test-release test-asan ## Build, then run all tests: the fast ones under the address sanitizer (15 minutes)
+test: test-release test-asan ## Build, then run all tests: the fast ones under the address sanitizer (10 minutes)
 
 demo: build ## Run the paper's sweep with a real server and client (1 minute)
 	@scripts/demo.sh build/release/bin
