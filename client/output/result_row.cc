@@ -20,8 +20,9 @@ std::vector<ResultRow> ResultRows(const v1::PointResult& point) {
   std::vector<ResultRow> rows;
   for (const v1::Estimate& estimate : point.estimates()) rows.push_back(RowOf(estimate));
   if (point.has_kl_divergence()) {
-    rows.emplace_back("kl_divergence", point.kl_divergence().value());
-    rows.emplace_back("kl_noise_floor", point.kl_divergence().noise_floor());
+    const v1::KlDivergence& kl = point.kl_divergence();
+    rows.emplace_back("kl_divergence", kl.value()).standard_error = kl.standard_error();
+    rows.emplace_back("kl_noise_floor", kl.noise_floor()).standard_error = kl.noise_error();
   }
   return rows;
 }

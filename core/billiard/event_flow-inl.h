@@ -58,7 +58,8 @@ EventOf<Real> EventFlow<Real>::Step() {
   Real duration = wall_first ? time_to_wall_ : time_to_piston_wall_;
   const Real approach = state_.ball_speed * state_.direction.x() - state_.piston_velocity;
   const Real gap = std::max(state_.piston - state_.position.x(), Real(0));
-  if (gap < approach * duration) {
+  // Also where they meet as the piston turns: it may never come nearer to a ball at rest.
+  if (approach > 0 && gap <= approach * duration) {
     duration = gap / approach;
     Advance(duration);
     return {EventKind::kBallPiston, duration};

@@ -82,9 +82,9 @@ class LaneBalls {
 
   HWY_INLINE void FlyGroup(size_t first) {
     Balls<D, K> balls;
-    V length[K];
+    V length[K], missed[K];
     GetBalls(first, balls);
-    Fly(D(), constants_, balls, length);
+    Fly(D(), constants_, balls, length, missed);
     Put(balls.h, 0, first);
     Put(balls.e, 1, first);
     Put(balls.c, 2, first);

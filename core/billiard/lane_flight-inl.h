@@ -111,9 +111,11 @@ HWY_INLINE V IfNegative(D d, V v, V yes, V no) {
 #endif
 }
 
-// Flies every ball to the next wall, and reflects it there.
+// Flies every ball to the next wall, and reflects it there. `missed` is c'^2 - rho^2: more than
+// rounding above 0, the ball has left the cell.
 template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&length)[K]) {
+HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&length)[K],
+                    V (&missed)[K]) {
   const V sign = hn::SignBit(d), zero = hn::Zero(d);
   auto& [h, e, c, s, a, b, m] = balls;
   V mirror[K], x[K], y[K], tip[K], chord[K], foot[K], unit[K], q[K], p[K], r[K], w[K], flip[K];
@@ -133,8 +135,9 @@ HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&le
   BALLPISTON_EACH ahead[i] = SignMask(d, tip[i]);
   BALLPISTON_EACH c[i] = IfNegative(d, tip[i], hn::Add(c[i], x[i]), c[i]);
   BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenElseZero(ahead[i], y[i]));
+  BALLPISTON_EACH missed[i] = hn::MulSub(c[i], c[i], hn::Set(d, T(2)));
   // Of a ray that rounding lets miss the disc the root is as good as 0.
-  BALLPISTON_EACH q[i] = hn::Abs(hn::NegMulAdd(c[i], c[i], hn::Set(d, T(2))));
+  BALLPISTON_EACH q[i] = hn::Abs(missed[i]);
   BALLPISTON_EACH s[i] = hn::Sqrt(q[i]);
   BALLPISTON_EACH unit[i] = hn::MulAdd(h[i], h[i], hn::Mul(e[i], e[i]));
   BALLPISTON_EACH unit[i] =

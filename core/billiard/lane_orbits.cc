@@ -104,6 +104,10 @@ class LaneOrbits {
   // Single precision sums short paths only.
   static constexpr T kLongestPath = T(256);
 
+  // Of c'^2 - 2. Rounding makes some ulps of it. One comparison sees contacts and escapes, so this
+  // is small beside kSlack.
+  static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
+
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
       const double square = flight.scale * flight.scale;
@@ -168,7 +172,7 @@ class LaneOrbits {
   static HWY_INLINE void FlyOnce(const Constants& k, const T* from, T* to, const T* ratios,
                                  uint64_t& flags) {
     const D d;
-    V length[K], x[K], path[K];
+    V length[K], missed[K], x[K], path[K];
     Balls<D, K> balls;
     Get(from, kH, balls.h);
     Get(from, kE, balls.e);
@@ -177,7 +181,7 @@ class LaneOrbits {
     Get(from, kA, balls.a);
     Get(from, kB, balls.b);
     Get(from, kM, balls.m);
-    Fly(d, k.flight, balls, length);
+    Fly(d, k.flight, balls, length, missed);
     Put(balls.h, to, kH);
     Put(balls.e, to, kE);
     Put(balls.c, to, kC);
@@ -190,15 +194,17 @@ class LaneOrbits {
     Get(from, kPath, path);
     BALLPISTON_EACH path[i] = hn::Add(path[i], length[i]);
     Put(path, to, kPath);
-    MovePistons(k, from, to, ratios, length, x, flags);
+    MovePistons(k, from, to, ratios, length, missed, x, flags);
     if constexpr (sizeof(T) == 4) FlagLongPaths(path, flags);
   }
 
-  // `flags` tells the lanes to look at: ball and piston met, or may have. The distance between them
+  // `flags` tells the lanes to look at: ball and piston met, or may have, or the ball has left the
+  // cell. The distance between them
   // is a concave function of time but where the piston turns at its left wall: so they met if the
   // ball ends beyond the piston, and perhaps if the piston turned while the ball was in its reach.
   static HWY_INLINE void MovePistons(const Constants& k, const T* from, T* to, const T* ratios,
-                                     const V (&length)[K], const V (&x)[K], uint64_t& flags) {
+                                     const V (&length)[K], const V (&missed)[K], const V (&x)[K],
+                                     uint64_t& flags) {
     const D d;
     V phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
     BALLPISTON_EACH ratio[i] = hn::Load(d, ratios + i * Width());
@@ -212,8 +218,9 @@ class LaneOrbits {
     BALLPISTON_EACH ball[i] = hn::NegMulAdd(way[i], hn::Set(d, k.period), x[i]);
     BALLPISTON_EACH turns[i] = hn::Min(turns[i], hn::Max(x[i], before[i]));
     BALLPISTON_EACH ball[i] = hn::Max(ball[i], turns[i]);
+    BALLPISTON_EACH ball[i] = hn::Max(ball[i], missed[i]);
     uint64_t bits = 0;
-    BALLPISTON_EACH bits |= Bits(hn::Gt(ball[i], hn::Zero(d))) << (i * Width());
+    BALLPISTON_EACH bits |= Bits(hn::Gt(ball[i], hn::Set(d, kMissedByRounding))) << (i * Width());
     flags = bits;
   }
 
@@ -230,9 +237,24 @@ class LaneOrbits {
 
   // At the lane's last flight.
   void LookAt(size_t lane) {
+    if (HasEscaped(lane)) return Escape(lane);
     if (MeetOnTheWay(lane)) return Leave(lane);
     orbit_[lane].path += static_cast<double>(After(kPath, lane));
     After(kPath, lane) = 0;
+  }
+
+  bool HasEscaped(size_t lane) {
+    const T c = After(kC, lane);
+    return !(c * c - 2 <= kMissedByRounding);
+  }
+
+  void Escape(size_t lane) {
+    LaneOrbit& orbit = orbit_[lane];
+    if (orbit.orbit == kNoOrbit) return Park(lane);
+    orbit.sums.escaped = true;
+    source_.Meet(orbit.orbit, orbit.sums);
+    --running_;
+    Begin(lane);
   }
 
   bool MeetOnTheWay(size_t lane) {
@@ -321,7 +343,8 @@ class LaneOrbits {
       }
       sums.expired = sums.time > limit_;
       sums.state = flow.state();
-      if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd) return false;
+      const bool has_ended = sums.escaped || sums.expired;
+      if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd || has_ended) return false;
       flow.ExchangeComponents();
       sums = {};
     }
@@ -365,6 +388,7 @@ class LaneOrbits {
     orbit_[lane].orbit = kNoOrbit;
     Enter(lane, {.position = {x, x},
                  .direction = {-M_SQRT1_2, -M_SQRT1_2},
+                 .ball_speed = 1,
                  .piston = geometry_.piston_right()});
   }
 

@@ -20,7 +20,8 @@ bool RunReferenceOrbit(const PairGeometry& geometry, uint64_t orbit, OrbitSource
     contact.expired = contact.time > limit;
     if (event.kind == EventKind::kBallPiston || contact.escaped || contact.expired) {
       contact.state = flow.state();
-      if (source.Meet(orbit, contact) == AfterContact::kEnd) return true;
+      const bool has_ended = contact.escaped || contact.expired;
+      if (source.Meet(orbit, contact) == AfterContact::kEnd || has_ended) return true;
       flow.ExchangeComponents();
       contact = {};
     }

@@ -49,8 +49,8 @@ class OrbitSource {
   virtual ~OrbitSource() = default;
   // The pair at the start of that orbit.
   virtual PairState Start(uint64_t orbit) = 0;
-  // A collision of that orbit. kGoOn: ball and piston exchange components and the orbit goes on;
-  // not after an escape, nor when its time limit passed.
+  // A collision of that orbit. kGoOn: ball and piston exchange components and the orbit goes on.
+  // After an escape, and when its time limit passed, it ends whatever is returned.
   virtual AfterContact Meet(uint64_t orbit, const Contact& contact) = 0;
   // Time without a collision after which an orbit is of no more use: its source is told, some time
   // after that or at a later collision, and the orbit ends. What keeps slow pistons, slow balls,

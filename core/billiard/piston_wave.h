@@ -21,7 +21,8 @@ class PistonWave {
 
   double Phase(const PairState& state) const {
     const double way = state.piston - left_;
-    return state.piston_velocity < 0 ? 2 * stroke_ - way : way;
+    // By its sign bit: a piston at rest keeps it.
+    return std::signbit(state.piston_velocity) ? 2 * stroke_ - way : way;
   }
   double Position(double phase) const {
     return left_ + (phase < stroke_ ? phase : 2 * stroke_ - phase);

@@ -23,9 +23,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/circular_segment.h"
 #include "core/closed_form/kernel_moments.h"
-#include "core/geometry/elementary_functions.h"
 
 namespace ballpiston {
 

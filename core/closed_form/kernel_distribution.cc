@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/elementary_functions.h"
+#include "core/arithmetic/elementary_functions.h"
 
 namespace ballpiston {
 namespace {

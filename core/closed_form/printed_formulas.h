@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/quad_precision.h"
+#include "core/arithmetic/quad_precision.h"
 
 namespace ballpiston {
 

@@ -10,6 +10,7 @@
 #include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -22,6 +23,11 @@ constexpr size_t kLagsBetweenOrigins = 2;
 
 // A walker that is slower than the others keeps all of a group walking.
 constexpr uint64_t kWalkersInStep = 256;
+
+// Of orbits.
+std::optional<double> ErrorOf(const Moments& moments) {
+  return ToldError(static_cast<double>(moments.count), moments.StandardError());
+}
 
 // The integral, then the curve.
 BlockResult NoOrbits() {
@@ -214,7 +220,7 @@ std::vector<Estimate> EnergyRelaxation::Estimates(const BlockResult& merged) con
   const double remainder = WithoutLastBits(limit - IntegralOfLimit(window()).value);
   return Named({.name = "decay_integral",
                 .value = merged.moments[0].mean + remainder,
-                .standard_error = merged.moments[0].StandardError(),
+                .standard_error = ErrorOf(merged.moments[0]),
                 .limit = limit});
 }
 
@@ -242,7 +248,7 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
     const Moments& measured = merged.moments[1 + i];
     curve.points.push_back({.time = Lag(i),
                             .value = measured.mean,
-                            .standard_error = measured.StandardError(),
+                            .standard_error = ErrorOf(measured),
                             .limit = CurveOfLimitAt(Lag(i)).value});
   }
   return curve;

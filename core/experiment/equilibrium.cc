@@ -7,6 +7,7 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/predicted_hits.h"
 #include "core/sampling/invariant_measure.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -14,10 +15,10 @@ namespace {
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
                       double exact) {
   const BatchMeans& measured = merged.batch_means[index];
-  const bool enough = merged.samples >= kCollisionsForAnError;
+  const double events = kEventsPerCollision * static_cast<double>(merged.samples);
   return {.name = "mean_free_time_" + std::string(between),
           .value = measured.Ratio().value_or(0),
-          .standard_error = enough ? measured.StandardError() : std::nullopt,
+          .standard_error = ToldError(events, measured.StandardError()),
           .exact = exact};
 }
 

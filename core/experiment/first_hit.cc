@@ -5,6 +5,7 @@
 #include "core/experiment/ingoing_cells.h"
 #include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -28,9 +29,21 @@ KlDivergence RelativeEntropyTo(const std::vector<SignedHistogram>& histograms) {
   return RelativeEntropy(counts, probabilities);
 }
 
-Estimate Mean(std::string name, const Moments& moments) {
-  return {
-      .name = std::move(name), .value = moments.mean, .standard_error = moments.StandardError()};
+Estimate MeanCosAlpha(const Moments& moments) {
+  const double samples = static_cast<double>(moments.count);
+  return {.name = "mean_cos_alpha",
+          .value = moments.mean,
+          .standard_error = ToldError(samples, moments.StandardError())};
+}
+
+// Of +1 and -1; where only -1 is possible, it is that.
+Estimate MeanSigma(const Moments& moments, bool fluctuates) {
+  const double of_both_signs =
+      static_cast<double>(moments.count) * (1 - moments.mean * moments.mean);
+  return {.name = "mean_sigma",
+          .value = moments.mean,
+          .standard_error =
+              fluctuates ? ToldError(of_both_signs, moments.StandardError()) : std::optional(0.0)};
 }
 
 }  // namespace
@@ -80,8 +93,8 @@ Estimate FirstHitExperiment::FirstEstimate(const BlockResult& merged) const {
 
 PointSummary FirstHitExperiment::Summarize(const BlockResult& merged) const {
   PointSummary summary = {.samples = merged.samples, .health = merged.health};
-  summary.estimates = {FirstEstimate(merged), Mean("mean_cos_alpha", merged.moments[1]),
-                       Mean("mean_sigma", merged.moments[2])};
+  summary.estimates = {FirstEstimate(merged), MeanCosAlpha(merged.moments[1]),
+                       MeanSigma(merged.moments[2], equilibrium_.AlphaMax(+1) > 0)};
   if (parameters().exponent == 1) {
     summary.estimates[1].exact = equilibrium_.MeanCosAlpha();
     summary.estimates[2].exact = equilibrium_.MeanSigma();

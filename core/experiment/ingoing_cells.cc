@@ -1,6 +1,6 @@
 #include "core/experiment/ingoing_cells.h"
 
-#include "core/geometry/elementary_functions.h"
+#include "core/arithmetic/elementary_functions.h"
 
 namespace ballpiston {
 

@@ -15,10 +15,6 @@
 
 namespace ballpiston {
 
-// Expected long returns in a sample from which on it is given an error: the error of their number,
-// sqrt(n), is then a seventh of it.
-inline constexpr double kEnoughLongReturns = 50;
-
 // Expected number of them, in units of one sample; about 1 or more where they are not rare. 0 at
 // epsilon = 0: no number of samples is enough. Infinite at epsilon = 1/2, where the ball rests and
 // return times are bounded.

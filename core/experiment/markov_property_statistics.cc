@@ -5,10 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_distribution.h"
-#include "core/experiment/markov_property_divergence.h"
-#include "core/geometry/elementary_functions.h"
+#include "core/statistics/kl_divergence.h"
 #include "core/statistics/kolmogorov_smirnov.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -44,10 +45,11 @@ std::span<const Histogram> MemoryRows(const BlockResult& merged) {
 Estimate CorrelationOf(std::string name, const BlockResult& merged, Correlation correlation,
                        std::optional<double> exact) {
   const BatchMeans& measured = merged.batch_means[correlation];
-  return {.name = std::move(name),
-          .value = measured.Ratio().value_or(0),
-          .standard_error = measured.StandardError(),
-          .exact = exact};
+  return {
+      .name = std::move(name),
+      .value = measured.Ratio().value_or(0),
+      .standard_error = ToldError(static_cast<double>(measured.batches), measured.StandardError()),
+      .exact = exact};
 }
 
 Estimate HittingTimeDistance(const Histogram& waiting) {
@@ -61,7 +63,7 @@ Estimate HittingTimeDistance(const Histogram& waiting) {
 Estimate Divergence(std::string name, const KlDivergence& measured) {
   return {.name = std::move(name),
           .value = measured.value,
-          .standard_error = measured.StandardError(),
+          .standard_error = measured.standard_error,
           .noise_floor = measured.noise_floor};
 }
 

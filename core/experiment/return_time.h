@@ -24,7 +24,7 @@ class ReturnTime {
   std::optional<Estimate> CoefficientOfVariation(const Moments& times) const;
 
  private:
-  bool TellsItsError(const Moments& times) const;
+  double EventsIn(const Moments& times) const;
 
   double exact_mean_;
   double long_returns_per_sample_;

@@ -6,11 +6,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "core/arithmetic/number_text.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/experiment/answering_models.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/ensemble_spec.h"
-#include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston {
@@ -65,11 +65,15 @@ bool HasFiniteTimes(double rho, double delta) {
 }
 
 void CheckGeometry(const Grid& grid, Found* found) {
-  // The largest valid rho has the smallest bound, so it decides for every delta.
-  double largest = 0;
+  // The largest valid rho has the smallest bound, and the smallest has the longest times: these two
+  // decide for every delta.
+  double largest = 0, smallest = kMaxRho;
   for (size_t i = 0; i < grid.rho.size(); ++i) {
     const absl::Status status = ValidateRho(grid.rho[i]);
-    if (status.ok()) largest = std::fmax(largest, grid.rho[i]);
+    if (status.ok()) {
+      largest = std::fmax(largest, grid.rho[i]);
+      smallest = std::fmin(smallest, grid.rho[i]);
+    }
     if (!status.ok()) found->push_back({At("rho", i), std::string(status.message())});
   }
   for (size_t i = 0; i < grid.delta.size(); ++i) {
@@ -77,7 +81,7 @@ void CheckGeometry(const Grid& grid, Found* found) {
         largest > 0 ? ValidatePairDelta(largest, grid.delta[i]) : ValidateSomeDelta(grid.delta[i]);
     if (!status.ok()) {
       found->push_back({At("delta", i), std::string(status.message())});
-    } else if (largest > 0 && !HasFiniteTimes(largest, grid.delta[i])) {
+    } else if (largest > 0 && !HasFiniteTimes(smallest, grid.delta[i])) {
       found->push_back({At("delta", i), absl::StrCat("delta is ", NumberText(grid.delta[i]),
                                                      ", too small: the mean free time leaves the "
                                                      "range of double")});

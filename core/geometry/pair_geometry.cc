@@ -4,7 +4,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "core/geometry/number_text.h"
+#include "core/arithmetic/number_text.h"
 
 namespace ballpiston {
 
@@ -31,9 +31,8 @@ absl::Status ValidateRho(double rho) {
 }
 
 absl::Status ValidatePairDelta(double rho, double delta) {
-  // The computed bound may lie an ulp below the true one, which a user may have computed better.
   const double bound = PairDeltaBound(rho);
-  if (delta > 0 && delta <= std::nextafter(bound, 1.0)) return absl::OkStatus();
+  if (delta > 0 && delta <= bound * (1 + kDeltaSlack)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       "delta is ", NumberText(delta), "; permitted at rho = ", NumberText(rho),
       ": 0 < delta <= (1 - lambda)/2 = ", NumberText(bound), ", the bound of a ball-piston pair"));
@@ -53,10 +52,10 @@ absl::StatusOr<PairGeometry> PairGeometry::Create(double rho, double delta) {
 
 PairGeometry::PairGeometry(double rho, double delta)
     : rho_(rho),
-      delta_(delta),
+      delta_(std::fmin(delta, PairDeltaBound(rho))),
       lambda_(Lambda(rho)),
       tip_(PairDeltaBound(rho)),
-      piston_left_(tip_ - delta),
-      piston_right_(0.5 + lambda_ / 2 + delta) {}
+      piston_left_(tip_ - delta_),
+      piston_right_(0.5 + lambda_ / 2 + delta_) {}
 
 }  // namespace ballpiston

@@ -29,13 +29,17 @@ double Lambda(double rho);
 // (1 - lambda)/2, the largest delta of a pair. Same domain.
 double PairDeltaBound(double rho);
 
-// rho/sqrt(2) - lambda/2, which delta of a gas has to stay below. Same domain.
+// rho/sqrt(2) - lambda/2, the largest delta of a gas. Same domain.
 double GasDeltaBound(double rho);
+
+// By how much, relatively, a delta may be above its bound, which it is then taken for: the bounds
+// are computed, and users round them.
+inline constexpr double kDeltaSlack = 1e-12;
 
 class PairGeometry {
  public:
   // INVALID_ARGUMENT, with name, value and permitted range, unless kMinRho < rho < kMaxRho and
-  // 0 < delta <= PairDeltaBound(rho), give or take an ulp.
+  // 0 < delta <= PairDeltaBound(rho) (1 + kDeltaSlack).
   static absl::StatusOr<PairGeometry> Create(double rho, double delta);
 
   double rho() const { return rho_; }

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/arithmetic/number_text.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/ingoing_law.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/long_returns.h"
-#include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/method_comparison/energy_relaxation_runs.h"
 #include "core/method_comparison/ingoing_divergence.h"
@@ -24,6 +24,7 @@
 #include "core/method_comparison/trajectory_horizon.h"
 #include "core/method_comparison/twin_orbits.h"
 #include "core/statistics/kl_divergence.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -141,7 +142,7 @@ class Comparison {
   double ErrorOfMean(const Moments& times) {
     const double count = static_cast<double>(times.count);
     const double long_returns = count * LongReturnsPerSample(geometry_, spec_.epsilon);
-    if (long_returns >= kEnoughLongReturns) return times.StandardError().value_or(0);
+    if (TellsItsError(long_returns)) return times.StandardError().value_or(0);
     return std::sqrt(VarianceOfTimes() / count);
   }
 
@@ -152,7 +153,7 @@ class Comparison {
     const MethodVariant lanes = {Method::kLanes};
     const double affordable =
         spec_.seconds_per_curve / PredictedSeconds(lanes, geometry_, spec_.epsilon, 1);
-    const double wanted = kEnoughLongReturns / LongReturnsPerSample(geometry_, spec_.epsilon);
+    const double wanted = kEventsForAnError / LongReturnsPerSample(geometry_, spec_.epsilon);
     const double samples = std::clamp(wanted, kFewest, std::clamp(affordable, kFewest, kMost));
     const std::optional<ReturnStatistics> returns =
         RunReturns(lanes, geometry_, spec_.epsilon, {spec_.seed, ~uint64_t{0}},

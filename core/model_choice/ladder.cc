@@ -6,13 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/arithmetic/number_text.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/answering_models.h"
 #include "core/experiment/block_plan.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/predicted_hits.h"
-#include "core/geometry/number_text.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/model_choice/sampling_cost.h"
 

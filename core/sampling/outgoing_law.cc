@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/geometry/elementary_functions.h"
+#include "core/arithmetic/elementary_functions.h"
 #include "core/sampling/direction.h"
 
 namespace ballpiston {

@@ -1,32 +1,109 @@
 #include "core/statistics/kl_divergence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <limits>
+#include <vector>
+
+#include "core/arithmetic/elementary_functions.h"
+#include "core/statistics/cell_noise.h"
 
 namespace ballpiston {
+namespace {
 
-double KlDivergence::StandardError() const {
-  const double freedom = cells - 1;
-  if (freedom <= 0) return 0;
-  const double twice_samples = freedom / noise_floor;
-  const double noncentrality = twice_samples * std::fmax(value - noise_floor, 0);
-  return std::sqrt(2 * (freedom + 2 * noncentrality)) / twice_samples;
+double Square(double x) { return x * x; }
+
+CellNoise NoiseOfCells(double samples, std::span<const double> probabilities) {
+  CellNoise noise;
+  for (const double probability : probabilities) {
+    if (probability > 0) noise.Add(NoiseOfCell(samples, probability));
+  }
+  return noise;
+}
+
+// Sums over the cells of one law.
+struct Sums {
+  double samples = 0;
+  double information = 0;          // n log(n/mu), mu = N q
+  double squared_information = 0;  // n log^2(n/mu)
+  CellNoise noise;                 // of these under the exact law
+  int cells = 0;
+
+  void Add(uint64_t count, double mean) {
+    if (count == 0) return;
+    const double n = static_cast<double>(count);
+    const double log_ratio = mean > 0 ? Log(n / mean) : std::numeric_limits<double>::infinity();
+    information += n * log_ratio;
+    squared_information += n * Square(log_ratio);
+  }
+
+  KlDivergence Divergence() const {
+    KlDivergence kl = {.value = information / samples,
+                       .noise_floor = noise.mean / samples,
+                       .noise_error = std::sqrt(noise.VarianceOfSum(samples)) / samples,
+                       .cells = cells};
+    // The variance of log(p/q) over the samples, less what noise makes of it.
+    const double scatter = (squared_information - noise.squared) / samples - Square(kl.value);
+    kl.standard_error = std::sqrt(Square(kl.noise_error) + std::max(scatter, 0.0) / samples);
+    return kl;
+  }
+};
+
+Sums OfUniform(std::span<const uint64_t> counts) {
+  Sums sums;
+  for (const uint64_t count : counts) sums.samples += static_cast<double>(count);
+  const double cells = static_cast<double>(counts.size()), mean = sums.samples / cells;
+  for (const uint64_t count : counts) sums.Add(count, mean);
+  sums.noise = NoiseOfCell(sums.samples, 1 / cells).Times(cells);
+  sums.cells = static_cast<int>(counts.size());
+  return sums;
+}
+
+}  // namespace
+
+DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities) {
+  const double count = static_cast<double>(samples);
+  const CellNoise noise = NoiseOfCells(count, probabilities);
+  return {noise.mean / count, std::sqrt(noise.VarianceOfSum(count)) / count};
 }
 
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities) {
-  const double samples =
-      static_cast<double>(std::accumulate(counts.begin(), counts.end(), uint64_t{0}));
-  KlDivergence result;
+  Sums sums;
+  for (const uint64_t count : counts) sums.samples += static_cast<double>(count);
   for (size_t i = 0; i < counts.size(); ++i) {
-    if (probabilities[i] > 0) ++result.cells;
-    if (counts[i] == 0) continue;
-    const double p = static_cast<double>(counts[i]) / samples;
-    result.value += p * std::log(p / probabilities[i]);
+    sums.Add(counts[i], sums.samples * probabilities[i]);
+    sums.cells += probabilities[i] > 0;
   }
-  result.noise_floor = (result.cells - 1) / (2 * samples);
-  return result;
+  sums.noise = NoiseOfCells(sums.samples, probabilities);
+  return sums.Divergence();
+}
+
+KlDivergence DivergenceFromUniform(std::span<const Histogram> rows) {
+  std::vector<uint64_t> counts;
+  for (const Histogram& row : rows)
+    counts.insert(counts.end(), row.counts.begin(), row.counts.end());
+  return OfUniform(counts).Divergence();
+}
+
+KlDivergence DivergenceWithinRows(std::span<const Histogram> rows) {
+  double samples = 0, noise_variance = 0, variance = 0;
+  KlDivergence all;
+  for (const Histogram& row : rows) samples += static_cast<double>(row.Total());
+  for (const Histogram& row : rows) {
+    if (row.Total() == 0) continue;
+    const KlDivergence kl = OfUniform(row.counts).Divergence();
+    const double share = static_cast<double>(row.Total()) / samples;
+    all.value += share * kl.value;
+    all.noise_floor += share * kl.noise_floor;
+    all.cells += kl.cells;
+    noise_variance += Square(share * kl.noise_error);
+    variance += Square(share * kl.standard_error);
+  }
+  all.noise_error = std::sqrt(noise_variance);
+  all.standard_error = std::sqrt(variance);
+  return all;
 }
 
 }  // namespace ballpiston

@@ -1,30 +1,48 @@
 // Coarse-grained relative entropy of a measured law to an exact one, the paper's eq. kld:
 //   D = sum over cells of p log(p/q),  p = counts/samples,  q = exact probability of the cell.
 //
-// With N samples drawn from q itself, 2 N D is close to chi-squared with (cells - 1) degrees of
-// freedom, so D has the noise floor (cells - 1)/(2 N). Natural logarithms.
+// N samples drawn from q itself have a D above 0: its mean, the noise floor, and its standard
+// deviation are computed for that N, cell by cell, not by the chi-squared law (cells - 1)/(2 N),
+// which holds above some ten samples a cell only. Natural logarithms. Properties, each with a test
+// of its name:
+//   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
+//   2. ErrorsHoldForEqualLaws and ErrorsHoldForUnequalLaws.
 #ifndef BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
 #define BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
 
 #include <cstdint>
 #include <span>
 
+#include "core/statistics/histogram.h"
+
 namespace ballpiston {
 
 struct KlDivergence {
   double value = 0;
-  double noise_floor = 0;
-  int cells = 0;  // with a probability above 0
-
-  // Of `value`, with the noncentral chi-squared law of 2 N D: its noncentrality is estimated by
-  // 2 N (value - noise_floor), at least 0. What two runs may differ by, given their samples.
-  double StandardError() const;
+  double noise_floor = 0;     // mean of `value`, were the measured law the exact one
+  double noise_error = 0;     // its standard deviation then
+  double standard_error = 0;  // of `value` about its mean, whatever the law; at least noise_error
+  int cells = 0;              // with a probability above 0
 };
+
+// Of the divergence of `samples` draws from the law with these probabilities from that law.
+struct DivergenceNoise {
+  double mean = 0;
+  double standard_deviation = 0;
+};
+DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities);
 
 // One count for each probability; probabilities sum to 1. Requires at least one sample. A count
 // where the probability is 0 makes the divergence infinite.
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities);
+
+// Of the law over the bins of all rows to the uniform law. Requires a sample.
+KlDivergence DivergenceFromUniform(std::span<const Histogram> rows);
+
+// The mean over samples of the divergence of each row's law to the uniform law over its bins: the
+// law given the row. Requires a sample; rows without samples count for nothing.
+KlDivergence DivergenceWithinRows(std::span<const Histogram> rows);
 
 }  // namespace ballpiston
 

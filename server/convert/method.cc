@@ -5,7 +5,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "core/geometry/number_text.h"
+#include "core/arithmetic/number_text.h"
 #include "core/geometry/pair_geometry.h"
 
 namespace ballpiston::server {

@@ -38,6 +38,8 @@ void SetDivergence(const KlDivergence& divergence, v1::PointResult& result) {
   message->set_value(divergence.value);
   message->set_noise_floor(divergence.noise_floor);
   message->set_cells(divergence.cells);
+  message->set_noise_error(divergence.noise_error);
+  message->set_standard_error(divergence.standard_error);
 }
 
 void AddHistogram(const SignedHistogram& histogram, v1::PointResult& result) {

@@ -1,6 +1,6 @@
 // Rules for the includes of each folder of the project.
 //
-//   core:    geometry <- closed_form, sampling <- billiard, markov <- experiment <-
+//   core:    arithmetic <- geometry <- closed_form, sampling <- billiard, markov <- experiment <-
 //            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
 //            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
 //            threads.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/quad_precision.h"
+#include "core/arithmetic/quad_precision.h"
 
 namespace ballpiston::oracle {
 

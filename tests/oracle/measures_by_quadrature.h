@@ -9,8 +9,8 @@
 #ifndef BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
 #define BALLPISTON_TESTS_ORACLE_MEASURES_BY_QUADRATURE_H_
 
+#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/printed_formulas.h"
-#include "core/geometry/quad_precision.h"
 #include "tests/oracle/gauss_legendre.h"
 
 namespace ballpiston::oracle {

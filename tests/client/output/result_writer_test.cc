@@ -30,7 +30,8 @@ std::vector<v1::PointResult> TwoPoints() {
             estimates { name: "mean_hit_time" value: 21.63214 standard_error: 0.1234
                         exact: 21.62257 z_score: 0.0775527 }
             estimates { name: "mean_sigma" value: -0.25 }
-            kl_divergence { value: 0.005 noise_floor: 0.0025 cells: 2000 }
+            kl_divergence { value: 0.005 noise_floor: 0.0025 cells: 2000
+                            noise_error: 0.0001 standard_error: 0.0002 }
             histograms { name: "alpha" sigma: 1 lower: 0 upper: 0.5 counts: [1, 0] }
             health { max_energy_error: 1e-12 })"),
           FromText<v1::PointResult>(R"(
@@ -72,8 +73,8 @@ TEST(ResultTable, AlignsAndRounds) {
  rho  delta  epsilon  exponent  samples  estimate            value    error  exact      z
 0.53    0.2        0         1    10000  mean_hit_time       21.63     0.12  21.62  +0.08
 0.53    0.2        0         1    10000  mean_sigma          -0.25
-0.53    0.2        0         1    10000  kl_divergence       0.005
-0.53    0.2        0         1    10000  kl_noise_floor     0.0025
+0.53    0.2        0         1    10000  kl_divergence     0.00500  0.00020
+0.53    0.2        0         1    10000  kl_noise_floor    0.00250  0.00010
 0.53    0.1     0.25         1    10000  mean_hit_time   1.000e-07  2.0e-09
 )");
 }
@@ -110,8 +111,8 @@ TEST(ResultCsv, HasARowForEachPointAndEstimate) {
       R"(rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
 0.53,0.2,0,1,billiard-reference,10000,mean_hit_time,21.63214,0.1234,21.62257,0.0775527,,,
 0.53,0.2,0,1,billiard-reference,10000,mean_sigma,-0.25,,,,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,,,,,,
-0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,,,,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_divergence,0.005,2e-04,,,,,
+0.53,0.2,0,1,billiard-reference,10000,kl_noise_floor,0.0025,1e-04,,,,,
 0.53,0.1,0.25,1,billiard-reference,10000,mean_hit_time,1e-07,2e-09,,,,,
 )");
 }
@@ -138,7 +139,7 @@ TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
       Written(Format::kJson),
       R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false},
 "points": [
-{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[]},
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[]},
 {"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[]}
 ]}
 )");

@@ -75,6 +75,50 @@ TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
   }
 }
 
+// Orbits from equilibrium that are followed until one of them escapes.
+class UntilAnEscape : public RecordedContacts {
+ public:
+  using RecordedContacts::RecordedContacts;
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    if (contact.escaped) stop_.request_stop();
+    return RecordedContacts::Meet(orbit, contact);
+  }
+  std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  std::stop_source stop_;
+};
+
+// In single precision the lanes cannot resolve a cell that nearly vanishes.
+TEST(Orbits, EscapesInLanesAreTold) {
+  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
+  UntilAnEscape single(geometry, 100'000, 20);
+  EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.token()));
+  EXPECT_TRUE(single.token().stop_requested());
+}
+
+// A ball that never meets the piston at rest, of a source that always wants to go on.
+TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
+  class GoesOn : public OrbitSource {
+   public:
+    PairState Start(uint64_t) override {
+      return {.position = {0, 0}, .direction = {0, 1}, .ball_speed = 1, .piston = 0.5};
+    }
+    AfterContact Meet(uint64_t, const Contact& contact) override {
+      ended_ += contact.expired;
+      return AfterContact::kGoOn;
+    }
+    double TimeLimit() const override { return 10; }
+    int ended_ = 0;
+  };
+  for (const Engine engine : kEngines) {
+    GoesOn source;
+    EXPECT_TRUE(RunOrbits(engine, PaperGeometry(0.1), 3, source, {}));
+    EXPECT_EQ(source.ended_, 3);
+  }
+}
+
 // The same pair for every orbit, of which the ends are told.
 class WithTimeLimit : public OrbitSource {
  public:

@@ -275,6 +275,19 @@ TEST(ReferenceFlow, RestingBallWaitsForThePiston) {
   EXPECT_EQ(flow.state().piston_velocity, 0);
 }
 
+// At the left end of its way, within rounding, the piston comes no nearer.
+TEST(ReferenceFlow, RestingBallIsHitWhereThePistonTurns) {
+  const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-9, 0.1);
+  for (const double beyond : {0.0, 1e-26, 1e-18}) {
+    ReferenceFlow flow(geometry, {.position = {geometry.piston_left() + beyond, 0},
+                                  .direction = {1, 0},
+                                  .ball_speed = 0,
+                                  .piston = 0.5,
+                                  .piston_velocity = -1});
+    EXPECT_EQ(flow.Step().kind, EventKind::kBallPiston) << beyond;
+  }
+}
+
 TEST(ReferenceFlow, WallAndPistonAtTheSameInstantAreBothResolved) {
   const PairGeometry geometry = GeometryOf(0.6, 0.05);
   // A ball flying straight into the right tip, and a piston that arrives there with it.

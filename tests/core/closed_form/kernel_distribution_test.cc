@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/kernel.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/printed_formulas.h"
-#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
 

@@ -6,10 +6,10 @@
 #include <random>
 #include <string>
 
+#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/printed_formulas.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/paper.h"
-#include "core/geometry/quad_precision.h"
 #include "gtest/gtest.h"
 #include "tests/core/geometries.h"
 #include "tests/oracle/measures_by_quadrature.h"

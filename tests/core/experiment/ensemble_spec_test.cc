@@ -134,6 +134,12 @@ TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
   spec.grid.delta = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
                                             Names("grid.delta[2]", "too small")));
+  // The smallest radius decides.
+  spec.grid.rho = {0.6, std::nextafter(0.5, 1)};
+  spec.grid.delta = {1e-151};
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]", "too small")));
+  spec.grid.rho = {0.6};
+  EXPECT_THAT(Violations(spec), testing::IsEmpty());
 }
 
 TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {

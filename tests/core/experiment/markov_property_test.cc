@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/arithmetic/elementary_functions.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/experiment/markov_property_statistics.h"
-#include "core/geometry/elementary_functions.h"
 #include "core/sampling/counter_random.h"
 #include "core/statistics/moments.h"
 #include "tests/core/one_point_spec.h"
@@ -80,12 +80,9 @@ TEST(MarkovPropertyStatistics, JumpProcessHasNoMemory) {
 }
 
 // 100 repetitions: the mean is known to a tenth of one's error, the scatter to 7 percent. Windows 4
-// of these: false alarms 6e-5 each. The noise floor is the first term in 1/N; the next one,
-// bins^2/(12 (N share of a row)^2), is given below and of the size of one such tenth.
+// of these: false alarms 6e-5 each.
 TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
-  const std::pair<std::string_view, double> next_terms[] = {{"transition_divergence", 1.3e-4},
-                                                            {"memory_divergence", 3.5e-5}};
-  for (const auto& [name, next_term] : next_terms) {
+  for (const char* const name : {"transition_divergence", "memory_divergence"}) {
     Moments excess, errors;
     for (uint64_t seed = 0; seed < 100; ++seed) {
       const auto estimates = MarkovPropertyEstimates(CountsOfJumpProcess(100 + seed, 400), 0);
@@ -93,7 +90,7 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
       excess.Add(divergence.value - *divergence.noise_floor);
       errors.Add(*divergence.standard_error);
     }
-    EXPECT_NEAR(excess.mean, next_term, 4 * *excess.StandardError()) << name;
+    EXPECT_NEAR(excess.mean, 0, 4 * *excess.StandardError()) << name;
     EXPECT_NEAR(std::sqrt(*excess.Variance()) / errors.mean, 1, 4 * std::sqrt(1 / 200.0)) << name;
   }
 }
@@ -180,7 +177,7 @@ TEST(MarkovProperty, CountsEveryCollisionOnce) {
       EXPECT_EQ(summary.estimates.front().value, point->FirstEstimate(merged).value);
       for (const Estimate& estimate : summary.estimates) {
         EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
-        EXPECT_TRUE(estimate.standard_error || collisions < 1000) << estimate.name;
+        EXPECT_TRUE(estimate.standard_error || collisions < 1600) << estimate.name;
       }
     }
   }

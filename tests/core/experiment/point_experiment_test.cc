@@ -26,7 +26,7 @@ namespace {
 // reference and by the jump process.
 std::vector<EnsembleSpec> OneOfEach() {
   const PointParameters pair = PaperPoint(0.2);
-  const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
+  const Target samples = {.samples = 1000}, collisions = {.collisions = 2000};
   std::vector<EnsembleSpec> specs;
   for (const Model model : {Model::kAuto, Model::kBilliardReference, Model::kMarkov}) {
     for (const auto& [experiment, point, target] :
@@ -101,7 +101,7 @@ TEST(PointExperiment, ComputesWhatTheTargetAsksFor) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
     const PointSummary summary = point->Summarize(RunBlocks(*point));
-    EXPECT_EQ(summary.samples, 1000u);
+    EXPECT_EQ(summary.samples, SamplesAskedFor(spec.target));
     EXPECT_EQ(summary.health.escapes, 0u);
     EXPECT_LT(summary.health.max_energy_error, 1e-14);
     EXPECT_EQ(point->answer().model, spec.model == Model::kAuto ? Model::kBilliard : spec.model);

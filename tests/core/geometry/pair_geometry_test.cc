@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "core/geometry/number_text.h"
+#include "core/arithmetic/number_text.h"
 #include "core/geometry/paper.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -43,6 +43,7 @@ TEST(PairGeometry, TipLiesOnTheDisc) {
 TEST(PairGeometry, PaperValuesOfTheBounds) {
   // At the paper's radius the gas bound is 1/5 by construction, rho having 15 digits there.
   EXPECT_NEAR(GasDeltaBound(kPaperRho), 0.2, 1e-14);
+  EXPECT_LE(0.2, GasDeltaBound(kPaperRho) * (1 + kDeltaSlack));
   EXPECT_NEAR(PairDeltaBound(kPaperRho), 0.32554373534619712, 1e-15);
 }
 
@@ -58,7 +59,12 @@ TEST(PairGeometry, DeltaExactlyAtTheBoundIsAccepted) {
     const double bound = PairDeltaBound(rho);
     ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(rho, bound));
     EXPECT_EQ(g.piston_left(), 0);
-    EXPECT_THAT(PairGeometry::Create(rho, bound * (1 + 1e-15)),
+    // Rounded up by a user, it stands for the bound.
+    ASSERT_OK_AND_ASSIGN(const PairGeometry rounded,
+                         PairGeometry::Create(rho, bound * (1 + 9e-13)));
+    EXPECT_EQ(rounded.delta(), bound);
+    EXPECT_EQ(rounded.piston_left(), 0);
+    EXPECT_THAT(PairGeometry::Create(rho, bound * (1 + 2e-12)),
                 StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("delta")));
   }
 }

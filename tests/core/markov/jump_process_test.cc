@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/arithmetic/quad_precision.h"
 #include "core/closed_form/kernel_moments.h"
-#include "core/geometry/quad_precision.h"
 #include "core/sampling/counter_random.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/oracle/gauss_legendre.h"

@@ -13,8 +13,8 @@
 //   5. AnglesOnAxesAndDiagonals, PowersOfOne and ExponentialOfZeroAndLogarithmOfOne are exact.
 //
 // Pure functions: safe from any thread.
-#ifndef BALLPISTON_CORE_GEOMETRY_ELEMENTARY_FUNCTIONS_H_
-#define BALLPISTON_CORE_GEOMETRY_ELEMENTARY_FUNCTIONS_H_
+#ifndef BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_
+#define BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_
 
 namespace ballpiston {
 
@@ -40,4 +40,4 @@ double Log(double x);
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_GEOMETRY_ELEMENTARY_FUNCTIONS_H_
+#endif  // BALLPISTON_CORE_ARITHMETIC_ELEMENTARY_FUNCTIONS_H_

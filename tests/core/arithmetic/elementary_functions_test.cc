@@ -1,4 +1,4 @@
-#include "core/geometry/elementary_functions.h"
+#include "core/arithmetic/elementary_functions.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 //     log base = e log 2 + log c + 2 atanh s,   s = (m - c)/(m + c),   |s| < 1/22,
 // where m - c is exact and s is kept as a sum of two doubles; the series' cubic term, 2^-10 of s
 // itself, bears being rounded. Then exp = 2^k exp(r), |r| <= log(2)/2, by its series.
-#include "core/geometry/elementary_functions.h"
+#include "core/arithmetic/elementary_functions.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // A number as a message shows it: the shortest decimal text that reads back as the same double.
-#ifndef BALLPISTON_CORE_GEOMETRY_NUMBER_TEXT_H_
-#define BALLPISTON_CORE_GEOMETRY_NUMBER_TEXT_H_
+#ifndef BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
+#define BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
 
 #include <string>
 
@@ -10,4 +10,4 @@ std::string NumberText(double value);
 
 }  // namespace ballpiston
 
-#endif  // BALLPISTON_CORE_GEOMETRY_NUMBER_TEXT_H_
+#endif  // BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_

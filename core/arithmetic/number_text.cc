@@ -1,4 +1,4 @@
-#include "core/geometry/number_text.h"
+#include "core/arithmetic/number_text.h"
 
 #include <charconv>
 #include <iterator>

@@ -1,0 +1,33 @@
+// What chance makes of the count n of one cell of probability q in N samples: moments of
+// n log(n/mu), mu = N q, summed over cells for the noise of a relative entropy.
+//
+// The sum over all cells is H = sum of h, h = n log(n/mu) - (n - mu). Its mean is that of the
+// binomial counts, exactly. Its variance is taken from independent Poisson counts, given that their
+// sum T is N: expand E(H | T) about N. The slope is that of E(H) in N, covariance/N; its curvature
+// c is that of E(H) plus 1/N. T has variance N, so
+//   variance(H | T = N) = variance - covariance^2/N - (N c)^2/2.
+// With many samples a cell this is (cells - 1)/2, as of a chi-squared law.
+#ifndef BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
+#define BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
+
+namespace ballpiston {
+
+// Summed over cells.
+struct CellNoise {
+  double mean = 0;        // of n log(n/mu), for binomial counts; exact to 1e-4 of itself
+  double squared = 0;     // mean of n log^2(n/mu)
+  double variance = 0;    // of h, for Poisson counts, like the rest
+  double covariance = 0;  // of h and n
+  double curvature = 0;   // N d/dN (covariance/N)
+
+  void Add(const CellNoise& other);
+  CellNoise Times(double cells) const;
+  double VarianceOfSum(double samples) const;  // given T = samples
+};
+
+// samples >= 1, 0 < probability <= 1.
+CellNoise NoiseOfCell(double samples, double probability);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
