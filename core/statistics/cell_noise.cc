@@ -95,6 +95,7 @@ double CellNoise::VarianceOfSum(double samples) const {
 }
 
 CellNoise NoiseOfCell(double samples, double probability) {
+  if (samples == 0) return {};
   constexpr double kShift = 0.01;
   const double mu = samples * probability;
   const Scatter scatter = ScatterOfCounts(mu);

@@ -25,7 +25,7 @@ struct CellNoise {
   double VarianceOfSum(double samples) const;  // given T = samples
 };
 
-// samples >= 1, 0 < probability <= 1.
+// samples 0 (no noise) or at least 1, 0 < probability <= 1.
 CellNoise NoiseOfCell(double samples, double probability);
 
 }  // namespace ballpiston

@@ -39,6 +39,7 @@ struct Sums {
   }
 
   KlDivergence Divergence() const {
+    if (samples == 0) return {.cells = cells};
     KlDivergence kl = {.value = information / samples,
                        .noise_floor = noise.mean / samples,
                        .noise_error = std::sqrt(noise.VarianceOfSum(samples)) / samples,

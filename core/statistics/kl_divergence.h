@@ -32,16 +32,16 @@ struct DivergenceNoise {
 };
 DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities);
 
-// One count for each probability; probabilities sum to 1. Requires at least one sample. A count
-// where the probability is 0 makes the divergence infinite.
+// One count for each probability; probabilities sum to 1. A count where the probability is 0 makes
+// the divergence infinite. Without samples all but `cells` is 0, here and below.
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities);
 
-// Of the law over the bins of all rows to the uniform law. Requires a sample.
+// Of the law over the bins of all rows to the uniform law.
 KlDivergence DivergenceFromUniform(std::span<const Histogram> rows);
 
 // The mean over samples of the divergence of each row's law to the uniform law over its bins: the
-// law given the row. Requires a sample; rows without samples count for nothing.
+// law given the row. Rows without samples count for nothing.
 KlDivergence DivergenceWithinRows(std::span<const Histogram> rows);
 
 }  // namespace ballpiston

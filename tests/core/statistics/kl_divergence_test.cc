@@ -29,6 +29,18 @@ TEST(KlDivergence, IsTheSumOfPLogPOverQ) {
   EXPECT_DOUBLE_EQ(kl.value, std::log(2));
 }
 
+TEST(KlDivergence, WithoutSamplesIsZero) {
+  const std::vector<Histogram> rows(2, Histogram::OfBins(0, 1, 4));
+  for (const KlDivergence& kl :
+       {RelativeEntropy(std::array<uint64_t, 2>{0, 0}, std::array{0.5, 0.5}),
+        DivergenceFromUniform(rows), DivergenceWithinRows(rows)}) {
+    EXPECT_EQ(kl.value, 0);
+    EXPECT_EQ(kl.noise_floor, 0);
+    EXPECT_EQ(kl.noise_error, 0);
+    EXPECT_EQ(kl.standard_error, 0);
+  }
+}
+
 TEST(KlDivergence, OfAnImpossibleCountIsInfinite) {
   const KlDivergence kl = RelativeEntropy(std::array<uint64_t, 2>{1, 1}, std::array{1.0, 0.0});
   EXPECT_TRUE(std::isinf(kl.value));
