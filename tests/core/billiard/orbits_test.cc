@@ -75,6 +75,26 @@ TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
   }
 }
 
+// A ball beyond the left tip, on its way out.
+TEST(Orbits, AStartOutsideOfTheCellEscapes) {
+  class Outside : public OrbitSource {
+   public:
+    PairState Start(uint64_t) override {
+      return {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5};
+    }
+    AfterContact Meet(uint64_t, const Contact& contact) override {
+      escapes_ += contact.escaped;
+      return AfterContact::kGoOn;
+    }
+    int escapes_ = 0;
+  };
+  for (const Engine engine : kEngines) {
+    Outside source;
+    EXPECT_TRUE(RunOrbits(engine, kPaperPair, 3, source, {}));
+    EXPECT_EQ(source.escapes_, 3);
+  }
+}
+
 // Orbits from equilibrium that are followed until one of them escapes.
 class UntilAnEscape : public RecordedContacts {
  public:
