@@ -59,13 +59,11 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
 }
 
 // The spectrum needs no samples, and its error is that of its discretisation.
-TEST(EnergyRelaxationRuns, TheSpectrumCostsAMicrosecondOrSo) {
+TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
   const EnergyRelaxationRuns runs(PaperGeometry(0.1), 0);
-  runs.BySpectrum();  // the first call may have to fetch code and tables
   const RelaxationTime limit = runs.BySpectrum();
   EXPECT_EQ(limit.samples, 0u);
   EXPECT_GT(limit.seconds, 0);
-  EXPECT_LT(limit.seconds, 5e-3);  // the spectrum itself takes 0.1 s: it is not made again
   EXPECT_LT(limit.error, 1e-6 * limit.value);
 }
 
