@@ -91,9 +91,9 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@cmake --build build/$* --target fast_tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
-# build/PRESET/.programs: configured, perhaps without the tests; .tests: with them; .benchmarks: with
-# both. In their names is the prefix of the presets, so that these are never mixed up. Without a
-# stamp the folder is configured again: also after an attempt that failed.
+# Stamps in build/PRESET: .programs if it is configured, perhaps without the tests; .tests if with the
+# tests; .benchmarks if with both. The prefix of the presets is part of a stamp's name, so each prefix
+# configures again. A failed attempt leaves no stamp.
 configure = mkdir -p $(@D); \
   rm -f $(foreach prefix,'' ci-,$(foreach stamp,programs tests benchmarks,$(@D)/.$(prefix)$(stamp))); \
   cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \

@@ -104,8 +104,8 @@ class LaneOrbits {
   // Single precision sums short paths only.
   static constexpr T kLongestPath = T(256);
 
-  // Of c'^2 - 2. Rounding makes some ulps of it. One comparison sees contacts and escapes, so this
-  // is small beside kSlack.
+  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. The same comparison
+  // finds contacts and escapes, so this value has to be small compared with kSlack.
   static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
 
   struct Constants {

@@ -24,7 +24,7 @@ constexpr size_t kLagsBetweenOrigins = 2;
 // A walker that is slower than the others keeps all of a group walking.
 constexpr uint64_t kWalkersInStep = 256;
 
-// Of orbits.
+// The error of a mean over orbits, if there are enough of them.
 std::optional<double> ErrorOf(const Moments& moments) {
   return ToldError(static_cast<double>(moments.count), moments.StandardError());
 }

@@ -12,8 +12,9 @@
 
 namespace ballpiston {
 
-// That carry the error (statistics/told_error.h): long flights are rare, and skew the ratio's law.
-// The z-scores of 100 seeds with 64 collisions had variance 1.35.
+// One collision in ten counts as an event for the error (statistics/told_error.h), because long
+// flights are rare and skew the law of the ratio: the z-scores of 100 seeds with 64 collisions had
+// variance 1.35.
 inline constexpr double kEventsPerCollision = 0.1;
 
 // Orbits in a block, if it has as many collisions: batches enough for an error, and lanes kept

@@ -32,8 +32,8 @@ double PairDeltaBound(double rho);
 // rho/sqrt(2) - lambda/2, the largest delta of a gas. Same domain.
 double GasDeltaBound(double rho);
 
-// By how much, relatively, a delta may be above its bound, which it is then taken for: the bounds
-// are computed, and users round them.
+// A delta above its bound by at most this relative amount is accepted and set to the bound: users
+// round the bounds, and computing them rounds too.
 inline constexpr double kDeltaSlack = 1e-12;
 
 class PairGeometry {

@@ -1,5 +1,5 @@
-// What chance makes of the count n of one cell of probability q in N samples: moments of
-// n log(n/mu), mu = N q, summed over cells for the noise of a relative entropy.
+// The statistical noise of the count n of one cell, which has probability q, in N samples: the
+// moments of n log(n/mu), mu = N q. Their sums over all cells give the noise of a relative entropy.
 //
 // The sum over all cells is H = sum of h, h = n log(n/mu) - (n - mu). Its mean is that of the
 // binomial counts, exactly. Its variance is taken from independent Poisson counts, given that their

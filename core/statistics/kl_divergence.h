@@ -25,7 +25,8 @@ struct KlDivergence {
   int cells = 0;              // with a probability above 0
 };
 
-// Of the divergence of `samples` draws from the law with these probabilities from that law.
+// The mean and the standard deviation of the divergence, if `samples` samples are drawn from the
+// law with these probabilities.
 struct DivergenceNoise {
   double mean = 0;
   double standard_deviation = 0;
@@ -37,7 +38,7 @@ DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> prob
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities);
 
-// Of the law over the bins of all rows to the uniform law.
+// The divergence of the law over the bins of all rows from the uniform law.
 KlDivergence DivergenceFromUniform(std::span<const Histogram> rows);
 
 // The mean over samples of the divergence of each row's law to the uniform law over its bins: the

@@ -1,13 +1,14 @@
-// When a sample tells its own error: one rule for all estimates.
+// The rule that decides whether an estimate gets a standard error. It is the same for all
+// estimates.
 //
-// The scatter of a sample is the error of its mean only if the sample holds what carries the mean.
-// So an error is given from kEventsForAnError independent events on that carry it; the error itself
-// is then known to 1/sqrt(2 kEventsForAnError) = 10 %. Which events these are, each estimate says:
-//   a mean over samples             the samples
-//   a mean return time              the long returns expected among them, where these are rare
-//   mean sigma                      the samples of the rarer sign, and as many of the other
-//   mean free times in equilibrium  a tenth of the collisions: the others follow at once
-//   a correlation                   the orbits
+// The scatter of a sample is the error of its mean only if the sample contains the events that
+// determine the mean. An error is given if there are at least kEventsForAnError independent events
+// of this kind. Its own relative error is then 1/sqrt(2 kEventsForAnError) = 10 %. The events are:
+//   mean over samples               the samples
+//   mean return time                the expected number of long returns, where these are rare
+//   mean sigma                      N (1 - mean^2): some four times the samples of the rarer sign
+//   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.h)
+//   correlation                     the orbits
 // A quantity that cannot fluctuate has the error 0.
 #ifndef BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_
 #define BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_

@@ -10,7 +10,8 @@ namespace ballpiston::server {
 // Adds --config, and the reader of its file. Errors name the file and the line.
 void AddFlagFile(CLI::App& app);
 
-// The error about a flag that does not exist: `flag` without dashes, and as it was written.
+// The error message for a flag that does not exist. `flag` is its name without dashes, `written` is
+// what the user wrote.
 std::string NoSuchFlag(const CLI::App& app, const std::string& flag, const std::string& written);
 
 }  // namespace ballpiston::server

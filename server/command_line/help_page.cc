@@ -28,7 +28,7 @@ constexpr char kExitCodes[] =
 constexpr size_t kIndentation = 8;
 constexpr size_t kWidth = 96;
 
-// As many words a line as fit.
+// Breaks the text into lines of at most `width` characters.
 std::string Wrapped(const std::string& text, size_t width) {
   std::string lines;
   size_t column = 0;

@@ -212,7 +212,8 @@ TEST(ServerFlags, AFlagHasOneValue) {
   EXPECT_THAT(Refusal({"--config=a", "--config=b"}), HasSubstr("--config is given more than once"));
 }
 
-// As an unset variable of a shell leaves it: it is neither the default nor the next flag.
+// A shell passes an empty value if a variable is not set. The server then takes neither the default
+// nor the next flag as the value.
 TEST(ServerFlags, AnEmptyValueIsRefused) {
   for (const std::string flag : {"--listen", "--data-dir", "--config", "--access-file",
                                  "--tls-certificate", "--metrics-listen", "--backup"}) {

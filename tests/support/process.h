@@ -31,7 +31,7 @@ struct ProcessResult {
   std::string err;
 };
 
-// Of a ProcessResult; shows standard error if it is another code.
+// Matches a ProcessResult with this exit code. A mismatch shows the standard error.
 MATCHER_P(ExitsWith, code, "") {
   *result_listener << "whose exit code is " << arg.exit_code << " and standard error\n" << arg.err;
   return arg.exit_code == code;

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 // In each test one time limit is short. The others are longer than any test.
 constexpr std::chrono::hours kNever(1);
 
-// Of a frame of HTTP/2: the type, no flags, stream 0.
+// Part of the GOAWAY frame of HTTP/2: its type, no flags, stream 0.
 const std::string kGoAway("\x7\0\0\0\0\0", 6);
 
 TestServerOptions OnPort(const ConnectionTiming& timing) {
