@@ -7,11 +7,12 @@ PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 
 TEST_PACKAGES := libgtest-dev libgmock-dev
-PROGRAMS := ballpiston ballpistond
+AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
+PROGRAMS := ballpiston ballpistond method_comparison
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture asan tsan fuzz nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -21,7 +22,7 @@ test: test-release test-asan ## Build, then run all tests: the fast ones under t
 demo: build ## Run the paper's sweep with a real server and client (1 minute)
 	@scripts/demo.sh build/release/bin
 
-chart: build ## Chart speed against accuracy for every method, on this machine (1 minute)
+chart: build ## Chart speed against accuracy for every method, on this machine (2 minutes)
 	@scripts/chart.sh build/release/bin
 
 ladder: build ## Compare planned and measured cost and error of a dozen questions, on this machine (1 minute)
@@ -49,14 +50,20 @@ asan: test-asan ## Run the fast tests under the address and undefined-behaviour 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
+aarch64: ## Compile the core for AArch64 and run its tests under an emulator: its bits are those of x86 (15 minutes)
+	@scripts/setup.sh $(AARCH64_PACKAGES)
+	@$(MAKE) build/aarch64/.$(PRESETS_PREFIX)tests
+	@cmake --build --preset aarch64
+	@ctest --preset aarch64 -j$(TEST_JOBS)
+
 fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds a target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-nightly: ## Run the checks that take hours: tsan, tidy, torture, stability, and ten minutes of each fuzz target
-	@status=0; for task in tsan tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, stability, and ten minutes of each fuzz target
+	@status=0; for task in tsan aarch64 tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 
@@ -77,7 +84,7 @@ clean: ## Remove everything that was built, and the output of demo, chart and st
 	@rm -rf build demo chart '$(STABILITY_OUT)'
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh

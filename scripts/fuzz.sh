@@ -14,7 +14,7 @@ limit=(-runs="${FUZZ_RUNS:-100000}")
 [[ -z ${FUZZ_SECONDS:-} ]] || limit=(-max_total_time="$FUZZ_SECONDS")
 readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
 # Longer ones only repeat what shorter ones show.
-declare -A max_len=([stored_block]=3000 [log_line]=64 [access_list]=320 [number_list]=80
+declare -A max_len=([stored_fold]=3000 [log_line]=64 [access_list]=320 [number_list]=80
                     [server_address]=160)
 readonly MAX_LEN=300
 # Stacks of allocations and freed memory that is kept for long cost more time than all else.

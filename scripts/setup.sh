@@ -4,6 +4,9 @@
 #
 #   scripts/setup.sh [FURTHER_PACKAGE...]
 #
+# A package for another architecture is written as PACKAGE:ARCHITECTURE. It is installed beside this
+# machine's own packages.
+#
 # With SKIP_SETUP=1 in the environment it installs nothing: for those who bring the libraries
 # themselves. A CMake that is too old is refused all the same.
 set -euo pipefail
@@ -39,9 +42,10 @@ require_cmake() {
 }
 
 missing_of() {
-  local installed
-  installed=$(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
-    awk '$2 == "installed" {print $1}') || true
+  local own installed
+  own=$(dpkg --print-architecture)
+  installed=$(dpkg-query -W -f='${Package} ${Architecture} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    awk -v own="$own" '$3 == "installed" {print $1 ":" $2; if ($2 == own || $2 == "all") print $1}') || true
   comm -23 <(printf '%s\n' "$@" | sort -u) <(sort -u <<<"$installed")
 }
 
@@ -55,6 +59,14 @@ apt_get() {
   cat "$log" >&2
   echo "setup: apt-get $1 failed (its words are above)" >&2
   exit 1
+}
+
+# dpkg takes packages for another architecture only if it is told of it.
+add_architectures() {
+  local package
+  for package; do
+    [[ $package != *:* ]] || as_root dpkg --add-architecture "${package##*:}"
+  done
 }
 
 require_cmake
@@ -76,6 +88,7 @@ fi
 echo "setup: installing ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+add_architectures "${missing[@]}"
 apt_get update
 require_cmake
 apt_get install -y --no-install-recommends "${missing[@]}"

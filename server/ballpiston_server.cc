@@ -32,13 +32,8 @@ constexpr std::chrono::milliseconds kHealthInterval(500);
 Health::Services ServicesOfHealth() {
   const std::string ensemble = v1::EnsembleService::service_full_name();
   return {.all = {ensemble, v1::AnalyticService::service_full_name(),
-                  v1::MethodService::service_full_name(), v1::ServerService::service_full_name()},
+                  v1::ServerService::service_full_name()},
           .with_store = {ensemble}};
-}
-
-ServerOptions Completed(ServerOptions options) {
-  if (!options.compare) options.compare = CoreComparer();
-  return options;
 }
 
 void Set(grpc::ServerBuilder& builder, const char* argument, std::chrono::milliseconds time) {
@@ -94,7 +89,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
   if (!store.ok()) return store.status();
   try {
     std::unique_ptr<BallpistonServer> server(
-        new BallpistonServer(Completed(std::move(options)), *std::move(directory), *address,
+        new BallpistonServer(std::move(options), *std::move(directory), *address,
                              *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) status = server->StartMetrics();
@@ -121,14 +116,12 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
             options_.factory ? options_.factory : ladder_.ChosenExperiments(),
             [this] { watches_.LookNow(); }),
       executor_(kRpcThreads),
-      comparisons_(options_.compare),
       context_{security_->authenticator(),
                options_.limits,
                book_,
                ladder_,
                executor_,
                watches_,
-               comparisons_,
                activity_,
                draining_,
                RandomId(),
@@ -139,7 +132,6 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                directory_.FilePath(kStoreFile)},
       ensemble_(context_),
       analytic_(context_),
-      method_(context_),
       server_(context_) {}
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
@@ -164,7 +156,6 @@ absl::Status BallpistonServer::Listen() {
   BoundConnections(builder);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
-  builder.RegisterService(&method_);
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
@@ -220,7 +211,6 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (health_ != nullptr) health_->Drain();
   draining_ = true;
   watches_.LookNow();
-  comparisons_.AskToStop();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();
@@ -230,7 +220,6 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   watches_.Stop();
   if (metrics_ != nullptr) metrics_->Detach();
   store_->Close();
-  comparisons_.Stop();  // last: nothing waits for how soon it looks
 }
 
 }  // namespace ballpiston::server

@@ -18,7 +18,6 @@
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/services.h"
-#include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/listen_address.h"
 #include "server/observability/call_observer.h"
@@ -53,7 +52,6 @@ struct ServerOptions {
   std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
   int workers = 1;
   ExperimentFactory factory;  // empty: the core's, by the chosen model
-  MethodComparer compare;     // empty: the core's
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;
@@ -84,9 +82,8 @@ class BallpistonServer {
   // How long nobody has used it and nothing was computed.
   std::chrono::steady_clock::duration IdleFor();
 
-  // Health says NOT_SERVING, no job is accepted, watches and a comparison of methods end with
-  // UNAVAILABLE, blocks in flight are dropped, calls in progress have until then to end, and
-  // everything is on disk.
+  // Health says NOT_SERVING, no job is accepted, watches end with UNAVAILABLE, blocks in flight are
+  // dropped, calls in progress have until then to end, and everything is on disk.
   void Shutdown(std::chrono::milliseconds drain);
 
  private:
@@ -111,11 +108,9 @@ class BallpistonServer {
   ModelLadder ladder_;
   JobBook book_;
   RpcExecutor executor_;
-  ComparisonThread comparisons_;
   ServiceContext context_;
   EnsembleService ensemble_;
   AnalyticService analytic_;
-  MethodService method_;
   ServerService server_;
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;

@@ -27,7 +27,7 @@ absl::Status Take(absl::string_view name, const std::optional<std::string>& text
 }
 
 struct Analytic {
-  std::optional<std::string> rho, delta, epsilon, outgoing_epsilon, beta;
+  std::optional<std::string> rho, delta, epsilon, outgoing_epsilon, beta, temperature;
   ServerFlag server;
   FormatFlag format;
 
@@ -38,20 +38,24 @@ struct Analytic {
     verb.add_option("--epsilon", epsilon, "piston's energies, 0 to 1/2 (LIST): rates and moments");
     verb.add_option("--outgoing-epsilon", outgoing_epsilon,
                     "outgoing energies (LIST): the kernel W; not in CSV");
-    verb.add_option("--beta", beta, "inverse temperatures (LIST): canonical averages; not in CSV");
+    verb.add_option("--temperature", temperature,
+                    "temperatures (LIST): canonical averages, exchange rate, static conductivity");
+    verb.add_option("--beta", beta, "inverse temperatures (LIST): the same");
     server.AddTo(verb);
     format.AddTo(verb);
   }
 
   absl::StatusOr<v1::EvaluatePairsRequest> Request() const {
     v1::EvaluatePairsRequest request;
-    absl::Status status = Violations({Take("--rho", rho, request.mutable_rho()),
-                                      Take("--delta", delta, request.mutable_delta()),
-                                      Take("--epsilon", epsilon, request.mutable_epsilon()),
-                                      Take("--outgoing-epsilon", outgoing_epsilon,
-                                           request.mutable_outgoing_epsilon()),
-                                      Take("--beta", beta, request.mutable_beta())})
-                              .Lines();
+    absl::Status status =
+        Violations(
+            {Take("--rho", rho, request.mutable_rho()),
+             Take("--delta", delta, request.mutable_delta()),
+             Take("--epsilon", epsilon, request.mutable_epsilon()),
+             Take("--outgoing-epsilon", outgoing_epsilon, request.mutable_outgoing_epsilon()),
+             Take("--beta", beta, request.mutable_beta()),
+             Take("--temperature", temperature, request.mutable_temperature())})
+            .Lines();
     if (status.ok()) status = CheckSize(request, "");
     if (!status.ok()) return status;
     return request;

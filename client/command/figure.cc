@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "client/command/comparison_program.h"
 #include "client/command/connection.h"
 #include "client/command/figure_folder.h"
 #include "client/command/figures.h"
@@ -55,6 +56,9 @@ struct Figure {
     verb.add_option("--seed", flags.seed, "of the random numbers; 0 if not given");
     server.AddTo(verb);
     progress.AddTo(verb);
+    verb.footer(absl::StrCat(
+        "The figure speed-accuracy is measured on this machine, without a server, by the program ",
+        kComparisonProgram, ", which has to lie in the folder of ballpiston."));
   }
 
   absl::StatusOr<MakeFigure> Plan() const {
@@ -73,9 +77,7 @@ struct Figure {
     const FigureFolder out(folder);
     if (absl::Status made = out.Make(); !made.ok()) return made;
     Interrupts interrupts;  // before gRPC starts threads
-    return WithServer(server, [&](const Connection& connection) {
-      return (*make)({connection, out, *style, interrupts, terminal});
-    });
+    return (*make)({server, out, *style, interrupts, terminal});
   }
 };
 

@@ -19,16 +19,16 @@ namespace {
 // Asks the server; one job after the other, so that Ctrl-C speaks of one.
 class Asker {
  public:
-  explicit Asker(const FigureTools& tools) : tools_(tools), client_(tools.connection.channel) {}
+  Asker(const FigureTools& tools, const Connection& connection)
+      : tools_(tools), connection_(connection), client_(connection.channel) {}
 
   // The points of a job that succeeded. `*end` tells how it ended otherwise.
   absl::StatusOr<std::vector<v1::PointResult>> Measure(const v1::EnsembleSpec& spec,
                                                        ExitCode& end) const {
-    const absl::StatusOr<v1::EnsembleJob> job = CreateJob(tools_.connection, spec);
+    const absl::StatusOr<v1::EnsembleJob> job = CreateJob(connection_, spec);
     if (!job.ok()) return job.status();
     std::ostream& err = tools_.terminal.err;
-    const auto ended =
-        FollowJob(tools_.connection, job->name(), tools_.style, tools_.interrupts, err);
+    const auto ended = FollowJob(connection_, job->name(), tools_.style, tools_.interrupts, err);
     if (!ended.ok()) return ended.status();
     end = ended->has_value() ? ReportEnd(**ended, err) : ExitCode::kInterrupted;
     if (end != ExitCode::kDone) return std::vector<v1::PointResult>();
@@ -37,12 +37,13 @@ class Asker {
 
   absl::StatusOr<v1::EvaluatePairsResponse> Evaluate(
       const v1::EvaluatePairsRequest& request) const {
-    const AnalyticClient client(tools_.connection.channel);
-    return tools_.connection.Ask([&] { return client.EvaluatePairs(request); });
+    const AnalyticClient client(connection_.channel);
+    return connection_.Ask([&] { return client.EvaluatePairs(request); });
   }
 
  private:
   const FigureTools& tools_;
+  const Connection& connection_;
   const EnsembleClient client_;
 };
 
@@ -86,8 +87,9 @@ absl::Status Write(const MeanFreeTimeFiles& files, const FigureTools& tools) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ExitCode> Make(const MeanFreeTimeQuestion& question, const FigureTools& tools) {
-  const Asker asker(tools);
+absl::StatusOr<ExitCode> Make(const MeanFreeTimeQuestion& question, const FigureTools& tools,
+                              const Connection& connection) {
+  const Asker asker(tools, connection);
   MeanFreeTimeAnswers answers;
   if (absl::Status status = Evaluate(asker, question, answers); !status.ok()) return status;
   const absl::StatusOr<ExitCode> end = Measure(asker, question, answers);
@@ -119,7 +121,11 @@ absl::StatusOr<MakeFigure> PlanMeanFreeTime(const FigureFlags& flags) {
   violations.Add(RefuseFlag("--epsilon", flags.epsilon, kMeanFreeTimeFigure));
   violations.Add(RefuseFlag("--seconds", flags.seconds, kMeanFreeTimeFigure));
   if (absl::Status bad = violations.Lines(); !bad.ok()) return bad;
-  return [question](const FigureTools& tools) { return Make(question, tools); };
+  return [question](const FigureTools& tools) {
+    return WithServer(tools.server, [&](const Connection& connection) {
+      return Make(question, tools, connection);
+    });
+  };
 }
 
 }  // namespace ballpiston::client

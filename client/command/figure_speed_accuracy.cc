@@ -1,41 +1,54 @@
-// The chart of speed against accuracy: one comparison of all methods. Ctrl-C ends it, on the server
-// too.
+// The chart of speed against accuracy: one comparison of all methods, on this machine.
+#include <signal.h>
+
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/command/comparison_program.h"
 #include "client/command/figures.h"
 #include "client/command/number_list.h"
 #include "client/command/violations.h"
+#include "client/figure/comparison_progress.h"
 #include "client/figure/speed_accuracy_figure.h"
-#include "client/library/method_client.h"
-#include "client/output/comparison_progress.h"
 
 namespace ballpiston::client {
 namespace {
 
-absl::StatusOr<std::vector<v1::MethodMeasurement>> Compare(const SpeedAccuracyQuestion& question,
-                                                           const FigureTools& tools) {
-  const MethodClient client(tools.connection.channel);
-  const v1::CompareMethodsRequest request = ComparisonRequest(question);
+// Of its two, 1 says that the output cannot be written.
+constexpr int kWrongFlags = 2;
+
+// Runs the program; `*measurements` are what it printed.
+absl::StatusOr<ExitCode> Compare(const SpeedAccuracyQuestion& question, const FigureTools& tools,
+                                 std::vector<MethodMeasurement>& measurements) {
   ComparisonProgress progress(tools.style, tools.terminal.err);
-  std::vector<v1::MethodMeasurement> measurements;
-  const absl::Status ended = tools.connection.Ask([&] {
-    measurements.clear();  // of an attempt before
-    progress.Begin();
-    return client.CompareMethods(request, [&](const v1::MethodMeasurement& measurement) {
-      measurements.push_back(measurement);
-      progress.OnMeasurement(measurement);
-    });
-  });
-  if (!ended.ok()) return ended;
-  return measurements;
+  absl::Status parsed;
+  const absl::StatusOr<int> status =
+      RunComparisonProgram(ComparisonFlags(question), tools.interrupts, [&](const auto& line) {
+        auto measurement = ParseMeasurement(line);
+        parsed.Update(measurement.status());
+        if (!measurement.ok()) return;
+        progress.OnMeasurement(*measurement, line);
+        measurements.push_back(*std::move(measurement));
+      });
+  if (!status.ok()) return status.status();
+  if (*status == 128 + SIGINT) return ExitCode::kInterrupted;
+  if (*status == kWrongFlags) return ExitCode::kUsage;  // the program has named the flags
+  if (!parsed.ok()) return parsed;
+  if (*status == 0) return ExitCode::kDone;
+  return absl::InternalError(absl::StrCat(kComparisonProgram, " ended with exit status ", *status));
 }
 
 absl::StatusOr<ExitCode> Make(const SpeedAccuracyQuestion& question, const FigureTools& tools) {
-  const auto measurements = Compare(question, tools);
-  if (!measurements.ok()) return measurements.status();
-  const absl::StatusOr<SpeedAccuracyFiles> files = MakeFiles(question, *measurements);
+  if (!tools.server.Text().empty()) {
+    tools.terminal.err << "ballpiston: the figure " << kSpeedAccuracyFigure
+                       << " is measured on this machine, not on a server\n";
+  }
+  std::vector<MethodMeasurement> measurements;
+  const absl::StatusOr<ExitCode> end = Compare(question, tools, measurements);
+  if (!end.ok() || *end != ExitCode::kDone) return end;
+  const absl::StatusOr<SpeedAccuracyFiles> files = MakeFiles(question, measurements);
   if (!files.ok()) return files.status();
   const std::pair<const char*, const std::string&> contents[] = {{".csv", files->csv},
                                                                  {".gnuplot", files->script}};

@@ -1,6 +1,6 @@
 // The figures that the verb `figure` can make, one file each.
 //
-// A figure checks its flags before anything is done, then is made where a server answers.
+// A figure checks its flags before anything is done.
 #ifndef BALLPISTON_CLIENT_COMMAND_FIGURES_H_
 #define BALLPISTON_CLIENT_COMMAND_FIGURES_H_
 
@@ -25,7 +25,7 @@ struct FigureFlags {
 
 // What a figure is made with.
 struct FigureTools {
-  const Connection& connection;
+  const ServerFlag& server;
   const FigureFolder& folder;
   ProgressStyle style;
   Interrupts& interrupts;

@@ -6,20 +6,17 @@
 namespace ballpiston::client {
 namespace {
 
-using v1::MethodMeasurement;
-
 // Its longest run's scatter is known best.
 std::optional<double> CrossingWork(const std::vector<MethodMeasurement>& measurements,
                                    const LimitFloor& floor) {
   std::optional<double> work;
   for (const MethodMeasurement& m : measurements) {
-    if (m.quantity() != MethodMeasurement::RELAXATION_TIME ||
-        m.method() != MethodMeasurement::BILLIARD || m.delta() != floor.delta ||
-        m.samples() < kFewestOrbits) {
+    if (m.quantity != kRelaxationTime || m.method != kBilliard || m.delta != floor.delta ||
+        m.samples < kFewestOrbits) {
       continue;
     }
     const double ratio = OwnError(m, floor) / floor.Height();
-    work = m.work() * ratio * ratio;
+    work = m.work * ratio * ratio;
   }
   return work;
 }
@@ -27,19 +24,18 @@ std::optional<double> CrossingWork(const std::vector<MethodMeasurement>& measure
 }  // namespace
 
 double OwnError(const MethodMeasurement& run, const LimitFloor& floor) {
-  const double error = run.statistical_error();
+  const double error = run.statistical_error;
   return std::sqrt(std::max(error * error - floor.error * floor.error, 0.0));
 }
 
 std::vector<LimitFloor> FloorsOf(const std::vector<MethodMeasurement>& measurements) {
   std::vector<LimitFloor> floors;
   for (const MethodMeasurement& m : measurements) {
-    if (m.quantity() != MethodMeasurement::RELAXATION_TIME ||
-        m.method() != MethodMeasurement::SPECTRUM) {
+    if (m.quantity != kRelaxationTime || m.method != kSpectrum) {
       continue;
     }
     floors.push_back(
-        {.delta = m.delta(), .bias = m.value(), .error = m.statistical_error(), .work = m.work()});
+        {.delta = m.delta, .bias = m.value, .error = m.statistical_error, .work = m.work});
     floors.back().crossing_work = CrossingWork(measurements, floors.back());
   }
   std::stable_sort(floors.begin(), floors.end(),

@@ -17,7 +17,7 @@
 #include <optional>
 #include <vector>
 
-#include "ballpiston/v1/method.pb.h"
+#include "client/figure/method_measurement.h"
 
 namespace ballpiston::client {
 
@@ -39,10 +39,10 @@ struct LimitFloor {
 };
 
 // By descending delta, each once; without those that have no spectrum.
-std::vector<LimitFloor> FloorsOf(const std::vector<v1::MethodMeasurement>& measurements);
+std::vector<LimitFloor> FloorsOf(const std::vector<MethodMeasurement>& measurements);
 
 // A run's statistical error without the truth's.
-double OwnError(const v1::MethodMeasurement& run, const LimitFloor& floor);
+double OwnError(const MethodMeasurement& run, const LimitFloor& floor);
 
 }  // namespace ballpiston::client
 

@@ -15,7 +15,7 @@ namespace ballpiston::client {
 namespace {
 
 constexpr char kConditionalTime[] = "mean_free_time_conditional";
-constexpr char kMeanFreeTime[] = "mean_free_time_ball_piston";
+constexpr char kMeanFreeTimeBallPiston[] = "mean_free_time_ball_piston";
 constexpr int kCurvePoints = 200;
 
 // The inset has few points, and its collisions are correlated: it can afford more of them.
@@ -81,8 +81,8 @@ absl::StatusOr<std::string> InsetCsv(const MeanFreeTimeAnswers& answers) {
       "rho,delta,collisions,mean_free_time_ball_piston,standard_error,exact,z_score,rate,"
       "rate_error\n";
   for (const v1::PointResult& point : answers.equilibrium) {
-    const v1::Estimate* time = Find(point, kMeanFreeTime);
-    if (time == nullptr) return Lacking(kMeanFreeTime);
+    const v1::Estimate* time = Find(point, kMeanFreeTimeBallPiston);
+    if (time == nullptr) return Lacking(kMeanFreeTimeBallPiston);
     const auto [rate, rate_error] = RateTexts(1, *time);
     absl::StrAppend(&csv,
                     Row({ExactText(point.parameters().rho()), ExactText(point.parameters().delta()),

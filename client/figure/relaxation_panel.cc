@@ -17,7 +17,6 @@
 namespace ballpiston::client {
 namespace {
 
-using v1::MethodMeasurement;
 using Measurements = std::vector<MethodMeasurement>;
 
 // Right of what takes the most work, as factors: the deltas stand there.
@@ -35,13 +34,12 @@ std::string ColourOf(size_t index, size_t count) {
   return kColours[index * (std::size(kColours) - 1) / (count - 1)];
 }
 
-Measurements RunsOf(const Measurements& measurements, MethodMeasurement::Method method,
-                    double delta) {
+Measurements RunsOf(const Measurements& measurements, absl::string_view method, double delta) {
   Measurements runs;
   std::copy_if(measurements.begin(), measurements.end(), std::back_inserter(runs),
                [&](const MethodMeasurement& m) {
-                 return m.quantity() == MethodMeasurement::RELAXATION_TIME &&
-                        m.method() == method && m.delta() == delta && m.samples() >= kFewestOrbits;
+                 return m.quantity == kRelaxationTime && m.method == method && m.delta == delta &&
+                        m.samples >= kFewestOrbits;
                });
   return runs;
 }
@@ -57,11 +55,11 @@ Extent ExtentOf(const Measurements& measurements, const std::vector<LimitFloor>&
     extent.work.Take(floor.work);
     extent.work.Take(floor.crossing_work.value_or(0));
     extent.error.Take(floor.Height());
-    for (const auto method : {MethodMeasurement::BILLIARD, MethodMeasurement::MARKOV}) {
+    for (const auto method : {kBilliard, kMarkov}) {
       for (const MethodMeasurement& m : RunsOf(measurements, method, floor.delta)) {
-        extent.work.Take(m.work());
+        extent.work.Take(m.work);
         extent.error.Take(OwnError(m, floor));
-        extent.error.high = std::max(extent.error.high, m.value());
+        extent.error.high = std::max(extent.error.high, m.value);
       }
     }
   }
@@ -73,7 +71,7 @@ Extent ExtentOf(const Measurements& measurements, const std::vector<LimitFloor>&
 std::string ChanceLine(const Measurements& runs, const LimitFloor& floor) {
   std::string line;
   for (const MethodMeasurement& m : runs) {
-    absl::StrAppend(&line, ExactText(floor.delta), ",", ExactText(m.work()), ",",
+    absl::StrAppend(&line, ExactText(floor.delta), ",", ExactText(m.work), ",",
                     ExactText(OwnError(m, floor)), "\n");
   }
   return line.empty() ? line : line + "\n";
@@ -82,15 +80,14 @@ std::string ChanceLine(const Measurements& runs, const LimitFloor& floor) {
 std::string ChanceLines(const Measurements& measurements, const std::vector<LimitFloor>& floors) {
   std::string lines = "delta,x,y\n";
   for (const LimitFloor& floor : floors) {
-    lines += ChanceLine(RunsOf(measurements, MethodMeasurement::BILLIARD, floor.delta), floor);
+    lines += ChanceLine(RunsOf(measurements, kBilliard, floor.delta), floor);
   }
   return lines;
 }
 
 // In units of the limit's own time a walk is the same at every delta: one line stands for all.
 std::string ChanceOfWalkers(const Measurements& measurements, const LimitFloor& floor) {
-  return "delta,x,y\n" +
-         ChanceLine(RunsOf(measurements, MethodMeasurement::MARKOV, floor.delta), floor);
+  return "delta,x,y\n" + ChanceLine(RunsOf(measurements, kMarkov, floor.delta), floor);
 }
 
 std::string FloorLines(const std::vector<LimitFloor>& floors, double end) {

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "ballpiston/v1/method.pb.h"
+#include "client/figure/method_measurement.h"
 
 namespace ballpiston::client {
 
 // The panel and its legend, as a part of the figure's gnuplot script: after its head, in a
 // multiplot. Empty if no relaxation time was measured.
-std::string RelaxationPanelScript(const std::vector<v1::MethodMeasurement>& measurements);
-std::string RelaxationLegendScript(const std::vector<v1::MethodMeasurement>& measurements);
+std::string RelaxationPanelScript(const std::vector<MethodMeasurement>& measurements);
+std::string RelaxationLegendScript(const std::vector<MethodMeasurement>& measurements);
 
 }  // namespace ballpiston::client
 

@@ -8,24 +8,21 @@
 #include "absl/strings/str_join.h"
 #include "client/figure/speed_accuracy_script.h"
 #include "client/output/number_text.h"
-#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 namespace {
 
-using v1::MethodMeasurement;
-
 std::string ResolvedText(const MethodMeasurement& measurement) {
-  if (measurement.quantity() == MethodMeasurement::TRAJECTORY) return "";
+  if (measurement.quantity == kTrajectory) return "";
   return IsBiasResolved(measurement) ? "1" : "0";
 }
 
 std::string Row(const MethodMeasurement& measurement) {
-  return absl::StrJoin({Spelling(measurement.method()), ExactText(measurement.time_step()),
-                        Spelling(measurement.quantity()), ExactText(measurement.delta()),
-                        absl::StrCat(measurement.samples()), absl::StrCat(measurement.wall_hits()),
-                        ExactText(measurement.work()), ExactText(measurement.value()),
-                        ExactText(measurement.statistical_error()), ResolvedText(measurement)},
+  return absl::StrJoin({measurement.method, ExactText(measurement.time_step), measurement.quantity,
+                        ExactText(measurement.delta), absl::StrCat(measurement.samples),
+                        absl::StrCat(measurement.wall_hits), ExactText(measurement.work),
+                        ExactText(measurement.value), ExactText(measurement.statistical_error),
+                        ResolvedText(measurement)},
                        ",");
 }
 
@@ -40,14 +37,13 @@ std::string Csv(const std::vector<MethodMeasurement>& measurements) {
 }
 
 absl::Status CheckEachPanelHasRuns(const std::vector<MethodMeasurement>& measurements) {
-  for (const auto quantity : {MethodMeasurement::MEAN_FREE_TIME, MethodMeasurement::INGOING_LAW,
-                              MethodMeasurement::TRAJECTORY}) {
+  for (const auto quantity : {kMeanFreeTime, kIngoingLaw, kTrajectory}) {
     const auto shows = [quantity](const auto& m) {
-      return m.quantity() == quantity && m.samples() >= kFewestDrawn;
+      return m.quantity == quantity && m.samples >= kFewestDrawn;
     };
     if (std::any_of(measurements.begin(), measurements.end(), shows)) continue;
     return absl::FailedPreconditionError(
-        absl::StrCat("no method has ", kFewestDrawn, " samples of ", Spelling(quantity),
+        absl::StrCat("no method has ", kFewestDrawn, " samples of ", quantity,
                      " in that time: nothing to draw; choose more --seconds, or a larger --delta"));
   }
   return absl::OkStatus();
@@ -55,21 +51,22 @@ absl::Status CheckEachPanelHasRuns(const std::vector<MethodMeasurement>& measure
 
 }  // namespace
 
-v1::CompareMethodsRequest ComparisonRequest(const SpeedAccuracyQuestion& question) {
-  v1::CompareMethodsRequest request;
-  request.set_rho(question.rho);
-  request.set_delta(question.delta);
-  request.set_epsilon(question.epsilon);
-  request.set_seconds_per_curve(question.seconds_per_curve);
-  request.set_seed(question.seed);
-  request.mutable_relaxation_delta()->Add(question.relaxation_deltas.begin(),
-                                          question.relaxation_deltas.end());
-  return request;
+std::vector<std::string> ComparisonFlags(const SpeedAccuracyQuestion& question) {
+  std::vector<std::string> flags = {
+      absl::StrCat("--rho=", ExactText(question.rho)),
+      absl::StrCat("--delta=", ExactText(question.delta)),
+      absl::StrCat("--epsilon=", ExactText(question.epsilon)),
+      absl::StrCat("--seconds=", ExactText(question.seconds_per_curve)),
+      absl::StrCat("--seed=", question.seed)};
+  for (const double delta : question.relaxation_deltas) {
+    flags.push_back(absl::StrCat("--relaxation-delta=", ExactText(delta)));
+  }
+  return flags;
 }
 
 bool IsBiasResolved(const MethodMeasurement& measurement) {
-  return measurement.quantity() != MethodMeasurement::TRAJECTORY &&
-         measurement.value() > kResolved * measurement.statistical_error();
+  return measurement.quantity != kTrajectory &&
+         measurement.value > kResolved * measurement.statistical_error;
 }
 
 absl::StatusOr<SpeedAccuracyFiles> MakeFiles(const SpeedAccuracyQuestion& question,

@@ -13,10 +13,10 @@
 // so chance may make a value negative: its size is drawn. What lies below the panel, 0 or the
 // closed form's rounding errors, is drawn at its lower edge. In d a line is the method's own
 // statistical error, without the truth's; a point is pale by both errors together. Without
-// relaxation times (at a rho that permits none of the server's delta) d is left out.
+// relaxation times (at a rho that permits none of the program's delta) d is left out.
 //
-// What is here knows the figure: how measurements become a table and a gnuplot script. Who asks the
-// server is command/figure_speed_accuracy.cc.
+// What is here knows the figure: how measurements become a table and a gnuplot script.
+// command/figure_speed_accuracy.cc has them made.
 #ifndef BALLPISTON_CLIENT_FIGURE_SPEED_ACCURACY_FIGURE_H_
 #define BALLPISTON_CLIENT_FIGURE_SPEED_ACCURACY_FIGURE_H_
 
@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "ballpiston/v1/method.pb.h"
+#include "client/figure/method_measurement.h"
 
 namespace ballpiston::client {
 
@@ -43,13 +43,14 @@ struct SpeedAccuracyQuestion {
   double epsilon = 0.125;
   double seconds_per_curve = 1;  // of each method's largest run, about
   uint64_t seed = 0;
-  std::vector<double> relaxation_deltas = {};  // of panel d; none: the server's
+  std::vector<double> relaxation_deltas = {};  // of panel d; none: the program's
 };
 
-v1::CompareMethodsRequest ComparisonRequest(const SpeedAccuracyQuestion& question);
+// Of the program that measures it.
+std::vector<std::string> ComparisonFlags(const SpeedAccuracyQuestion& question);
 
 // Whether its value is a bias. False for TRAJECTORY, whose value is no deviation.
-bool IsBiasResolved(const v1::MethodMeasurement& measurement);
+bool IsBiasResolved(const MethodMeasurement& measurement);
 
 // The figure as files' contents.
 struct SpeedAccuracyFiles {
@@ -58,8 +59,8 @@ struct SpeedAccuracyFiles {
 };
 
 // FAILED_PRECONDITION if a panel would be empty.
-absl::StatusOr<SpeedAccuracyFiles> MakeFiles(
-    const SpeedAccuracyQuestion& question, const std::vector<v1::MethodMeasurement>& measurements);
+absl::StatusOr<SpeedAccuracyFiles> MakeFiles(const SpeedAccuracyQuestion& question,
+                                             const std::vector<MethodMeasurement>& measurements);
 
 }  // namespace ballpiston::client
 

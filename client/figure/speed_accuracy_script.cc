@@ -13,12 +13,10 @@
 #include "client/figure/plot_marks.h"
 #include "client/figure/relaxation_panel.h"
 #include "client/output/number_text.h"
-#include "client/output/spelling.h"
 
 namespace ballpiston::client {
 namespace {
 
-using v1::MethodMeasurement;
 using Measurements = std::vector<MethodMeasurement>;
 
 constexpr double kHeadroom = 1.15;    // on a linear axis
@@ -34,36 +32,29 @@ struct Style {
   int marker;  // gnuplot's point type
 };
 
-Style StyleOf(MethodMeasurement::Method method) {
-  switch (method) {
-    case MethodMeasurement::FIXED_STEP:
-      return {"fixed time step Δt", "#d55e00", 2};
-    case MethodMeasurement::BILLIARD_REFERENCE_SINGLE:
-      return {"reference, single", "#e69f00", 8};
-    case MethodMeasurement::BILLIARD_REFERENCE:
-      return {"reference, double", "#009e73", 9};
-    case MethodMeasurement::BILLIARD_REFERENCE_LONG_DOUBLE:
-      return {"reference, 64 bits", "#cc79a7", 11};
-    case MethodMeasurement::BILLIARD_REFERENCE_QUADRUPLE:
-      return {"reference, 113 bits", "#777777", 13};
-    case MethodMeasurement::BILLIARD:
-      return {"vector lanes, double", "#0072b2", 7};
-    case MethodMeasurement::BILLIARD_SINGLE:
-      return {"vector lanes, single", "#56b4e9", 6};
-    case MethodMeasurement::CLOSED_FORM:
-      return {"closed form", "#000000", 5};
-    default:  // of a newer server
-      return {"another method", "#b0b0b0", 1};
+Style StyleOf(absl::string_view method) {
+  static const std::pair<absl::string_view, Style> kStyles[] = {
+      {"fixed-step", {"fixed time step Δt", "#d55e00", 2}},
+      {"billiard-reference-single", {"reference, single", "#e69f00", 8}},
+      {"billiard-reference", {"reference, double", "#009e73", 9}},
+      {"billiard-reference-long-double", {"reference, 64 bits", "#cc79a7", 11}},
+      {"billiard-reference-quadruple", {"reference, 113 bits", "#777777", 13}},
+      {kBilliard, {"vector lanes, double", "#0072b2", 7}},
+      {"billiard-single", {"vector lanes, single", "#56b4e9", 6}},
+      {kClosedForm, {"closed form", "#000000", 5}}};
+  for (const auto& [name, style] : kStyles) {
+    if (name == method) return style;
   }
+  return {"another method", "#b0b0b0", 1};  // of a newer program
 }
 
 // One method at one time step.
 struct Curve {
-  MethodMeasurement::Method method = MethodMeasurement::METHOD_UNSPECIFIED;
+  std::string method;
   double time_step = 0;
 
   bool Holds(const MethodMeasurement& m) const {
-    return m.method() == method && m.time_step() == time_step;
+    return m.method == method && m.time_step == time_step;
   }
 };
 
@@ -71,18 +62,18 @@ struct Curve {
 std::vector<Curve> CurvesOf(const Measurements& measurements) {
   std::vector<Curve> curves;
   for (const MethodMeasurement& m : measurements) {
-    if (m.quantity() == MethodMeasurement::RELAXATION_TIME) continue;
+    if (m.quantity == kRelaxationTime) continue;
     const bool known = std::any_of(curves.begin(), curves.end(),
                                    [&m](const Curve& curve) { return curve.Holds(m); });
-    if (!known) curves.push_back({m.method(), m.time_step()});
+    if (!known) curves.push_back({m.method, m.time_step});
   }
   return curves;
 }
 
-Measurements Of(const Measurements& measurements, MethodMeasurement::Quantity quantity) {
+Measurements Of(const Measurements& measurements, absl::string_view quantity) {
   Measurements some;
   std::copy_if(measurements.begin(), measurements.end(), std::back_inserter(some),
-               [quantity](const auto& m) { return m.quantity() == quantity; });
+               [quantity](const auto& m) { return m.quantity == quantity; });
   return some;
 }
 
@@ -97,7 +88,7 @@ Measurements Of(const Measurements& measurements, const Curve& curve) {
 Measurements Runs(const Measurements& measurements) {
   Measurements some;
   std::copy_if(measurements.begin(), measurements.end(), std::back_inserter(some),
-               [](const auto& m) { return m.samples() >= kFewestDrawn; });
+               [](const auto& m) { return m.samples >= kFewestDrawn; });
   return some;
 }
 
@@ -105,14 +96,14 @@ Measurements Runs(const Measurements& measurements) {
 // chance zero, or the closed form, is no reason for an axis of ten decades.
 Range ErrorRange(const Measurements& runs) {
   Range range;
-  for (const MethodMeasurement& m : runs) range.Take(m.statistical_error());
-  for (const MethodMeasurement& m : runs) range.high = std::max(range.high, std::abs(m.value()));
+  for (const MethodMeasurement& m : runs) range.Take(m.statistical_error);
+  for (const MethodMeasurement& m : runs) range.high = std::max(range.high, std::abs(m.value));
   return range;
 }
 
 Range WorkRange(const Measurements& measurements) {
   Range range;
-  for (const MethodMeasurement& m : measurements) range.Take(m.work());
+  for (const MethodMeasurement& m : measurements) range.Take(m.work);
   return range;
 }
 
@@ -130,12 +121,12 @@ std::string PowerText(double x) {
 // Where chance is smaller than the longest run's bias, from the first such run on: two points.
 std::string BiasLine(const Measurements& runs, size_t index) {
   if (runs.empty() || !IsBiasResolved(runs.back())) return "";
-  const double bias = runs.back().value();
+  const double bias = runs.back().value;
   const auto first = std::find_if(runs.begin(), runs.end(),
-                                  [bias](const auto& m) { return m.statistical_error() < bias; });
+                                  [bias](const auto& m) { return m.statistical_error < bias; });
   const std::string y = ExactText(bias);
-  return absl::StrFormat("%d,%s,%s\n%d,%s,%s\n\n", index, ExactText(first->work()), y, index,
-                         ExactText(runs.back().work() * kBiasLineEnd), y);
+  return absl::StrFormat("%d,%s,%s\n%d,%s,%s\n\n", index, ExactText(first->work), y, index,
+                         ExactText(runs.back().work * kBiasLineEnd), y);
 }
 
 std::string BiasLines(const Measurements& runs, const std::vector<Curve>& curves) {
@@ -153,8 +144,8 @@ std::string StepLabels(const Measurements& runs, const std::vector<Curve>& curve
     const Measurements of_curve = Of(runs, curve);
     if (curve.time_step == 0 || of_curve.empty()) continue;
     const MethodMeasurement& last = of_curve.back();
-    const double y = IsBiasResolved(last) ? last.value() : last.statistical_error();
-    labels.push_back({last.work() * kLabelAt, y, "Δt = " + PowerText(curve.time_step)});
+    const double y = IsBiasResolved(last) ? last.value : last.statistical_error;
+    labels.push_back({last.work * kLabelAt, y, "Δt = " + PowerText(curve.time_step)});
   }
   Spread(labels, error);
   return Text(labels);
@@ -164,7 +155,7 @@ std::string StepLabels(const Measurements& runs, const std::vector<Curve>& curve
 std::string ExactLabels(const Measurements& panel, double edge) {
   std::vector<Label> labels;
   for (const MethodMeasurement& m : panel) {
-    if (m.samples() == 0) labels.push_back({m.work(), edge, "≤ " + PowerText(m.value())});
+    if (m.samples == 0) labels.push_back({m.work, edge, "≤ " + PowerText(m.value)});
   }
   return Text(labels);
 }
@@ -309,7 +300,7 @@ std::string List(const std::vector<Curve>& curves, const char* separator, Text t
 }
 
 std::string Head(const SpeedAccuracyQuestion& question, const std::vector<Curve>& curves) {
-  const auto method = [](const Curve& curve) { return Spelling(curve.method); };
+  const auto method = [](const Curve& curve) { return curve.method; };
   const auto step = [](const Curve& curve) { return ExactText(curve.time_step); };
   const auto colour = [](const Curve& curve) { return StyleOf(curve.method).colour; };
   const auto marker = [](const Curve& curve) { return StyleOf(curve.method).marker; };
@@ -328,7 +319,7 @@ std::string Head(const SpeedAccuracyQuestion& question, const std::vector<Curve>
 
 struct ErrorPanel {
   const char* name;
-  MethodMeasurement::Quantity quantity;
+  const char* quantity;
   const char* title;
   const char* y;
   const char* left;  // of the picture's width
@@ -336,9 +327,9 @@ struct ErrorPanel {
 };
 
 constexpr ErrorPanel kErrorPanels[] = {
-    {"a", MethodMeasurement::MEAN_FREE_TIME, "mean free time", "relative error", "0.085", "0.485"},
-    {"b", MethodMeasurement::INGOING_LAW, "law of the ingoing angle", "Kullback-Leibler divergence",
-     "0.585", "0.985"}};
+    {"a", kMeanFreeTime, "mean free time", "relative error", "0.085", "0.485"},
+    {"b", kIngoingLaw, "law of the ingoing angle", "Kullback-Leibler divergence", "0.585",
+     "0.985"}};
 
 std::string ErrorPanelScript(const ErrorPanel& panel, const Measurements& measurements,
                              const std::vector<Curve>& curves) {
@@ -353,7 +344,7 @@ std::string ErrorPanelScript(const ErrorPanel& panel, const Measurements& measur
                                            {"$BIAS_LINES", BiasLines(runs, curves)},
                                            {"$STEP_LABELS", StepLabels(runs, curves, error)},
                                            {"$EXACT_LABELS", ExactLabels(all, edge)},
-                                           {"$QUANTITY", Spelling(panel.quantity)},
+                                           {"$QUANTITY", panel.quantity},
                                            {"$EDGE", ExactText(edge)},
                                            {"$TOP", ExactText(error.high * kAbove)},
                                            {"$FROM", ExactText(work.low * kBelow)},
@@ -365,24 +356,24 @@ std::string ErrorPanelScript(const ErrorPanel& panel, const Measurements& measur
 }
 
 double NanosecondsPerHit(const MethodMeasurement& m) {
-  return 1e9 * m.work() / static_cast<double>(m.wall_hits());
+  return 1e9 * m.work / static_cast<double>(m.wall_hits);
 }
 
 // Of each curve the longest run.
 std::string TrajectoryPanelScript(const Measurements& measurements,
                                   const std::vector<Curve>& curves) {
-  const Measurements panel = Of(measurements, MethodMeasurement::TRAJECTORY);
+  const Measurements panel = Of(measurements, kTrajectory);
   Range cost, hits;
   std::vector<Label> labels;
   std::string orbits = "curve,x,y,error\n";
   for (size_t i = 0; i < curves.size(); ++i) {
     const Measurements runs = Of(panel, curves[i]);
     if (runs.empty()) continue;
-    const double x = NanosecondsPerHit(runs.back()), y = runs.back().value();
+    const double x = NanosecondsPerHit(runs.back()), y = runs.back().value;
     cost.Take(x);
     hits.Take(y);
     absl::StrAppend(&orbits, i + 1, ",", ExactText(x), ",", ExactText(y), ",",
-                    ExactText(runs.back().statistical_error()), "\n");
+                    ExactText(runs.back().statistical_error), "\n");
     if (curves[i].time_step == 0) continue;
     labels.push_back({x, y, (labels.empty() ? "Δt = " : "") + PowerText(curves[i].time_step)});
   }
@@ -397,12 +388,12 @@ std::string TrajectoryPanelScript(const Measurements& measurements,
 
 std::string Legend(const SpeedAccuracyQuestion& question, const std::vector<Curve>& curves) {
   std::vector<std::string> entries;
-  std::vector<MethodMeasurement::Method> seen;
+  std::vector<std::string> seen;
   for (const Curve& curve : curves) {
     if (std::find(seen.begin(), seen.end(), curve.method) != seen.end()) continue;
     seen.push_back(curve.method);
     const Style style = StyleOf(curve.method);
-    const char* with = curve.method == MethodMeasurement::CLOSED_FORM ? "points" : "linespoints";
+    const char* with = curve.method == kClosedForm ? "points" : "linespoints";
     entries.push_back(absl::StrFormat("NaN with %s pt %d ps 1 lw 1.5 lc rgb \"%s\" title \"%s\"",
                                       with, style.marker, style.colour, style.title));
   }

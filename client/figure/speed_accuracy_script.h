@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "ballpiston/v1/method.pb.h"
+#include "client/figure/method_measurement.h"
 #include "client/figure/speed_accuracy_figure.h"
 
 namespace ballpiston::client {
 
 std::string SpeedAccuracyScript(const SpeedAccuracyQuestion& question,
-                                const std::vector<v1::MethodMeasurement>& measurements);
+                                const std::vector<MethodMeasurement>& measurements);
 
 }  // namespace ballpiston::client
 

@@ -20,8 +20,7 @@ constexpr char kServiceConfig[] = R"({"methodConfig": [
                    "backoffMultiplier": 2, "retryableStatusCodes": ["UNAVAILABLE", "CANCELLED"]}},
   {"name": [
     {"service": "ballpiston.v1.EnsembleService", "method": "WatchEnsembleJob"},
-    {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"},
-    {"service": "ballpiston.v1.MethodService", "method": "CompareMethods"}]}
+    {"service": "ballpiston.v1.EnsembleService", "method": "DeleteEnsembleJob"}]}
 ]})";
 
 grpc::ChannelArguments Arguments() {

@@ -1,8 +1,7 @@
 // Channels to a server, set up the way a long watch needs them.
 //
 // Calls that are safe to repeat (all but Delete; Create and Cancel carry a request id) are retried
-// for about a second while the server is unreachable. Watches are not: JobWatch does it itself; nor
-// is a comparison of methods, whose first attempt may still be running.
+// for about a second while the server is unreachable. Watches are not: JobWatch does it itself.
 #ifndef BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
 #define BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
 

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -23,6 +25,9 @@ class FileActions {
       posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, child.output.c_str(),
                                        O_WRONLY | O_CREAT | O_APPEND, 0600);
       posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    }
+    if (child.standard_output >= 0) {
+      posix_spawn_file_actions_adddup2(&actions_, child.standard_output, STDOUT_FILENO);
     }
     if (!child.folder.empty()) {
       posix_spawn_file_actions_addchdir_np(&actions_, child.folder.c_str());
@@ -75,6 +80,11 @@ int Decode(int status) {
 
 }  // namespace
 
+std::string ProgramBeside(const std::string& name) {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).replace_filename(name);
+}
+
 absl::StatusOr<pid_t> StartChild(const ChildProcess& child) {
   const FileActions actions(child);
   const Attributes attributes(child);
@@ -91,14 +101,17 @@ std::optional<int> ExitStatus(pid_t pid) {
   return Decode(status);
 }
 
-absl::StatusOr<int> RunChild(const ChildProcess& child) {
-  absl::StatusOr<pid_t> pid = StartChild(child);
-  if (!pid.ok()) return pid.status();
+absl::StatusOr<int> WaitForChild(pid_t pid) {
   int status = 0;
-  while (waitpid(*pid, &status, 0) < 0) {
+  while (waitpid(pid, &status, 0) < 0) {
     if (errno != EINTR) return absl::ErrnoToStatus(errno, "waiting for a child process");
   }
   return Decode(status);
+}
+
+absl::StatusOr<int> RunChild(const ChildProcess& child) {
+  const absl::StatusOr<pid_t> pid = StartChild(child);
+  return pid.ok() ? WaitForChild(*pid) : pid.status();
 }
 
 }  // namespace ballpiston::client

@@ -1,4 +1,4 @@
-// Starting other programs: the private server, gnuplot.
+// Starting other programs: the private server, the comparison of methods, gnuplot.
 //
 // A child starts with no signal blocked or ignored and with no file open but the standard three,
 // whatever this program has set up for itself.
@@ -20,7 +20,11 @@ struct ChildProcess {
   std::string folder;                // to run in; empty: this program's
   std::string output;     // file that standard output and error are appended to; empty: inherited
   bool detached = false;  // in a session of its own, so that Ctrl-C here does not reach it
+  int standard_output = -1;  // an open file, as of a pipe; -1: as `output` says
 };
+
+// The path of a program in the folder of this one, whether it is there or not.
+std::string ProgramBeside(const std::string& name);
 
 // NOT_FOUND if there is no such program.
 absl::StatusOr<pid_t> StartChild(const ChildProcess& child);
@@ -28,7 +32,10 @@ absl::StatusOr<pid_t> StartChild(const ChildProcess& child);
 // Empty while it runs; afterwards, once, its exit status (128 + signal if one killed it).
 std::optional<int> ExitStatus(pid_t pid);
 
-// Starts, waits, returns the exit status.
+// Waits for its end; its exit status likewise.
+absl::StatusOr<int> WaitForChild(pid_t pid);
+
+// Starts it and waits.
 absl::StatusOr<int> RunChild(const ChildProcess& child);
 
 }  // namespace ballpiston::client

@@ -120,8 +120,8 @@ std::string Program() {
     const bool is_path = absl::string_view(chosen).find('/') != absl::string_view::npos;
     return is_path ? fs::absolute(chosen, error).string() : chosen;
   }
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).replace_filename(kProgramName);
-  return access(beside.c_str(), X_OK) == 0 ? beside.string() : kProgramName;
+  const std::string beside = ProgramBeside(kProgramName);
+  return access(beside.c_str(), X_OK) == 0 ? beside : kProgramName;
 }
 
 // Whether somebody answers; false as soon as a connection is refused.

@@ -14,14 +14,15 @@ namespace {
 
 using Pair = v1::PairAnalytics;
 using Energy = v1::EnergyAnalytics;
+using Canonical = v1::CanonicalAnalytics;
 
 struct PairColumn {
   const char* name;
   double (Pair::*value)() const;
 };
 
-// The reference table's columns in its order; the last three are printed after the energies' in
-// CSV, so that what both tables have comes first.
+// The reference table's columns in its order; the bounds are printed after the energies' in CSV, so
+// that what both tables have comes first.
 constexpr PairColumn kPairColumns[] = {{"rho", &Pair::rho},
                                        {"delta", &Pair::delta},
                                        {"lambda", &Pair::lambda},
@@ -51,25 +52,40 @@ constexpr EnergyColumn kEnergyColumns[] = {
     {"h", &Energy::h},
     {"mean_free_time_conditional", &Energy::mean_free_time_conditional}};
 
+struct CanonicalColumn {
+  const char* name;
+  double (Canonical::*value)() const;
+};
+
+constexpr CanonicalColumn kCanonicalColumns[] = {
+    {"beta", &Canonical::beta},
+    {"temperature", &Canonical::temperature},
+    {"mean_f", &Canonical::mean_f},
+    {"mean_energy_current", &Canonical::mean_energy_current},
+    {"mean_h", &Canonical::mean_h},
+    {"exchange_rate", &Canonical::exchange_rate},
+    {"static_conductivity", &Canonical::static_conductivity},
+    {"rare_limit_exchange_rate", &Canonical::rare_limit_exchange_rate}};
+
 template <typename Columns>
 void AppendNames(const Columns& columns, std::vector<std::string>& cells) {
   for (const auto& column : columns) cells.push_back(column.name);
 }
 
+// Without a message the cells stay empty.
 template <typename Columns, typename Message>
-void AppendValues(const Columns& columns, const Message& message, std::vector<std::string>& cells) {
-  for (const auto& column : columns) cells.push_back(ExactText((message.*column.value)()));
+void AppendValues(const Columns& columns, const Message* message, std::vector<std::string>& cells) {
+  for (const auto& column : columns) {
+    cells.push_back(message == nullptr ? "" : ExactText((message->*column.value)()));
+  }
 }
 
-std::string CsvRow(const Pair& pair, const Energy* energy) {
+std::string CsvRow(const Pair& pair, const Energy* energy, const Canonical* canonical) {
   std::vector<std::string> cells;
-  AppendValues(kPairColumns, pair, cells);
-  if (energy != nullptr) {
-    AppendValues(kEnergyColumns, *energy, cells);
-  } else {
-    cells.resize(cells.size() + std::size(kEnergyColumns));
-  }
-  AppendValues(kBoundColumns, pair, cells);
+  AppendValues(kPairColumns, &pair, cells);
+  AppendValues(kEnergyColumns, energy, cells);
+  AppendValues(kBoundColumns, &pair, cells);
+  AppendValues(kCanonicalColumns, canonical, cells);
   return absl::StrCat(absl::StrJoin(cells, ","), "\n");
 }
 
@@ -78,10 +94,12 @@ void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
   AppendNames(kPairColumns, names);
   AppendNames(kEnergyColumns, names);
   AppendNames(kBoundColumns, names);
+  AppendNames(kCanonicalColumns, names);
   out << absl::StrJoin(names, ",") << '\n';
   for (const Pair& pair : response.points()) {
-    if (pair.energies().empty()) out << CsvRow(pair, nullptr);
-    for (const Energy& energy : pair.energies()) out << CsvRow(pair, &energy);
+    if (pair.energies().empty() && pair.canonical().empty()) out << CsvRow(pair, nullptr, nullptr);
+    for (const Energy& energy : pair.energies()) out << CsvRow(pair, &energy, nullptr);
+    for (const Canonical& row : pair.canonical()) out << CsvRow(pair, nullptr, &row);
   }
 }
 
@@ -97,16 +115,20 @@ void PrintQuantities(const Pair& pair, std::ostream& out) {
   table.Print(out);
 }
 
+template <typename Columns, typename Message>
+std::vector<std::string> TableCells(const Columns& columns, const Message& message) {
+  std::vector<std::string> cells;
+  for (const auto& column : columns) cells.push_back(TableCell((message.*column.value)()));
+  return cells;
+}
+
 void PrintEnergies(const Pair& pair, const std::vector<double>& outgoing, std::ostream& out) {
   std::vector<TextTable::Column> columns;
   for (const EnergyColumn& column : kEnergyColumns) columns.push_back({column.name});
   for (const double energy : outgoing) columns.push_back({absl::StrFormat("W(%g)", energy)});
   TextTable table(columns);
   for (const Energy& energy : pair.energies()) {
-    std::vector<std::string> cells;
-    for (const EnergyColumn& column : kEnergyColumns) {
-      cells.push_back(TableCell((energy.*column.value)()));
-    }
+    std::vector<std::string> cells = TableCells(kEnergyColumns, energy);
     for (const double w : energy.kernel()) cells.push_back(TableCell(w));
     table.AddRow(std::move(cells));
   }
@@ -115,11 +137,10 @@ void PrintEnergies(const Pair& pair, const std::vector<double>& outgoing, std::o
 }
 
 void PrintCanonical(const Pair& pair, std::ostream& out) {
-  TextTable table({{"beta"}, {"mean_f"}, {"mean_energy_current"}, {"mean_h"}});
-  for (const v1::CanonicalAnalytics& row : pair.canonical()) {
-    table.AddRow({TableCell(row.beta()), TableCell(row.mean_f()),
-                  TableCell(row.mean_energy_current()), TableCell(row.mean_h())});
-  }
+  std::vector<TextTable::Column> columns;
+  for (const CanonicalColumn& column : kCanonicalColumns) columns.push_back({column.name});
+  TextTable table(columns);
+  for (const Canonical& row : pair.canonical()) table.AddRow(TableCells(kCanonicalColumns, row));
   out << '\n';
   table.Print(out, 2);
 }

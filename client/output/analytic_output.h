@@ -1,9 +1,11 @@
 // Prints the closed forms.
 //
-//   table   for each (rho, delta) its quantities, then a row for each epsilon and each beta
+//   table   for each (rho, delta) its quantities, then a row for each epsilon and for each beta and
+//           temperature
 //   json    {"points": [PairAnalytics, ...]};   jsonl: one of them a line
-//   csv     one row for each pair and epsilon (one row if there is no epsilon), columns named as in
-//           the proto; the kernel and the canonical averages are in the other formats only
+//   csv     for each pair one row for each epsilon, then one for each beta and temperature (one row
+//           if there is none of them), columns named as in the proto, cells empty where a row has
+//           no such value; the kernel is in the other formats only
 //
 // All numbers read back as the same double, but in the table: 15 significant digits.
 #ifndef BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_

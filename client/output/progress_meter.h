@@ -1,7 +1,7 @@
 // How fast a job advances and how long it still takes, from the snapshots seen so far.
 //
-// Rates are means since the first snapshot of this watch: a job that ran before, or whose unsaved
-// blocks were lost with a server, does not distort them. Time is passed in.
+// Rates are means since the first snapshot of this watch: a job that ran before, or lost the work
+// since its last checkpoints with a server, does not distort them. Time is passed in.
 #ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
 #define BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
 

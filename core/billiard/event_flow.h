@@ -1,6 +1,6 @@
 // The billiard flow of a ball-piston pair, every event resolved, one at a time, in numbers of any
 // precision. In double it is ReferenceFlow (reference_flow.h), the yardstick for every faster
-// engine; the other instances are in precise_flow.h. A further one needs event_flow-inl.h.
+// engine; a further one needs event_flow-inl.h: tools/flows/precise_flow.h has some.
 //
 // The ball flies straight between the four arcs, the piston between its two walls; when they meet
 // they exchange horizontal velocity components. What keeps it stable:

@@ -69,6 +69,10 @@ struct FlightConstants {
 // K vectors of balls on walls.
 template <class D, size_t K>
 struct Balls {
+  // Written down for HWY_INLINE: GCC compiles an implicit constructor for no instruction set, and
+  // cannot inline the constructors of NEON's vectors into it.
+  HWY_INLINE Balls() = default;
+
   hn::Vec<D> h[K], e[K], c[K], s[K];
   hn::Vec<D> a[K], b[K], m[K];
 };

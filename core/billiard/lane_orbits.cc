@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -24,51 +25,60 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Vectors fly in two groups. While one flies, the flights that the other has just made have come to
-// their ends, so asking which of them are to be looked at breaks no chain of operations: a branch
-// mispredicted on the newest flight would throw away all those begun behind it.
+// The vectors form two groups, which fly in turn. While one group flies, the engine tests the
+// flights that the other group has finished. So the branch of the test depends on finished results
+// only. A mispredicted branch on the newest flights would discard all operations begun after it.
 constexpr size_t kGroups = 2;
 constexpr size_t kVectorsInGroup = 2;
 constexpr size_t kVectors = kGroups * kVectorsInGroup;
-constexpr int kStepsBetweenLooks = 4096;  // at `stop`
+constexpr int kStepsBetweenLooks = 4096;  // between two calls of Pause; about 0.2 ms
 
-// What of an orbit is not in the lanes: its sums up to where the lane's own begin.
+// The part of an orbit's state that is not in its lane: the sums up to where the lane's sums begin.
 struct LaneOrbit {
   uint64_t orbit = 0;
   double ball_speed = 1;
   double piston_speed = 0;
-  Contact sums;            // without `state`
+  Contact sums;            // `state` is set only while the orbit is in contact
   double path = 0;         // the ball's since it entered the lanes, less what is in its lane
   double entry_phase = 0;  // the piston's, then
   uint64_t entry_step = 0;
 };
 
+// An orbit that is not in the lanes: before its first wall, or around a collision.
+struct OrbitOutside {
+  OrbitOutside(const LaneOrbit& orbit_outside, const PairGeometry& geometry, const PairState& state)
+      : orbit(orbit_outside), flow(geometry, state) {}
+
+  LaneOrbit orbit;
+  ReferenceFlow flow;
+};
+
 template <typename T>
-class LaneOrbits {
+class LaneOrbits : public OrbitRun {
  public:
-  LaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-             const std::stop_token& stop)
+  LaneOrbits(const PairGeometry& geometry, OrbitSource& source)
       : geometry_(geometry),
         wave_(geometry),
         constants_(geometry, wave_),
-        orbits_(orbits),
         source_(source),
-        stop_(stop),
         limit_(source.TimeLimit()),
         lanes_(Width() * kVectors),
         memory_(hwy::AllocateAligned<T>(lanes_ * kArrays)),
         orbit_(lanes_) {
     std::fill(memory_.get(), memory_.get() + lanes_ * kArrays, T(0));
+    outside_.reserve(lanes_);
+    for (size_t lane = 0; lane < lanes_; ++lane) Park(lane);
+    ListIdleLanes();
   }
 
-  bool Run() {
-    for (size_t lane = 0; lane < lanes_; ++lane) Begin(lane);
-    while (running_ > 0 && !stopped_) {
+  bool Advance() override {
+    do {
+      ResumeOutside();
       for (int i = 0; i < kStepsBetweenLooks && running_ > 0; ++i) Step();
-      LookAtStop();
       if (limit_ < std::numeric_limits<double>::infinity()) LookAtLimits();
-    }
-    return !stopped_;
+      if (IsDone()) return true;
+    } while (!source_.Pause());
+    return false;
   }
 
  private:
@@ -79,10 +89,10 @@ class LaneOrbits {
   static size_t Width() { return hn::Lanes(D()); }
   static size_t LanesInGroup() { return Width() * K; }
 
-  // One value a lane. What a flight changes is kept twice, before and after, and the two change
-  // places with every step. kX: the ball's distance from where the piston can reach it. kPhase: the
-  // piston's, in periods. kPath: the ball's, since it was last taken out. kRatio: periods of the
-  // piston in a unit of path.
+  // One value a lane. The values that a flight changes are stored twice, before and after the
+  // flight; the two arrays swap at every step. kX: the ball's distance from where the piston can
+  // reach it. kPhase: the piston's phase, in periods. kPath: the ball's path since it was last
+  // taken out. kRatio: periods of the piston in a unit of path.
   enum Array {
     kH,
     kE,
@@ -99,7 +109,7 @@ class LaneOrbits {
     kArrays
   };
 
-  // Rounding in the lanes must not hide a contact; what is looked at in vain costs little.
+  // Rounding in the lanes must not hide a contact; a false alarm costs little.
   static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
   // Single precision sums short paths only.
   static constexpr T kLongestPath = T(256);
@@ -107,6 +117,8 @@ class LaneOrbits {
   // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. The same comparison
   // finds contacts and escapes, so this value has to be small compared with kSlack.
   static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
+
+  static constexpr int kMostRounds = 256;  // of contacts, some 1 ms
 
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
@@ -144,6 +156,10 @@ class LaneOrbits {
   // Before and after the lane's last flight.
   T& After(Array array, size_t lane) { return *At(array + Newest(GroupOf(lane)), lane); }
   T& Before(Array array, size_t lane) { return *At(array + kFlying - Newest(GroupOf(lane)), lane); }
+
+  bool IsDone() const {
+    return source_is_empty_ && running_ == 0 && outside_.empty() && slow_.empty();
+  }
 
   void Step() {
     FlyGroup(0);
@@ -198,10 +214,10 @@ class LaneOrbits {
     if constexpr (sizeof(T) == 4) FlagLongPaths(path, flags);
   }
 
-  // `flags` tells the lanes to look at: ball and piston met, or may have, or the ball has left the
-  // cell. The distance between them
-  // is a concave function of time but where the piston turns at its left wall: so they met if the
-  // ball ends beyond the piston, and perhaps if the piston turned while the ball was in its reach.
+  // `flags` marks the lanes to look at: ball and piston met, or may have met, or the ball has left
+  // the cell. The distance between ball and piston is a concave function of time, except where the
+  // piston turns at its left wall. So they met if the ball ends beyond the piston, and may have met
+  // if the piston turned while the ball was in its reach.
   static HWY_INLINE void MovePistons(const Constants& k, const T* from, T* to, const T* ratios,
                                      const V (&length)[K], const V (&missed)[K], const V (&x)[K],
                                      uint64_t& flags) {
@@ -230,9 +246,15 @@ class LaneOrbits {
 
   void LookAtGroup(size_t group) {
     if (HWY_LIKELY(flags_[group] == 0)) return;
+    LookAtFlagged(group);
+  }
+
+  // Not inlined, so that the loop of flights stays small.
+  HWY_NOINLINE void LookAtFlagged(size_t group) {
     for (uint64_t bits = std::exchange(flags_[group], 0); bits != 0; bits &= bits - 1) {
       LookAt(group * LanesInGroup() + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
     }
+    FlyOutside();
   }
 
   // At the lane's last flight.
@@ -249,12 +271,8 @@ class LaneOrbits {
   }
 
   void Escape(size_t lane) {
-    LaneOrbit& orbit = orbit_[lane];
-    if (orbit.orbit == kNoOrbit) return Park(lane);
-    orbit.sums.escaped = true;
-    source_.Meet(orbit.orbit, orbit.sums);
-    --running_;
-    Begin(lane);
+    orbit_[lane].sums.escaped = true;
+    EndInLane(lane);
   }
 
   bool MeetOnTheWay(size_t lane) {
@@ -283,74 +301,126 @@ class LaneOrbits {
         Scaled({Before(kH, lane), Before(kE, lane), Before(kC, lane), Before(kS, lane),
                 Before(kA, lane), Before(kB, lane), Before(kM, lane)},
                1 / constants_.flight.scale);
-    if (FlyToWall(lane, {.position = PositionInCell(frame),
-                         .direction = DirectionInCell(frame),
-                         .ball_speed = orbit.ball_speed,
-                         .piston = wave_.Position(phase),
-                         .piston_velocity = wave_.Velocity(phase, orbit.piston_speed)})) {
-      return;
-    }
+    const PairState state = {.position = PositionInCell(frame),
+                             .direction = DirectionInCell(frame),
+                             .ball_speed = orbit.ball_speed,
+                             .piston = wave_.Position(phase),
+                             .piston_velocity = wave_.Velocity(phase, orbit.piston_speed)};
+    outside_.emplace_back(orbit, geometry_, state);
+    Empty(lane);
+  }
+
+  void Empty(size_t lane) {
+    orbit_[lane].orbit = kNoOrbit;
+    idle_.push_back(lane);
     --running_;
-    Begin(lane);
   }
 
-  void LookAtStop() { stopped_ = stopped_ || stop_.stop_requested(); }
+  // ---- orbits outside of the lanes ----
 
-  // Between steps.
-  void LookAtLimits() {
-    LookAtGroup(1);
-    for (size_t lane = 0; lane < groups_ * LanesInGroup() && !stopped_; ++lane) {
-      if (orbit_[lane].orbit != kNoOrbit && Elapsed(lane) > limit_) Expire(lane);
+  // Called between steps: advances slow orbits and starts new ones.
+  void ResumeOutside() {
+    outside_.insert(outside_.end(), slow_.begin(), slow_.end());
+    slow_.clear();
+    source_is_empty_ = false;
+    StartNew();
+    FlyOutside();
+  }
+
+  // Advances each orbit event by event, through any collisions, until it is on a wall or has taken
+  // too long. A ball at rest never reaches a wall, so the number of rounds between two calls of
+  // Pause has a limit.
+  void FlyOutside() {
+    for (int round = 0; !outside_.empty() && round < kMostRounds; ++round) {
+      FlyToContacts();
+      if (!meetings_.empty()) source_.Meet(meetings_);
+      Depart();
+      StartNew();
     }
+    for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 
-  double Elapsed(size_t lane) {
-    const LaneOrbit& orbit = orbit_[lane];
-    const double path = orbit.path + static_cast<double>(After(kPath, lane));
-    return orbit.sums.time + path / constants_.flight.scale / orbit.ball_speed;
+  // Afterwards all orbits outside are in contact; `meetings_` has their contacts in the same order.
+  void FlyToContacts() {
+    meetings_.clear();
+    size_t in_contact = 0;
+    for (OrbitOutside& outside : outside_) {
+      switch (FlyToContact(outside)) {
+        case Flight::kOnWall:
+          Enter(outside);
+          break;
+        case Flight::kInContact:
+          meetings_.push_back({outside.orbit.orbit, outside.orbit.sums});
+          if (&outside_[in_contact] != &outside) outside_[in_contact] = outside;
+          ++in_contact;
+          break;
+        case Flight::kSlow:
+          slow_.push_back(outside);
+          break;
+      }
+    }
+    outside_.erase(outside_.begin() + static_cast<std::ptrdiff_t>(in_contact), outside_.end());
   }
 
-  void Expire(size_t lane) {
-    orbit_[lane].sums.time = Elapsed(lane);
-    TellExpired(orbit_[lane]);
-    --running_;
-    Begin(lane);
-  }
+  enum class Flight { kOnWall, kInContact, kSlow };
 
-  void TellExpired(LaneOrbit& orbit) {
-    orbit.sums.expired = true;
-    source_.Meet(orbit.orbit, orbit.sums);
-  }
-
-  // Event by event until the ball is on a wall, through what collisions there are. False if the
-  // orbit came to its end, or to a stop: the piston may turn long before a slow ball is anywhere.
-  bool FlyToWall(size_t lane, const PairState& state) {
-    ReferenceFlow flow(geometry_, state);
-    Contact& sums = orbit_[lane].sums;
-    for (int events = 1;; ++events) {
-      if (events % kStepsBetweenLooks == 0) LookAtStop();
-      if (stopped_) return false;
-      const Event event = flow.Step();
+  // The piston may turn many times before a slow ball reaches anything.
+  Flight FlyToContact(OrbitOutside& outside) {
+    Contact& sums = outside.orbit.sums;
+    for (int events = 0; events < kStepsBetweenLooks; ++events) {
+      const Event event = outside.flow.Step();
       sums.Add(event);
-      if (event.kind == EventKind::kBallWall) {
-        Enter(lane, flow.state());
-        return true;
-      }
-      if (event.kind == EventKind::kPistonWall) {
-        if (!(sums.time > limit_)) continue;
-        TellExpired(orbit_[lane]);
-        return false;
-      }
+      if (event.kind == EventKind::kBallWall) return Flight::kOnWall;
       sums.expired = sums.time > limit_;
-      sums.state = flow.state();
-      const bool has_ended = sums.escaped || sums.expired;
-      if (source_.Meet(orbit_[lane].orbit, sums) == AfterContact::kEnd || has_ended) return false;
-      flow.ExchangeComponents();
-      sums = {};
+      if (event.kind == EventKind::kPistonWall && !sums.expired) continue;
+      sums.state = outside.flow.state();
+      return Flight::kInContact;
+    }
+    return Flight::kSlow;
+  }
+
+  // Each orbit in contact continues or ends.
+  void Depart() {
+    size_t going_on = 0;
+    for (size_t i = 0; i < outside_.size(); ++i) {
+      const Contact& contact = outside_[i].orbit.sums;
+      if (meetings_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) continue;
+      if (going_on != i) outside_[going_on] = outside_[i];
+      outside_[going_on].flow.ExchangeComponents();
+      outside_[going_on].orbit.sums = {};
+      ++going_on;
+    }
+    outside_.erase(outside_.begin() + static_cast<std::ptrdiff_t>(going_on), outside_.end());
+  }
+
+  void StartNew() {
+    const size_t room = lanes_ - running_ - outside_.size() - slow_.size();
+    if (source_is_empty_ || room == 0) return;
+    starts_.resize(room);
+    const size_t started = source_.Start(starts_);
+    source_is_empty_ = started < room;
+    for (size_t i = 0; i < started; ++i) {
+      LaneOrbit orbit;
+      orbit.orbit = starts_[i].orbit;
+      outside_.emplace_back(orbit, geometry_, starts_[i].state);
     }
   }
 
-  void Enter(size_t lane, const PairState& state) {
+  // ---- between outside and the lanes ----
+
+  void Enter(const OrbitOutside& outside) {
+    const size_t lane = idle_.back();
+    idle_.pop_back();
+    parked_ = std::min(parked_, idle_.size());
+    ++running_;
+    if (GroupOf(lane) >= groups_) groups_ = kGroups;
+    orbit_[lane] = outside.orbit;
+    // The lane's last flight belongs to another orbit.
+    flags_[GroupOf(lane)] &= ~(uint64_t{1} << (lane % LanesInGroup()));
+    Place(lane, outside.flow.state());
+  }
+
+  void Place(size_t lane, const PairState& state) {
     LaneOrbit& orbit = orbit_[lane];
     orbit.ball_speed = state.ball_speed;
     orbit.piston_speed = std::fabs(state.piston_velocity);
@@ -368,46 +438,82 @@ class LaneOrbits {
     *At(kRatio, lane) = static_cast<T>(orbit.piston_speed / orbit.ball_speed / (scale * period));
   }
 
-  // The next orbit that comes as far as a wall.
-  void Begin(size_t lane) {
-    while (next_ < orbits_ && !stopped_) {
-      orbit_[lane] = LaneOrbit();
-      orbit_[lane].orbit = next_++;
-      if (FlyToWall(lane, source_.Start(orbit_[lane].orbit))) {
-        ++running_;
-        return;
-      }
-    }
-    Park(lane);
-  }
-
   // A lane without an orbit flies between two discs; its piston stands at the right wall.
   void Park(size_t lane) {
     const double x = 0.5 - geometry_.rho() * M_SQRT1_2;
     orbit_[lane] = LaneOrbit();
     orbit_[lane].orbit = kNoOrbit;
-    Enter(lane, {.position = {x, x},
+    Place(lane, {.position = {x, x},
                  .direction = {-M_SQRT1_2, -M_SQRT1_2},
                  .ball_speed = 1,
                  .piston = geometry_.piston_right()});
   }
 
-  // Brings the orbits that are left into the first group. Between steps: both have made as many.
-  void Compact() {
+  // ---- time limits ----
+
+  // Between steps.
+  void LookAtLimits() {
     LookAtGroup(1);
-    groups_ = (running_ + LanesInGroup() - 1) / LanesInGroup();
-    size_t from = groups_ * LanesInGroup();
-    for (size_t to = 0; to < groups_ * LanesInGroup(); ++to) {
-      if (orbit_[to].orbit != kNoOrbit) continue;
-      while (from < lanes_ && orbit_[from].orbit == kNoOrbit) ++from;
-      if (from == lanes_) return;
-      Move(from, to);
+    for (size_t lane = 0; lane < groups_ * LanesInGroup(); ++lane) {
+      if (orbit_[lane].orbit != kNoOrbit && Elapsed(lane) > limit_) Expire(lane);
     }
   }
 
+  double Elapsed(size_t lane) {
+    const LaneOrbit& orbit = orbit_[lane];
+    const double path = orbit.path + static_cast<double>(After(kPath, lane));
+    return orbit.sums.time + path / constants_.flight.scale / orbit.ball_speed;
+  }
+
+  void Expire(size_t lane) {
+    orbit_[lane].sums.time = Elapsed(lane);
+    orbit_[lane].sums.expired = true;
+    EndInLane(lane);
+  }
+
+  void EndInLane(size_t lane) {
+    if (orbit_[lane].orbit == kNoOrbit) return Park(lane);
+    Meeting end = {orbit_[lane].orbit, orbit_[lane].sums};
+    Empty(lane);
+    source_.Meet({&end, 1});
+  }
+
+  // ---- the last orbits ----
+
+  // Brings the orbits that are left into the first group. Between steps.
+  void Compact() {
+    LookAtGroup(1);
+    if (running_ > LanesInGroup()) return;
+    groups_ = 1;
+    size_t from = LanesInGroup();
+    for (size_t to = 0; to < LanesInGroup(); ++to) {
+      if (orbit_[to].orbit != kNoOrbit) continue;
+      while (from < lanes_ && orbit_[from].orbit == kNoOrbit) ++from;
+      if (from == lanes_) break;
+      Move(from, to);
+    }
+    ListIdleLanes();
+  }
+
+  // The groups need not have made as many steps: the first one flew alone before.
   void Move(size_t from, size_t to) {
     std::swap(orbit_[from], orbit_[to]);
-    for (size_t array = 0; array < kArrays; ++array) std::swap(*At(array, from), *At(array, to));
+    orbit_[to].entry_step += step_[GroupOf(to)] - step_[GroupOf(from)];
+    for (size_t i = 0; i < kFlying; ++i) {
+      const auto array = static_cast<Array>(i);
+      std::swap(After(array, from), After(array, to));
+      std::swap(Before(array, from), Before(array, to));
+    }
+    std::swap(*At(kRatio, from), *At(kRatio, to));
+  }
+
+  // The first lanes are taken first.
+  void ListIdleLanes() {
+    idle_.clear();
+    for (size_t lane = lanes_; lane-- > 0;) {
+      if (orbit_[lane].orbit == kNoOrbit) idle_.push_back(lane);
+    }
+    parked_ = idle_.size();
   }
 
   static constexpr uint64_t kNoOrbit = ~uint64_t{0};
@@ -415,10 +521,7 @@ class LaneOrbits {
   PairGeometry geometry_;
   PistonWave wave_;
   Constants constants_;
-  uint64_t orbits_;
   OrbitSource& source_;
-  const std::stop_token& stop_;
-  bool stopped_ = false;
   double limit_;  // time without a collision
   size_t lanes_;
   hwy::AlignedFreeUniquePtr<T[]> memory_;
@@ -426,18 +529,22 @@ class LaneOrbits {
   size_t groups_ = kGroups;  // that are flown
   uint64_t step_[kGroups] = {};
   uint64_t flags_[kGroups] = {};  // a bit a lane: to be looked at
-  uint64_t next_ = 0;
-  uint64_t running_ = 0;
+  size_t running_ = 0;            // orbits in the lanes
+  std::vector<size_t> idle_;      // lanes without an orbit
+  size_t parked_ = 0;             // the first parked_ of idle_ are parked
+  std::vector<OrbitOutside> outside_;
+  std::vector<OrbitOutside> slow_;  // also outside; they need long to reach a wall
+  bool source_is_empty_ = false;    // at the last call of Start
+  std::vector<Meeting> meetings_;
+  std::vector<OrbitStart> starts_;
 };
 
-bool RunDouble(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-               const std::stop_token& stop) {
-  return LaneOrbits<double>(geometry, orbits, source, stop).Run();
+std::unique_ptr<OrbitRun> StartDouble(const PairGeometry& geometry, OrbitSource& source) {
+  return std::make_unique<LaneOrbits<double>>(geometry, source);
 }
 
-bool RunSingle(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-               const std::stop_token& stop) {
-  return LaneOrbits<float>(geometry, orbits, source, stop).Run();
+std::unique_ptr<OrbitRun> StartSingle(const PairGeometry& geometry, OrbitSource& source) {
+  return std::make_unique<LaneOrbits<float>>(geometry, source);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -447,17 +554,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ballpiston {
 
-HWY_EXPORT(RunDouble);
-HWY_EXPORT(RunSingle);
+HWY_EXPORT(StartDouble);
+HWY_EXPORT(StartSingle);
 
-bool RunLaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-                   const std::stop_token& stop) {
-  return HWY_DYNAMIC_DISPATCH(RunDouble)(geometry, orbits, source, stop);
+std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source) {
+  return HWY_DYNAMIC_DISPATCH(StartDouble)(geometry, source);
 }
 
-bool RunLaneOrbitsSingle(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-                         const std::stop_token& stop) {
-  return HWY_DYNAMIC_DISPATCH(RunSingle)(geometry, orbits, source, stop);
+std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source) {
+  return HWY_DYNAMIC_DISPATCH(StartSingle)(geometry, source);
 }
 
 }  // namespace ballpiston

@@ -1,16 +1,16 @@
-// RunOrbits in vector lanes; see orbits.h.
+// Orbits in vector lanes; see orbits.h.
 #ifndef BALLPISTON_CORE_BILLIARD_LANE_ORBITS_H_
 #define BALLPISTON_CORE_BILLIARD_LANE_ORBITS_H_
+
+#include <memory>
 
 #include "core/billiard/orbits.h"
 
 namespace ballpiston {
 
-bool RunLaneOrbits(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-                   const std::stop_token& stop);
-// The flights in single precision: quicker, and wrong by what `make stability` shows.
-bool RunLaneOrbitsSingle(const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
-                         const std::stop_token& stop);
+std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
+// The flights in single precision: quicker, and off by what single_precision.h tells.
+std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston
 

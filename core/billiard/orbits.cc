@@ -1,33 +1,83 @@
 #include "core/billiard/orbits.h"
 
+#include <optional>
+
 #include "core/billiard/lane_orbits.h"
 #include "core/billiard/reference_flow.h"
 
 namespace ballpiston {
 namespace {
 
-constexpr uint64_t kEventsBetweenLooks =
-    4096;  // some 0.2 ms: `stop` costs nothing, answers at once
+constexpr uint64_t kEventsBetweenLooks = 4096;  // some 0.2 ms: to look costs nothing
 
-bool RunReferenceOrbit(const PairGeometry& geometry, uint64_t orbit, OrbitSource& source,
-                       const std::stop_token& stop) {
-  ReferenceFlow flow(geometry, source.Start(orbit));
-  const double limit = source.TimeLimit();
-  Contact contact;
-  for (uint64_t events = 1;; ++events) {
-    const Event event = flow.Step();
-    contact.Add(event);
-    contact.expired = contact.time > limit;
-    if (event.kind == EventKind::kBallPiston || contact.escaped || contact.expired) {
-      contact.state = flow.state();
-      const bool has_ended = contact.escaped || contact.expired;
-      if (source.Meet(orbit, contact) == AfterContact::kEnd || has_ended) return true;
-      flow.ExchangeComponents();
-      contact = {};
+// One orbit after the other.
+class ReferenceOrbits : public OrbitRun {
+ public:
+  ReferenceOrbits(const PairGeometry& geometry, OrbitSource& source)
+      : geometry_(geometry), source_(source), limit_(source.TimeLimit()) {}
+
+  bool Advance() override {
+    for (uint64_t events = 1; flow_ || Begin(); ++events) {
+      Step();
+      if (events % kEventsBetweenLooks == 0 && source_.Pause()) return false;
     }
-    if (events % kEventsBetweenLooks == 0 && stop.stop_requested()) return false;
+    return true;
   }
-}
+
+ private:
+  bool Begin() {
+    OrbitStart start;
+    if (source_.Start({&start, 1}) == 0) return false;
+    flow_.emplace(geometry_, start.state);
+    meeting_ = {.orbit = start.orbit};
+    return true;
+  }
+
+  void Step() {
+    Contact& contact = meeting_.contact;
+    const Event event = flow_->Step();
+    contact.Add(event);
+    contact.expired = contact.time > limit_;
+    const bool has_ended = contact.escaped || contact.expired;
+    if (event.kind != EventKind::kBallPiston && !has_ended) return;
+    contact.state = flow_->state();
+    source_.Meet({&meeting_, 1});
+    if (meeting_.after == AfterContact::kEnd || has_ended) return flow_.reset();
+    flow_->ExchangeComponents();
+    contact = {};
+  }
+
+  PairGeometry geometry_;
+  OrbitSource& source_;
+  double limit_;
+  std::optional<ReferenceFlow> flow_;
+  Meeting meeting_;
+};
+
+class SourceOfNumbered : public OrbitSource {
+ public:
+  SourceOfNumbered(uint64_t count, NumberedOrbits& orbits, const std::stop_token& stop)
+      : count_(count), orbits_(orbits), stop_(stop) {}
+
+  size_t Start(std::span<OrbitStart> starts) override {
+    size_t n = 0;
+    for (; n < starts.size() && next_ < count_; ++n, ++next_) {
+      starts[n] = {next_, orbits_.Start(next_)};
+    }
+    return n;
+  }
+  void Meet(std::span<Meeting> meetings) override {
+    for (Meeting& meeting : meetings) meeting.after = orbits_.Meet(meeting.orbit, meeting.contact);
+  }
+  double TimeLimit() const override { return orbits_.TimeLimit(); }
+  bool Pause() override { return stop_.stop_requested(); }
+
+ private:
+  uint64_t count_;
+  NumberedOrbits& orbits_;
+  const std::stop_token& stop_;
+  uint64_t next_ = 0;
+};
 
 }  // namespace
 
@@ -38,14 +88,17 @@ void Contact::Add(const Event& event) {
   escaped = event.kind == EventKind::kEscape;
 }
 
-bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
+std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                      OrbitSource& source) {
+  if (engine == Engine::kLanes) return StartLaneOrbits(geometry, source);
+  if (engine == Engine::kLanesSingle) return StartLaneOrbitsSingle(geometry, source);
+  return std::make_unique<ReferenceOrbits>(geometry, source);
+}
+
+bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, NumberedOrbits& orbits,
                const std::stop_token& stop) {
-  if (engine == Engine::kLanes) return RunLaneOrbits(geometry, orbits, source, stop);
-  if (engine == Engine::kLanesSingle) return RunLaneOrbitsSingle(geometry, orbits, source, stop);
-  for (uint64_t orbit = 0; orbit < orbits; ++orbit) {
-    if (!RunReferenceOrbit(geometry, orbit, source, stop)) return false;
-  }
-  return true;
+  SourceOfNumbered source(count, orbits, stop);
+  return StartOrbits(engine, geometry, source)->Advance();
 }
 
 }  // namespace ballpiston

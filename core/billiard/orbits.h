@@ -3,9 +3,10 @@
 // Two engines do the same work behind one interface.
 //   kReference  one orbit after the other by ReferenceFlow, every event resolved.
 //   kLanes      the ball's flight between walls in vector lanes, without positions; the piston is
-//               not stepped: it is a triangle wave in time, and whether a flight met it is seen
-//               from where both are at its end and whether the piston turned meanwhile.
-//               ReferenceFlow resolves the flights that did, and the first one after a collision.
+//               not stepped: its position is a triangle wave in time. The engine finds a contact
+//               from the positions of both at the end of the flight and from whether the piston
+//               turned during the flight. ReferenceFlow resolves each flight with a contact, and
+//               the first flight after a collision.
 //
 // An orbit's numbers do not depend on the lane it ran in, on how many lanes there are, or on what
 // runs beside it: every operation is elementwise, and exact, correctly rounded or fused as written.
@@ -14,8 +15,11 @@
 #ifndef BALLPISTON_CORE_BILLIARD_ORBITS_H_
 #define BALLPISTON_CORE_BILLIARD_ORBITS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <stop_token>
 
 #include "core/billiard/reference_flow.h"
@@ -32,34 +36,72 @@ struct Contact {
   double time = 0;  // since the orbit's start, or its collision before
   uint64_t ball_wall_hits = 0;
   uint64_t piston_wall_hits = 0;
-  bool escaped = false;  // the orbit left the cell: nothing else here means anything
-  bool expired = false;  // not within the orbit's time limit: `state` means nothing, and `time`
-                         // only that it passed
+  bool escaped = false;  // the orbit left the cell; all other fields are meaningless
+  bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
+                         // says only that the limit has passed
 
-  void Add(const Event& event);  // one more on the way
+  void Add(const Event& event);  // one more event before the contact
 };
 
 enum class AfterContact { kGoOn, kEnd };
 
-// Where orbits come from, and what becomes of their collisions. Called from the thread that runs
-// the orbits, for different orbits in an order that depends on the engine: keep what is measured by
-// orbit, and combine it by the orbits' numbers.
+// A pair at the start of an orbit. The source chooses the orbit's number.
+struct OrbitStart {
+  uint64_t orbit = 0;
+  PairState state = {};
+};
+
+// A contact of orbit `orbit`. The source sets `after`. kGoOn: ball and piston exchange components,
+// and the orbit continues. An orbit that escaped or expired ends whatever `after` is.
+struct Meeting {
+  uint64_t orbit = 0;
+  Contact contact = {};
+  AfterContact after = AfterContact::kEnd;
+};
+
+// Supplies the starts of orbits and receives their contacts, both in batches. The thread that runs
+// the orbits calls the source. The order of calls for different orbits depends on the engine, so a
+// source must keep its measurements by orbit and combine them in the order of the orbits' numbers.
 class OrbitSource {
  public:
   virtual ~OrbitSource() = default;
-  // The pair at the start of that orbit.
+  // Fills the first elements of `starts` and returns their number. A number below starts.size()
+  // means that the source has no more orbits now. The lanes ask again about 0.2 ms later, as long
+  // as they have other orbits on their way.
+  virtual size_t Start(std::span<OrbitStart> starts) = 0;
+  virtual void Meet(std::span<Meeting> meetings) = 0;
+  // An orbit expires after this time without a collision: the source receives an expired contact,
+  // and the orbit ends. The contact may come later than the limit. The limit keeps the engine from
+  // waiting for ever for a ball or a piston that is slow or at rest.
+  virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
+  // True if the engine should return. The engine asks about 5000 times a second.
+  virtual bool Pause() = 0;
+};
+
+// Orbits in progress. An engine keeps as many lanes full as the source can fill.
+class OrbitRun {
+ public:
+  virtual ~OrbitRun() = default;
+  // Returns true when no orbit is in progress and the source has no more now. Returns false when
+  // the source's Pause is true. May be called again in both cases, from any thread.
+  virtual bool Advance() = 0;
+};
+
+// The source must outlive the run.
+std::unique_ptr<OrbitRun> StartOrbits(Engine engine, const PairGeometry& geometry,
+                                      OrbitSource& source);
+
+// A fixed number of orbits, with one call for each start and for each contact. For tools and tests.
+class NumberedOrbits {
+ public:
+  virtual ~NumberedOrbits() = default;
   virtual PairState Start(uint64_t orbit) = 0;
-  // A collision of that orbit. kGoOn: ball and piston exchange components and the orbit goes on.
-  // After an escape, and when its time limit passed, it ends whatever is returned.
   virtual AfterContact Meet(uint64_t orbit, const Contact& contact) = 0;
-  // Time without a collision after which an orbit is of no more use: its source is told, some time
-  // after that or at a later collision, and the orbit ends. What keeps slow pistons, slow balls,
-  // and those at rest for ever, from being waited for.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
 };
 
-// Runs orbits 0 ... orbits - 1 to their ends. False if `stop` came before that.
-bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t orbits, OrbitSource& source,
+// Runs orbits 0 ... count - 1 to their ends. Returns false if `stop` was requested before.
+bool RunOrbits(Engine engine, const PairGeometry& geometry, uint64_t count, NumberedOrbits& orbits,
                const std::stop_token& stop);
 
 }  // namespace ballpiston

@@ -1,56 +1,111 @@
-#include "core/experiment/conditional_mean_free_time.h"
+// The mean return time to the ball-piston collision surface at fixed energies, started from the
+// invariant law (the paper's eq. taubpmftep). Exact at every delta, so it tests the billiard, not
+// the limit. Moments: [0] return time.
+#include <memory>
 
-#include "core/experiment/predicted_hits.h"
+#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/ensemble/block_orbits.h"
+#include "core/ensemble/computed_answer.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/exact_estimate.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/experiment/return_experiment.h"
 #include "core/experiment/return_orbits.h"
+#include "core/experiment/return_time.h"
 
 namespace ballpiston {
 namespace {
 
 constexpr double kInvariantExponent = 1;
 
-}  // namespace
-
-ConditionalMeanFreeTimeExperiment::ConditionalMeanFreeTimeExperiment(const EnsembleSpec& spec,
-                                                                     const PointParameters& point,
-                                                                     const PairGeometry& geometry)
-    : PointExperiment(spec, point,
-                      PlanBlocks(spec, HitsPerReturn(geometry, *point.epsilon).Events())),
-      geometry_(geometry),
-      return_time_(geometry, *point.epsilon) {}
-
-std::optional<BlockResult> ConditionalMeanFreeTimeExperiment::RunBlock(uint64_t block,
-                                                                       std::stop_token stop) const {
-  ReturnOrbits orbits(geometry_, {*parameters().epsilon, kInvariantExponent}, random(),
-                      plan().FirstSample(block), plan().SamplesIn(block));
-  if (!RunOrbits(engine(), geometry_, plan().SamplesIn(block), orbits, stop)) return std::nullopt;
-  BlockResult result = EmptyResult();
-  for (const Return& sample : orbits.returns()) {
-    if (!Healthy(sample, result.health)) continue;
-    ++result.samples;
-    result.moments[0].Add(sample.time);
-  }
-  return result;
-}
-
-BlockResult ConditionalMeanFreeTimeExperiment::EmptyResult() const {
+BlockResult NoReturns() {
   BlockResult result;
   result.moments.resize(1);
   return result;
 }
 
-Estimate ConditionalMeanFreeTimeExperiment::FirstEstimate(const BlockResult& merged) const {
-  Estimate mean = return_time_.Mean("mean_free_time_conditional", merged.moments[0]);
-  mean.exact = return_time_.exact_mean();
-  return mean;
+class TimedReturns : public ReturnOrbits {
+ public:
+  using ReturnOrbits::ReturnOrbits;
+
+  BlockResult Result() const {
+    BlockResult result = NoReturns();
+    for (const Return& sample : returns()) {
+      if (!Healthy(sample, result.health)) continue;
+      ++result.samples;
+      result.moments[0].Add(sample.time);
+    }
+    return result;
+  }
+};
+
+class ConditionalMeanFreeTimeExperiment : public PointExperiment {
+ public:
+  ConditionalMeanFreeTimeExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PointExperiment(spec, point),
+        geometry_(GeometryOf(point)),
+        return_time_(geometry_, point[kEpsilon]) {}
+
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    const ReturnLaw law = {parameters()[kEpsilon], kInvariantExponent};
+    return RunBlockOrbits(
+        engine(), geometry_, kNoTimeLimit,
+        [this, law](const Block& block) { return TimedReturns(geometry_, law, random(), block); },
+        queue);
+  }
+
+  BlockResult EmptyResult() const override { return NoReturns(); }
+
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    Estimate mean = return_time_.Mean("mean_free_time_conditional", merged.moments[0]);
+    mean.exact = return_time_.exact_mean();
+    return mean;
+  }
+
+  PointSummary Summarize(const BlockResult& merged) const override {
+    PointSummary summary = {.samples = merged.samples, .health = merged.health};
+    summary.estimates.push_back(FirstEstimate(merged));
+    if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
+      summary.estimates.push_back(*variation);
+    }
+    return summary;
+  }
+
+ private:
+  PairGeometry geometry_;
+  ReturnTime return_time_;
+};
+
+std::unique_ptr<PointExperiment> CreateConditional(const EnsembleSpec& spec,
+                                                   const PointParameters& point) {
+  if (spec.model != Model::kClosedForm) {
+    return std::make_unique<ConditionalMeanFreeTimeExperiment>(spec, point);
+  }
+  const double time = ConditionalMeanFreeTime(GeometryOf(point), point[kEpsilon]);
+  const double error = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
+  return std::make_unique<ComputedAnswer>(
+      spec, point,
+      PointSummary{.estimates = {ExactEstimate("mean_free_time_conditional", time, error)}});
 }
 
-PointSummary ConditionalMeanFreeTimeExperiment::Summarize(const BlockResult& merged) const {
-  PointSummary summary = {.samples = merged.samples, .health = merged.health};
-  summary.estimates.push_back(FirstEstimate(merged));
-  if (const auto variation = return_time_.CoefficientOfVariation(merged.moments[0])) {
-    summary.estimates.push_back(*variation);
-  }
-  return summary;
-}
+constexpr ParameterUse kParametersOfReturns[] = {{&kRho}, {&kDelta}, {&kEpsilon}};
+constexpr Model kModelsOfReturns[] = {Model::kClosedForm, Model::kBilliard,
+                                      Model::kBilliardReference};
+
+}  // namespace
+
+constinit const ExperimentKind kConditionalMeanFreeTime = {
+    .name = "conditional-mean-free-time",
+    .number = 2,
+    .parameters = kParametersOfReturns,
+    .unit = TargetUnit::kSamples,
+    .models = kModelsOfReturns,
+    .create = CreateConditional,
+    .check_grid = CheckPairGrid,
+    .check_tolerance = CheckToleranceOfReturns,
+    .work = WorkOfAReturn,
+    .collisions = OneCollision,
+    .error = ErrorOfAReturn};
 
 }  // namespace ballpiston

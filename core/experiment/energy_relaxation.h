@@ -8,7 +8,7 @@
 //
 // With epsilon: E[ep(t)] from that energy, ball and piston anywhere; decay_integral is
 // int_0^W (E[ep(t)] - 1/6) dt with the limit's remainder, and relaxation_time that over
-// epsilon - 1/6. The latter is told outside kNoDecayFrom ... kNoDecayTo only: around 1/6 the mean
+// epsilon - 1/6. The latter is given outside kNoDecayFrom ... kNoDecayTo only: around 1/6 the mean
 // energy first moves away from 1/6, and the ratio has a zero (at 0.141) and a pole.
 //
 // The window matters. A piston of speed u is out of the ball's reach for a time of up to
@@ -16,6 +16,7 @@
 // whose integral grows with the logarithm of W. It has no part in the limit: at a fixed W/tau it
 // vanishes with lambda/tau, as delta^2.
 //
+// EnergyRelaxation has the scales that all models share, an orbit's measurements and the estimates.
 // Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. A sample is one orbit.
 #ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 #define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
@@ -25,7 +26,9 @@
 #include <string>
 #include <vector>
 
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/parameter.h"
+#include "core/ensemble/point_summary.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/markov/relaxation_spectrum.h"
 #include "core/statistics/step_function.h"
@@ -36,13 +39,12 @@ namespace ballpiston {
 inline constexpr double kWindowTimes = 8;
 inline constexpr double kOriginTimes = 32;
 
-// Initial energies from which there is no decay that a time could be told of.
+// Initial energies between these have no relaxation time.
 inline constexpr double kNoDecayFrom = 0.12;
 inline constexpr double kNoDecayTo = 0.2;
 
 inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
 
-// What all ways of computing it share: the scales, and what an orbit and all of them say.
 class EnergyRelaxation {
  public:
   EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point);
@@ -58,7 +60,7 @@ class EnergyRelaxation {
   std::vector<Estimate> Estimates(const BlockResult& merged) const;
   Curve MeasuredCurve(const BlockResult& merged) const;
 
-  // Of the limit, the errors being those of its computation.
+  // Of the limit, with the errors of its computation.
   std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
 
@@ -78,34 +80,14 @@ class EnergyRelaxation {
   double mean_free_time_;
 };
 
-// Whether a relaxation_time is told: in equilibrium, and from energies far enough from 1/6.
+// Whether there is a relaxation_time: in equilibrium, and from energies far enough from 1/6.
 bool HasRelaxationTime(const std::optional<double>& epsilon);
 
-// Ball-piston collisions in an orbit, in the mean.
+// An empty result with the moments of the integral, then of the curve.
+BlockResult NoRelaxations();
+
+// Mean number of ball-piston collisions in an orbit.
 double CollisionsPerOrbit(const PointParameters& point);
-
-class EnergyRelaxationExperiment : public PointExperiment {
- public:
-  // Model: billiard, billiard_reference or markov.
-  EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point,
-                             const PairGeometry& geometry);
-
-  std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override;
-  BlockResult EmptyResult() const override;
-  Estimate FirstEstimate(const BlockResult& merged) const override;
-  PointSummary Summarize(const BlockResult& merged) const override;
-
- private:
-  std::vector<Estimate> Estimates(const BlockResult& merged) const;
-  std::optional<BlockResult> RunBilliard(uint64_t block, const std::stop_token& stop) const;
-  std::optional<BlockResult> RunJumpProcess(uint64_t block, const std::stop_token& stop) const;
-
-  PairGeometry geometry_;
-  EnergyRelaxation relaxation_;
-};
-
-// The same by the spectrum: no samples. Standard errors are those of the discretisation.
-PointSummary EnergyRelaxationBySpectrum(const PairGeometry& geometry, const PointParameters& point);
 
 }  // namespace ballpiston
 

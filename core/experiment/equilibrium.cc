@@ -1,3 +1,9 @@
+// The pair in equilibrium: mean times between collisions of ball and piston, ball and wall, piston
+// and wall (the paper's eqs. taubpmft and tauwall).
+//
+// A block is many orbits of a few collisions, each started from the return map's invariant measure,
+// so nothing has to be burnt in, and orbits are independent; each is one batch of the batch means:
+//   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
 #include "core/experiment/equilibrium.h"
 
 #include <algorithm>
@@ -5,7 +11,12 @@
 
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/predicted_hits.h"
+#include "core/ensemble/block_orbits.h"
+#include "core/ensemble/computed_answer.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/exact_estimate.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/experiment/return_orbits.h"
 #include "core/sampling/invariant_measure.h"
 #include "core/statistics/told_error.h"
 
@@ -29,26 +40,25 @@ BlockResult EmptyCounts() {
   return counts;
 }
 
-// `collisions` of them over orbits that start at numbers first, first + length, ...
-class EquilibriumOrbits : public OrbitSource {
+// A block's collisions, over orbits that start at numbers first, first + length, ...
+class EquilibriumOrbits {
  public:
-  EquilibriumOrbits(const PairGeometry& geometry, const RandomStream& random, uint64_t first,
-                    uint64_t collisions)
+  EquilibriumOrbits(const PairGeometry& geometry, const RandomStream& random, const Block& block)
       : geometry_(geometry),
         random_(random),
-        first_(first),
-        collisions_(collisions),
-        length_(std::max<uint64_t>(collisions / kOrbitsPerBlock, 1)),
-        orbits_((collisions + length_ - 1) / length_) {}
+        first_(block.first),
+        collisions_(block.samples),
+        length_(std::max<uint64_t>(collisions_ / kOrbitsPerBlock, 1)),
+        orbits_((collisions_ + length_ - 1) / length_) {}
 
   uint64_t count() const { return orbits_.size(); }
 
-  PairState Start(uint64_t orbit) override {
+  PairState Start(uint64_t orbit) {
     CounterRandom random = random_.Sample(first_ + orbit * length_);
     return DrawFromCollisionMeasure(geometry_, random);
   }
 
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+  AfterContact Meet(uint64_t orbit, const Contact& contact) {
     Orbit& sums = orbits_[orbit];
     if (contact.escaped) {
       ++sums.health.escapes;
@@ -93,33 +103,75 @@ class EquilibriumOrbits : public OrbitSource {
   std::vector<Orbit> orbits_;
 };
 
+class EquilibriumExperiment : public PointExperiment {
+ public:
+  EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PointExperiment(spec, point), geometry_(GeometryOf(point)) {}
+
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    return RunBlockOrbits(
+        engine(), geometry_, kNoTimeLimit,
+        [this](const Block& block) { return EquilibriumOrbits(geometry_, random(), block); },
+        queue);
+  }
+
+  BlockResult EmptyResult() const override { return EmptyCounts(); }
+
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return MeanFreeTime("ball_piston", merged, 0, MeanFreeTimesOf(geometry_).ball_piston);
+  }
+
+  PointSummary Summarize(const BlockResult& merged) const override {
+    const MeanFreeTimes exact = MeanFreeTimesOf(geometry_);
+    return {
+        .samples = merged.samples,
+        .estimates = {FirstEstimate(merged), MeanFreeTime("ball_wall", merged, 1, exact.ball_wall),
+                      MeanFreeTime("piston_wall", merged, 2, exact.piston_wall)},
+        .health = merged.health};
+  }
+
+ private:
+  PairGeometry geometry_;
+};
+
+PointSummary ExactTimes(const PairGeometry& geometry) {
+  const MeanFreeTimes tau = MeanFreeTimesOf(geometry);
+  const auto exact = [](const char* name, double time) {
+    return ExactEstimate(name, time, kMeanFreeTimeRelativeError);
+  };
+  return {.estimates = {exact("mean_free_time_ball_piston", tau.ball_piston),
+                        exact("mean_free_time_ball_wall", tau.ball_wall),
+                        exact("mean_free_time_piston_wall", tau.piston_wall)}};
+}
+
+std::unique_ptr<PointExperiment> CreateEquilibrium(const EnsembleSpec& spec,
+                                                   const PointParameters& point) {
+  if (spec.model != Model::kClosedForm) {
+    return std::make_unique<EquilibriumExperiment>(spec, point);
+  }
+  return std::make_unique<ComputedAnswer>(spec, point, ExactTimes(GeometryOf(point)));
+}
+
+SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
+  return WorkOfACollision(GeometryOf(point));
+}
+
+double ErrorInEquilibrium(const PointParameters&) { return 1.05; }
+
+constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
+                                          Model::kBilliardReference};
+
 }  // namespace
 
-EquilibriumExperiment::EquilibriumExperiment(const EnsembleSpec& spec, const PointParameters& point,
-                                             const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, HitsPerCollision(geometry).Events())),
-      geometry_(geometry) {}
-
-std::optional<BlockResult> EquilibriumExperiment::RunBlock(uint64_t block,
-                                                           std::stop_token stop) const {
-  EquilibriumOrbits orbits(geometry_, random(), plan().FirstSample(block), plan().SamplesIn(block));
-  if (!RunOrbits(engine(), geometry_, orbits.count(), orbits, stop)) return std::nullopt;
-  return orbits.Result();
-}
-
-BlockResult EquilibriumExperiment::EmptyResult() const { return EmptyCounts(); }
-
-Estimate EquilibriumExperiment::FirstEstimate(const BlockResult& merged) const {
-  return MeanFreeTime("ball_piston", merged, 0, MeanFreeTimesOf(geometry_).ball_piston);
-}
-
-PointSummary EquilibriumExperiment::Summarize(const BlockResult& merged) const {
-  const MeanFreeTimes exact = MeanFreeTimesOf(geometry_);
-  return {
-      .samples = merged.samples,
-      .estimates = {FirstEstimate(merged), MeanFreeTime("ball_wall", merged, 1, exact.ball_wall),
-                    MeanFreeTime("piston_wall", merged, 2, exact.piston_wall)},
-      .health = merged.health};
-}
+constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
+                                               .number = 1,
+                                               .parameters = kPairAlone,
+                                               .unit = TargetUnit::kCollisions,
+                                               .models = kModelsOfEquilibrium,
+                                               .create = CreateEquilibrium,
+                                               .check_grid = CheckPairGrid,
+                                               .work = WorkInEquilibrium,
+                                               .collisions = OneCollision,
+                                               .error = ErrorInEquilibrium};
 
 }  // namespace ballpiston

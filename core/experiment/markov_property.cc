@@ -1,13 +1,33 @@
+// Whether the billiard's energy exchanges are a Markov jump process, beyond the first hit: the laws
+// of waiting time and of the energy after it, given the energy before, and what they remember of
+// the exchange before last (markov_property_statistics.h).
+//
+// A block is many orbits of kExchangesPerOrbit collisions, each started from the return map's
+// invariant measure, so that every exchange is one of equilibrium.
+//
+// At a given delta the billiard differs from the limit for two reasons. Ball and piston cannot meet
+// again at once, and a piston at speed u passes the collision surface periodically, with period
+// 2 (lambda + 2 delta)/u. This affects a fraction of order delta^2/u of its hits. Every octave of u
+// adds as much to the Kolmogorov-Smirnov distance, down to u of order delta^2, where the return law
+// is not exponential at all. In measurements the distance falls as delta^2 log(1/delta).
 #include "core/experiment/markov_property.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "core/billiard/orbits.h"
 #include "core/closed_form/mean_free_time.h"
+#include "core/ensemble/block_orbits.h"
+#include "core/experiment/all_experiments.h"
 #include "core/experiment/markov_property_statistics.h"
-#include "core/experiment/predicted_hits.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/experiment/return_orbits.h"
 #include "core/experiment/without_last_bits.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
@@ -23,28 +43,27 @@ double RateUnit(const PairGeometry& geometry) {
 // Rounding may leave more than the pair has.
 double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 0.5); }
 
-// `collisions` of them over orbits that start at numbers first, first + length, ...
-class ExchangeOrbits : public OrbitSource {
+// A block's collisions, over orbits that start at numbers first, first + length, ...
+class ExchangeOrbits {
  public:
-  ExchangeOrbits(const PairGeometry& geometry, const RandomStream& random, uint64_t first,
-                 uint64_t collisions)
+  ExchangeOrbits(const PairGeometry& geometry, const RandomStream& random, const Block& block)
       : geometry_(geometry),
         random_(random),
-        first_(first),
+        first_(block.first),
         rate_unit_(RateUnit(geometry)),
-        exchanges_(collisions),
-        orbits_((collisions + kExchangesPerOrbit - 1) / kExchangesPerOrbit) {}
+        exchanges_(block.samples),
+        orbits_((block.samples + kExchangesPerOrbit - 1) / kExchangesPerOrbit) {}
 
   uint64_t count() const { return orbits_.size(); }
 
-  PairState Start(uint64_t orbit) override {
+  PairState Start(uint64_t orbit) {
     CounterRandom random = random_.Sample(first_ + orbit * kExchangesPerOrbit);
     const PairState state = DrawFromCollisionMeasure(geometry_, random);
     orbits_[orbit].first_energy = PistonEnergy(state.piston_velocity);
     return state;
   }
 
-  AfterContact Meet(uint64_t index, const Contact& contact) override {
+  AfterContact Meet(uint64_t index, const Contact& contact) {
     Orbit& orbit = orbits_[index];
     if (contact.escaped) {
       ++orbit.health.escapes;
@@ -90,9 +109,9 @@ class ExchangeOrbits : public OrbitSource {
 };
 
 // Energies just after a collision, of orbits first, first + length, ...; from a stream of their
-// own, as the walkers use that of the samples.
-std::vector<double> StartsOfWalkers(const PairGeometry& geometry, const RandomStream& random,
-                                    uint64_t first, uint64_t orbits) {
+// own, because the walkers use the stream of the samples.
+std::vector<double> StartsAfterCollisions(const PairGeometry& geometry, const RandomStream& random,
+                                          uint64_t first, uint64_t orbits) {
   constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
   const RandomStream starts = {random.seed, random.stream ^ kStartsStream};
   std::vector<double> u(orbits);
@@ -116,52 +135,96 @@ std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
   return all;
 }
 
-}  // namespace
-
-MarkovPropertyExperiment::MarkovPropertyExperiment(const EnsembleSpec& spec,
-                                                   const PointParameters& point,
-                                                   const PairGeometry& geometry)
-    : PointExperiment(spec, point, PlanBlocks(spec, EventsPerCollision(spec.model, geometry))),
-      geometry_(geometry) {}
-
-std::optional<BlockResult> MarkovPropertyExperiment::RunBlock(uint64_t block,
-                                                              std::stop_token stop) const {
-  if (answer().model == Model::kMarkov) return RunJumpProcess(block);
-  ExchangeOrbits orbits(geometry_, random(), plan().FirstSample(block), plan().SamplesIn(block));
-  if (!RunOrbits(engine(), geometry_, orbits.count(), orbits, stop)) return std::nullopt;
-  return orbits.Result();
-}
-
-BlockResult MarkovPropertyExperiment::RunJumpProcess(uint64_t block) const {
-  const uint64_t first = plan().FirstSample(block), exchanges = plan().SamplesIn(block);
-  const uint64_t orbits = (exchanges + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
-  const std::vector<double> starts = StartsOfWalkers(geometry_, random(), first, orbits);
-  JumpWalkers walkers(random().seed, random().stream, first, starts);
-  const std::vector<Exchange> all = Walk(walkers, exchanges);
+// A block of the jump process itself.
+BlockResult WalkExchanges(const PairGeometry& geometry, const RandomStream& random,
+                          const Block& block) {
+  const uint64_t orbits = (block.samples + kExchangesPerOrbit - 1) / kExchangesPerOrbit;
+  const std::vector<double> starts = StartsAfterCollisions(geometry, random, block.first, orbits);
+  JumpWalkers walkers(random.seed, random.stream, block.first, starts);
+  const std::vector<Exchange> all = Walk(walkers, block.samples);
   BlockResult result = EmptyMarkovPropertyCounts();
   for (uint64_t i = 0; i < orbits; ++i) {
     const uint64_t begin = i * kExchangesPerOrbit;
-    const uint64_t length = std::min(kExchangesPerOrbit, exchanges - begin);
+    const uint64_t length = std::min(kExchangesPerOrbit, block.samples - begin);
     CountOrbit(PistonEnergy(starts[i]), std::span(all).subspan(begin, length), result);
   }
   return result;
 }
 
-BlockResult MarkovPropertyExperiment::EmptyResult() const { return EmptyMarkovPropertyCounts(); }
+// By billiard, billiard_reference, or, as its own control, markov.
+class MarkovPropertyExperiment : public PointExperiment {
+ public:
+  MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PointExperiment(spec, point), geometry_(GeometryOf(point)) {}
 
-// The jump process has no memory; the billiard's is what is measured.
-std::optional<double> MarkovPropertyExperiment::ExactCorrelation() const {
-  return answer().model == Model::kMarkov ? std::optional(0.0) : std::nullopt;
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    if (answer().model == Model::kMarkov) {
+      return RunOneByOne(queue, [this](const Block& block, const std::stop_token&) {
+        return std::optional(WalkExchanges(geometry_, random(), block));
+      });
+    }
+    return RunBlockOrbits(
+        engine(), geometry_, kNoTimeLimit,
+        [this](const Block& block) { return ExchangeOrbits(geometry_, random(), block); }, queue);
+  }
+
+  BlockResult EmptyResult() const override { return EmptyMarkovPropertyCounts(); }
+
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return MarkovPropertyEstimates(merged, ExactCorrelation()).front();
+  }
+
+  PointSummary Summarize(const BlockResult& merged) const override {
+    return {.samples = merged.samples,
+            .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
+            .health = merged.health};
+  }
+
+ private:
+  // The jump process has no memory; for the billiard the memory is unknown.
+  std::optional<double> ExactCorrelation() const {
+    return answer().model == Model::kMarkov ? std::optional(0.0) : std::nullopt;
+  }
+
+  PairGeometry geometry_;
+};
+
+std::unique_ptr<PointExperiment> CreateMarkovProperty(const EnsembleSpec& spec,
+                                                      const PointParameters& point) {
+  return std::make_unique<MarkovPropertyExperiment>(spec, point);
 }
 
-Estimate MarkovPropertyExperiment::FirstEstimate(const BlockResult& merged) const {
-  return MarkovPropertyEstimates(merged, ExactCorrelation()).front();
+SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
+  return model == Model::kMarkov ? SampleWork{.jumps = 1} : WorkOfACollision(GeometryOf(point));
 }
 
-PointSummary MarkovPropertyExperiment::Summarize(const BlockResult& merged) const {
-  return {.samples = merged.samples,
-          .estimates = MarkovPropertyEstimates(merged, ExactCorrelation()),
-          .health = merged.health};
+double ErrorOfWhatTendsToZero(const PointParameters&) {
+  return std::numeric_limits<double>::infinity();
 }
+
+void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  found.push_back({"target.tolerance",
+                   absl::StrCat("is relative, and ", spec.experiment->name,
+                                " measures what tends to 0; permitted: collisions, budget")});
+}
+
+constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
+                                             Model::kBilliardReference};
+
+}  // namespace
+
+constinit const ExperimentKind kMarkovProperty = {
+    .name = "markov-property",
+    .number = 5,
+    .parameters = kPairAlone,
+    .unit = TargetUnit::kCollisions,
+    .models = kModelsOfMarkovProperty,
+    .create = CreateMarkovProperty,
+    .check_grid = CheckPairGrid,
+    .check_tolerance = CheckToleranceOfWhatTendsToZero,
+    .work = WorkOfAnExchange,
+    .collisions = OneCollision,
+    .error = ErrorOfWhatTendsToZero,
+    .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

@@ -31,8 +31,8 @@
 #include <span>
 #include <vector>
 
-#include "core/experiment/block_result.h"
-#include "core/experiment/point_summary.h"
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/point_summary.h"
 
 namespace ballpiston {
 

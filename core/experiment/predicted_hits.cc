@@ -14,11 +14,6 @@ PredictedHits HitsPerCollision(const PairGeometry& geometry) {
   return {tau.ball_piston / tau.ball_wall, tau.ball_piston / tau.piston_wall};
 }
 
-double EventsPerCollision(Model model, const PairGeometry& geometry) {
-  constexpr double kEventsPerJump = 25;  // wall hits in lanes
-  return model == Model::kMarkov ? kEventsPerJump : HitsPerCollision(geometry).Events();
-}
-
 PredictedHits HitsPerReturn(const PairGeometry& geometry, double epsilon) {
   // Rate of hits on a wall of area |dG| at fixed speed: speed/pi |dG|/|G| for the ball, whose
   // direction is uniform in its plane, and speed/2 |dG|/|G| for the piston.

@@ -9,14 +9,14 @@
 namespace ballpiston {
 
 ReturnOrbits::ReturnOrbits(const PairGeometry& geometry, const ReturnLaw& law,
-                           const RandomStream& random, uint64_t first, uint64_t count)
+                           const RandomStream& random, const Block& block)
     : geometry_(geometry),
       law_(law.epsilon, law.exponent),
       ball_speed_(std::sqrt(1 - 2 * law.epsilon)),
       piston_speed_(std::sqrt(2 * law.epsilon)),
       random_(random),
-      first_(first),
-      returns_(count) {}
+      first_(block.first),
+      returns_(block.samples) {}
 
 PairState ReturnOrbits::Start(uint64_t orbit) {
   CounterRandom random = random_.Sample(first_ + orbit);

@@ -1,16 +1,17 @@
 // Returns to the collision surface at fixed energies: start uniform on dGamma_bp with an outgoing
 // law, fly until ball and piston meet next, and keep how they meet, before the collision is
-// resolved. What first-hit and conditional-mean-free-time repeat: an OrbitSource, each orbit one
-// sample.
+// resolved. Samples of first-hit and conditional-mean-free-time: each orbit is one sample.
 #ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
 #define BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/billiard/orbits.h"
-#include "core/experiment/block_result.h"
-#include "core/experiment/random_stream.h"
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/random_stream.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/sampling/outgoing_law.h"
 
@@ -21,24 +22,28 @@ struct Return {
   Eigen::Vector2d direction = {0, 0};  // of the ball, ingoing: (cos alpha, sin alpha)
   int sigma = 0;                       // sign of the piston's velocity, ingoing
   double energy_error = 0;
-  bool escaped = false;  // then nothing else means anything
+  bool escaped = false;  // if true, all other fields are meaningless
 };
+
+// Returns are followed however long they take.
+inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
 struct ReturnLaw {
   double epsilon;
   double exponent;
 };
 
-class ReturnOrbits : public OrbitSource {
+// The returns of one block.
+class ReturnOrbits {
  public:
-  // Samples first ... first + count - 1 of the stream.
   ReturnOrbits(const PairGeometry& geometry, const ReturnLaw& law, const RandomStream& random,
-               uint64_t first, uint64_t count);
+               const Block& block);
 
-  PairState Start(uint64_t orbit) override;
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override;
+  uint64_t count() const { return returns_.size(); }
+  PairState Start(uint64_t orbit);
+  AfterContact Meet(uint64_t orbit, const Contact& contact);
 
-  // By sample; complete after RunOrbits.
+  // In the order of samples; complete when all orbits have ended.
   const std::vector<Return>& returns() const { return returns_; }
 
  private:

@@ -1,12 +1,11 @@
-// The estimates that come from a sample of return times, with errors where the sample can tell
-// them.
+// The estimates from a sample of return times, with errors if the sample is large enough.
 #ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
 #define BALLPISTON_CORE_EXPERIMENT_RETURN_TIME_H_
 
 #include <optional>
 #include <string>
 
-#include "core/experiment/point_summary.h"
+#include "core/ensemble/point_summary.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/moments.h"
 
@@ -20,7 +19,7 @@ class ReturnTime {
   double exact_mean() const { return exact_mean_; }
 
   Estimate Mean(std::string name, const Moments& times) const;
-  // Empty where no error can be told: then the sample's own scatter means nothing either.
+  // Empty if no error can be estimated; the scatter of the sample has no meaning then.
   std::optional<Estimate> CoefficientOfVariation(const Moments& times) const;
 
  private:

@@ -7,13 +7,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
+#include "core/billiard/single_precision.h"
 #include "core/closed_form/conditional_rate.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/answering_models.h"
-#include "core/experiment/block_plan.h"
-#include "core/experiment/energy_relaxation.h"
-#include "core/experiment/predicted_hits.h"
-#include "core/geometry/pair_geometry.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/experiment/all_experiments.h"
 #include "core/model_choice/sampling_cost.h"
 
 namespace ballpiston {
@@ -22,38 +21,43 @@ namespace {
 constexpr double kClosedFormError = kMeanFreeTimeRelativeError + kConditionalRateRelativeError;
 
 constexpr absl::string_view kWithThePilot = "; with the pilot";
+constexpr absl::string_view kInSinglePrecision = "in single precision; ";
 
 std::string Rounded(double x) { return absl::StrFormat("%.2g", x); }
 
 // Not below x: two digits are 4.8 % below what they round, at most.
 std::string RoundedUp(double x) { return Rounded(1.05 * x); }
 
-bool IsOfTheLimit(Model model) { return model == Model::kSpectrum || model == Model::kMarkov; }
-
 // One point's question.
 class Question {
  public:
   Question(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine)
-      : spec_(OnePointSpec(spec, point, spec.model)),
-        point_(point),
-        machine_(machine),
-        geometry_(PairGeometry::Create(point.rho, point.delta).value()) {}
+      : spec_(OnePointSpec(spec, point, spec.model)), point_(point), machine_(machine) {}
 
   const EnsembleSpec& spec() const { return spec_; }
   const PointParameters& point() const { return point_; }
   const Target& target() const { return spec_.target; }
-  bool relaxes() const { return spec_.experiment == Experiment::kEnergyRelaxation; }
-  // Whether something is known of how far the limit is off.
-  bool HasLimitError() const { return relaxes() && HasRelaxationTime(point_.epsilon); }
+  const ExperimentKind& experiment() const { return *spec_.experiment; }
+  bool HasLimit() const { return experiment().limit_error != nullptr; }
+  // Whether a bound of the limit's error is known.
+  bool HasLimitError() const { return HasLimit() && experiment().limit_error->is_known(point_); }
+  double ExpectedLimitError() const { return experiment().limit_error->expected(point_); }
 
-  double SecondsBy(Model model) const {
-    return SecondsPerSample(By(model), geometry_, point_, machine_.rates);
+  // The model error of a billiard model: its error without the statistical error. Empty if the
+  // first estimate has no relative error.
+  std::optional<double> ErrorOfPrecision(Model model) const {
+    if (EngineFor(By(model)) != Engine::kLanesSingle) return 0.0;
+    if (!std::isfinite(ErrorOf(1))) return std::nullopt;
+    return kSinglePrecisionError;
   }
 
-  // That the target takes by a model that samples.
+  double SecondsBy(Model model) const {
+    return SecondsPerSample(By(model), point_, machine_.rates);
+  }
+
+  // The number of samples that the target requires from a model that samples.
   double SamplesBy(Model model) const {
-    double samples =
-        static_cast<double>(SamplesAskedFor(target(), relaxes() ? CollisionsPerOrbit(point_) : 1));
+    double samples = static_cast<double>(SamplesAskedFor(spec_, point_));
     if (target().tolerance) samples = std::min(samples, SamplesForTolerance(model));
     if (target().budget_seconds) samples = std::min(samples, SamplesInBudget(model));
     return samples;
@@ -63,12 +67,10 @@ class Question {
     return std::max(std::floor(BudgetOfAPoint(spec_, machine_.workers) / SecondsBy(model)), 1.0);
   }
 
-  // At least the blocks before the first look.
+  // A tolerance is judged at the ends of chunks.
   double SamplesForTolerance(Model model) const {
-    const double block =
-        static_cast<double>(PointExperiment::Create(By(model), 0)->plan().block_size);
-    const double blocks = std::ceil(SamplesFor(*target().tolerance) / block);
-    return std::max(blocks, static_cast<double>(kMinBlocks)) * block;
+    const auto experiment = PointExperiment::Create(By(model), 0);
+    return static_cast<double>(experiment->plan().WholeChunks(SamplesFor(*target().tolerance)));
   }
 
   double SamplesFor(double tolerance) const {
@@ -76,9 +78,7 @@ class Question {
     return ratio * ratio;
   }
 
-  double ErrorOf(double samples) const {
-    return RelativeErrorOfOneSample(spec_.experiment, geometry_, point_) / std::sqrt(samples);
-  }
+  double ErrorOf(double samples) const { return experiment().error(point_) / std::sqrt(samples); }
 
  private:
   EnsembleSpec By(Model model) const { return OnePointSpec(spec_, point_, model); }
@@ -86,29 +86,32 @@ class Question {
   EnsembleSpec spec_;  // of this point alone
   PointParameters point_;
   Machine machine_;
-  PairGeometry geometry_;
 };
 
 // ---- which model ----
 
-// What a pilot costs and the billiard itself would, in wall hits: not in this machine's seconds, so
-// that every machine chooses alike.
+// The costs of a pilot and of the billiard itself, in wall hits. They are not in seconds, so that
+// every machine makes the same choice.
 double HitsOf(const PointParameters& point, double orbits) {
   constexpr double kHitsThatACollisionCosts = 100;
-  const PairGeometry geometry = PairGeometry::Create(point.rho, point.delta).value();
-  return orbits * CollisionsPerOrbit(point) *
-         (HitsPerCollision(geometry).ball_wall + kHitsThatACollisionCosts);
+  const SampleWork work = kEnergyRelaxation.work(Model::kBilliard, point);
+  return orbits * (work.ball_wall + kHitsThatACollisionCosts * work.collisions);
 }
 
-Answer Billiard(std::string reason) { return {Model::kBilliard, std::move(reason), 0.0}; }
+// The billiard as the answer; `why` is the reason that no cheaper model answers.
+Answer Billiard(const Question& question, absl::string_view why) {
+  const std::optional<double> error = question.ErrorOfPrecision(Model::kBilliard);
+  return {Model::kBilliard, absl::StrCat(error == 0 ? "exact; " : kInSinglePrecision, why), error};
+}
 
-// Why the pilot need not even be asked for; empty if it has to be.
+// The reason why no pilot is needed; empty if a pilot is needed.
 std::string WithoutAPilot(const Question& question) {
   const double tolerance = *question.target().tolerance;
   const PilotPlace place = PilotPlaceFor(question.point());
-  const double expected = ExpectedLimitError(question.point());
+  const double expected = question.ExpectedLimitError();
   if (expected > tolerance) {
-    return absl::StrCat("the limit's error, some ", Rounded(expected), ", is beyond the tolerance");
+    return absl::StrCat("the limit's error, up to ", Rounded(expected),
+                        ", is beyond the tolerance");
   }
   const Pilot predicted = PredictedPilot(place);
   const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
@@ -130,7 +133,7 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
 
 std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
   if (const std::string why = WithoutAPilot(question); !why.empty()) {
-    return Billiard(absl::StrCat("exact; ", why));
+    return Billiard(question, why);
   }
   const PilotPlace place = PilotPlaceFor(question.point());
   const std::optional<Pilot> pilot = pilots(place);
@@ -139,52 +142,56 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
   const std::string found =
       absl::StrCat("the limit's error is within ", Rounded(error), ", ", FoundBy(*pilot, place));
   if (error > *question.target().tolerance) {
-    return Billiard(absl::StrCat("exact; ", found, ": beyond the tolerance"));
+    return Billiard(question, absl::StrCat(found, ": beyond the tolerance"));
   }
   return Answer{Model::kSpectrum, absl::StrCat(found, ": within the tolerance"), error};
 }
 
-// Whichever is nearer to the truth in that time. Runs no pilot, which would take of it.
+// The model that has the smaller error within the budget. Runs no pilot, because a pilot would use
+// part of the budget.
 Answer ByBudget(const Question& question) {
-  const double limit = ExpectedLimitError(question.point());
-  const double billiard = question.ErrorOf(question.SamplesInBudget(Model::kBilliard));
+  const double limit = question.ExpectedLimitError();
+  const double billiard = question.ErrorOf(question.SamplesInBudget(Model::kBilliard)) +
+                          question.ErrorOfPrecision(Model::kBilliard).value_or(0);
   const std::string compared =
       absl::StrCat("the billiard's error after this budget is some ", Rounded(billiard),
-                   ", the limit's some ", Rounded(limit));
+                   ", the limit's up to ", Rounded(limit));
   const double enough = question.target().tolerance.value_or(0);
-  if (billiard <= std::max(limit, enough)) return Billiard(absl::StrCat("exact; ", compared));
+  if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
   return {Model::kSpectrum, compared, limit};
 }
 
-std::optional<Answer> RelaxationBy(const Question& question, const PilotSource& pilots) {
-  if (!question.HasLimitError()) return Billiard("exact; the limit's error is not known there");
+std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
+  if (!question.HasLimitError()) {
+    return Billiard(question, "the limit's error is not known there");
+  }
   if (question.target().budget_seconds) return ByBudget(question);
   if (question.target().tolerance) return ByTolerance(question, pilots);
-  return Billiard("exact; without a tolerance the limit's error cannot be weighed");
+  return Billiard(question, "without a tolerance the limit's error cannot be weighed");
 }
 
 std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pilots) {
   const EnsembleSpec& spec = question.spec();
-  if (HasClosedForm(spec.experiment)) {
+  if (spec.experiment->HasClosedForm()) {
     if (!spec.verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
-    return Billiard("asked to verify the closed form");
+    return Billiard(question, "asked to verify the closed form");
   }
-  if (question.relaxes()) return RelaxationBy(question, pilots);
-  return Billiard(absl::StrCat("exact; nothing cheaper answers ", Name(spec.experiment)));
+  if (question.HasLimit()) return AnswerNearTheLimit(question, pilots);
+  return Billiard(question, absl::StrCat("nothing cheaper answers ", spec.experiment->name));
 }
 
 Answer ExplicitAnswer(const Question& question) {
   const Model model = question.spec().model;
-  if (!IsOfTheLimit(model)) return {model, "", 0.0};
+  if (!IsOfTheLimit(model)) return {model, "", question.ErrorOfPrecision(model)};
   if (!question.HasLimitError()) return {model, "", std::nullopt};
-  return {model, "", ExpectedLimitError(question.point())};
+  return {model, "", question.ExpectedLimitError()};
 }
 
 // ---- all rungs ----
 
-std::string CannotAnswer(Model model, Experiment experiment) {
+std::string CannotAnswer(Model model, const ExperimentKind& experiment) {
   return absl::StrCat("there is no ", model == Model::kClosedForm ? "closed form" : "answer by it",
-                      " for ", Name(experiment));
+                      " for ", experiment.name);
 }
 
 void PredictWithoutSamples(const Machine& machine, Rung& rung) {
@@ -205,31 +212,31 @@ void PredictSamples(const Question& question, Rung& rung) {
   const double error = question.ErrorOf(*rung.samples);
   if (std::isfinite(error)) rung.statistical_error = error;
   if (!IsOfTheLimit(rung.model)) {
-    rung.model_error = 0;
-    rung.reason = "exact";
+    rung.model_error = question.ErrorOfPrecision(rung.model);
+    rung.reason = rung.model_error == 0 ? "exact" : "the billiard in single precision";
   }
 }
 
-// What is known of the limit's error: a pilot, if one was run; else what is expected.
+// The limit's error: from a pilot if one was run, else the expected error.
 void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   const std::optional<Pilot> pilot = pilots(place);
   const bool known = pilot.has_value();
-  rung.model_error = known ? LimitErrorBound(*pilot, place, question.point())
-                           : ExpectedLimitError(question.point());
+  rung.model_error =
+      known ? LimitErrorBound(*pilot, place, question.point()) : question.ExpectedLimitError();
   rung.reason = known ? absl::StrCat("the limit; so far off or less, ", FoundBy(*pilot, place))
-                      : "the limit; expected to be so far off, by its scaling with delta";
+                      : "the limit; expected to be so far off or less, by its scaling with delta";
 }
 
 Rung RungFor(Model model, const Question& question, const Machine& machine,
              const PilotSource& pilots) {
   Rung rung;
   rung.model = model;
-  rung.answers = Answers(model, question.spec().experiment);
+  rung.answers = question.experiment().IsAnsweredBy(model);
   if (!rung.answers) {
-    rung.reason = CannotAnswer(model, question.spec().experiment);
+    rung.reason = CannotAnswer(model, question.experiment());
     return rung;
   }
   if (model == Model::kClosedForm || model == Model::kSpectrum) {
@@ -295,18 +302,21 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 
 namespace {
 
-// What the answering model is off by itself, at the worst point; or, where it samples, its error
-// after all the samples that there can be.
+// The model error of the answering model at the worst point. For a model that samples also at least
+// its statistical error with the largest permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec) {
-  const bool closed = spec.model == Model::kAuto && HasClosedForm(spec.experiment) && !spec.verify;
+  const bool closed =
+      spec.model == Model::kAuto && spec.experiment->HasClosedForm() && !spec.verify;
   if (closed || spec.model == Model::kClosedForm) return kClosedFormError;
   double least = 0;
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
-    const bool relaxes = spec.experiment == Experiment::kEnergyRelaxation;
-    if (IsOfTheLimit(spec.model) && relaxes) least = std::max(least, ExpectedLimitError(point));
-    if (spec.model == Model::kSpectrum) continue;
     const Question question(spec, point, Machine());
+    if (IsOfTheLimit(spec.model) && question.HasLimitError()) {
+      least = std::max(least, question.ExpectedLimitError());
+    }
+    if (spec.model == Model::kSpectrum) continue;
+    least = std::max(least, question.ErrorOfPrecision(spec.model).value_or(0));
     const double sampled = question.ErrorOf(static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }
@@ -319,7 +329,9 @@ std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec) {
   if (!spec.target.tolerance) return {};
   const double tolerance = *spec.target.tolerance, least = LeastTolerance(spec);
   if (!(tolerance < least)) return {};
-  const std::string other = IsOfTheLimit(spec.model) ? ", or model auto or billiard" : "";
+  absl::string_view other;
+  if (IsOfTheLimit(spec.model)) other = ", or model auto or billiard";
+  if (spec.precision == Precision::kSingle) other = ", or precision double";
   return {{"target.tolerance",
            absl::StrCat("is ", NumberText(tolerance), ", below what model ", Name(spec.model),
                         " can reach; permitted: tolerance >= ", RoundedUp(least), other)}};

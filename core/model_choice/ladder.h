@@ -1,9 +1,9 @@
-// The ladder of models: which can answer, at what cost and with what error, and which one does.
+// The ladder of models: the models that can answer, their costs and errors, and the choice.
 //
-// AUTO takes the cheapest model that is exact for what was asked, or whose error is established to
-// be within the tolerance. A closed form where there is one; the spectrum where the limit's error
-// allows it; else the billiard. Without a tolerance only what is exact will do; with a budget
-// alone, whatever comes nearest in that time.
+// AUTO chooses the cheapest model that is exact for the experiment, or whose error is known to be
+// within the tolerance. This is a closed form if there is one, else the spectrum if the limit's
+// error allows it, else the billiard. Without a tolerance AUTO chooses only an exact model. With a
+// budget alone it chooses the model with the smallest error that can be reached within the budget.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 
@@ -12,32 +12,32 @@
 #include <string>
 #include <vector>
 
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
 #include "core/model_choice/limit_error.h"
 #include "core/model_choice/machine_rates.h"
 
 namespace ballpiston {
 
-// What predictions are made for.
+// The machine for which costs are predicted.
 struct Machine {
   MachineRates rates;
   int workers = 1;
 };
 
-// Runs or recalls a pilot; nothing: told to stop.
+// Runs a pilot or returns a known one; empty if stop was requested.
 using PilotSource = std::function<std::optional<Pilot>(const PilotPlace&)>;
 
-// The model that answers at a point; for AUTO the service's choice. Without a
-// budget a function of the spec alone, whatever the machine. Empty only if a pilot was needed and
-// the source was told to stop. The spec has no violations.
+// The model that answers at a point; for AUTO the service's choice. Without a budget the choice
+// depends on the spec alone, not on the machine. Empty only if a pilot was needed and stop was
+// requested. The spec must have no violations.
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots);
 
 struct Rung {
   Model model = Model::kBilliard;
   bool answers = false;
-  std::string reason;                       // why not; or what its error is known from
-  std::optional<double> samples;            // that the target takes
+  std::string reason;                       // why it cannot answer, or the source of its error
+  std::optional<double> samples;            // that the target requires
   std::optional<double> work;               // seconds of processor time
   std::optional<double> statistical_error;  // these two relative, of the first estimate
   std::optional<double> model_error;
@@ -46,25 +46,25 @@ struct Rung {
 struct Ladder {
   std::vector<Rung> rungs;  // cheapest first
   Answer answer;
-  // What is to be run before the choice, by one worker, and its part of the chosen rung's work.
+  // The pilot that one worker has to run before the choice, and its part of the chosen rung's work.
   std::optional<PilotPlace> pilot;
   double work_of_pilot = 0;
 
   const Rung& Chosen() const;
   Rung& Chosen();
-  // Where another point runs it.
+  // Removes the pilot and its work, for a point that uses the pilot of another point.
   void DropPilot();
 };
 
-// `pilots` gives what is known of a place; a pilot that was not run yet is predicted.
+// `pilots` returns known pilots; the result of a pilot that has not run yet is predicted.
 Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const Machine& machine,
                  const PilotSource& pilots);
 
-// A tolerance that the answering model cannot reach: below its own error, or the error of all the
-// samples that there can be.
+// Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
+// or below the statistical error of the largest permitted number of samples.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
 
-// Processor time that each point of the grid has of a budget.
+// Processor time of a budget for each point of the grid.
 double BudgetOfAPoint(const EnsembleSpec& spec, int workers);
 
 }  // namespace ballpiston

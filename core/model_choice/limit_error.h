@@ -1,17 +1,14 @@
-// How far the limit delta -> 0 is from the billiard at a delta: the model error of `markov` and of
-// the spectrum, in their relaxation time.
+// The error of the limit delta -> 0 at a given delta, relative to the billiard: the model error of
+// `markov` and of the spectrum, in their relaxation time.
 //
-// Known beforehand, from the mechanism and fitted to what was measured (docs/markov-limit.md): a
-// piston that needs as long as a mean free time for its interval of lambda + 2 delta comes back by
-// the clock, not by chance. So in equilibrium the error is of order x log(1/x), x = (lambda + 2
-// delta)/tau_bp, which falls as delta^2 log(1/delta). From a given energy it is that of the energy
-// itself: u tau_bp against lambda + 2 delta, and the ball's speed likewise.
+// experiment/expected_limit_error.h gives an upper bound in advance, and its coverage.
 //
-// Established by a pilot: a billiard run of fixed size beside the spectrum. While it is small the
-// error falls with delta at least in proportion (it is of order delta^2 log(1/delta), by its
-// mechanism), so a pilot at a delta where collisions are cheap bounds all smaller ones. A pilot is
-// a function of where it is made alone: results that rest on one are the same whoever made it, and
-// when.
+// A pilot checks this bound: a billiard run of fixed size, compared with the spectrum. A small
+// error falls with delta at least in proportion (its mechanism gives the order delta^2
+// log(1/delta)). So a pilot at a delta where collisions are cheap serves all smaller deltas. A
+// pilot can raise the bound but never lower it, so the coverage stays. A pilot's result depends on
+// its place alone, so an answer does not depend on which job ran the pilot, or when. A pilot has
+// its own random numbers, which do not depend on the job's seed.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
 
@@ -19,14 +16,10 @@
 #include <optional>
 #include <stop_token>
 
-#include "core/experiment/ensemble_spec.h"
+#include "core/ensemble/ensemble_spec.h"
 #include "core/model_choice/machine_rates.h"
 
 namespace ballpiston {
-
-// The order of the relaxation time's relative error: in equilibrium within a factor of two of what
-// was measured, from a given energy within five, where effects of either sign meet.
-double ExpectedLimitError(const PointParameters& point);
 
 // A pilot's place. Several deltas may share one.
 struct PilotPlace {
@@ -41,27 +34,27 @@ PointParameters PointOf(const PilotPlace& place);
 
 inline constexpr int64_t kPilotOrbits = 65536;
 
-// Where the error at that point is looked at; its delta is the point's or larger.
+// The place of the pilot for a point. The place's delta is that of the point or larger.
 PilotPlace PilotPlaceFor(const PointParameters& point);
 
 // (billiard - limit)/limit of the relaxation time.
 struct Pilot {
   double difference = 0;
   double standard_error = 0;
-  bool predicted = false;  // not run: what is expected of it
+  bool predicted = false;  // the pilot has not run; the values are predictions
 };
 
-// Some seconds of one core. Empty only if `stop` was requested.
+// Takes a few seconds of one core. Empty only if `stop` was requested.
 std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop);
 
-// What that takes, predicted; in processor time.
+// Predicted processor time of a pilot.
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates);
 
-// What a pilot is expected to say.
+// The expected result of a pilot.
 Pilot PredictedPilot(const PilotPlace& place);
 
-// What the limit's relative error at the point is within, by a pilot at its place: the difference
-// and two of its standard errors, scaled; not less than is expected anyway.
+// Upper bound of the limit's relative error at the point, by a pilot at its place: the pilot's
+// difference plus two of its standard errors, in proportion to delta; at least ExpectedLimitError.
 double LimitErrorBound(const Pilot& pilot, const PilotPlace& place, const PointParameters& point);
 
 }  // namespace ballpiston

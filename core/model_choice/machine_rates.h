@@ -1,4 +1,5 @@
-// How fast this machine computes: what predictions of cost are made from.
+// The speed of a machine, from which costs are predicted. The core has no clock: the caller of a
+// prediction measures the rates and passes them in.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_MACHINE_RATES_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_MACHINE_RATES_H_
 
@@ -14,19 +15,19 @@ struct EngineRate {
 };
 
 struct MachineRates {
-  double first_point = 0;  // of a job, besides what it takes itself: nothing of it is in a cache
+  double first_point = 0;  // extra time of a job's first point, because caches are cold
   double closed_form = 0;  // a point
   double spectrum = 0;     // a point
-  double jump = 0;         // one of the jump process, with what is measured of it
+  double jump = 0;         // a jump of the jump process, with its measurements
   EngineRate lanes;
   EngineRate lanes_single;
   EngineRate reference;
 
-  const EngineRate& Of(Engine engine) const;
+  const EngineRate& Of(Engine engine) const {
+    if (engine == Engine::kReference) return reference;
+    return engine == Engine::kLanesSingle ? lanes_single : lanes;
+  }
 };
-
-// Measured on the calling thread in some 0.3 s.
-MachineRates MeasureMachineRates();
 
 }  // namespace ballpiston
 

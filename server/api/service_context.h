@@ -9,7 +9,6 @@
 #include "absl/time/time.h"
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
-#include "server/execution/comparison_thread.h"
 #include "server/execution/model_ladder.h"
 #include "server/jobs/job_book.h"
 #include "server/limits.h"
@@ -32,7 +31,6 @@ struct ServiceContext {
   ModelLadder& ladder;
   RpcExecutor& executor;
   WatchRegistry& watches;
-  ComparisonThread& comparisons;
   Activity& activity;
   const std::atomic<bool>& draining;
   std::string instance;  // of this server's life: numbers of changes mean nothing beyond it

@@ -1,6 +1,5 @@
 #include "server/api/services.h"
 
-#include "server/api/compare_methods.h"
 #include "server/api/methods.h"
 #include "server/api/unary_rpc.h"
 #include "server/api/watch_ensemble_job.h"
@@ -67,13 +66,6 @@ Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsR
                                       v1::EvaluatePairsResponse* response) {
   return RunUnary<v1::EvaluatePairsRequest, v1::EvaluatePairsResponse>(
       service_, context, {"EvaluatePairs", Role::kRead}, request, response, &server::EvaluatePairs);
-}
-
-grpc::ServerWriteReactor<v1::MethodMeasurement>* MethodService::CompareMethods(
-    Context* context, const v1::CompareMethodsRequest* request) {
-  // It keeps a core busy, as a job does.
-  return CompareMethodsReactor::Start(
-      service_, AdmitCall(service_, *context, {"CompareMethods", Role::kSubmit}), *request);
 }
 
 Unary* ServerService::GetServerStatus(Context* context, const v1::GetServerStatusRequest* request,

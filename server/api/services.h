@@ -5,7 +5,6 @@
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/method.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "server/api/service_context.h"
 
@@ -51,17 +50,6 @@ class AnalyticService : public v1::AnalyticService::CallbackService {
   grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
                                           const v1::EvaluatePairsRequest* request,
                                           v1::EvaluatePairsResponse* response) override;
-
- private:
-  ServiceContext& service_;
-};
-
-class MethodService : public v1::MethodService::CallbackService {
- public:
-  explicit MethodService(ServiceContext& service) : service_(service) {}
-
-  grpc::ServerWriteReactor<v1::MethodMeasurement>* CompareMethods(
-      grpc::CallbackServerContext* context, const v1::CompareMethodsRequest* request) override;
 
  private:
   ServiceContext& service_;

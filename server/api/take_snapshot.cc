@@ -39,7 +39,7 @@ void AddStore(const ServiceContext& service, ServerSnapshot& snapshot) {
   snapshot.store_bytes =
       FileBytes(service.store_path) + FileBytes(absl::StrCat(service.store_path, "-wal"));
   snapshot.store_commits = service.store.commits();
-  snapshot.store_blocks_written = service.store.blocks_written();
+  snapshot.store_checkpoints_written = service.store.checkpoints_written();
   snapshot.store_pending_writes = service.store.pending_writes();
   snapshot.store_failing = service.store.failing() || service.store.stalled();
 }

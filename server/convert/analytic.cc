@@ -7,9 +7,11 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 #include "core/arithmetic/number_text.h"
 #include "core/closed_form/canonical_measure.h"
 #include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/exchange_rate.h"
 #include "core/closed_form/kernel.h"
 #include "core/closed_form/kernel_moments.h"
 #include "core/closed_form/mean_free_time.h"
@@ -28,11 +30,11 @@ void Add(const std::string& field, const absl::Status& status, Violations& viola
   if (!status.ok()) violations.push_back({field, std::string(status.message())});
 }
 
-// Lists may be long and all wrong; what is not told is of no use to anybody.
+// A long list may have an error in every element; more reported errors would not help the user.
 bool Enough(const Violations& violations) { return violations.size() >= 1000; }
 
 template <typename List, typename Allowed>
-void CheckValues(const char* field, const List& values, Allowed allowed, const char* range,
+void CheckValues(const char* field, const List& values, Allowed allowed, absl::string_view range,
                  Violations& violations) {
   for (int i = 0; i < values.size() && !Enough(violations); ++i) {
     if (allowed(values.Get(i))) continue;
@@ -41,8 +43,8 @@ void CheckValues(const char* field, const List& values, Allowed allowed, const c
   }
 }
 
-// The bound on delta falls as rho grows: a delta is wrong with some valid rho if it is with the
-// largest of them.
+// The bound of delta falls as rho grows. So a delta that is invalid with any valid rho is invalid
+// with the largest one.
 void CheckDelta(const v1::EvaluatePairsRequest& request, int index, double largest_rho,
                 Violations& violations) {
   const double delta = request.delta(index);
@@ -68,6 +70,13 @@ void CheckNotEmpty(const v1::EvaluatePairsRequest& request, Violations& violatio
   if (request.delta_size() == 0) violations.push_back({"delta", "required: at least one value"});
 }
 
+// The list that makes the answer long.
+const char* LongestList(const v1::EvaluatePairsRequest& request, double of_energies,
+                        double of_temperatures) {
+  if (of_energies >= of_temperatures) return "epsilon";
+  return request.temperature_size() >= request.beta_size() ? "temperature" : "beta";
+}
+
 void CheckSize(const v1::EvaluatePairsRequest& request, Violations& violations) {
   const int64_t pairs = int64_t{request.rho_size()} * request.delta_size();
   if (pairs > kMaxPairs) {
@@ -75,14 +84,23 @@ void CheckSize(const v1::EvaluatePairsRequest& request, Violations& violations) 
         {"rho", absl::StrCat(pairs, " pairs of rho and delta; at most ", kMaxPairs, " a call")});
     return;
   }
-  const double values = static_cast<double>(pairs) *
-                        (request.epsilon_size() * (6.0 + request.outgoing_epsilon_size()) +
-                         4.0 * request.beta_size());
+  const double of_energies = request.epsilon_size() * (6.0 + request.outgoing_epsilon_size());
+  const double of_temperatures = 8.0 * (request.beta_size() + request.temperature_size());
+  const double values = static_cast<double>(pairs) * (of_energies + of_temperatures);
   if (values <= static_cast<double>(kMaxAnalyticValues)) return;
-  violations.push_back(
-      {"epsilon", absl::StrFormat("%.0f values in the answer (for each pair 6 + outgoing_epsilon "
-                                  "an epsilon, 4 a beta); at most %d a call",
-                                  values, kMaxAnalyticValues)});
+  violations.push_back({LongestList(request, of_energies, of_temperatures),
+                        absl::StrFormat("%.0f values in the answer (for each pair 6 + "
+                                        "outgoing_epsilon an epsilon, 8 a beta or temperature); at "
+                                        "most %d a call",
+                                        values, kMaxAnalyticValues)});
+}
+
+void CheckTemperatures(const v1::EvaluatePairsRequest& request, Violations& violations) {
+  const auto allowed = [](double x) { return x >= kMinTemperature && x <= kMaxTemperature; };
+  const std::string range =
+      absl::StrCat("[", NumberText(kMinTemperature), ", ", NumberText(kMaxTemperature), "]");
+  CheckValues("beta", request.beta(), allowed, range, violations);
+  CheckValues("temperature", request.temperature(), allowed, range, violations);
 }
 
 Violations Check(const v1::EvaluatePairsRequest& request) {
@@ -96,9 +114,7 @@ Violations Check(const v1::EvaluatePairsRequest& request) {
   CheckValues(
       "outgoing_epsilon", request.outgoing_epsilon(), [](double x) { return x > 0 && x < 0.5; },
       "(0, 1/2)", violations);
-  CheckValues(
-      "beta", request.beta(), [](double x) { return x > 0 && std::isfinite(x); }, "(0, infinity)",
-      violations);
+  CheckTemperatures(request, violations);
   return violations;
 }
 
@@ -134,12 +150,17 @@ void FillEnergy(const v1::EvaluatePairsRequest& request, const PairGeometry& geo
   }
 }
 
-void FillCanonical(double beta, v1::CanonicalAnalytics& canonical) {
+void FillCanonical(double beta, double temperature, const PairMeasures& measures, double rho,
+                   v1::CanonicalAnalytics& canonical) {
   const CanonicalAverages averages = AveragesAt(beta);
   canonical.set_beta(beta);
   canonical.set_mean_f(averages.mean_f);
   canonical.set_mean_energy_current(averages.mean_energy_current);
   canonical.set_mean_h(averages.mean_h);
+  canonical.set_temperature(temperature);
+  canonical.set_exchange_rate(ExchangeRate(measures, temperature));
+  canonical.set_static_conductivity(StaticConductivity(canonical.exchange_rate()));
+  canonical.set_rare_limit_exchange_rate(RareLimitExchangeRate(rho, temperature));
 }
 
 void FillPoint(const v1::EvaluatePairsRequest& request, const PairGeometry& geometry,
@@ -149,28 +170,31 @@ void FillPoint(const v1::EvaluatePairsRequest& request, const PairGeometry& geom
   for (const double epsilon : request.epsilon()) {
     FillEnergy(request, geometry, epsilon, *point.add_energies());
   }
-  for (const double beta : request.beta()) FillCanonical(beta, *point.add_canonical());
+  const auto fill = [&](double beta, double temperature) {
+    FillCanonical(beta, temperature, measures, geometry.rho(), *point.add_canonical());
+  };
+  for (const double beta : request.beta()) fill(beta, 1 / beta);
+  for (const double temperature : request.temperature()) fill(1 / temperature, temperature);
 }
 
-// Answers beyond the range of double: deltas and betas that are next to 0.
+bool RatesAreInRange(const v1::PairAnalytics& point) {
+  return std::isfinite(point.tau_ball_piston()) && point.area_ball_piston() > 0 &&
+         std::all_of(point.canonical().begin(), point.canonical().end(),
+                     [](const auto& row) { return std::isnormal(row.static_conductivity()); });
+}
+
+// Answers beyond the range of double: deltas that are next to 0.
 Violations Overflows(const v1::EvaluatePairsRequest& request,
                      const v1::EvaluatePairsResponse& response) {
   Violations violations;
   const int pairs = std::min(request.delta_size(), response.points_size());
   for (int i = 0; i < pairs; ++i) {  // those of the first rho
     const v1::PairAnalytics& point = response.points(i);
-    if (std::isfinite(point.tau_ball_piston()) && point.area_ball_piston() > 0) continue;
+    if (RatesAreInRange(point)) continue;
     violations.push_back(
-        {Element("delta", i),
-         absl::StrCat(NumberText(point.delta()),
-                      " is too small: the mean free time leaves the range of double")});
-  }
-  for (int i = 0; i < response.points(0).canonical_size(); ++i) {
-    const v1::CanonicalAnalytics& canonical = response.points(0).canonical(i);
-    if (std::isfinite(canonical.mean_h())) continue;
-    violations.push_back(
-        {Element("beta", i), absl::StrCat(NumberText(canonical.beta()),
-                                          " is too small: <h> leaves the range of double")});
+        {Element("delta", i), absl::StrCat(NumberText(point.delta()),
+                                           " is too small: the collision rate or its inverse "
+                                           "leaves the range of double")});
   }
   return violations;
 }

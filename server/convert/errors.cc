@@ -121,13 +121,6 @@ absl::Status JobStillActive(const std::string& name, absl::string_view state) {
                   "JOB_STILL_ACTIVE", "state", std::string(state));
 }
 
-absl::Status ComparisonRunning() {
-  return WithReason(
-      absl::ResourceExhaustedError("a comparison of methods of yours is running; try again when "
-                                   "it has ended, in a minute or so"),
-      "COMPARISON_RUNNING");
-}
-
 absl::Status ShuttingDown() {
   return WithReason(absl::UnavailableError("the server is shutting down; try again later"),
                     "SHUTTING_DOWN");

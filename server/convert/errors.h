@@ -1,4 +1,4 @@
-// Every error the API speaks of, by reason, and the one place where a status becomes gRPC's.
+// Every error of the API, by reason, and the one place where a status becomes a gRPC status.
 //
 // A status made here carries its google.rpc.ErrorInfo (domain "ballpiston") and, where the request
 // is wrong, a google.rpc.BadRequest as absl payloads. GrpcStatus packs them as google.rpc.Status
@@ -14,8 +14,8 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
-#include "core/experiment/ensemble_spec.h"
-#include "core/experiment/point_summary.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_summary.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
 #include "server/security/principal.h"
@@ -35,25 +35,24 @@ absl::Status JobAlreadyEnded(const std::string& name,
                              absl::string_view state);  // FAILED_PRECONDITION
 absl::Status JobStillActive(const std::string& name,
                             absl::string_view state);  // FAILED_PRECONDITION
-absl::Status ComparisonRunning();                      // RESOURCE_EXHAUSTED
 absl::Status ShuttingDown();                           // UNAVAILABLE
 
-// UNAUTHENTICATED. None says which credentials were shown.
+// UNAUTHENTICATED. No message contains the credentials.
 absl::Status CredentialsMissing();
 absl::Status CredentialsInvalid();
 absl::Status CredentialsExpired();
 
-// RESOURCE_EXHAUSTED: `what` is what there is too much of, `flag` that of the server which permits
-// no more than `limit`.
+// RESOURCE_EXHAUSTED: `what` exceeds `limit`, which the server's flag `flag` sets.
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit);
 
 absl::Status RoleTooLow(const Principal& caller, Role least);  // PERMISSION_DENIED
 
-// DEADLINE_EXCEEDED: a point's budget was spent first. Says what was reached.
+// DEADLINE_EXCEEDED: a point's budget was spent before the tolerance was reached. The message gives
+// the error that was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
-// What a call answers when the store did not take it or could not be read. RESOURCE_EXHAUSTED,
+// The status of a call when a write to the store or a read from it failed. RESOURCE_EXHAUSTED,
 // STORE_FULL: the disk is full. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status
 // that has a reason already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
@@ -63,7 +62,7 @@ absl::Status WithReason(absl::Status status, const std::string& reason);
 // The same, unless it has one.
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 
-// What a job that FAILED keeps.
+// The error that a FAILED job stores.
 google::rpc::Status RpcStatus(const absl::Status& status);
 
 grpc::Status GrpcStatus(const absl::Status& status);

@@ -8,7 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/result.pb.h"
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
 
 namespace ballpiston::server {
 

@@ -9,7 +9,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "core/engine_version.h"
+#include "core/ensemble/experiment_kind.h"
 #include "core/model_choice/ladder.h"
+#include "google/protobuf/descriptor.h"
 #include "google/protobuf/message.h"
 #include "google/protobuf/unknown_field_set.h"
 #include "server/convert/deterministic_bytes.h"
@@ -19,7 +21,7 @@ namespace {
 
 using Violations = std::vector<FieldViolation>;
 
-// A message of a few bytes each may hold millions of them; so many that are told say it all.
+// A message can hold millions of unknown fields of a few bytes each; at most this many are listed.
 constexpr int kMaxUnknownFields = 100;
 
 // A number of an enumeration that has no name here.
@@ -30,24 +32,12 @@ void AddUnknownNumber(const char* field, int number, Violations& violations) {
                            "client?")});
 }
 
-Experiment ExperimentOf(v1::EnsembleSpec::Experiment message, Violations& violations) {
-  switch (message) {
-    case v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED:
-      return Experiment::kUnspecified;
-    case v1::EnsembleSpec::EQUILIBRIUM:
-      return Experiment::kEquilibrium;
-    case v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME:
-      return Experiment::kConditionalMeanFreeTime;
-    case v1::EnsembleSpec::FIRST_HIT:
-      return Experiment::kFirstHit;
-    case v1::EnsembleSpec::ENERGY_RELAXATION:
-      return Experiment::kEnergyRelaxation;
-    case v1::EnsembleSpec::MARKOV_PROPERTY:
-      return Experiment::kMarkovProperty;
-    default:
-      AddUnknownNumber("spec.experiment", message, violations);
-      return Experiment::kUnspecified;
+const ExperimentKind* ExperimentOf(v1::EnsembleSpec::Experiment message, Violations& violations) {
+  const ExperimentKind* found = FindExperiment(static_cast<uint64_t>(message));
+  if (found == nullptr && message != v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED) {
+    AddUnknownNumber("spec.experiment", message, violations);
   }
+  return found;
 }
 
 Model ModelOf(v1::EnsembleSpec::Model message, Violations& violations) {
@@ -84,13 +74,27 @@ Precision PrecisionOf(v1::EnsembleSpec::Precision message, Violations& violation
   }
 }
 
+// A list of the grid, or a parameter of a point, by the parameter's name.
+const google::protobuf::FieldDescriptor* FieldOf(const google::protobuf::Message& message,
+                                                 const Parameter& parameter) {
+  return message.GetDescriptor()->FindFieldByName(std::string(parameter.name));
+}
+
+bool IsWhole(const google::protobuf::FieldDescriptor* field) {
+  return field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_INT32;
+}
+
 Grid GridOf(const v1::Grid& message) {
   Grid grid;
-  grid.rho.assign(message.rho().begin(), message.rho().end());
-  grid.delta.assign(message.delta().begin(), message.delta().end());
-  grid.epsilon.assign(message.epsilon().begin(), message.epsilon().end());
-  grid.exponent.assign(message.exponent().begin(), message.exponent().end());
-  grid.cells.assign(message.cells().begin(), message.cells().end());
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  for (const Parameter* parameter : kParameters) {
+    const auto* field = FieldOf(message, *parameter);
+    std::vector<double>& list = grid[*parameter];
+    for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
+      list.push_back(IsWhole(field) ? reflection.GetRepeatedInt32(message, field, i)
+                                    : reflection.GetRepeatedDouble(message, field, i));
+    }
+  }
   return grid;
 }
 
@@ -140,31 +144,23 @@ void AddCoreViolations(const EnsembleSpec& spec, Violations& violations) {
   }
 }
 
-v1::EnsembleSpec::Experiment ExperimentMessage(Experiment experiment) {
-  switch (experiment) {
-    case Experiment::kUnspecified:
-      return v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
-    case Experiment::kEquilibrium:
-      return v1::EnsembleSpec::EQUILIBRIUM;
-    case Experiment::kConditionalMeanFreeTime:
-      return v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
-    case Experiment::kFirstHit:
-      return v1::EnsembleSpec::FIRST_HIT;
-    case Experiment::kEnergyRelaxation:
-      return v1::EnsembleSpec::ENERGY_RELAXATION;
-    case Experiment::kMarkovProperty:
-      return v1::EnsembleSpec::MARKOV_PROPERTY;
-  }
-  return v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
+v1::EnsembleSpec::Experiment ExperimentMessage(const ExperimentKind* experiment) {
+  return static_cast<v1::EnsembleSpec::Experiment>(experiment == nullptr ? 0 : experiment->number);
 }
 
 v1::Grid GridMessage(const Grid& grid) {
   v1::Grid message;
-  message.mutable_rho()->Assign(grid.rho.begin(), grid.rho.end());
-  message.mutable_delta()->Assign(grid.delta.begin(), grid.delta.end());
-  message.mutable_epsilon()->Assign(grid.epsilon.begin(), grid.epsilon.end());
-  message.mutable_exponent()->Assign(grid.exponent.begin(), grid.exponent.end());
-  message.mutable_cells()->Assign(grid.cells.begin(), grid.cells.end());
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  for (const Parameter* parameter : kParameters) {
+    const auto* field = FieldOf(message, *parameter);
+    for (const double value : grid[*parameter]) {
+      if (IsWhole(field)) {
+        reflection.AddInt32(&message, field, static_cast<int32_t>(value));
+      } else {
+        reflection.AddDouble(&message, field, value);
+      }
+    }
+  }
   return message;
 }
 
@@ -214,10 +210,11 @@ v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec) {
 
 v1::PointParameters ParametersMessage(const PointParameters& parameters) {
   v1::PointParameters message;
-  message.set_rho(parameters.rho);
-  message.set_delta(parameters.delta);
-  if (parameters.epsilon) message.set_epsilon(*parameters.epsilon);
-  if (parameters.exponent) message.set_exponent(*parameters.exponent);
+  for (const Parameter* parameter : kParameters) {
+    const auto& value = parameters.Find(*parameter);
+    if (!value) continue;
+    message.GetReflection()->SetDouble(&message, FieldOf(message, *parameter), *value);
+  }
   return message;
 }
 

@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/spec.pb.h"
-#include "core/experiment/ensemble_spec.h"
+#include "core/ensemble/ensemble_spec.h"
 
 namespace ballpiston::server {
 

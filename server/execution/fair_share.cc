@@ -6,18 +6,18 @@
 namespace ballpiston::server {
 namespace {
 
-// Until a run has finished a block; what a plan of blocks aims at.
-constexpr double kExpectedBlockSeconds = 0.1;
+// The assumed cost before a run has had a turn: the nominal length of a turn (block_session.cc).
+constexpr double kExpectedTurnSeconds = 0.05;
 
 }  // namespace
 
 double FairShare::Share::Charge() const {
-  const double mean = blocks_ended > 0 ? spent / blocks_ended : kExpectedBlockSeconds;
-  return used + blocks_in_flight * mean;
+  const double mean = turns_ended > 0 ? spent / turns_ended : kExpectedTurnSeconds;
+  return used + turns_in_flight * mean;
 }
 
-std::set<FairShare::Turn>::const_iterator FairShare::FirstOf(int64_t rank,
-                                                             const std::set<Turn>& turns) {
+std::set<FairShare::Place>::const_iterator FairShare::FirstOf(int64_t rank,
+                                                              const std::set<Place>& turns) {
   return turns.lower_bound({.rank = rank,
                             .charge = -std::numeric_limits<double>::infinity(),
                             .run = std::numeric_limits<int64_t>::min()});
@@ -26,7 +26,7 @@ std::set<FairShare::Turn>::const_iterator FairShare::FirstOf(int64_t rank,
 template <typename Change>
 void FairShare::ChangeRun(int64_t run, Change change) {
   RunShare& share = runs_.find(run)->second;
-  std::set<Turn>& turns = share.principal->second.turns;
+  std::set<Place>& turns = share.principal->second.turns;
   turns.erase({share.rank, share.time.Charge(), run});
   change(share.time);
   turns.insert({share.rank, share.time.Charge(), run});
@@ -64,8 +64,8 @@ void FairShare::Leave(Principals::iterator principal) {
 void FairShare::Add(int64_t run, const std::string& principal, int32_t priority) {
   if (runs_.contains(run)) return;
   RunShare added{.principal = Enter(principal), .rank = -int64_t{priority}, .time = {}};
-  std::set<Turn>& turns = added.principal->second.turns;
-  // Compared with none but those of its own priority.
+  std::set<Place>& turns = added.principal->second.turns;
+  // A run is compared only with runs of its own priority.
   const auto least = FirstOf(added.rank, turns);
   if (least != turns.end() && least->rank == added.rank) added.time.used = least->charge;
   turns.insert({added.rank, added.time.Charge(), run});
@@ -79,13 +79,14 @@ void FairShare::Remove(int64_t run) {
   runs_.erase(found);
   removed.principal->second.turns.erase({removed.rank, removed.time.Charge(), run});
   ChangePrincipal(removed.principal->first,
-                  [&](Share& time) { time.blocks_in_flight -= removed.time.blocks_in_flight; });
+                  [&](Share& time) { time.turns_in_flight -= removed.time.turns_in_flight; });
   if (removed.principal->second.turns.empty()) Leave(removed.principal);
 }
 
 // ---- what they use ----
 
-// First all, then one after the other: a charge that was raised may miss its mark by a rounding.
+// First finds all, then raises one after the other, because rounding may leave a raised charge just
+// below the mark.
 void FairShare::RaisePrincipalsBelow(double charge) {
   std::vector<std::string> passed;
   for (auto next = order_.begin(); next->first < charge; ++next) passed.push_back(next->second);
@@ -94,33 +95,33 @@ void FairShare::RaisePrincipalsBelow(double charge) {
   }
 }
 
-void FairShare::RaiseRunsBefore(const Turn& turn, const std::set<Turn>& turns) {
+void FairShare::RaiseRunsBefore(const Place& place, const std::set<Place>& turns) {
   std::vector<int64_t> passed;
-  for (auto next = FirstOf(turn.rank, turns); next->charge < turn.charge; ++next) {
+  for (auto next = FirstOf(place.rank, turns); next->charge < place.charge; ++next) {
     passed.push_back(next->run);
   }
   for (const int64_t run : passed) {
-    ChangeRun(run, [&](Share& time) { time.RaiseTo(turn.charge); });
+    ChangeRun(run, [&](Share& time) { time.RaiseTo(place.charge); });
   }
 }
 
-void FairShare::BlockBegins(int64_t run) {
+void FairShare::TurnBegins(int64_t run) {
   const auto found = runs_.find(run);
   if (found == runs_.end()) return;
   const auto& [name, principal] = *found->second.principal;
   RaisePrincipalsBelow(principal.time.Charge());
   RaiseRunsBefore({found->second.rank, found->second.time.Charge(), run}, principal.turns);
-  const auto begin = [](Share& time) { time.blocks_in_flight += 1; };
+  const auto begin = [](Share& time) { time.turns_in_flight += 1; };
   ChangeRun(run, begin);
   ChangePrincipal(name, begin);
 }
 
-void FairShare::BlockEnds(int64_t run, double seconds) {
+void FairShare::TurnEnds(int64_t run, double seconds) {
   const auto found = runs_.find(run);
   if (found == runs_.end()) return;
   const auto end = [seconds](Share& time) {
-    time.blocks_in_flight -= 1;
-    time.blocks_ended += 1;
+    time.turns_in_flight -= 1;
+    time.turns_ended += 1;
     time.used += seconds;
     time.spent += seconds;
   };

@@ -1,18 +1,20 @@
-// Whose turn it is: an even share of compute time for every principal with active runs, however
-// many they are; among a principal's runs the higher priority first, and an even share for those of
-// the same.
+// Fair-share scheduling. Every principal with active runs gets an equal share of compute time,
+// however many runs it has. Among the runs of a principal, higher priorities come first, and runs
+// of equal priority get equal shares.
 //
-// At both levels the least compute time used comes first, at equality the older run, or the
-// principal whose name comes first. A block in flight is charged when it begins, at the mean cost
-// of the blocks so far, or else every idle worker would turn to the same run; the charge becomes
-// the true cost when the block ends. Who is new starts at the least of those present: it neither
-// waits for the others to be served nor makes them wait until it has caught up. The same holds for
-// who had nothing to hand out when its turn came: it is not owed what it could not use. A principal
-// that leaves ahead of others and comes back is as far ahead, or else a row of short jobs would get
-// more than one long one.
+// At both levels the entry with the least compute time comes first. Ties go to the older run, or to
+// the principal whose name sorts first. A task (a turn at a point, or the opening of a point) is
+// charged when it begins, at the mean cost of earlier tasks; otherwise every idle worker would
+// choose the same run. When the task ends, the true cost replaces the charge. A new principal or
+// run starts at the least charge of those present: it does not wait for the others, and the others
+// do not wait until it has caught up. A principal or run that has no task when its turn comes is
+// raised in the same way: it gets no credit for time that it could not use. A principal that leaves
+// with more compute time than others and returns keeps the difference; otherwise a sequence of
+// short jobs would get more time than one long job.
 //
-// A choice takes the time of a look-up, plus that of those who are asked in vain: runs with all of
-// their blocks in flight, so no more than there are workers. Properties, with tests of their names:
+// A choice takes the time of a look-up, plus the time to skip runs without a task. Workers hold all
+// work of such a run, so there are no more such runs than workers. Properties, each with a test of
+// its name:
 //   1. UnequalBlocksGetEqualTime.
 //   2. PrincipalsGetEqualTimeWhateverTheirJobs.
 //   3. AHigherPriorityGoesFirstWithinItsPrincipal.
@@ -42,40 +44,40 @@ class FairShare {
   void Add(int64_t run, const std::string& principal, int32_t priority);
   void Remove(int64_t run);
 
-  // The run whose turn it is, of those for which `has_task` is true; it is asked of one after the
-  // other until it is.
+  // The first run in the order of turns for which `has_task` is true. Calls `has_task` for one run
+  // after the other until it returns true.
   template <typename HasTask>
   std::optional<int64_t> First(HasTask has_task) const;
 
-  // Of a run that was added and not removed; others are ignored. It begins because it was first:
-  // those before it had no task.
-  void BlockBegins(int64_t run);
-  void BlockEnds(int64_t run, double seconds);
+  // A task of the run begins or ends; ignored if the run is not present. A task begins only for the
+  // run that First returned, so the runs before it had no task.
+  void TurnBegins(int64_t run);
+  void TurnEnds(int64_t run, double seconds);
 
   size_t runs() const { return runs_.size(); }
 
  private:
   struct Share {
     double used = 0;   // seconds, from the starting point
-    double spent = 0;  // seconds, by its own blocks
-    double blocks_ended = 0;
-    double blocks_in_flight = 0;
+    double spent = 0;  // seconds, by its own tasks
+    double turns_ended = 0;
+    double turns_in_flight = 0;
 
     double Charge() const;
     void RaiseTo(double charge) { used += charge - Charge(); }
   };
 
-  struct Turn {
+  struct Place {
     int64_t rank = 0;  // the higher the priority, the less
     double charge = 0;
     int64_t run = 0;
 
-    auto operator<=>(const Turn&) const = default;
+    auto operator<=>(const Place&) const = default;
   };
 
   struct PrincipalShare {
     Share time;
-    std::set<Turn> turns;
+    std::set<Place> turns;
   };
 
   using Principals = std::map<std::string, PrincipalShare>;
@@ -91,7 +93,7 @@ class FairShare {
   double LeastCharge() const { return order_.empty() ? 0 : order_.begin()->first; }
 
   // The least turn of that rank, or the first of the next.
-  static std::set<Turn>::const_iterator FirstOf(int64_t rank, const std::set<Turn>& turns);
+  static std::set<Place>::const_iterator FirstOf(int64_t rank, const std::set<Place>& turns);
 
   // Change a share, and keep the order in step with it.
   template <typename Change>
@@ -100,7 +102,7 @@ class FairShare {
   void ChangePrincipal(const std::string& principal, Change change);
 
   void RaisePrincipalsBelow(double charge);
-  void RaiseRunsBefore(const Turn& turn, const std::set<Turn>& turns);
+  void RaiseRunsBefore(const Place& place, const std::set<Place>& turns);
 
   std::unordered_map<int64_t, RunShare> runs_;
   Principals principals_;  // with runs
@@ -111,8 +113,8 @@ class FairShare {
 template <typename HasTask>
 std::optional<int64_t> FairShare::First(HasTask has_task) const {
   for (const auto& [charge, name] : order_) {
-    for (const Turn& turn : principals_.find(name)->second.turns) {
-      if (has_task(turn.run)) return turn.run;
+    for (const Place& place : principals_.find(name)->second.turns) {
+      if (has_task(place.run)) return place.run;
     }
   }
   return std::nullopt;

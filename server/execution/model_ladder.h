@@ -1,11 +1,11 @@
-// The ladder of models on this server: which model answers a point, with the server's own rates and
-// the pilots that it has run.
+// Chooses the model that answers a point, with the rates of this server and the pilots that it has
+// run.
 //
-// Rates are measured when they are first needed (some 0.3 s), and kept for the server's life; those
-// of points without samples with all that it takes to serve them.
-// Pilots are kept in the store: one is run once for each place, by the worker that first needs it;
-// others that need the same wait for it. A pilot that cannot be stored or read is none the worse
-// for its own question. Thread-safe.
+// The server measures rates when they are first needed (about 0.3 s) and keeps them until it stops.
+// The rates of points without samples include all work to serve them. The store keeps pilots. The
+// first worker that needs a pilot runs it, once for each place; other workers that need the same
+// pilot wait. If a pilot cannot be read, it is run again; if it cannot be stored, its result is
+// still used. Thread-safe.
 #ifndef BALLPISTON_SERVER_EXECUTION_MODEL_LADDER_H_
 #define BALLPISTON_SERVER_EXECUTION_MODEL_LADDER_H_
 
@@ -27,7 +27,7 @@ using PilotRunner = std::function<std::optional<Pilot>(const PilotPlace&, std::s
 
 class ModelLadder {
  public:
-  // The store has to outlive this, and this the factory. Pilots are run by `run_pilot`.
+  // The store must outlive the ladder, and the ladder its factory. `run_pilot` runs pilots.
   ModelLadder(Store& store, int workers, PilotRunner run_pilot = RunPilot);
 
   // The core's experiments, each by the model that was asked for or chosen.
@@ -40,12 +40,12 @@ class ModelLadder {
 
  private:
   void Measure();
-  // All that a point without samples takes.
+  // Does all the work that serves a point without samples.
   void Serve(const EnsembleSpec& spec);
   std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index,
                                                 const std::stop_token& stop);
   std::optional<Pilot> Known(const PilotPlace& place);
-  // Empty if it was told to stop.
+  // Empty if stop was requested.
   std::optional<Pilot> Get(const PilotPlace& place, const std::stop_token& stop);
   std::optional<Pilot> Run(const PilotPlace& place, const std::stop_token& stop);
   void Keep(const PilotPlace& place, const Pilot& pilot);
@@ -58,7 +58,7 @@ class ModelLadder {
 
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::map<PilotPlace, Pilot> pilots_;  // as in the store, as far as they were asked for
+  std::map<PilotPlace, Pilot> pilots_;  // a cache of the store
   std::set<PilotPlace> running_;
 };
 

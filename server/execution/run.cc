@@ -4,19 +4,7 @@
 
 namespace ballpiston::server {
 
-OpenPoint::OpenPoint(std::shared_ptr<const PointExperiment> experiment_of_point)
-    : experiment(std::move(experiment_of_point)), merge(experiment) {}
-
-std::optional<uint64_t> OpenPoint::NextBlock(uint64_t window) {
-  if (merge.finished()) return std::nullopt;
-  while (merge.Knows(next_block)) ++next_block;
-  if (next_block >= experiment->plan().Blocks()) return std::nullopt;
-  if (next_block >= merge.blocks_merged() + window) return std::nullopt;
-  return next_block++;
-}
-
-Run::Run(RunRequest request, uint64_t window)
-    : request_(std::move(request)), window_(window), shortfall_(request_.shortfall) {
+Run::Run(RunRequest request) : request_(std::move(request)), shortfall_(request_.shortfall) {
   SkipFinishedPoints();
 }
 
@@ -34,9 +22,14 @@ std::optional<RunTask> Run::NextTask() {
 
 std::optional<RunTask> Run::NextOfOpenPoints() {
   for (const auto& [index, point] : open_) {
-    if (const auto block = point->NextBlock(window_)) {
-      return BlockTask{index, *block, point->experiment, point->stop.get_token()};
+    if (point->fold.finished()) continue;  // it is about to be closed
+    SessionTask task = {index, nullptr, point->experiment, point->stop.get_token()};
+    if (!point->resting.empty()) {
+      task.session = std::move(point->resting.front());
+      point->resting.pop_front();
+      return task;
     }
+    if (point->fold.HasNextBlock()) return task;
   }
   return std::nullopt;
 }
@@ -52,6 +45,10 @@ std::optional<RunTask> Run::NextPoint() {
 void Run::TaskDone(const RunTask& task) {
   --tasks_out_;
   if (std::holds_alternative<OpenPointTask>(task)) opening_ = false;
+}
+
+void Run::Rest(size_t point, std::shared_ptr<BlockSession> session) {
+  if (OpenPoint* open = FindOpen(point)) open->resting.push_back(std::move(session));
 }
 
 void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {

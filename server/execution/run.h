@@ -1,37 +1,40 @@
-// One job while it is computed: its open points and which block comes next.
+// The state of one job during its computation: its open points and the next task for a worker.
 //
-// Points are opened in grid order, when no block of an open point is left to hand out, so that a
-// grid of 100,000 points costs the memory of those in flight. Blocks are handed out at most
-// `window` beyond the merged prefix of their point, which bounds both the results that wait and the
-// work thrown away once a tolerance is reached. Not thread-safe: the pool's lock guards it.
+// A point is opened, in grid order, when no open point has a block left to hand out. So a grid of
+// 100,000 points takes only the memory of its open points. A worker computes blocks of one point in
+// a session. The session keeps its orbits while the worker serves other runs, so a point has at
+// most as many sessions as there are workers. Not thread-safe: the pool's lock guards it.
 #ifndef BALLPISTON_SERVER_EXECUTION_RUN_H_
 #define BALLPISTON_SERVER_EXECUTION_RUN_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "core/experiment/ensemble_spec.h"
-#include "core/experiment/point_experiment.h"
-#include "server/execution/ordered_merge.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "server/execution/block_session.h"
 #include "server/execution/run_journal.h"
 
 namespace ballpiston::server {
 
-// Makes a point's experiment; may take seconds, where a model has to be chosen by a pilot run. Null
-// only if it was told to stop. May throw.
+// Makes a point's experiment. This may take seconds if a pilot has to run to choose the model. Null
+// only if stop was requested. May throw.
 using ExperimentFactory = std::function<std::unique_ptr<const PointExperiment>(
     const EnsembleSpec&, size_t index, const std::stop_token& stop)>;
 
-// A point that ended short of its tolerance, and what to say of it.
+// A point that ended without reaching its tolerance, and the status that reports it.
 struct Shortfall {
   size_t point = 0;
   absl::Status status;
@@ -39,11 +42,11 @@ struct Shortfall {
 
 struct RunRequest {
   int64_t key = 0;        // greater for a newer job
-  std::string principal;  // whose it is, for a fair share
+  std::string principal;  // the job's owner, for fair shares
   int32_t priority = 0;   // among the principal's; higher first
   EnsembleSpec spec;
   std::vector<bool> finished;               // by point of the grid: nothing left to compute
-  bool has_stored_blocks = false;           // ask the journal for them
+  bool has_checkpoints = false;             // ask the journal for them
   std::optional<Shortfall> shortfall = {};  // of a finished point
   std::shared_ptr<RunJournal> journal;
 };
@@ -53,41 +56,44 @@ struct OpenPointTask {
   std::stop_token stop;
 };
 
-struct BlockTask {
+// Blocks of a point, for a turn of some 50 ms.
+struct SessionTask {
   size_t point = 0;
-  uint64_t block = 0;
+  std::shared_ptr<BlockSession> session;  // null: the worker makes a new session
   std::shared_ptr<const PointExperiment> experiment;
   std::stop_token stop;
 };
 
-using RunTask = std::variant<OpenPointTask, BlockTask>;
+using RunTask = std::variant<OpenPointTask, SessionTask>;
 
 // A point whose blocks are being merged.
 struct OpenPoint {
-  OpenPoint(std::shared_ptr<const PointExperiment> experiment_of_point);
-
-  // The next block to hand out, if one may be.
-  std::optional<uint64_t> NextBlock(uint64_t window);
+  explicit OpenPoint(std::shared_ptr<const PointExperiment> experiment_of_point)
+      : experiment(std::move(experiment_of_point)), fold(*experiment) {}
 
   std::shared_ptr<const PointExperiment> experiment;
-  OrderedMerge merge;
-  uint64_t next_block = 0;
-  uint64_t version = 0;  // the journal's number of its last change
-  double work = 0;       // seconds of processor time that its blocks took
+  PointFold fold;
+  // Sessions that no worker advances now; the one that has rested longest is first.
+  std::deque<std::shared_ptr<BlockSession>> resting;
+  uint64_t version = 0;  // the journal's number of the point's last change
+  double work = 0;       // seconds of processor time of the point's blocks
+  double work_at_checkpoint = 0;
   std::stop_source stop;
 };
 
 class Run {
  public:
-  Run(RunRequest request, uint64_t window);
+  explicit Run(RunRequest request);
 
   const RunRequest& request() const { return request_; }
   RunJournal& journal() const { return *request_.journal; }
 
-  // Every task handed out has to be followed by one TaskDone. Points are opened one at a time: they
-  // may wait for the same pilot run, which no second worker can help with.
+  // The caller must call TaskDone once for each task. Points are opened one at a time: several
+  // points may need the same pilot, and a second worker could only wait for it.
   std::optional<RunTask> NextTask();
   void TaskDone(const RunTask& task);
+  // Keeps a session until its next turn; drops it if the point is no longer open.
+  void Rest(size_t point, std::shared_ptr<BlockSession> session);
 
   void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
   // Null if the point is not open (any more).
@@ -95,15 +101,17 @@ class Run {
   void PointClosed(size_t point);
   const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
 
-  // No more tasks; blocks in flight are asked to stop. The first reason given stays.
+  // Ends the run: it hands out no more tasks and requests blocks in progress to stop. The first
+  // reason is kept.
   void Stop(absl::Status reason);
 
-  // The run goes on, and ends with this unless it is stopped. That of the first point stays.
+  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
+  // point is kept.
   void NoteShortfall(Shortfall shortfall);
 
-  // No task is out, and none is left.
+  // No task is in progress, and none is left.
   bool over() const;
-  // Of a run that is over.
+  // Requires over().
   absl::Status outcome() const { return stopped_ || !shortfall_ ? outcome_ : shortfall_->status; }
 
   bool began() const { return began_; }
@@ -115,7 +123,6 @@ class Run {
   void SkipFinishedPoints();
 
   RunRequest request_;
-  uint64_t window_;
   std::map<size_t, std::unique_ptr<OpenPoint>> open_;
   size_t next_point_ = 0;
   size_t tasks_out_ = 0;

@@ -1,57 +1,58 @@
-// What a run tells the world outside: which blocks were merged, which points are finished, how it
-// ended; and what it asks of it: the blocks computed before a restart.
+// The interface through which a run reports its progress (merged blocks, finished points, the end)
+// and reads the checkpoints of an earlier process.
 //
-// One journal belongs to one run. Called from the pool's threads; an implementation has to be
-// thread-safe. Calls about one point come in order; PointFinished comes after its last BlockMerged;
-// Ended is the last call of all, and comes once (not at all if the pool is shut down first).
+// One journal belongs to one run. The pool's threads call it, so an implementation must be
+// thread-safe. Calls about one point come in order. PointFinished comes after the point's last
+// Merged. Ended is the last call and comes once, or never if the pool shuts down first.
 #ifndef BALLPISTON_SERVER_EXECUTION_RUN_JOURNAL_H_
 #define BALLPISTON_SERVER_EXECUTION_RUN_JOURNAL_H_
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <optional>
 
 #include "absl/status/status.h"
-#include "core/experiment/block_result.h"
-#include "core/experiment/point_experiment.h"
+#include "absl/status/statusor.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 
 namespace ballpiston::server {
 
 class RunJournal {
  public:
-  using OnStoredBlock = std::function<void(uint64_t block, BlockResult result)>;
-
-  struct MergedBlock {
+  struct MergedSamples {
     size_t point = 0;
-    uint64_t block = 0;
+    uint64_t samples = 0;
     double share_of_point = 0;  // of the point's planned samples
-    bool restored = false;      // was in the store already
-    BlockResult& result;        // may be moved
+    bool restored = false;      // an earlier process computed them
   };
 
   virtual ~RunJournal() = default;
 
-  // The first block of the run is about to be computed.
+  // A worker is about to begin the run's first task.
   virtual void Began() = 0;
 
-  // The blocks of an unfinished point that an earlier process left behind, in order.
-  virtual absl::Status ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) = 0;
+  // The checkpoint of an unfinished point from an earlier process; empty if there is none.
+  virtual absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) = 0;
 
-  // Returns the number of this change in the run's history. The pool's lock is held: quick, no
-  // waiting, no calls into the pool.
-  virtual uint64_t BlockMerged(MergedBlock block) = 0;
+  // Returns the number of this change in the run's history. The pool holds its lock during this and
+  // the next call, so both must be quick, must not wait and must not call the pool.
+  virtual uint64_t Merged(const MergedSamples& merged) = 0;
+
+  // Called from time to time with the state of an unfinished point.
+  virtual void Checkpoint(size_t point, const FoldState& state) = 0;
 
   // Seconds of processor time that a worker has just spent on the run.
   virtual void Worked(double seconds) = 0;
 
-  // May take its time.
+  // May be slow.
   virtual void PointFinished(size_t point, const PointExperiment& experiment,
                              const BlockResult& merged) = 0;
 
-  // OK: every point is finished. CANCELLED: it was told to stop. Else the reason of its failure.
+  // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;
 
-  // Called by a worker between two blocks: returns when what was reported is taken care of.
+  // A worker calls this between two turns. It returns when the journal has room for more reports.
   virtual void AwaitRoom() = 0;
 };
 

@@ -6,17 +6,16 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "core/method_comparison/processor_time.h"
 #include "core/model_choice/ladder.h"
-#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
+#include "server/convert/fold_record.h"
+#include "server/execution/processor_time.h"
 
 namespace ballpiston::server {
 namespace {
 
-// Blocks handed out beyond the merged prefix of a point, for each worker: enough that nobody waits
-// for the slowest block, few enough that little is thrown away when a tolerance is reached.
-constexpr uint64_t kWindowPerWorker = 4;
+// Seconds of work on a point between two checkpoints, for each worker.
+constexpr double kBetweenCheckpoints = 0.1;
 
 // Runs `step`, and turns what it throws into a status.
 template <typename Step>
@@ -32,16 +31,18 @@ absl::Status Guarded(size_t point, Step step) {
   }
 }
 
-double ShareOfPoint(const PointExperiment& experiment, const BlockResult& result) {
-  return static_cast<double>(result.samples) / static_cast<double>(experiment.plan().samples);
+double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
+  return static_cast<double>(samples) / static_cast<double>(open.experiment->plan().samples());
+}
+
+size_t PointOf(const RunTask& task) {
+  return std::visit([](const auto& any) { return any.point; }, task);
 }
 
 }  // namespace
 
 WorkerPool::WorkerPool(int workers, ExperimentFactory factory)
-    : factory_(std::move(factory)),
-      workers_(workers),
-      window_(kWindowPerWorker * static_cast<uint64_t>(workers)) {
+    : factory_(std::move(factory)), workers_(workers) {
   for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { Work(); });
 }
 
@@ -49,7 +50,7 @@ WorkerPool::~WorkerPool() { Shutdown(); }
 
 void WorkerPool::Add(RunRequest request) {
   const int64_t key = request.key;
-  auto run = std::make_shared<Run>(std::move(request), window_);
+  auto run = std::make_shared<Run>(std::move(request));
   {
     std::lock_guard lock(mutex_);
     runs_.emplace(key, run);
@@ -81,6 +82,17 @@ void WorkerPool::Shutdown() {
   }
   work_may_exist_.notify_all();
   for (std::thread& thread : threads) thread.join();
+  std::lock_guard lock(mutex_);
+  for (const auto& [key, run] : runs_) WriteCheckpoints(*run);
+}
+
+void WorkerPool::WriteCheckpoints(Run& run) {
+  for (const auto& [index, point] : run.open_points()) {
+    const bool has_news = point->work > point->work_at_checkpoint;
+    if (!point->fold.HasBlocks() || point->fold.finished() || !has_news) continue;
+    point->work_at_checkpoint = point->work;
+    run.journal().Checkpoint(index, point->fold.state());
+  }
 }
 
 std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, size_t limit) const {
@@ -90,14 +102,15 @@ std::vector<LivePoint> WorkerPool::ChangedSince(int64_t key, uint64_t version, s
   if (run == runs_.end()) return changed;
   std::vector<std::pair<uint64_t, size_t>> newest;
   for (const auto& [index, point] : run->second->open_points()) {
-    const bool finished = point->merge.finished();  // about to be told as such
-    if (point->version > version && !finished) newest.emplace_back(point->version, index);
+    const bool finished = point->fold.finished();  // will be reported as finished
+    if (point->version > version && point->fold.HasBlocks() && !finished)
+      newest.emplace_back(point->version, index);
   }
   std::sort(newest.rbegin(), newest.rend());
   if (newest.size() > limit) newest.resize(limit);
   for (const auto& [number, index] : newest) {
     const OpenPoint& point = *run->second->FindOpen(index);
-    changed.push_back({index, number, point.experiment, point.merge.merged()});
+    changed.push_back({index, number, point.experiment, point.fold.Merged()});
   }
   return changed;
 }
@@ -137,7 +150,7 @@ std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
     return task.has_value();
   });
   if (!key) return std::nullopt;
-  fair_share_.BlockBegins(*key);
+  fair_share_.TurnBegins(*key);
   const std::shared_ptr<Run>& run = runs_.at(*key);
   Assignment assignment{run, *std::move(task), !run->began()};
   run->set_began();
@@ -147,10 +160,13 @@ std::optional<WorkerPool::Assignment> WorkerPool::ChooseLocked() {
 void WorkerPool::Execute(const Assignment& assignment) {
   Run& run = *assignment.run;
   const double start = ThreadSeconds();
-  const auto* block = std::get_if<BlockTask>(&assignment.task);
-  const absl::Status status = block != nullptr
-                                  ? ComputeBlock(run, *block)
-                                  : OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
+  std::shared_ptr<BlockSession> resting;
+  absl::Status status;
+  if (const auto* task = std::get_if<SessionTask>(&assignment.task)) {
+    status = Advance(run, *task, resting);
+  } else {
+    status = OpenNewPoint(run, std::get<OpenPointTask>(assignment.task));
+  }
   const double seconds = ThreadSeconds() - start;
   run.journal().Worked(seconds);
   processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
@@ -158,7 +174,8 @@ void WorkerPool::Execute(const Assignment& assignment) {
     std::lock_guard lock(mutex_);
     if (!status.ok()) run.Stop(status);
     run.TaskDone(assignment.task);
-    fair_share_.BlockEnds(run.request().key, seconds);
+    if (resting != nullptr) run.Rest(PointOf(assignment.task), std::move(resting));
+    fair_share_.TurnEnds(run.request().key, seconds);
   }
   work_may_exist_.notify_all();
 }
@@ -169,11 +186,11 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
         factory_(run.request().spec, task.point, task.stop);
     if (made == nullptr) return absl::OkStatus();  // the run was stopped
     auto open = std::make_unique<OpenPoint>(std::move(made));
-    if (run.request().has_stored_blocks) {
-      const absl::Status restored = RestoreBlocks(run, task.point, *open);
-      if (!restored.ok()) return restored;
+    if (run.request().has_checkpoints) {
+      const absl::Status resumed = Resume(run, task.point, *open);
+      if (!resumed.ok()) return resumed;
     }
-    const bool finished = open->merge.finished();
+    const bool finished = open->fold.finished();
     {
       std::lock_guard lock(mutex_);
       run.PointOpened(task.point, std::move(open));
@@ -183,58 +200,95 @@ absl::Status WorkerPool::OpenNewPoint(Run& run, const OpenPointTask& task) {
   });
 }
 
-absl::Status WorkerPool::RestoreBlocks(Run& run, size_t point, OpenPoint& open) {
-  const auto on_merged = [&](uint64_t block, BlockResult& result) {
-    const double share = ShareOfPoint(*open.experiment, result);
-    open.version = run.journal().BlockMerged({point, block, share, true, result});
-  };
-  absl::Status checked;
-  const absl::Status read =
-      run.journal().ReadStoredBlocks(point, [&](uint64_t block, BlockResult result) {
-        // Those beyond the target may be of another model, which a budget chose on a slower day.
-        if (!checked.ok() || open.merge.finished()) return;
-        checked = CheckBlock(*open.experiment, block, result);
-        if (checked.ok()) open.merge.Add(block, std::move(result), on_merged);
-      });
-  return read.ok() ? checked : read;
+absl::Status WorkerPool::Resume(Run& run, size_t point, OpenPoint& open) {
+  absl::StatusOr<std::optional<FoldState>> state = run.journal().ReadCheckpoint(point);
+  if (!state.ok()) return state.status();
+  // With a budget the earlier process may have chosen a model that samples, and this one a model
+  // that does not.
+  if (!*state || open.fold.finished()) return absl::OkStatus();
+  const absl::Status checked = CheckFoldState(*open.experiment, **state);
+  if (!checked.ok()) return checked;
+  open.fold.Resume(**std::move(state));
+  const uint64_t samples = open.fold.PlannedSamples();
+  open.version = run.journal().Merged({.point = point,
+                                       .samples = samples,
+                                       .share_of_point = ShareOfPoint(open, samples),
+                                       .restored = true});
+  return absl::OkStatus();
 }
 
-absl::Status WorkerPool::ComputeBlock(Run& run, const BlockTask& task) {
+absl::Status WorkerPool::Advance(Run& run, const SessionTask& task,
+                                 std::shared_ptr<BlockSession>& resting) {
   return Guarded(task.point, [&]() -> absl::Status {
-    const double start = ThreadSeconds();
-    std::optional<BlockResult> result = task.experiment->RunBlock(task.block, task.stop);
-    if (!result) return absl::OkStatus();
-    blocks_.fetch_add(1, std::memory_order_relaxed);
-    samples_.fetch_add(static_cast<double>(result->samples), std::memory_order_relaxed);
-    MergeBlock(run, task, *std::move(result), ThreadSeconds() - start);
+    std::shared_ptr<BlockSession> session = task.session;
+    if (session == nullptr) {
+      session = std::make_shared<BlockSession>(static_cast<BlockExchange&>(*this), run, task.point,
+                                               task.experiment, task.stop);
+    }
+    if (session->Advance()) resting = std::move(session);
     return absl::OkStatus();
   });
 }
 
-void WorkerPool::MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds) {
+std::optional<Block> WorkerPool::NextBlock(Run& run, size_t point) {
+  std::lock_guard lock(mutex_);
+  OpenPoint* open = run.FindOpen(point);
+  if (open == nullptr || open->stop.stop_requested()) return std::nullopt;
+  return open->fold.NextBlock();
+}
+
+void WorkerPool::BlockDone(Run& run, size_t point, const Block& block, BlockResult result,
+                           double seconds) {
+  blocks_.fetch_add(1, std::memory_order_relaxed);
+  samples_.fetch_add(static_cast<double>(result.samples), std::memory_order_relaxed);
   {
     std::lock_guard lock(mutex_);
-    OpenPoint* open = run.FindOpen(task.point);
-    if (open == nullptr || open->merge.finished()) return;
+    OpenPoint* open = run.FindOpen(point);
+    if (open == nullptr || open->fold.finished()) return;
     open->work += seconds;
-    open->merge.Add(task.block, std::move(result), [&](uint64_t block, BlockResult& merged) {
-      const double share = ShareOfPoint(*task.experiment, merged);
-      open->version = run.journal().BlockMerged({task.point, block, share, false, merged});
-    });
-    if (!open->merge.finished()) EndIfBudgetIsSpent(run, task.point, *open);
-    if (!open->merge.finished()) return;
-    open->stop.request_stop();  // blocks beyond the target are in vain
+    const bool had_no_block = !open->fold.HasNextBlock();
+    if (const uint64_t samples = open->fold.Add(block, std::move(result)); samples > 0) {
+      open->version = run.journal().Merged(
+          {.point = point, .samples = samples, .share_of_point = ShareOfPoint(*open, samples)});
+    }
+    if (had_no_block && open->fold.HasNextBlock()) work_may_exist_.notify_all();
+    if (!CameToItsEnd(run, point, *open)) return;
   }
-  ClosePoint(run, task.point);
+  ClosePoint(run, point);
+}
+
+void WorkerPool::TurnEnds(Run& run, size_t point, double seconds) {
+  {
+    std::lock_guard lock(mutex_);
+    OpenPoint* open = run.FindOpen(point);
+    if (open == nullptr || open->fold.finished()) return;
+    open->work += seconds;
+    if (!CameToItsEnd(run, point, *open)) return;
+  }
+  ClosePoint(run, point);
+}
+
+bool WorkerPool::CameToItsEnd(Run& run, size_t point, OpenPoint& open) {
+  if (!open.fold.finished()) EndIfBudgetIsSpent(run, point, open);
+  if (open.fold.finished()) {
+    open.stop.request_stop();  // blocks beyond the target are not needed
+    return true;
+  }
+  if (open.fold.HasBlocks() &&
+      open.work >= open.work_at_checkpoint + kBetweenCheckpoints * workers_) {
+    open.work_at_checkpoint = open.work;
+    run.journal().Checkpoint(point, open.fold.state());
+  }
+  return false;
 }
 
 void WorkerPool::EndIfBudgetIsSpent(Run& run, size_t point, OpenPoint& open) {
   const EnsembleSpec& spec = run.request().spec;
-  if (!spec.target.budget_seconds || open.merge.blocks_merged() == 0) return;
+  if (!spec.target.budget_seconds || !open.fold.HasBlocks()) return;
   if (open.work < BudgetOfAPoint(spec, workers_)) return;
-  open.merge.Finish();
+  open.fold.Finish();
   if (!spec.target.tolerance) return;
-  const Estimate reached = open.experiment->FirstEstimate(open.merge.merged());
+  const Estimate reached = open.experiment->FirstEstimate(open.fold.Merged());
   if (MeetsTolerance(reached, *spec.target.tolerance)) return;
   run.NoteShortfall({point, ToleranceNotReached(spec, point, reached)});
 }
@@ -246,7 +300,7 @@ void WorkerPool::ClosePoint(Run& run, size_t point) {
     open = run.FindOpen(point);
   }
   // A finished merge changes no more, and only this thread closes the point.
-  run.journal().PointFinished(point, *open->experiment, open->merge.merged());
+  run.journal().PointFinished(point, *open->experiment, open->fold.Merged());
   std::lock_guard lock(mutex_);
   run.PointClosed(point);
 }

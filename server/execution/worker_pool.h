@@ -1,9 +1,9 @@
-// The threads that compute: they take blocks from all active runs, fairly, and merge them in order.
+// The threads that compute. They serve all active runs with fair shares and merge blocks in order.
 //
-// A worker asks the run whose turn it is for a block (see fair_share.h), or, if that has none to
-// hand out just now, the next; computes it without any lock, and merges it under the pool's lock.
-// Whatever a block throws ends its run with a failure and nothing else. The numbers do not depend
-// on how many workers there are, nor on whose turn it was when. Thread-safe.
+// A worker takes a task from the run whose turn it is (fair_share.h), or from the next run if that
+// run has no task now. It computes blocks of one point for one turn without a lock, and merges them
+// under the pool's lock. An exception from a block ends only the block's run, with a failure.
+// Results do not depend on the number of workers or on the order of turns. Thread-safe.
 #ifndef BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 #define BALLPISTON_SERVER_EXECUTION_WORKER_POOL_H_
 
@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/execution/block_session.h"
 #include "server/execution/fair_share.h"
 #include "server/execution/run.h"
 
@@ -32,7 +33,7 @@ struct LivePoint {
   BlockResult merged;
 };
 
-// Since the pool was made, but for the first two.
+// Totals since the pool was made, except for the first two members.
 struct PoolCounts {
   int workers = 0;
   int busy = 0;  // now
@@ -41,18 +42,18 @@ struct PoolCounts {
   double processor_seconds = 0;
 };
 
-class WorkerPool {
+class WorkerPool : private BlockExchange {
  public:
   WorkerPool(int workers, ExperimentFactory factory);
-  ~WorkerPool();  // shuts down
+  ~WorkerPool() override;  // shuts down
 
   void Add(RunRequest request);
 
-  // Its journal's Ended(CANCELLED) follows, unless the run is over already.
+  // The run's journal then receives Ended(CANCELLED), unless the run is over already.
   void Cancel(int64_t key);
 
-  // Stops the blocks in flight and joins the threads. Unfinished runs are dropped without a word:
-  // what they stored lets a later process go on. May be called more than once.
+  // Stops the blocks in progress, joins the threads, and writes checkpoints of unfinished runs to
+  // their journals, so that a later process can resume them. May be called more than once.
   void Shutdown();
 
   // Copies of the run's unfinished points that changed after `version`, newest first, at most
@@ -74,18 +75,26 @@ class WorkerPool {
 
   void Execute(const Assignment& assignment);
   absl::Status OpenNewPoint(Run& run, const OpenPointTask& task);
-  // Merges what an earlier process computed of the point.
-  absl::Status RestoreBlocks(Run& run, size_t point, OpenPoint& open);
-  absl::Status ComputeBlock(Run& run, const BlockTask& task);
-  void MergeBlock(Run& run, const BlockTask& task, BlockResult result, double seconds);
-  // The lock is held; a point with a merged block ends with what it has.
+  // Resumes the point from the checkpoint of an earlier process, if there is one.
+  absl::Status Resume(Run& run, size_t point, OpenPoint& open);
+  // Runs one turn. Sets `resting` to the session if the session has more work.
+  absl::Status Advance(Run& run, const SessionTask& task, std::shared_ptr<BlockSession>& resting);
+
+  std::optional<Block> NextBlock(Run& run, size_t point) override;
+  void BlockDone(Run& run, size_t point, const Block& block, BlockResult result,
+                 double seconds) override;
+  void TurnEnds(Run& run, size_t point, double seconds) override;
+
+  // Requires the lock. Returns whether the point is finished; if not, may write a checkpoint.
+  bool CameToItsEnd(Run& run, size_t point, OpenPoint& open);
+  void WriteCheckpoints(Run& run);
+  // Requires the lock. A point whose budget is spent ends if it has a merged block.
   void EndIfBudgetIsSpent(Run& run, size_t point, OpenPoint& open);
   void ClosePoint(Run& run, size_t point);
   void Conclude(const std::shared_ptr<Run>& run);
 
   const ExperimentFactory factory_;
   const int workers_;
-  const uint64_t window_;
 
   std::atomic<int> busy_ = 0;
   std::atomic<uint64_t> blocks_ = 0;

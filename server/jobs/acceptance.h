@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "absl/status/status.h"
-#include "core/experiment/ensemble_spec.h"
+#include "core/ensemble/ensemble_spec.h"
 #include "server/jobs/active_points.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"

@@ -113,7 +113,7 @@ bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
   return true;
 }
 
-uint64_t Job::AddBlock(double samples, double share_of_point) {
+uint64_t Job::AddSamples(double samples, double share_of_point) {
   std::lock_guard lock(mutex_);
   record_.samples += samples;
   work_done_ += share_of_point;

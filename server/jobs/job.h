@@ -65,8 +65,9 @@ class Job {
   // False, and without effect, if `state` may not follow the present one.
   bool Enter(JobState state, absl::Time now, const std::string& error = std::string());
 
-  // A block was merged: so many samples, that share of its point. Returns the number of the change.
-  uint64_t AddBlock(double samples, double share_of_point);
+  // Blocks were merged, or a checkpoint was restored: so many samples, that share of their point.
+  // Returns the number of the change.
+  uint64_t AddSamples(double samples, double share_of_point);
   void AddWork(double seconds);
   // A computed point is stored; in the order of their numbers.
   void AddFinishedPoint(FinishedPoint point);

@@ -208,7 +208,7 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
   RunRequest request;
   request.finished = Finished(record, points);
   request.spec = std::move(spec);
-  request.has_stored_blocks = true;
+  request.has_checkpoints = true;
   request.shortfall = std::move(restored.shortfall);
   std::shared_ptr<Job> job = Register(std::move(record));
   job->AddRestoredPoints(points.count(), points.samples, points.last);

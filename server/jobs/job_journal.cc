@@ -5,8 +5,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
+#include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
@@ -70,37 +70,40 @@ void JobJournal::Began() {
   });
 }
 
-absl::Status JobJournal::ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) {
-  const auto on_row = [&](int64_t block, const std::string& record) -> absl::Status {
-    absl::StatusOr<BlockResult> result = BlockResultFromBytes(record);
-    if (!result.ok()) return result.status();
-    on_block(static_cast<uint64_t>(block), *std::move(result));
-    return absl::OkStatus();
-  };
-  return store_.Read([&](Database& database) {
-    return ReadBlocks(database, job_->sequence(), static_cast<int64_t>(point), on_row);
+absl::StatusOr<std::optional<FoldState>> JobJournal::ReadCheckpoint(size_t point) {
+  std::optional<std::string> record;
+  const absl::Status read = store_.Read([&](Database& database) {
+    auto found =
+        ballpiston::server::ReadCheckpoint(database, job_->sequence(), static_cast<int64_t>(point));
+    if (found.ok()) record = *std::move(found);
+    return found.status();
   });
+  if (!read.ok()) return read;
+  if (!record) return std::nullopt;
+  return FoldStateFromBytes(*record);
 }
 
-uint64_t JobJournal::BlockMerged(MergedBlock block) {
+uint64_t JobJournal::Merged(const MergedSamples& merged) {
   const uint64_t change =
-      job_->AddBlock(static_cast<double>(block.result.samples), block.share_of_point);
-  Failpoint(block.restored ? "resume.block" : "block.merged");
-  if (block.restored) return change;
-  // Shared, because the store's closures are copyable; made into bytes only if it is written.
-  auto result = std::make_shared<const BlockResult>(std::move(block.result));
-  const size_t bytes = BytesHeld(*result);
-  store_.RecordBlock(
-      job_->sequence(), static_cast<int64_t>(block.point), static_cast<int64_t>(block.block),
-      [result = std::move(result)] { return BlockRecordBytes(*result); }, bytes);
+      job_->AddSamples(static_cast<double>(merged.samples), merged.share_of_point);
+  Failpoint(merged.restored ? "resume.point" : "block.merged");
   return change;
+}
+
+void JobJournal::Checkpoint(size_t point, const FoldState& state) {
+  // Shared, because the store's closures are copyable; made into bytes only if it is written.
+  auto copy = std::make_shared<const FoldState>(state);
+  const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial);
+  store_.RecordCheckpoint(
+      job_->sequence(), static_cast<int64_t>(point),
+      [copy = std::move(copy)] { return FoldRecordBytes(*copy); }, bytes);
 }
 
 void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
-  if (experiment.plan().Blocks() == 0) job_->AddBlock(0, 1);  // computed without one
+  if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
   v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
   PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
   ClearDetails(result);

@@ -1,10 +1,9 @@
 // Writes what a job's run reports into the store and into the job.
 //
-// Order in the store: a block after those merged before it, a point's result after its blocks, the
-// end of the job after all of it. The job is seen to have begun, a point to be finished, and the
-// job to have ended, in this order and only when it is on disk: what was told, no restart takes
-// back.
-// Thread-safe.
+// Order in the store: a checkpoint after the point's earlier ones, a point's result after its
+// checkpoints, the end of the job after all of it. The job is seen to have begun, a point to be
+// finished, and the job to have ended, in this order and only when it is on disk: what was told, no
+// restart takes back. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 #define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 
@@ -24,8 +23,9 @@ class JobJournal : public RunJournal {
   JobJournal(std::shared_ptr<Job> job, Store& store, std::function<void(const Job&)> on_ended);
 
   void Began() override;
-  absl::Status ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) override;
-  uint64_t BlockMerged(MergedBlock block) override;
+  absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) override;
+  uint64_t Merged(const MergedSamples& merged) override;
+  void Checkpoint(size_t point, const FoldState& state) override;
   void Worked(double seconds) override;
   void PointFinished(size_t point, const PointExperiment& experiment,
                      const BlockResult& merged) override;

@@ -18,27 +18,27 @@ namespace ballpiston::server {
 
 // Every place there is, in the order of a job's life; tests visit them all.
 inline constexpr std::array<std::string_view, 21> kFailpoints = {
-    "create.in_transaction",  // the job's row is written, not committed
-    "create.committed",       // the job's row is on disk; the run is not begun
-    "create.before_answer",   // the run is begun; the client knows nothing
-    "store.before_commit",    // a group of writes is in the transaction
-    "store.after_commit",     // it is on disk; nobody was told
-    "block.merged",           // into its point; not recorded
-    "block.before_insert",    // in a transaction that has begun
-    "point.before_record",    // all its blocks are merged
-    "point.recorded",         // its result waits to be written
-    "job.before_end",         // all its points are finished; its end is not recorded
-    "job.end_recorded",       // its end waits to be written
-    "job.ended",              // its end is on disk; nobody was told
-    "cancel.in_transaction",  // CANCELLING is written, not committed
-    "cancel.committed",       // and committed; the workers do not know
-    "delete.in_transaction",  // the rows are gone, not committed
-    "delete.committed",       // the client knows nothing
-    "resume.job",             // after a restart: one of the unfinished jobs goes on
-    "resume.block",           // and one of its stored blocks is merged again
-    "checkpoint.page",        // the log is folded into the store: before each page
-    "stop.before_flush",      // SIGTERM: the workers have stopped
-    "stop.before_checkpoint"  // everything is written; the log is not yet folded into the store
+    "create.in_transaction",    // the job's row is written, not committed
+    "create.committed",         // the job's row is on disk; the run is not begun
+    "create.before_answer",     // the run is begun; the client knows nothing
+    "store.before_commit",      // a group of writes is in the transaction
+    "store.after_commit",       // it is on disk; nobody was told
+    "block.merged",             // into its point; not recorded
+    "checkpoint.before_write",  // in a transaction that has begun
+    "point.before_record",      // all its blocks are merged
+    "point.recorded",           // its result waits to be written
+    "job.before_end",           // all its points are finished; its end is not recorded
+    "job.end_recorded",         // its end waits to be written
+    "job.ended",                // its end is on disk; nobody was told
+    "cancel.in_transaction",    // CANCELLING is written, not committed
+    "cancel.committed",         // and committed; the workers do not know
+    "delete.in_transaction",    // the rows are gone, not committed
+    "delete.committed",         // the client knows nothing
+    "resume.job",               // after a restart: one of the unfinished jobs goes on
+    "resume.point",             // and one of its points goes on from its checkpoint
+    "checkpoint.page",          // the log is folded into the store: before each page
+    "stop.before_flush",        // SIGTERM: the workers have stopped
+    "stop.before_checkpoint"    // everything is written; the log is not yet folded into the store
 };
 
 namespace failpoint_internal {

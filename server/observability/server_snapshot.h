@@ -39,7 +39,7 @@ struct ServerSnapshot {
 
   int64_t store_bytes = 0;  // on disk, the log included
   int64_t store_commits = 0;
-  int64_t store_blocks_written = 0;
+  int64_t store_checkpoints_written = 0;
   int64_t store_pending_writes = 0;
   bool store_failing = false;
 

@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
-#include "server/convert/block_record.h"
+#include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
@@ -39,7 +39,7 @@ class StoreCheck {
     if (!begun.ok()) return begun;
     for (const auto part :
          {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::CheckJobs,
-          &StoreCheck::CheckRows, &StoreCheck::CheckResults, &StoreCheck::CheckBlocks}) {
+          &StoreCheck::CheckRows, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
       // So damaged that this part cannot be read.
@@ -74,9 +74,10 @@ class StoreCheck {
   }
 
   absl::Status Count() {
-    for (const auto& [sql, number] : {std::pair{"PRAGMA user_version", &summary_.version},
-                                      std::pair{"SELECT count(*) FROM results", &summary_.results},
-                                      std::pair{"SELECT count(*) FROM blocks", &summary_.blocks}}) {
+    for (const auto& [sql, number] :
+         {std::pair{"PRAGMA user_version", &summary_.version},
+          std::pair{"SELECT count(*) FROM results", &summary_.results},
+          std::pair{"SELECT count(*) FROM checkpoints", &summary_.checkpoints}}) {
       const auto value = database_.Integer(sql);
       if (!value.ok()) return value.status();
       *number = *value;
@@ -144,13 +145,12 @@ class StoreCheck {
         " WHERE sequence IS NULL OR point < 0 OR point >= points",
         report("a result of no point"));
     if (!results.ok()) return results;
-    const absl::Status blocks = ForEach(
-        absl::StrCat("SELECT DISTINCT job, point FROM blocks LEFT JOIN jobs ON sequence = job"
-                     " WHERE sequence IS NULL OR point < 0 OR point >= points OR block < 0"
-                     " OR state >= ",
-                     int{EnsembleJob::SUCCEEDED}),
-        report("blocks of no point of an active job"));
-    if (!blocks.ok()) return blocks;
+    const absl::Status checkpoints =
+        ForEach(absl::StrCat("SELECT job, point FROM checkpoints LEFT JOIN jobs ON sequence = job"
+                             " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= ",
+                             int{EnsembleJob::SUCCEEDED}),
+                report("a checkpoint of no point of an active job"));
+    if (!checkpoints.ok()) return checkpoints;
     const absl::Status requests = ForEach(
         "SELECT job, request_id FROM requests LEFT JOIN jobs ON sequence = job"
         " WHERE sequence IS NULL",
@@ -159,9 +159,9 @@ class StoreCheck {
         });
     if (!requests.ok()) return requests;
     return ForEach(
-        "SELECT DISTINCT blocks.job, blocks.point FROM blocks JOIN results"
-        " ON results.job = blocks.job AND results.point = blocks.point",
-        report("blocks of a finished point"));
+        "SELECT checkpoints.job, checkpoints.point FROM checkpoints JOIN results"
+        " ON results.job = checkpoints.job AND results.point = checkpoints.point",
+        report("a checkpoint of a finished point"));
   }
 
   absl::Status CheckResults() {
@@ -174,12 +174,12 @@ class StoreCheck {
     });
   }
 
-  absl::Status CheckBlocks() {
-    return ForEach("SELECT job, point, block, record FROM blocks", [this](const Query& row) {
-      const auto block = BlockResultFromBytes(row.Bytes(3));
-      if (block.ok()) return;
-      Found(absl::StrCat("block ", row.Integer(2), " of job ", row.Integer(0), ", point ",
-                         row.Integer(1), ": ", block.status().message()));
+  absl::Status CheckCheckpoints() {
+    return ForEach("SELECT job, point, record FROM checkpoints", [this](const Query& row) {
+      const auto state = FoldStateFromBytes(row.Bytes(2));
+      if (state.ok()) return;
+      Found(absl::StrCat("the checkpoint of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
+                         state.status().message()));
     });
   }
 
@@ -202,7 +202,7 @@ absl::StatusOr<StoreSummary> CheckStore(const std::string& path, const std::stri
 std::string SummaryText(const StoreSummary& summary) {
   std::string text =
       absl::StrCat("version ", summary.version, ", ", summary.bytes, " bytes\n", summary.results,
-                   " results, ", summary.blocks, " blocks of unfinished points\njobs:");
+                   " results, ", summary.checkpoints, " checkpoints of unfinished points\njobs:");
   for (const auto& [state, count] : summary.jobs) absl::StrAppend(&text, " ", count, " ", state);
   if (summary.jobs.empty()) absl::StrAppend(&text, " none");
   for (const std::string& problem : summary.problems) absl::StrAppend(&text, "\n", problem);

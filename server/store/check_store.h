@@ -21,16 +21,17 @@ struct StoreSummary {
   int64_t bytes = 0;                    // on disk, the log included
   std::map<std::string, int64_t> jobs;  // by state
   int64_t results = 0;
-  int64_t blocks = 0;
+  int64_t checkpoints = 0;
   std::vector<std::string> problems;  // a sentence each; the first kMaxProblems
   int64_t problem_count = 0;
 
   bool sound() const { return problem_count == 0; }
 };
 
-// What is checked: states and times belong together; specifications, results, blocks and errors can
-// be read; every result and block belongs to a point of a job; an ended job has as many results as
-// it says, one that succeeded all of them, and no ended job and no finished point has blocks.
+// The checks: states and times are consistent; specifications, results, checkpoints and errors can
+// be read; every result and checkpoint belongs to a point of a job; an ended job has the number of
+// results that it states, and a job that succeeded has all results; no ended job and no finished
+// point has a checkpoint.
 //   NOT_FOUND            no such file
 //   FAILED_PRECONDITION  no store of ours, newer, or too damaged to be opened
 absl::StatusOr<StoreSummary> CheckStore(const std::string& path,

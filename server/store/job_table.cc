@@ -187,7 +187,7 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
   const auto state = static_cast<JobState>(query.Integer(0));
   const absl::StatusOr<bool> last = query.Step();
   if (!last.ok()) return last.status();
-  const absl::Status dropped = RunFor(database, sequence, "DELETE FROM blocks WHERE job = ?");
+  const absl::Status dropped = RunFor(database, sequence, "DELETE FROM checkpoints WHERE job = ?");
   if (!dropped.ok()) return dropped;
   return state;
 }
@@ -195,7 +195,7 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question) {
   for (const char* sql :
-       {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?"}) {
+       {"DELETE FROM checkpoints WHERE job = ?", "DELETE FROM results WHERE job = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }
@@ -211,7 +211,7 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
   for (const char* sql :
-       {"DELETE FROM blocks WHERE job = ?", "DELETE FROM results WHERE job = ?",
+       {"DELETE FROM checkpoints WHERE job = ?", "DELETE FROM results WHERE job = ?",
         "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;

@@ -61,8 +61,8 @@ struct JobEnd {
   double work = 0;
 };
 
-// Ends an active job and drops its blocks; one that is CANCELLING becomes CANCELLED whatever was
-// asked for. Returns the state it is in now.
+// Ends an active job and drops its checkpoints. A job that is CANCELLING becomes CANCELLED whatever
+// state was requested. Returns the job's new state.
 absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
 // Of an engine that gives other numbers: what was computed is dropped, the version becomes this.

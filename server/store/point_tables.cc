@@ -4,32 +4,23 @@
 
 namespace ballpiston::server {
 
-absl::Status InsertBlock(Database& database, int64_t job, int64_t point, int64_t block,
-                         const std::string& record) {
+absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point,
+                             const std::string& record) {
   return database
-      .Prepare(
-          "INSERT INTO blocks (job, point, block, record) VALUES (?, ?, ?, ?)"
-          " ON CONFLICT DO NOTHING")
+      .Prepare("INSERT OR REPLACE INTO checkpoints (job, point, record) VALUES (?, ?, ?)")
       .Bind(job)
       .Bind(point)
-      .Bind(block)
       .BindBlob(record)
       .Run();
 }
 
-absl::Status ReadBlocks(
-    Database& database, int64_t job, int64_t point,
-    const std::function<absl::Status(int64_t block, const std::string& record)>& on_block) {
-  Query query = database.Prepare(
-      "SELECT block, record FROM blocks WHERE job = ? AND point = ? ORDER BY block");
-  query.Bind(job).Bind(point);
-  while (true) {
-    const absl::StatusOr<bool> row = query.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return absl::OkStatus();
-    const absl::Status taken = on_block(query.Integer(0), query.Bytes(1));
-    if (!taken.ok()) return taken;
-  }
+absl::StatusOr<std::optional<std::string>> ReadCheckpoint(Database& database, int64_t job,
+                                                          int64_t point) {
+  Query query = database.Prepare("SELECT record FROM checkpoints WHERE job = ? AND point = ?");
+  const absl::StatusOr<bool> row = query.Bind(job).Bind(point).Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return std::nullopt;
+  return query.Bytes(0);
 }
 
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row) {
@@ -49,10 +40,11 @@ absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const Poin
           .Run();
   if (!inserted.ok()) return inserted;
   const bool is_new = database.RowsChanged() == 1;
-  const absl::Status dropped = database.Prepare("DELETE FROM blocks WHERE job = ? AND point = ?")
-                                   .Bind(job)
-                                   .Bind(row.point)
-                                   .Run();
+  const absl::Status dropped =
+      database.Prepare("DELETE FROM checkpoints WHERE job = ? AND point = ?")
+          .Bind(job)
+          .Bind(row.point)
+          .Run();
   if (!dropped.ok()) return dropped;
   return is_new ? number : 0;
 }

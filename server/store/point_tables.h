@@ -1,10 +1,11 @@
-// The SQL about what was computed: blocks of unfinished points, results of finished ones. Each
+// The SQL about what was computed: checkpoints of unfinished points, results of finished ones. Each
 // function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 #define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,13 @@
 
 namespace ballpiston::server {
 
-// The first writer wins: a block that is there already stays as it is.
-absl::Status InsertBlock(Database& database, int64_t job, int64_t point, int64_t block,
-                         const std::string& record);
+// Stores the checkpoint of an unfinished point and replaces the previous one.
+absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point,
+                             const std::string& record);
 
-// A point's blocks, in order; ends early, with that status, when `on_block` does not return OK.
-absl::Status ReadBlocks(
-    Database& database, int64_t job, int64_t point,
-    const std::function<absl::Status(int64_t block, const std::string& record)>& on_block);
+// Empty if the point has no checkpoint.
+absl::StatusOr<std::optional<std::string>> ReadCheckpoint(Database& database, int64_t job,
+                                                          int64_t point);
 
 struct PointRow {
   int64_t point = 0;
@@ -29,7 +29,7 @@ struct PointRow {
   std::string result;  // serialized v1::PointResult
 };
 
-// Drops the point's blocks, which nobody reads any more. Here, too, the first writer wins. The
+// Drops the point's checkpoint, which is no longer needed. The first writer wins. The
 // result's number among the job's, greater than those before: 1, 2, 3, ... in the order in which
 // they were stored; 0 if the point had a result.
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row);

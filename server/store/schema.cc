@@ -49,12 +49,11 @@ CREATE TABLE requests (
   PRIMARY KEY (principal, request_id)
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX requests_by_job ON requests (job);
-CREATE TABLE blocks (
+CREATE TABLE checkpoints (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,
-  block INTEGER NOT NULL,
   record BLOB NOT NULL,
-  PRIMARY KEY (job, point, block)
+  PRIMARY KEY (job, point)
 ) STRICT;
 CREATE TABLE results (
   job INTEGER NOT NULL,

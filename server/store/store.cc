@@ -15,7 +15,8 @@
 namespace ballpiston::server {
 namespace {
 
-// Of records, on a full disk. More than one: what does not fit leaves some room for requests.
+// The smallest group of records on a full disk. It is larger than one, so that a group that does
+// not fit leaves some room for requests.
 constexpr size_t kSmallestGroup = 32;
 
 absl::Status Stalled() {
@@ -93,15 +94,15 @@ void Store::RecordSoon(Change change, Done done) {
   Post(std::move(write));
 }
 
-void Store::RecordBlock(int64_t job, int64_t point, int64_t block,
-                        std::function<std::string()> serialize, size_t bytes) {
+void Store::RecordCheckpoint(int64_t job, int64_t point, std::function<std::string()> serialize,
+                             size_t bytes) {
   Write write;
   write.job = job;
   write.point = point;
   write.bytes = bytes;
   write.change = [=, serialize = std::move(serialize)](Database& database) {
-    Failpoint("block.before_insert");
-    return InsertBlock(database, job, point, block, serialize());
+    Failpoint("checkpoint.before_write");
+    return WriteCheckpoint(database, job, point, serialize());
   };
   Post(std::move(write));
 }
@@ -195,9 +196,9 @@ int64_t Store::commits() const {
   return commits_;
 }
 
-int64_t Store::blocks_written() const {
+int64_t Store::checkpoints_written() const {
   std::lock_guard lock(mutex_);
-  return blocks_written_;
+  return checkpoints_written_;
 }
 
 int64_t Store::failures() const {
@@ -263,13 +264,11 @@ Store::Writes Store::TakeRequests() {
 }
 
 void Store::MarkSuperseded(Writes& batch) const {
-  std::set<std::pair<int64_t, int64_t>> finished;
-  for (const Write& write : batch) {
-    if (write.is_result) finished.emplace(write.job, write.point);
-  }
-  for (Write& write : batch) {
-    const bool is_block = write.point >= 0 && !write.is_result;
-    write.superseded = is_block && finished.contains({write.job, write.point});
+  std::set<std::pair<int64_t, int64_t>> later;  // points that a later write supersedes
+  for (auto write = batch.rbegin(); write != batch.rend(); ++write) {
+    if (write->point < 0) continue;
+    const bool is_first = later.emplace(write->job, write->point).second;
+    write->superseded = write->is_checkpoint() && !is_first;
   }
 }
 
@@ -320,8 +319,7 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
   ++commits_;
   for (size_t i = first; i < last; ++i) {
     Write& write = batch[i];
-    const bool is_block = write.point >= 0 && !write.is_result;
-    if (is_block && !write.superseded && !write.outcome) ++blocks_written_;
+    if (write.is_checkpoint() && !write.superseded && !write.outcome) ++checkpoints_written_;
     if (!write.outcome) write.outcome = absl::OkStatus();
   }
   return absl::OkStatus();
@@ -346,7 +344,8 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
   return status;
 }
 
-// After a failure even an empty group writes something: that the disk works is seen by writing.
+// After a failure even an empty group writes something, because only a write shows that the disk
+// works.
 absl::Status Store::BeginGroup() {
   {
     std::lock_guard lock(mutex_);
@@ -357,7 +356,7 @@ absl::Status Store::BeginGroup() {
   return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
 }
 
-// What it cannot write back now stays in the log.
+// Frames that cannot be written back now stay in the log.
 void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").IgnoreError(); }
 
 // ---- what became of them ----
@@ -395,7 +394,7 @@ void Store::Requeue(Writes again, size_t freed) {
   written_.notify_all();
 }
 
-// Told once, and again only if it fails in another way.
+// Logs a failure once, and again only if the failure changes.
 void Store::NoteHealth(const absl::Status& status) {
   std::lock_guard lock(mutex_);
   if (!status.ok()) {

@@ -1,30 +1,30 @@
-// The server's memory: one SQLite file in WAL mode with synchronous=FULL.
+// The server's persistent store: one SQLite file in WAL mode with synchronous=FULL.
 //
-// One thread owns the only connection that writes and checkpoints, and commits writes in groups
-// (a commit costs a flush of the disk, some 4 ms; a row in a group 0.1 ms). Order is kept: what was
-// posted first is committed first or together. Reads go through a second, read-only connection and
-// see what is committed. Thread-safe.
+// One thread owns the only connection that writes and that copies the log back into the file. It
+// commits writes in groups (a commit flushes the disk, which takes some 4 ms; a row in a group
+// takes 0.1 ms). Order is kept: earlier writes are committed earlier or in the same group. Reads
+// use a second, read-only connection and see committed data. Thread-safe.
 //
-// Two kinds of writes. A `Commit` is somebody's request: it is committed at once and fails if the
-// disk does. A `Record` is a computed result: it may wait `delay` for company, and if the disk
-// fails it is tried again until it succeeds or the store is closed. A block whose point is finished
-// by the time it would be written is not written at all.
+// There are two kinds of writes. A `Commit` is a client's request: it is committed at once and
+// fails if the disk fails. A `Record` is a computed result: it may wait `delay` for others, and if
+// the disk fails, it is retried until it succeeds or the store is closed. A point's checkpoint is
+// skipped if the point has a later checkpoint or a result before it is written.
 //
 // When the disk fails (IsOfTheDisk):
-//   - A request that fails has no effect that anybody sees. But one that failed while the log was
-//     flushed is in doubt until the next commit: its bytes may have reached the disk, and if the
-//     machine stops before that commit it may be found done. So a repetition has to be recognised,
-//     by its request_id or because what it asks for is so already.
-//   - Records wait; every `retry` they are tried again, and if there are none, the disk is. What
-//     comes from AwaitRoom's bounds is all the memory that they take.
-//   - Of a full disk: the log is written back, so that its place on the disk can be used again;
-//     records are written in ever smaller groups; requests, which may free room, are tried alone,
-//     before records that were posted earlier. They succeed as long as the log has room for them,
-//     which it has not when the file, too, has no room to take back what is in the log.
-// When the disk neither works nor fails (`stalled`): requests are refused until it answers; those
-// that came before it hung wait.
-// A write that cannot succeed whatever the disk does (a broken constraint, too big) is refused
-// alone, and the others of its group are written.
+//   - A request that fails has no visible effect. But if it failed during the flush of the log, its
+//     outcome is unknown until the next commit: its bytes may be on disk, and if the machine stops
+//     before that commit, the request may have taken effect after the restart. So a retry must be
+//     idempotent: by its request_id, or because the requested state already holds.
+//   - Records wait. The store retries them every `retry`; without records it tests the disk. The
+//     bounds of AwaitRoom limit the memory of waiting records.
+//   - If the disk is full, the store writes the log back into the file, so that the log's space can
+//     be used again. It writes records in smaller and smaller groups. It tries requests alone and
+//     before earlier records, because requests may free space. They succeed while the log has room.
+//     The log has no room left when the file has no room for the log's contents either.
+// If the disk hangs (`stalled`), the store refuses new requests until the disk answers; earlier
+// requests wait.
+// A write that can never succeed (a violated constraint, too big) is refused alone, and the other
+// writes of its group are committed.
 #ifndef BALLPISTON_SERVER_STORE_STORE_H_
 #define BALLPISTON_SERVER_STORE_STORE_H_
 
@@ -51,12 +51,12 @@ namespace ballpiston::server {
 
 class Store {
  public:
-  // Runs in a transaction, perhaps more than once (if the transaction had to be rolled back), so it
-  // sets what it returns by reference anew each time. Not OK: SQLite failed, or the change refuses
-  // itself (with a status that is not of the disk): it is rolled back and told that status.
+  // Runs in a transaction, and again if the transaction was rolled back, so each run must set all
+  // its outputs. Not OK: SQLite failed, or the change refuses (with a status that is not a disk
+  // error); the change is then rolled back, and `Done` receives the status.
   using Change = std::function<absl::Status(Database&)>;
-  // After the commit or the refusal, on the store's thread, in the order of posting: has to be
-  // quick. A record is not told of failures after which it is tried again.
+  // Called after the commit or the refusal, on the store's thread, in the order of posting. Must be
+  // quick. For a record it is not called after a failure that is retried.
   using Done = std::function<void(const absl::Status&)>;
 
   struct Options {
@@ -72,20 +72,20 @@ class Store {
   static absl::StatusOr<std::unique_ptr<Store>> Open(const std::string& path, Options options);
   ~Store();  // closes
 
-  // Returns when it is on disk; `done`, if any, was called before. UNAVAILABLE, at once: the disk
-  // hangs; the change was not run.
+  // Returns when the change is on disk, after `done`. If the disk hangs, returns UNAVAILABLE at
+  // once and does not run the change.
   absl::Status Commit(Change change, Done done = nullptr);
 
   void Record(Change change, Done done = nullptr);
   // As Record, but without delay.
   void RecordSoon(Change change, Done done = nullptr);
 
-  // `serialize` gives the block's record when it is about to be written; `bytes` is about what it
-  // holds until then.
-  void RecordBlock(int64_t job, int64_t point, int64_t block,
-                   std::function<std::string()> serialize, size_t bytes = 0);
-  // `stored`, if any, is called as a Done is, with the result's number in the store: when it is on
-  // disk, unless the point had a result.
+  // `serialize` returns the checkpoint's record; the store calls it just before the write. `bytes`
+  // is the approximate memory that `serialize` holds until then.
+  void RecordCheckpoint(int64_t job, int64_t point, std::function<std::string()> serialize,
+                        size_t bytes = 0);
+  // Calls `stored` like a Done when the result is on disk, with the result's number in the store.
+  // Does not call it if the point already had a result.
   void RecordResult(int64_t job, PointRow row,
                     std::function<void(int64_t number)> stored = nullptr);
 
@@ -95,24 +95,24 @@ class Store {
   // Returns when few enough writes are pending, or the store is closing.
   void AwaitRoom();
 
-  // What was recorded before this call is on disk when it returns OK.
+  // When this returns OK, all records posted before the call are on disk.
   absl::Status Flush();
 
-  // The disk failed when something was last written, and has not worked since.
+  // The last write failed because of the disk.
   bool failing() const;
 
   // A commit has been in progress for longer than Options::stall: the disk hangs.
   bool stalled() const;
 
-  // AwaitRoom waits no longer, and a disk that fails is not tried again: for a shutdown.
+  // For a shutdown: AwaitRoom no longer waits, and failed writes are not retried.
   void StopWaiting();
 
   // Writes what is pending and ends the thread. Later writes fail.
   void Close();
 
   int64_t commits() const;  // so far; for tests and metrics
-  int64_t blocks_written() const;
-  int64_t failures() const;        // groups of writes that the disk did not take
+  int64_t checkpoints_written() const;
+  int64_t failures() const;        // groups of writes that failed because of the disk
   int64_t pending_writes() const;  // now
 
  private:
@@ -122,22 +122,24 @@ class Store {
     Change change;
     Done done;
     bool urgent = false;
-    bool lasting = true;   // tried again after a failure
-    bool ordered = false;  // a request that has to come after what was posted before it
+    bool lasting = true;   // retried after a failure
+    bool ordered = false;  // a request that must follow all earlier writes
     size_t bytes = 0;      // of memory, about
-    int64_t job = 0;       // of a block or a result
-    int64_t point = -1;    // of a block or a result
+    int64_t job = 0;       // of a checkpoint or a result
+    int64_t point = -1;    // of a checkpoint or a result
     bool is_result = false;
-    bool superseded = false;  // a block whose point is finished
+    bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
+
+    bool is_checkpoint() const { return point >= 0 && !is_result; }
     Clock::time_point due;
-    // What became of it: committed, or refused. None: the disk failed before.
+    // Committed or refused; empty if the disk failed before.
     std::optional<absl::Status> outcome = {};
   };
   using Writes = std::deque<Write>;
 
   struct Batch {
-    Writes writes;      // none: the disk is to be tried
-    bool whole = true;  // all that was pending, not only requests
+    Writes writes;      // empty: only test the disk
+    bool whole = true;  // all pending writes, not only requests
   };
 
   Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options);
@@ -151,10 +153,10 @@ class Store {
   Writes TakeRequests();
   void MarkSuperseded(Writes& batch) const;
 
-  // Sets the outcome of all that was committed or refused. Not OK: the disk failed before the end.
+  // Sets the outcome of all writes that were committed or refused. Not OK: the disk failed.
   absl::Status CommitBatch(Writes& batch);
   absl::Status CommitRequestsAlone(Writes& batch, size_t first, const absl::Status& full);
-  // Of writes [first, last), all or none, save those that are refused.
+  // Commits all or none of writes [first, last), except those that are refused.
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
   absl::Status TryGroup(Writes& batch, size_t first, size_t last, std::optional<size_t>& culprit);
   absl::Status BeginGroup();
@@ -165,7 +167,7 @@ class Store {
   void NoteHealth(const absl::Status& status);
 
   const Options options_;
-  std::unique_ptr<Database> writer_;  // of the thread
+  std::unique_ptr<Database> writer_;  // only the store's thread uses it
 
   std::mutex reader_mutex_;
   std::unique_ptr<Database> reader_;
@@ -175,18 +177,18 @@ class Store {
   std::condition_variable written_;
   Writes pending_;
   size_t in_batch_ = 0;
-  std::optional<Clock::time_point> group_begin_;  // of one that is being written
+  std::optional<Clock::time_point> group_begin_;  // of the group that is being written
   size_t bytes_ = 0;                              // of pending_ and of the batch
   size_t urgent_ = 0;                             // among pending_; requests are
   size_t requests_ = 0;                           // among pending_
   size_t ordered_ = 0;                            // among pending_
   bool failing_ = false;
-  std::string failure_;  // the last one that was told
+  std::string failure_;  // the last failure that was logged
   Clock::time_point retry_time_;
   bool stop_waiting_ = false;
   bool closing_ = false;
   int64_t commits_ = 0;
-  int64_t blocks_written_ = 0;
+  int64_t checkpoints_written_ = 0;
   int64_t failures_ = 0;
   std::thread thread_;
 };

@@ -23,10 +23,12 @@
 
 #include "core/billiard/lane_balls.h"
 #include "core/billiard/lane_frame.h"
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
 #include "core/geometry/paper.h"
-#include "core/method_comparison/processor_time.h"
 #include "core/sampling/direction.h"
+#include "server/execution/processor_time.h"
 
 namespace ballpiston {
 namespace {
@@ -68,9 +70,9 @@ struct FlightContender {
                         s, 1, 1, 1});
     }
     const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.05);
-    const double begin = ThreadSeconds();
+    const double begin = server::ThreadSeconds();
     (single ? FlyLaneBallsSingle : FlyLaneBalls)(geometry, starts, kHits, {});
-    return kHits * kBalls / (ThreadSeconds() - begin);
+    return kHits * kBalls / (server::ThreadSeconds() - begin);
   }
 };
 
@@ -85,20 +87,29 @@ void ShowFlight(int64_t target) {
   }
 }
 
-EnsembleSpec Question(Experiment experiment, double delta, Model model, Precision precision) {
+EnsembleSpec Question(const ExperimentKind* experiment, double delta, Model model,
+                      Precision precision) {
   EnsembleSpec spec = {.experiment = experiment,
-                       .grid = {.rho = {kPaperRho}, .delta = {delta}},
+                       .grid = {{kRho, {kPaperRho}}, {kDelta, {delta}}},
                        .seed = 5,
                        .model = model,
                        .precision = precision};
-  if (experiment == Experiment::kEquilibrium) {
+  if (experiment == &kEquilibrium) {
     spec.target.collisions = 100'000'000;
   } else {
-    spec.grid.epsilon = {0.125};
+    spec.grid[kEpsilon] = {0.125};
     spec.target.samples = 10'000'000;
   }
-  if (experiment == Experiment::kFirstHit) spec.grid.exponent = {1};
+  if (experiment == &kFirstHit) spec.grid[kExponent] = {1};
   return spec;
+}
+
+// Of some 50 ms in lanes, and of as many samples as take that long by the reference.
+Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
+  const double events = point.answer().model == Model::kBilliardReference ? 0x1p20 : 0x1p24;
+  const uint64_t samples =
+      std::max(static_cast<uint64_t>(events / point.plan().events_per_sample()), uint64_t{1});
+  return {.first = turn * samples, .samples = samples};
 }
 
 struct EngineContender {
@@ -107,11 +118,12 @@ struct EngineContender {
   double exact_time;  // of a sample
 
   // Samples a second; by the time they flew, not by their number: blocks differ by luck.
-  double Rate(uint64_t block) const {
+  double Rate(uint64_t turn) const {
     Use(target);
-    const double begin = ThreadSeconds();
-    const BlockResult result = *point->RunBlock(block, {});
-    const double elapsed = ThreadSeconds() - begin;
+    const Block block = BlockOfATurn(*point, turn);
+    const double begin = server::ThreadSeconds();
+    const BlockResult result = *RunBlock(*point, block);
+    const double elapsed = server::ThreadSeconds() - begin;
     const double flown = result.moments.empty()
                              ? *result.batch_means[0].Ratio() * static_cast<double>(result.samples)
                              : result.moments[0].mean * static_cast<double>(result.samples);
@@ -120,10 +132,10 @@ struct EngineContender {
 };
 
 double ExactTime(const PointExperiment& point) {
-  return *point.FirstEstimate(*point.RunBlock(0, {})).exact;
+  return *point.FirstEstimate(*RunBlock(point, {.samples = 1})).exact;
 }
 
-void ShowEngines(const char* name, Experiment experiment, double delta, int64_t target) {
+void ShowEngines(const char* name, const ExperimentKind* experiment, double delta, int64_t target) {
   const auto reference = PointExperiment::Create(
       Question(experiment, delta, Model::kBilliardReference, Precision::kDouble), 0);
   const auto lanes =
@@ -138,18 +150,18 @@ void ShowEngines(const char* name, Experiment experiment, double delta, int64_t 
       "%-6s %-12s delta %-7g reference %9.0f samples/s (%5.1f million events/s)   "
       "billiard %9.0f: %5.1f times   single: %5.1f times\n",
       hwy::TargetName(target), name, delta, rates[0],
-      rates[0] * reference->plan().events_per_sample * 1e-6, rates[1], rates[1] / rates[0],
+      rates[0] * reference->plan().events_per_sample() * 1e-6, rates[1], rates[1] / rates[0],
       rates[2] / rates[0]);
 }
 
-// Blocks a second of `threads` threads that share the blocks 0, 1, ...
+// Blocks a second of `threads` threads that share eight blocks.
 double BlocksPerSecond(const PointExperiment& point, unsigned threads) {
   constexpr uint64_t kBlocks = 8;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::thread> running;
   for (unsigned i = 0; i < threads; ++i) {
     running.emplace_back([&point, i, threads] {
-      for (uint64_t block = i; block < kBlocks; block += threads) point.RunBlock(block, {});
+      for (uint64_t k = i; k < kBlocks; k += threads) RunBlock(point, BlockOfATurn(point, k));
     });
   }
   for (std::thread& thread : running) thread.join();
@@ -158,7 +170,7 @@ double BlocksPerSecond(const PointExperiment& point, unsigned threads) {
 
 void ShowThreads(unsigned threads) {
   const auto point = PointExperiment::Create(
-      Question(Experiment::kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble), 0);
+      Question(&kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble), 0);
   double one = 0, all = 0;
   for (int turn = 0; turn < 6; ++turn) {
     one = std::max(one, BlocksPerSecond(*point, 1));
@@ -176,10 +188,10 @@ void ShowAll() {
   }
   for (const int64_t target : targets) {
     if (target > HWY_SSE4) continue;
-    ShowEngines("first-hit", Experiment::kFirstHit, 0.0125, target);
-    ShowEngines("first-hit", Experiment::kFirstHit, 0.05, target);
-    ShowEngines("equilibrium", Experiment::kEquilibrium, 0.05, target);
-    ShowEngines("equilibrium", Experiment::kEquilibrium, 0.2, target);
+    ShowEngines("first-hit", &kFirstHit, 0.0125, target);
+    ShowEngines("first-hit", &kFirstHit, 0.05, target);
+    ShowEngines("equilibrium", &kEquilibrium, 0.05, target);
+    ShowEngines("equilibrium", &kEquilibrium, 0.2, target);
   }
 }
 

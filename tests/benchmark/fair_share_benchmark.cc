@@ -1,4 +1,4 @@
-// What a choice between runs costs under the worker pool's lock, for each block of 0.1 s: with many
+// What a choice between runs costs under the worker pool's lock, for each turn of 0.05 s: with many
 // runs, with many principals, and where those whose turn it is have nothing to hand out.
 #include <string>
 
@@ -22,8 +22,8 @@ void ChooseBeginEnd(benchmark::State& state) {
   FairShare share = RunsOf(state.range(0), state.range(1));
   for (auto _ : state) {
     const auto run = share.First([](int64_t) { return true; });
-    share.BlockBegins(*run);
-    share.BlockEnds(*run, kBlockSeconds);
+    share.TurnBegins(*run);
+    share.TurnEnds(*run, kBlockSeconds);
   }
 }
 BENCHMARK(ChooseBeginEnd)
@@ -40,8 +40,8 @@ void PassOverThoseWithoutATask(benchmark::State& state) {
   const int64_t waiting = state.range(0);
   for (auto _ : state) {
     const auto run = share.First([waiting](int64_t asked) { return asked >= waiting; });
-    share.BlockBegins(*run);
-    share.BlockEnds(*run, kBlockSeconds);
+    share.TurnBegins(*run);
+    share.TurnEnds(*run, kBlockSeconds);
   }
 }
 BENCHMARK(PassOverThoseWithoutATask)->ArgName("waiting")->Arg(2)->Arg(64)->Arg(1024);

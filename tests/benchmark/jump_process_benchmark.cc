@@ -15,9 +15,9 @@
 #include "core/billiard/orbits.h"
 #include "core/geometry/paper.h"
 #include "core/markov/jump_process.h"
-#include "core/method_comparison/processor_time.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
+#include "server/execution/processor_time.h"
 
 namespace ballpiston {
 namespace {
@@ -34,9 +34,9 @@ template <typename Piece>
 double BestRate(benchmark::State& state, double count, const Piece& piece) {
   double best = 0;
   for (auto _ : state) {
-    const double begin = ThreadSeconds();
+    const double begin = server::ThreadSeconds();
     piece();
-    best = std::max(best, count / (ThreadSeconds() - begin));
+    best = std::max(best, count / (server::ThreadSeconds() - begin));
   }
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(count));
   state.counters["best/s"] = best;
@@ -44,7 +44,7 @@ double BestRate(benchmark::State& state, double count, const Piece& piece) {
 }
 
 // Starts in equilibrium and ends an orbit after some collisions.
-class Equilibrium : public OrbitSource {
+class Equilibrium : public NumberedOrbits {
  public:
   Equilibrium(const PairGeometry& geometry, uint64_t orbits)
       : geometry_(geometry), collisions_(orbits) {}

@@ -106,16 +106,6 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
   return grpc::Status::OK;
 }
 
-grpc::Status FakeMethodService::CompareMethods(grpc::ServerContext* context,
-                                               const v1::CompareMethodsRequest* request,
-                                               grpc::ServerWriter<v1::MethodMeasurement>* writer) {
-  asked.push_back(*request);
-  do {
-    for (const v1::MethodMeasurement& measurement : measurements) writer->Write(measurement);
-  } while (hangs && !context->IsCancelled());
-  return end;
-}
-
 FakeServer::~FakeServer() {
   ensemble.Release();
   if (server_) server_->Shutdown();
@@ -126,7 +116,6 @@ void FakeServer::Start() {
   builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
-  builder.RegisterService(&method);
   builder.RegisterService(&server);
   server_ = builder.BuildAndStart();
 }

@@ -12,7 +12,6 @@
 
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/method.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "tests/support/temporary_folder.h"
 
@@ -81,24 +80,13 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
 class FakeAnalyticService final : public v1::AnalyticService::Service {
  public:
   v1::EvaluatePairsResponse response;
-  grpc::Status EvaluatePairs(grpc::ServerContext*, const v1::EvaluatePairsRequest*,
+  v1::EvaluatePairsRequest asked;  // the last request
+  grpc::Status EvaluatePairs(grpc::ServerContext*, const v1::EvaluatePairsRequest* request,
                              v1::EvaluatePairsResponse* answer) override {
+    asked = *request;
     *answer = response;
     return grpc::Status::OK;
   }
-};
-
-class FakeMethodService final : public v1::MethodService::Service {
- public:
-  // The answers. With `hangs` they are repeated until the client ends the call.
-  std::vector<v1::MethodMeasurement> measurements;
-  grpc::Status end;
-  bool hangs = false;
-  std::vector<v1::CompareMethodsRequest> asked;  // one comparison at a time
-
-  grpc::Status CompareMethods(grpc::ServerContext* context,
-                              const v1::CompareMethodsRequest* request,
-                              grpc::ServerWriter<v1::MethodMeasurement>* writer) override;
 };
 
 class FakeServerService final : public v1::ServerService::Service {
@@ -120,7 +108,6 @@ class FakeServer {
 
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
-  FakeMethodService method;
   FakeServerService server;
 
   std::string Address() const { return "unix:" + SocketPath(); }

@@ -5,26 +5,24 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/experiment/ensemble_spec.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/experiment/all_experiments.h"
 #include "core/geometry/paper.h"
 
 namespace ballpiston {
 
 inline PointParameters PaperPoint(double delta, std::optional<double> epsilon = {},
                                   std::optional<double> exponent = {}) {
-  return {.rho = kPaperRho, .delta = delta, .epsilon = epsilon, .exponent = exponent};
+  return {{kRho, kPaperRho}, {kDelta, delta}, {kEpsilon, epsilon}, {kExponent, exponent}};
 }
 
-inline EnsembleSpec SpecOf(Experiment experiment, const PointParameters& point,
+inline EnsembleSpec SpecOf(const ExperimentKind* experiment, const PointParameters& point,
                            const Target& target = {}, Model model = Model::kAuto,
                            uint64_t seed = 0) {
-  EnsembleSpec spec = {.experiment = experiment,
-                       .grid = {.rho = {point.rho}, .delta = {point.delta}},
-                       .target = target,
-                       .seed = seed,
-                       .model = model};
-  if (point.epsilon) spec.grid.epsilon = {*point.epsilon};
-  if (point.exponent) spec.grid.exponent = {*point.exponent};
+  EnsembleSpec spec = {.experiment = experiment, .target = target, .seed = seed, .model = model};
+  for (const Parameter* parameter : kParameters) {
+    if (const auto& value = point.Find(*parameter)) spec.grid[*parameter] = {*value};
+  }
   return spec;
 }
 

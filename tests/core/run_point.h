@@ -7,22 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 
 namespace ballpiston {
 
-inline BlockResult RunBlocks(const PointExperiment& point) {
-  BlockResult merged;
-  uint64_t block = 0;
-  do {
-    merged.Merge(*point.RunBlock(block, {}));
-  } while (!point.TargetReached(++block, merged));
-  return merged;
-}
-
 inline PointSummary RunPoint(const EnsembleSpec& spec, size_t index = 0) {
   const auto point = PointExperiment::Create(spec, index);
-  return point->Summarize(RunBlocks(*point));
+  return point->Summarize(*FoldPoint(*point));
 }
 
 inline const Estimate& Named(std::string_view name, const std::vector<Estimate>& estimates) {

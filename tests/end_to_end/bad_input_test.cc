@@ -38,6 +38,9 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"analytic --rho 0.4 --delta 0.1", 2, {"rho[0]"}},
       {"analytic --rho 0.529561127988977 --delta 0.33", 2, {"delta[0]", "0.3255"}},
       {"analytic --rho 0.53 --delta 0.1 --epsilon 0.6", 2, {"epsilon[0]"}},
+      {"analytic --rho 0.53 --delta 0.1 --temperature 1,0",
+       2,
+       {"temperature[1]", "0 is not in [1e-120, 1e+120]"}},
       // epsilon, exponent, samples
       {"run conditional-mean-free-time --rho 0.53 --delta 0.1 --epsilon 0.50001",
        2,
@@ -139,9 +142,6 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {"figure mean-free-time --seconds 3 --out FOLDER/figure", 2, {"--seconds: '3'"}},
       {"figure speed-accuracy --samples 3 --out FOLDER/figure", 2, {"--samples: '3'"}},
       {"figure speed-accuracy --delta 0.1,0.2 --out FOLDER/figure", 2, {"--delta: '0.1,0.2'"}},
-      {"figure speed-accuracy --delta 0.4 --epsilon 0.6 --seconds 0.001 --out FOLDER/figure",
-       2,
-       {"delta: ", "epsilon: ", "seconds_per_curve: "}},
       // specification files
       {"run --spec FOLDER/broken.json", 2, {"--spec FOLDER/broken.json: "}},
       {"run --spec FOLDER/unknown.json", 2, {"--spec FOLDER/unknown.json: ", "radius"}},

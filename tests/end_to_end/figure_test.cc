@@ -56,42 +56,6 @@ TEST(Figure, LeavesDataScriptAndPicture) {
   EXPECT_THAT(result.out, HasSubstr(folder + "/mean-free-time.svg\n"));
 }
 
-// The measured times are too short for meaningful numbers. The test checks that there are numbers.
-TEST(Figure, SpeedIsChartedAgainstAccuracy) {
-  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const TestServer server;
-  const std::string folder = server.folder().File("figure");
-  const ProcessResult result = server.Client(
-      {"figure", "speed-accuracy", "--out", folder, "--seconds", "0.02", "--progress", "json"});
-  EXPECT_THAT(result, ExitsWith(0));
-  const std::string csv = Contents(folder + "/speed-accuracy.csv");
-  const auto rows = std::count(csv.begin(), csv.end(), '\n') - 1;
-  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), rows);
-  for (const char* curve : {"fixed-step,0.01,mean-free-time", "billiard-reference,0,ingoing-law",
-                            "billiard-single,0,trajectory", "closed-form,0,mean-free-time"}) {
-    EXPECT_THAT(csv, HasSubstr(curve));
-  }
-  const std::string svg = Contents(folder + "/speed-accuracy.svg");
-  EXPECT_THAT(svg, HasSubstr("</svg>"));
-  EXPECT_THAT(svg, HasSubstr("vector lanes, double"));
-  EXPECT_THAT(result.out, HasSubstr(folder + "/speed-accuracy.svg\n"));
-}
-
-TEST(Figure, CtrlCEndsAComparisonOnTheServerToo) {
-  const TestServer server;
-  const std::string folder = server.folder().File("figure");
-  const auto client = server.StartClient(
-      {"figure", "speed-accuracy", "--out", folder, "--seconds", "60", "--progress", "json"});
-  ASSERT_TRUE(client->WaitForErr("MEAN_FREE_TIME"));
-  client->Signal(SIGINT);
-  EXPECT_THAT(client->Wait(), ExitsWith(130));
-  ProcessResult next;
-  do {  // the server may not have noticed yet that the client ended
-    next = server.Client({"figure", "speed-accuracy", "--out", folder, "--seconds", "0.01"});
-  } while (next.err.find("COMPARISON_RUNNING") != std::string::npos);
-  EXPECT_THAT(next, ExitsWith(0));
-}
-
 TEST(Figure, WithoutGnuplotLeavesDataAndScript) {
   const TestServer server;
   const std::string folder = server.folder().File("figure");

@@ -9,7 +9,7 @@
 namespace ballpiston {
 namespace {
 
-// Four points of 16 blocks or more each.
+// Four points of 32 blocks or more each.
 Words Question(int samples) {
   return Split(
       "first-hit --rho 0.529561127988977 --delta 0.1,0.05 --epsilon 0.1,0.4 --exponent 1 "

@@ -21,7 +21,9 @@ void RequireFinite(const v1::PairAnalytics& point) {
     for (const double kernel : energy.kernel()) Require(kernel >= 0, "a kernel");
   }
   for (const v1::CanonicalAnalytics& canonical : point.canonical()) {
-    Require(std::isfinite(canonical.mean_h()), "an average");
+    Require(std::isnormal(canonical.mean_h()) && canonical.mean_h() > 0, "an average");
+    Require(std::isnormal(canonical.exchange_rate()), "an exchange rate");
+    Require(std::isfinite(canonical.rare_limit_exchange_rate()), "its limit");
   }
 }
 
@@ -34,7 +36,8 @@ void CheckPairsRequest(const std::string& bytes) {
   Require(response->points_size() == request.rho_size() * request.delta_size(), "every pair");
   for (const v1::PairAnalytics& point : response->points()) {
     Require(point.energies_size() == request.epsilon_size(), "every energy");
-    Require(point.canonical_size() == request.beta_size(), "every temperature");
+    Require(point.canonical_size() == request.beta_size() + request.temperature_size(),
+            "every temperature");
     RequireFinite(point);
   }
 }

@@ -33,7 +33,8 @@ void RequirePointsThatMakePairs(const EnsembleSpec& spec) {
   Require(points >= 1 && points <= static_cast<size_t>(kMaxPoints), "points within the limit");
   for (const size_t index : {size_t{0}, points / 2, points - 1}) {
     const PointParameters point = PointAt(spec, index);
-    Require(PairGeometry::Create(point.rho, point.delta).ok(), "an accepted point makes a pair");
+    Require(PairGeometry::Create(point[kRho], point[kDelta]).ok(),
+            "an accepted point makes a pair");
   }
 }
 

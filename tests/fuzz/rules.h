@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "ballpiston/v1/spec.pb.h"
-#include "core/experiment/ensemble_spec.h"
+#include "core/ensemble/ensemble_spec.h"
 
 namespace ballpiston::fuzz {
 

@@ -1,5 +1,5 @@
 // A finished point's result: read for pages of results, and for what a restart wants of it.
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -15,7 +15,7 @@ using Prefixes = std::vector<std::string_view>;
 struct Rule {
   std::string_view folder;
   Prefixes may_include;   // folders of the project, then libraries
-  bool operating_system;  // threads and the headers of POSIX
+  bool operating_system;  // threads, clocks and the headers of POSIX
 };
 
 // The first row whose folder holds the file counts.
@@ -31,20 +31,23 @@ const std::vector<Rule>& Rules() {
        false},
       {"core/billiard/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
-        "core/billiard/", "Eigen/", "absl/", "hwy/", "boost/"},
+        "core/billiard/", "Eigen/", "absl/", "hwy/"},
        false},
       {"core/markov/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/", "core/markov/",
         "core/statistics/", "Eigen/", "absl/", "hwy/", "boost/", "Random123/"},
        false},
       {"core/statistics/", {"core/arithmetic/", "core/statistics/", "Eigen/", "absl/"}, false},
+      {"core/ensemble/",
+       {"core/arithmetic/", "core/geometry/", "core/sampling/", "core/billiard/",
+        "core/statistics/", "core/ensemble/", "absl/"},
+       false},
       {"core/experiment/",
        {"core/arithmetic/", "core/geometry/", "core/closed_form/", "core/sampling/",
-        "core/billiard/", "core/markov/", "core/statistics/", "core/experiment/", "Eigen/",
-        "absl/"},
+        "core/billiard/", "core/markov/", "core/statistics/", "core/ensemble/", "core/experiment/",
+        "Eigen/", "absl/"},
        false},
       {"core/model_choice/", {"core/", "Eigen/", "absl/"}, false},
-      {"core/method_comparison/", {"core/", "Eigen/", "absl/", "hwy/"}, false},
       {"core/engine_version.h", {}, false},
       {"server/command_line/", {"server/", "absl/", "CLI/"}, true},
       {"server/security/", {"server/", "absl/", "grpc/", "grpcpp/", "openssl/"}, true},
@@ -55,7 +58,13 @@ const std::vector<Rule>& Rules() {
       {"client/",
        {"client/", "ballpiston/v1/", "google/", "absl/", "grpc/", "grpcpp/", "CLI/"},
        true},
-      {"tools/", {"core/", "tools/", "Eigen/", "absl/", "hwy/"}, true},
+      {"tools/flows/", {"core/", "tools/flows/", "Eigen/", "boost/"}, false},
+      {"tools/method_comparison/",
+       {"core/", "tools/method_comparison/", "tools/flows/", "Eigen/", "absl/", "CLI/"},
+       true},
+      {"tools/stability/",
+       {"core/", "tools/stability/", "tools/flows/", "Eigen/", "absl/", "hwy/"},
+       true},
       {"tests/support/", {"tests/support/", "absl/", "gtest/", "gmock/"}, true},
       {"tests/core/",
        {"core/", "tests/core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/",
@@ -73,7 +82,8 @@ const std::vector<Rule>& Rules() {
        true},
       {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
       {"tests/tools/",
-       {"core/", "tools/", "tests/tools/", "tests/support/", "Eigen/", "absl/", "gtest/", "gmock/"},
+       {"core/", "tools/", "tests/tools/", "tests/core/", "tests/support/", "Eigen/", "absl/",
+        "gtest/", "gmock/"},
        true},
       {"tests/client/",
        {"client/", "tests/client/", "tests/support/", "ballpiston/v1/", "google/", "absl/", "grpc/",
@@ -93,12 +103,17 @@ bool StartsWithAny(std::string_view path, const Prefixes& prefixes) {
                      [&](std::string_view prefix) { return path.starts_with(prefix); });
 }
 
-// <vector>, <cmath>, ...; but those that start threads belong to the operating system.
+// Those of C++ and of Abseil.
+bool IsThreadOrClock(std::string_view include) {
+  static constexpr std::array<std::string_view, 6> kStandard = {
+      "thread", "future", "mutex", "condition_variable", "chrono", "ctime"};
+  return std::find(kStandard.begin(), kStandard.end(), include) != kStandard.end() ||
+         StartsWithAny(include, {"absl/synchronization/", "absl/time/"});
+}
+
+// <vector>, <cmath>, ...
 bool IsStandardHeader(std::string_view include) {
-  static constexpr std::array<std::string_view, 4> kThreads = {"thread", "future", "mutex",
-                                                               "condition_variable"};
-  return include.find_first_of("/.") == std::string_view::npos &&
-         std::find(kThreads.begin(), kThreads.end(), include) == kThreads.end();
+  return include.find_first_of("/.") == std::string_view::npos;
 }
 
 // <unistd.h>, <sys/stat.h>, <thread>, ...
@@ -109,6 +124,7 @@ bool IsOperatingSystemHeader(std::string_view include) {
 }
 
 bool IsAllowed(const Rule& rule, std::string_view include) {
+  if (IsThreadOrClock(include) && !rule.operating_system) return false;
   return IsStandardHeader(include) || StartsWithAny(include, rule.may_include) ||
          (rule.operating_system && IsOperatingSystemHeader(include));
 }

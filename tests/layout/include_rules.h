@@ -1,12 +1,12 @@
 // Rules for the includes of each folder of the project.
 //
 //   core:    arithmetic <- geometry <- closed_form, sampling <- billiard, markov <- experiment <-
-//            method_comparison <- model_choice; statistics knows no physics. Libraries: Eigen,
-//            Highway, Random123, Boost's numbers and quadrature, Abseil and C++'s own, without
-//            threads.
+//            model_choice; statistics knows no physics. Libraries: Eigen, Highway, Random123,
+//            Boost's quadrature, Abseil and C++'s own, without threads and clocks.
 //   server:  core and the protos.   client: the protos only.   Neither knows the other. Flags are
 //            parsed by CLI11, which is slow to compile: in the server only command_line/ has it.
-//   tools:   the core only. Only their tests know them.
+//   tools:   the core, and tools/flows, which has numbers of more bits from Boost. Only their tests
+//            know them.
 //   server/convert alone includes the core's physics and the API's messages in one file.
 //   tests:   of a layer know that layer, and tests/support.
 //

@@ -103,7 +103,7 @@ TEST(IncludeRules, DownwardIncludesAreRight) {
               IsEmpty());
   EXPECT_THAT(WrongIncludes("server/jobs/x.cc",
                             "#include <thread>\n#include <sys/stat.h>\n#include <sqlite3.h>\n"
-                            "#include \"core/experiment/block_plan.h\"\n"),
+                            "#include \"core/ensemble/chunk_plan.h\"\n"),
               IsEmpty());
 }
 
@@ -118,24 +118,17 @@ TEST(IncludeRules, ClosedFormAndSamplingAreSeparate) {
 }
 
 TEST(IncludeRules, BilliardIncludesNoExperiment) {
-  ExpectWrong("core/billiard/x.h", "\"core/experiment/block_plan.h\"");
+  ExpectWrong("core/billiard/x.h", "\"core/ensemble/chunk_plan.h\"");
   ExpectWrong("core/billiard/x.h", "\"core/statistics/moments.h\"");
 }
 
-TEST(IncludeRules, ExperimentsKnowNoComparisonOfMethods) {
-  ExpectWrong("core/experiment/x.cc", "\"core/method_comparison/method.h\"");
-  EXPECT_THAT(WrongIncludes("core/method_comparison/x.cc",
-                            "#include \"core/experiment/return_orbits.h\"\n"
-                            "#include \"core/statistics/moments.h\"\n#include <hwy/highway.h>\n"),
-              IsEmpty());
-}
-
-// Numbers of many bits are for those who compare precisions.
-TEST(IncludeRules, BoostIsForTheBilliardOnly) {
-  EXPECT_THAT(WrongIncludes("core/billiard/x.h", "#include <boost/multiprecision/eigen.hpp>\n"),
-              IsEmpty());
-  ExpectWrong("core/experiment/x.h", "<boost/multiprecision/eigen.hpp>");
-  ExpectWrong("core/method_comparison/x.h", "<boost/multiprecision/eigen.hpp>");
+// Numbers of many bits are for the tools that compare precisions.
+TEST(IncludeRules, BoostsNumbersAreForTheFlowsOfTheTools) {
+  const std::string numbers = "#include <boost/multiprecision/eigen.hpp>\n";
+  EXPECT_THAT(WrongIncludes("tools/flows/x.h", numbers), IsEmpty());
+  for (const char* path : {"core/billiard/x.h", "tools/method_comparison/x.h"}) {
+    EXPECT_THAT(WrongIncludes(path, numbers), SizeIs(1)) << path;
+  }
 }
 
 TEST(IncludeRules, StatisticsKnowsNoPhysics) {
@@ -143,11 +136,12 @@ TEST(IncludeRules, StatisticsKnowsNoPhysics) {
   ExpectWrong("core/statistics/x.h", "\"core/closed_form/kernel.h\"");
 }
 
-TEST(IncludeRules, TheCoreKnowsNoServiceAndNoThreads) {
+TEST(IncludeRules, TheCoreKnowsNoServiceNoThreadsAndNoClock) {
   for (const char* include :
        {"\"ballpiston/v1/result.pb.h\"", "<google/protobuf/message.h>", "<grpcpp/grpcpp.h>",
         "<sqlite3.h>", "\"server/store/store.h\"", "\"client/library/client.h\"", "<thread>",
-        "<mutex>", "<unistd.h>", "<CLI/CLI.hpp>"}) {
+        "<mutex>", "<chrono>", "<ctime>", "<time.h>", "\"absl/time/clock.h\"", "<unistd.h>",
+        "<CLI/CLI.hpp>"}) {
     ExpectWrong("core/experiment/x.cc", include);
     ExpectWrong("core/geometry/x.cc", include);
   }
@@ -182,8 +176,9 @@ TEST(IncludeRules, ToolsKnowTheCoreOnly) {
 TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
   const std::string tool = "\"tools/stability/report.h\"";
   EXPECT_THAT(WrongIncludes("tests/tools/stability/x.cc", "#include " + tool), IsEmpty());
-  for (const char* path : {"core/billiard/x.cc", "server/jobs/x.cc", "client/command/x.cc",
-                           "tests/core/billiard/x.cc", "tests/end_to_end/x.cc"}) {
+  for (const char* path :
+       {"core/billiard/x.cc", "server/jobs/x.cc", "client/command/x.cc",
+        "tools/method_comparison/x.cc", "tests/core/billiard/x.cc", "tests/end_to_end/x.cc"}) {
     ExpectWrong(path, tool);
   }
   ExpectWrong("tests/tools/stability/x.cc", "\"server/store/store.h\"");
@@ -191,7 +186,7 @@ TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
 
 TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
   EXPECT_THAT(WrongIncludes("server/command_line/x.cc", "#include <CLI/CLI.hpp>\n"), IsEmpty());
-  ExpectWrong("server/command_line/x.cc", "\"core/experiment/block_plan.h\"");
+  ExpectWrong("server/command_line/x.cc", "\"core/ensemble/chunk_plan.h\"");
   for (const char* path : {"server/api/x.cc", "server/main.cc"}) {
     ExpectWrong(path, "<CLI/CLI.hpp>");
   }
@@ -199,7 +194,7 @@ TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
 
 TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {
   const std::string both =
-      "#include \"core/experiment/ensemble_spec.h\"\n#include \"ballpiston/v1/spec.pb.h\"\n";
+      "#include \"core/ensemble/ensemble_spec.h\"\n#include \"ballpiston/v1/spec.pb.h\"\n";
   EXPECT_THAT(WrongIncludes("server/jobs/x.cc", both), SizeIs(1));
   EXPECT_THAT(WrongIncludes("server/convert/x.cc", both), IsEmpty());
 }

@@ -3,6 +3,9 @@
 #include <memory>
 #include <utility>
 
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+
 namespace ballpiston::server {
 namespace {
 
@@ -14,14 +17,14 @@ double Uniform(uint64_t seed, uint64_t point, uint64_t sample) {
   return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
 }
 
-BlockPlan FakePlan(const Target& target) {
-  BlockPlan plan;
-  plan.samples = kFakeSamplesPerBlock *
-                 static_cast<uint64_t>(target.samples.value_or(target.collisions.value_or(1000)));
-  plan.block_size = kFakeSamplesPerBlock;
-  plan.tolerance = target.tolerance;
-  return plan;
+// Blocks of kFakeSamplesPerBlock, in chunks of 64 samples, 128, 256 ...
+ChunkPlan FakePlan(const Target& target) {
+  const auto blocks =
+      static_cast<uint64_t>(target.samples.value_or(target.collisions.value_or(1000)));
+  return ChunkPlan(kFakeSamplesPerBlock * blocks, Engine::kLanes, 0x1p23);
 }
+
+uint64_t NumberOf(const Block& block) { return block.first / kFakeSamplesPerBlock; }
 
 class FakeExperiment : public PointExperiment {
  public:
@@ -31,15 +34,10 @@ class FakeExperiment : public PointExperiment {
         index_(index),
         before_block_(std::move(before_block)) {}
 
-  std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override {
-    if (before_block_) before_block_(index_, block, stop);
-    if (stop.stop_requested()) return std::nullopt;
-    BlockResult result = EmptyResult();
-    result.samples = plan().SamplesIn(block);
-    for (uint64_t i = 0; i < result.samples; ++i) {
-      result.moments[0].Add(Uniform(seed_, index_, plan().FirstSample(block) + i));
-    }
-    return result;
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
+      return Compute(block, stop);
+    });
   }
 
   BlockResult EmptyResult() const override {
@@ -60,6 +58,17 @@ class FakeExperiment : public PointExperiment {
   }
 
  private:
+  std::optional<BlockResult> Compute(const Block& block, const std::stop_token& stop) const {
+    if (before_block_) before_block_(index_, NumberOf(block), stop);
+    if (stop.stop_requested()) return std::nullopt;
+    BlockResult result = EmptyResult();
+    result.samples = block.samples;
+    for (uint64_t i = 0; i < block.samples; ++i) {
+      result.moments[0].Add(Uniform(seed_, index_, block.first + i));
+    }
+    return result;
+  }
+
   const uint64_t seed_;
   const size_t index_;
   const BeforeBlock before_block_;
@@ -67,21 +76,25 @@ class FakeExperiment : public PointExperiment {
 
 class HeldUpExperiment : public PointExperiment {
  public:
-  HeldUpExperiment(const EnsembleSpec& spec, size_t index, BeforeBlock before_block)
+  HeldUpExperiment(const EnsembleSpec& spec, size_t index, BeforeSample before_sample)
       : HeldUpExperiment(spec, PointExperiment::Create(spec, index), index,
-                         std::move(before_block)) {}
+                         std::move(before_sample)) {}
 
   HeldUpExperiment(const EnsembleSpec& spec, std::unique_ptr<const PointExperiment> real,
-                   size_t index, BeforeBlock before_block)
+                   size_t index, BeforeSample before_sample)
       : PointExperiment(spec, real->parameters(), real->plan()),
         real_(std::move(real)),
         index_(index),
-        before_block_(std::move(before_block)) {}
+        before_sample_(std::move(before_sample)) {}
 
-  std::optional<BlockResult> RunBlock(uint64_t block, std::stop_token stop) const override {
-    before_block_(index_, block, stop);
-    if (stop.stop_requested()) return std::nullopt;  // a short block would not notice
-    return real_->RunBlock(block, stop);
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    return RunOneByOne(
+        queue,
+        [this](const Block& block, const std::stop_token& stop) -> std::optional<BlockResult> {
+          before_sample_(index_, block.first, stop);
+          if (stop.stop_requested()) return std::nullopt;  // a short block would not notice
+          return RunBlock(*real_, block, stop);
+        });
   }
   BlockResult EmptyResult() const override { return real_->EmptyResult(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
@@ -94,7 +107,7 @@ class HeldUpExperiment : public PointExperiment {
  private:
   const std::unique_ptr<const PointExperiment> real_;
   const size_t index_;
-  const BeforeBlock before_block_;
+  const BeforeSample before_sample_;
 };
 
 }  // namespace
@@ -147,18 +160,18 @@ ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block) {
   });
 }
 
-ExperimentFactory HeldUpExperiments(BeforeBlock before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
-                                                  const std::stop_token&) {
-    return std::make_unique<const HeldUpExperiment>(spec, index, before_block);
+ExperimentFactory HeldUpExperiments(BeforeSample before_sample) {
+  return [before_sample = std::move(before_sample)](const EnsembleSpec& spec, size_t index,
+                                                    const std::stop_token&) {
+    return std::make_unique<const HeldUpExperiment>(spec, index, before_sample);
   };
 }
 
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {
   EnsembleSpec spec;
-  spec.experiment = Experiment::kEquilibrium;
-  spec.grid.rho = {0.53};
-  for (int i = 0; i < points; ++i) spec.grid.delta.push_back(0.1 + 1e-6 * i);
+  spec.experiment = &kEquilibrium;
+  spec.grid[kRho] = {0.53};
+  for (int i = 0; i < points; ++i) spec.grid[kDelta].push_back(0.1 + 1e-6 * i);
   spec.target.samples = blocks;
   spec.seed = seed;
   return spec;
@@ -166,11 +179,12 @@ EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {
 
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks) {
   const auto experiment = FakeExperiments()(spec, point, std::stop_token());
-  BlockResult merged;
-  for (uint64_t block = 0; block < blocks; ++block) {
-    merged.Merge(*experiment->RunBlock(block, std::stop_token()));
+  PointFold fold(*experiment);
+  for (uint64_t i = 0; i < blocks; ++i) {
+    const std::optional<Block> block = fold.NextBlock();
+    fold.Add(*block, *RunBlock(*experiment, *block));
   }
-  return merged;
+  return fold.Merged();
 }
 
 }  // namespace ballpiston::server

@@ -33,7 +33,7 @@ class Gate {
 // Called at the start of each block. If it throws, the block throws the same exception.
 using BeforeBlock = std::function<void(size_t point, uint64_t block, std::stop_token stop)>;
 
-inline constexpr uint64_t kFakeSamplesPerBlock = 4;
+inline constexpr uint64_t kFakeSamplesPerBlock = 2;
 
 // Cheap blocks of kFakeSamplesPerBlock pseudo-random numbers in (0, 1), a function of seed, point
 // and block alone. The spec's samples or collisions count blocks here; a tolerance has 1000 blocks
@@ -48,8 +48,9 @@ ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block);
 // Fake experiments. Blocks with the number `first_block` or a greater one wait at the gate.
 ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block = 0);
 
-// The core's experiments, held up.
-ExperimentFactory HeldUpExperiments(BeforeBlock before_block);
+// The core's experiments, held up at the start of each block, which is told by its first sample.
+using BeforeSample = std::function<void(size_t point, uint64_t first, std::stop_token stop)>;
+ExperimentFactory HeldUpExperiments(BeforeSample before_sample);
 
 // One rho, so many deltas, so many blocks each.
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed = 1);

@@ -41,12 +41,4 @@ v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
   return request;
 }
 
-v1::CompareMethodsRequest SomeComparison() {
-  v1::CompareMethodsRequest request;
-  request.set_rho(0.53);
-  request.set_delta(0.1);
-  request.set_epsilon(0.125);
-  return request;
-}
-
 }  // namespace ballpiston::server

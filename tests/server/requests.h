@@ -6,7 +6,6 @@
 #include <string>
 
 #include "ballpiston/v1/ensemble.pb.h"
-#include "ballpiston/v1/method.pb.h"
 
 namespace ballpiston::server {
 
@@ -28,9 +27,6 @@ v1::CreateEnsembleJobRequest CreateRequest(const v1::EnsembleSpec& spec,
 // The same, but the answer must not come from the store.
 v1::CreateEnsembleJobRequest FreshRequest(const v1::EnsembleSpec& spec,
                                           const std::string& request_id = "");
-
-// Compares all methods at one point.
-v1::CompareMethodsRequest SomeComparison();
 
 }  // namespace ballpiston::server
 

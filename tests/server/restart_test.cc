@@ -88,11 +88,11 @@ TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
 
 TEST(Restart, TheSameBytesWithATolerance) {
   v1::EnsembleSpec spec = Equilibrium(10, 0);
-  spec.mutable_target()->set_tolerance(0.02);  // some 800 samples: not all blocks, not the least
+  spec.mutable_target()->set_tolerance(0.02);  // some 800 samples: neither one chunk nor all
   const std::vector<std::string> one = BytesAt(1, spec, FakeExperiments());
   v1::PointResult first;
   ASSERT_TRUE(first.ParseFromString(one.at(0)));
-  EXPECT_GT(first.samples(), kMinBlocks * kFakeSamplesPerBlock);
+  EXPECT_GT(first.samples(), 64);
   EXPECT_LT(first.samples(), 1000 * kFakeSamplesPerBlock);
   EXPECT_EQ(BytesAt(2, spec, FakeExperiments()), one);
   EXPECT_EQ(BytesAt(8, spec, FakeExperiments()), one);
@@ -122,11 +122,17 @@ TEST(Restart, AToleranceMissedBeforeTheStopStaysMissed) {
   EXPECT_EQ(job.progress().points_done(), 2);
 }
 
-// The core's experiments, held up in the middle: point 1 has 20 blocks, later ones none.
-ExperimentFactory StuckInTheMiddle(Gate& gate) {
-  return HeldUpExperiments([&gate](size_t point, uint64_t block, std::stop_token stop) {
-    if (point > 1 || (point == 1 && block >= 10)) gate.Pass(stop);
-  });
+uint64_t HalfOf(const v1::EnsembleSpec& spec) {
+  const v1::Target& target = spec.target();
+  return static_cast<uint64_t>(target.has_samples() ? target.samples() : target.collisions()) / 2;
+}
+
+// The core's experiments, held up in the middle: half of point 1, and nothing of later ones.
+ExperimentFactory StuckInTheMiddle(Gate& gate, const v1::EnsembleSpec& spec) {
+  return HeldUpExperiments(
+      [&gate, half = HalfOf(spec)](size_t point, uint64_t first, std::stop_token stop) {
+        if (point > 1 || (point == 1 && first >= half)) gate.Pass(stop);
+      });
 }
 
 TEST(Restart, AStoppedServerResumesToTheSameBytes) {
@@ -135,24 +141,24 @@ TEST(Restart, AStoppedServerResumesToTheSameBytes) {
     std::string name;
     {
       Gate gate;
-      RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate)));
+      RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate, spec)));
       name = server.Submit(spec);
       gate.AwaitWaiting(2);
     }
     std::atomic<int> of_point_0 = 0;
     std::atomic<uint64_t> first_of_point_1 = std::numeric_limits<uint64_t>::max();
     RunningServer server(
-        InFolder(folder, 3, HeldUpExperiments([&](size_t point, uint64_t block, std::stop_token) {
+        InFolder(folder, 3, HeldUpExperiments([&](size_t point, uint64_t first, std::stop_token) {
                    of_point_0 += point == 0;
                    uint64_t seen = first_of_point_1;
-                   while (point == 1 && block < seen &&
-                          !first_of_point_1.compare_exchange_weak(seen, block)) {
+                   while (point == 1 && first < seen &&
+                          !first_of_point_1.compare_exchange_weak(seen, first)) {
                    }
                  })));
     EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
     EXPECT_EQ(server.ResultBytes(name), BytesAt(2, spec));
-    EXPECT_EQ(of_point_0, 0);          // its result was stored
-    EXPECT_EQ(first_of_point_1, 10u);  // and so were its blocks
+    EXPECT_EQ(of_point_0, 0);                   // its result was stored
+    EXPECT_GE(first_of_point_1, HalfOf(spec));  // and so was the first half
   }
 }
 
@@ -163,7 +169,7 @@ TEST(Restart, ACopyTakenInTheMiddleResumesToTheSameBytes) {
   std::string name;
   {
     Gate gate;
-    RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate)));
+    RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate, spec)));
     name = server.Submit(spec);
     gate.AwaitWaiting(2);
     server.Submit(SmallEquilibrium());  // its commit takes along all that was recorded before
@@ -211,7 +217,7 @@ void Change(const TemporaryFolder& folder, const std::string& sql) {
   ChangeStore(folder.File("store.sqlite3"), sql);
 }
 
-// A job of the fake experiments, stopped with a finished point and some blocks of the second.
+// A job of the fake experiments, stopped with a finished point and a part of the second.
 std::string LeaveUnfinished(const TemporaryFolder& folder) {
   Gate gate;
   RunningServer server(
@@ -239,7 +245,7 @@ TEST(Restart, AnotherEngineComputesAllAgain) {
   const std::string name = LeaveUnfinished(folder);
   Change(folder,
          "UPDATE jobs SET engine_version = '0.0.1'; UPDATE results SET result = x'00';"
-         "UPDATE blocks SET record = x'00'");
+         "UPDATE checkpoints SET record = x'00'");
   std::atomic<int> computed = 0;
   RunningServer server(
       InFolder(folder, 2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; })));
@@ -260,10 +266,10 @@ TEST(Restart, AJobThatCannotBeReadFails) {
   EXPECT_THAT(job.error().message(), testing::HasSubstr("cannot be read"));
 }
 
-TEST(Restart, AJobWithDamagedBlocksFailsAndTheServerStays) {
+TEST(Restart, AJobWithADamagedCheckpointFailsAndTheServerStays) {
   TemporaryFolder folder;
   const std::string name = LeaveUnfinished(folder);
-  Change(folder, "UPDATE blocks SET record = x'ff'");
+  Change(folder, "UPDATE checkpoints SET record = x'ff'");
   RunningServer server(InFolder(folder));
   EXPECT_EQ(server.AwaitEnd(name).state(), EnsembleJob::FAILED);
   server.Succeeded(Equilibrium(1, 5));

@@ -29,7 +29,6 @@ ServerOptions OptionsIn(const std::string& data_dir, const TestServerOptions& op
   all.socket_users = options.socket_users;
   all.workers = options.workers;
   all.factory = options.factory;
-  all.compare = options.compare;
   all.watch = options.watch;
   all.connections = options.connections;
   all.limits = options.limits;
@@ -56,7 +55,6 @@ TestClient::TestClient(std::shared_ptr<grpc::Channel> channel)
     : channel_(std::move(channel)),
       ensemble_(v1::EnsembleService::NewStub(channel_)),
       analytic_(v1::AnalyticService::NewStub(channel_)),
-      method_(v1::MethodService::NewStub(channel_)),
       server_(v1::ServerService::NewStub(channel_)) {}
 
 grpc::Status TestClient::Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job) {

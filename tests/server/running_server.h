@@ -17,7 +17,6 @@
 #include "absl/status/status.h"
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
-#include "ballpiston/v1/method.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "grpcpp/channel.h"
 #include "grpcpp/security/credentials.h"
@@ -35,7 +34,6 @@ struct TestServerOptions {
   std::set<uid_t> socket_users = OwnUserAndRoot();
   int workers = 2;
   ExperimentFactory factory = FakeExperiments();  // null: the core's, by the chosen model
-  MethodComparer compare = nullptr;               // null: the core's
   WatchTiming watch = {.snapshot = std::chrono::milliseconds(2)};
   ConnectionTiming connections = {};
   Limits limits = {};
@@ -59,7 +57,6 @@ class TestClient {
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
   v1::EnsembleService::Stub& ensemble() { return *ensemble_; }
   v1::AnalyticService::Stub& analytic() { return *analytic_; }
-  v1::MethodService::Stub& method() { return *method_; }
 
   grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job = nullptr);
   v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request);
@@ -83,7 +80,6 @@ class TestClient {
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::EnsembleService::Stub> ensemble_;
   std::unique_ptr<v1::AnalyticService::Stub> analytic_;
-  std::unique_ptr<v1::MethodService::Stub> method_;
   std::unique_ptr<v1::ServerService::Stub> server_;
 };
 

@@ -126,7 +126,7 @@ std::string HealthOf(RunningServer& server, const std::string& service) {
 TEST(StartStop, HealthIsServedForTheWholeAndForEachService) {
   RunningServer server;
   for (const char* service : {"", "ballpiston.v1.EnsembleService", "ballpiston.v1.AnalyticService",
-                              "ballpiston.v1.MethodService", "ballpiston.v1.ServerService"}) {
+                              "ballpiston.v1.ServerService"}) {
     EXPECT_EQ(HealthOf(server, service), "\x08\x01") << service;
   }
 }

@@ -45,7 +45,7 @@ class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusA
   Model model() const { return std::get<Model>(GetParam()); }
   PointParameters point() const {
     const auto [rho, share] = std::get<RadiusAndShare>(GetParam());
-    return {.rho = rho, .delta = share * PairDeltaBound(rho)};
+    return {{kRho, rho}, {kDelta, share * PairDeltaBound(rho)}};
   }
 };
 
@@ -53,17 +53,17 @@ class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusA
 // alarm in 800 choices of the seed. The test detects errors of 1 % (lanes) or 3 % (reference).
 TEST_P(EngineAtGeometry, GivesTheMeansOfTheClosedForms) {
   const Target collisions = {.collisions = SamplesBy(model(), 200'000)};
-  ExpectExactMeans(
-      RunPoint(SpecOf(Experiment::kEquilibrium, point(), collisions, model(), kSeedOfEngines)), 3);
+  ExpectExactMeans(RunPoint(SpecOf(&kEquilibrium, point(), collisions, model(), kSeedOfEngines)),
+                   3);
   // At epsilon = 1/2 the ball rests, and the mean is over the part of the volume that is visited.
   for (const double epsilon : {1.0 / 3200, 0.125, 0.25, 0.375, 0.5 - 1.0 / 3200, 0.5}) {
     SCOPED_TRACE(epsilon);
     PointParameters at_energy = point();
-    at_energy.epsilon = epsilon;
+    at_energy.Set(kEpsilon, epsilon);
     const Target samples = {.samples = SamplesBy(model(), 20'000)};
-    ExpectExactMeans(RunPoint(SpecOf(Experiment::kConditionalMeanFreeTime, at_energy, samples,
-                                     model(), kSeedOfEngines)),
-                     1);
+    ExpectExactMeans(
+        RunPoint(SpecOf(&kConditionalMeanFreeTime, at_energy, samples, model(), kSeedOfEngines)),
+        1);
   }
 }
 
@@ -87,8 +87,8 @@ TEST_P(Engines, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
     for (const double epsilon : {0.03125, 0.125, 0.25, 0.375, 0.46875}) {
       SCOPED_TRACE(testing::Message() << "delta " << delta << ", epsilon " << epsilon);
       const PointSummary summary =
-          RunPoint(SpecOf(Experiment::kFirstHit, PaperPoint(delta, epsilon, 1),
-                          {.samples = samples}, GetParam(), kSeedOfEngines));
+          RunPoint(SpecOf(&kFirstHit, PaperPoint(delta, epsilon, 1), {.samples = samples},
+                          GetParam(), kSeedOfEngines));
       ExpectExactMeans(summary, 3);
       const KlDivergence& kl = *summary.kl_divergence;
       EXPECT_NEAR(kl.value, kl.noise_floor, 4 * kl.noise_error);

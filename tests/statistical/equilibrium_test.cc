@@ -14,7 +14,7 @@ namespace ballpiston {
 namespace {
 
 EnsembleSpec SpecOfCollisions(double share, int64_t collisions, uint64_t seed) {
-  return SpecOf(Experiment::kEquilibrium, PaperPoint(share * PairDeltaBound(kPaperRho)),
+  return SpecOf(&kEquilibrium, PaperPoint(share * PairDeltaBound(kPaperRho)),
                 {.collisions = collisions}, Model::kBilliard, seed);
 }
 

@@ -27,12 +27,12 @@ TEST_P(FirstHitTable, AgreesWithAnIndependentProgram) {
   const ReferenceTable table("first_hit.csv");
   ASSERT_EQ(table.rows(), kRows);
   const auto reference = [&table](const char* column) { return table.Input(GetParam(), column); };
-  const PointParameters point = {.rho = reference("rho"),
-                                 .delta = reference("delta"),
-                                 .epsilon = reference("epsilon"),
-                                 .exponent = reference("exponent")};
+  const PointParameters point = {{kRho, reference("rho")},
+                                 {kDelta, reference("delta")},
+                                 {kEpsilon, reference("epsilon")},
+                                 {kExponent, reference("exponent")}};
   const PointSummary summary =
-      RunPoint(SpecOf(Experiment::kFirstHit, point, {.samples = 400'000}, Model::kBilliard, 20));
+      RunPoint(SpecOf(&kFirstHit, point, {.samples = 400'000}, Model::kBilliard, 20));
   const double samples = reference("samples"), sigma = reference("mean_sigma");
   const double time_z = CombinedZ(summary.estimates[0].value, *summary.estimates[0].standard_error,
                                   reference("mean_time"), reference("mean_time_se"));

@@ -20,8 +20,8 @@ using Estimates = std::map<std::string, Estimate>;
 constexpr double kDeltas[] = {0.3, 0.2, 0.1, 0.05};
 
 Estimates At(double delta, int64_t collisions) {
-  const EnsembleSpec spec = SpecOf(Experiment::kMarkovProperty, PaperPoint(delta),
-                                   {.collisions = collisions}, Model::kBilliard, 30);
+  const EnsembleSpec spec =
+      SpecOf(&kMarkovProperty, PaperPoint(delta), {.collisions = collisions}, Model::kBilliard, 30);
   Estimates estimates;
   for (const Estimate& estimate : RunPoint(spec).estimates) estimates[estimate.name] = estimate;
   return estimates;

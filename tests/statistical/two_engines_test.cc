@@ -18,6 +18,7 @@
 #include "core/statistics/histogram.h"
 #include "core/statistics/moments.h"
 #include "tests/core/geometries.h"
+#include "tests/core/run_orbits.h"
 #include "tests/oracle/two_sample.h"
 
 namespace ballpiston {
@@ -89,8 +90,9 @@ FirstHits Sample(Engine engine, const Point& point) {
   for (uint64_t first = 0; first < samples; first += kSamplesOfARun) {
     const uint64_t count = std::min(kSamplesOfARun, samples - first);
     ReturnOrbits orbits(geometry, {point.epsilon, point.exponent},
-                        {.seed = static_cast<uint64_t>(engine), .stream = 77}, first, count);
-    EXPECT_TRUE(RunOrbits(engine, geometry, count, orbits, {}));
+                        {.seed = static_cast<uint64_t>(engine), .stream = 77},
+                        {.first = first, .samples = count});
+    EXPECT_TRUE(RunAll(engine, geometry, orbits));
     for (const Return& hit : orbits.returns()) hits.Add(hit);
   }
   return hits;

@@ -5,10 +5,10 @@
 
 #include "core/billiard/lane_balls.h"
 #include "core/billiard/orbits.h"
-#include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
+#include "tools/flows/precise_flow.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/lane_methods.h"
@@ -56,7 +56,7 @@ EnergyRecord BallsInLanes(FlyLanes fly, uint64_t hits) {
 }
 
 // Pairs in equilibrium, looked at in every collision.
-class PairsInEquilibrium : public OrbitSource {
+class PairsInEquilibrium : public NumberedOrbits {
  public:
   PairsInEquilibrium(uint64_t orbits, uint64_t hits_each)
       : hits_each_(hits_each), hits_(orbits, 0) {}

@@ -7,7 +7,7 @@
 #include "core/billiard/event_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
-#include "core/method_comparison/fixed_step_flow.h"
+#include "tools/flows/fixed_step_flow.h"
 
 namespace ballpiston::stability {
 

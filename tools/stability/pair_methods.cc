@@ -13,9 +13,8 @@
 #include <utility>
 
 #include "core/billiard/orbits.h"
-#include "core/billiard/precise_flow.h"
 #include "core/billiard/reference_flow.h"
-#include "core/method_comparison/processor_time.h"
+#include "tools/flows/precise_flow.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/pair_watch.h"
@@ -33,8 +32,9 @@ constexpr double kPatience = 10;
 // missed.
 class Watchdog {
  public:
-  explicit Watchdog(double patience) : deadline_(ThreadSeconds() + patience) {
+  explicit Watchdog(double patience) {
     pthread_getcpuclockid(pthread_self(), &clock_);
+    deadline_ = SecondsSpent() + patience;
     thread_ = std::jthread([this](const std::stop_token& done) { Watch(done); });
   }
 
@@ -56,7 +56,7 @@ class Watchdog {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  const double deadline_;
+  double deadline_ = 0;
   clockid_t clock_ = CLOCK_THREAD_CPUTIME_ID;
   std::stop_source orbits_;
   std::mutex mutex_;

@@ -43,7 +43,7 @@ class PairWatch {
 // the engine's collision, nor elsewhere then. Rounding grows with every hit, so this is asked of
 // flights with few hits, and of them and of two neighbours to either side: what is out on all
 // three, by more than they differ, is no rounding.
-class CollisionWatch : public OrbitSource {
+class CollisionWatch : public NumberedOrbits {
  public:
   CollisionWatch(const PairGeometry& geometry, double epsilon, std::span<const PairState> starts,
                  uint64_t collisions);

@@ -24,7 +24,7 @@ double Median(std::vector<double> values) {
 }
 
 // The first collision of each orbit.
-class FirstCollisions : public OrbitSource {
+class FirstCollisions : public NumberedOrbits {
  public:
   explicit FirstCollisions(std::vector<PairState> starts)
       : starts_(std::move(starts)), contacts_(starts_.size()) {}

@@ -18,6 +18,7 @@
 namespace ballpiston::client {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 struct Outcome {
@@ -453,6 +454,16 @@ TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {
       WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--format", "jsonl"});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out.rfind("{\"rho\":0.53,", 0), 0u);
+}
+
+TEST_F(CommandLineTest, AnalyticSendsEveryList) {
+  server_.Start();
+  WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--epsilon", "0.2,0.3",
+              "--outgoing-epsilon", "0.4", "--beta", "5", "--temperature", "6:8:3"});
+  EXPECT_THAT(server_.analytic.asked.epsilon(), ElementsAre(0.2, 0.3));
+  EXPECT_THAT(server_.analytic.asked.outgoing_epsilon(), ElementsAre(0.4));
+  EXPECT_THAT(server_.analytic.asked.beta(), ElementsAre(5));
+  EXPECT_THAT(server_.analytic.asked.temperature(), ElementsAre(6, 7, 8));
 }
 
 TEST_F(CommandLineTest, StatusPrintsWhatTheServerTells) {

@@ -36,9 +36,8 @@ TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
   for (const char* reason : {"TOO_MANY_POINTS", "TOO_MANY_SAMPLES"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
   }
-  for (const char* reason :
-       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_STREAMS",
-        "TOO_MANY_CALLS", "STORE_FULL", "COMPARISON_RUNNING"}) {
+  for (const char* reason : {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS",
+                             "TOO_MANY_STREAMS", "TOO_MANY_CALLS", "STORE_FULL"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUnreachable) << reason;
   }
 }

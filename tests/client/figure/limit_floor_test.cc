@@ -9,10 +9,9 @@ namespace ballpiston::client {
 namespace {
 
 using ::testing::IsEmpty;
-using v1::MethodMeasurement;
 
 MethodMeasurement Spectrum(double delta, double value, double error) {
-  return RelaxationTime(MethodMeasurement::SPECTRUM, delta, 0, 1e-6, value, error);
+  return RelaxationTime(kSpectrum, delta, 0, 1e-6, value, error);
 }
 
 TEST(LimitFloor, ABiasIsResolvedFromTwoStandardErrorsOn) {
@@ -36,26 +35,24 @@ TEST(LimitFloor, EachDeltaHasOneFromTheLargestDown) {
 
 TEST(LimitFloor, OtherQuantitiesHaveNone) {
   MethodMeasurement other = Spectrum(0.2, 0.5, 0.25);
-  other.set_quantity(MethodMeasurement::MEAN_FREE_TIME);
+  other.quantity = kMeanFreeTime;
   EXPECT_THAT(FloorsOf({other}), IsEmpty());
-  EXPECT_THAT(FloorsOf({RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 1024, 1, 0.1, 0.1)}),
-              IsEmpty());
+  EXPECT_THAT(FloorsOf({RelaxationTime(kBilliard, 0.2, 1024, 1, 0.1, 0.1)}), IsEmpty());
 }
 
 // Nine times the work of the longest run, whose own error is three times the floor.
 TEST(LimitFloor, TheBilliardsErrorFallsWithTheRootOfWork) {
-  const std::vector<LimitFloor> floors = FloorsOf(
-      {RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 256, 0.5, 0.1, 1),
-       RelaxationTime(MethodMeasurement::BILLIARD, 0.2, 1024, 2, 0.1, 0.375),
-       RelaxationTime(MethodMeasurement::BILLIARD, 0.1, 1024, 7, 0.1, 0.5),
-       RelaxationTime(MethodMeasurement::MARKOV, 0.2, 4096, 5, 0.1, 0.5), Spectrum(0.2, 0.125, 0)});
+  const std::vector<LimitFloor> floors =
+      FloorsOf({RelaxationTime(kBilliard, 0.2, 256, 0.5, 0.1, 1),
+                RelaxationTime(kBilliard, 0.2, 1024, 2, 0.1, 0.375),
+                RelaxationTime(kBilliard, 0.1, 1024, 7, 0.1, 0.5),
+                RelaxationTime(kMarkov, 0.2, 4096, 5, 0.1, 0.5), Spectrum(0.2, 0.125, 0)});
   ASSERT_TRUE(floors.front().crossing_work);
   EXPECT_EQ(*floors.front().crossing_work, 18);
 }
 
 TEST(LimitFloor, TooFewOrbitsTellNoCrossing) {
-  const auto billiard =
-      RelaxationTime(MethodMeasurement::BILLIARD, 0.2, kFewestOrbits - 1, 1, 0.1, 0.5);
+  const auto billiard = RelaxationTime(kBilliard, 0.2, kFewestOrbits - 1, 1, 0.1, 0.5);
   EXPECT_FALSE(FloorsOf({billiard, Spectrum(0.2, 0.5, 0.25)}).front().crossing_work);
 }
 
@@ -63,8 +60,8 @@ TEST(LimitFloor, TooFewOrbitsTellNoCrossing) {
 // of the spectrum is that of the reference value alone.
 TEST(LimitFloor, TheErrorOfTheTruthIsSubtracted) {
   const LimitFloor floor = FloorsOf({Spectrum(0.2, 0.5, 3)}).front();
-  EXPECT_EQ(OwnError(RelaxationTime(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 5), floor), 4);
-  EXPECT_EQ(OwnError(RelaxationTime(MethodMeasurement::MARKOV, 0.2, 256, 1, 0.1, 2.9), floor), 0);
+  EXPECT_EQ(OwnError(RelaxationTime(kMarkov, 0.2, 256, 1, 0.1, 5), floor), 4);
+  EXPECT_EQ(OwnError(RelaxationTime(kMarkov, 0.2, 256, 1, 0.1, 2.9), floor), 0);
 }
 
 }  // namespace

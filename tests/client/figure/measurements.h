@@ -1,35 +1,33 @@
-// Measurements of a comparison of methods, as a server would send them.
+// Measurements of a comparison of methods, as the program would print them.
 #ifndef BALLPISTON_TESTS_CLIENT_FIGURE_MEASUREMENTS_H_
 #define BALLPISTON_TESTS_CLIENT_FIGURE_MEASUREMENTS_H_
 
 #include <cstdint>
 
-#include "ballpiston/v1/method.pb.h"
+#include "client/figure/method_measurement.h"
 
 namespace ballpiston::client {
 
-inline v1::MethodMeasurement Measured(v1::MethodMeasurement::Method method,
-                                      v1::MethodMeasurement::Quantity quantity, uint64_t samples,
-                                      double work, double value, double error) {
-  v1::MethodMeasurement measurement;
-  measurement.set_method(method);
-  measurement.set_quantity(quantity);
-  measurement.set_samples(samples);
-  measurement.set_wall_hits(100 * samples);
-  measurement.set_work(work);
-  measurement.set_value(value);
-  measurement.set_statistical_error(error);
-  return measurement;
+inline MethodMeasurement Measured(const char* method, const char* quantity, uint64_t samples,
+                                  double work, double value, double error) {
+  return {.method = method,
+          .quantity = quantity,
+          .samples = samples,
+          .wall_hits = 100 * samples,
+          .work = work,
+          .value = value,
+          .statistical_error = error};
 }
 
-inline v1::MethodMeasurement RelaxationTime(v1::MethodMeasurement::Method method, double delta,
-                                            uint64_t samples, double work, double value,
-                                            double error) {
-  v1::MethodMeasurement measurement =
-      Measured(method, v1::MethodMeasurement::RELAXATION_TIME, samples, work, value, error);
-  measurement.set_delta(delta);
-  measurement.set_wall_hits(0);
-  return measurement;
+inline MethodMeasurement RelaxationTime(const char* method, double delta, uint64_t samples,
+                                        double work, double value, double error) {
+  return {.method = method,
+          .quantity = kRelaxationTime,
+          .delta = delta,
+          .samples = samples,
+          .work = work,
+          .value = value,
+          .statistical_error = error};
 }
 
 }  // namespace ballpiston::client

@@ -12,50 +12,45 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
-using v1::MethodMeasurement;
+using ::testing::SizeIs;
+
+constexpr char kFixedStep[] = "fixed-step";
 
 MethodMeasurement FixedStep(double time_step, MethodMeasurement measurement) {
-  measurement.set_method(MethodMeasurement::FIXED_STEP);
-  measurement.set_time_step(time_step);
+  measurement.time_step = time_step;
   return measurement;
 }
 
 std::vector<MethodMeasurement> Measurements() {
-  using M = MethodMeasurement;
   return {
-      FixedStep(0.01, Measured(M::FIXED_STEP, M::MEAN_FREE_TIME, 100, 0.001, 0.4, 0.2)),
-      FixedStep(0.01, Measured(M::FIXED_STEP, M::MEAN_FREE_TIME, 400, 0.004, 0.5, 0.1)),
-      Measured(M::BILLIARD, M::MEAN_FREE_TIME, 1600, 0.002, 0.0625, 0.03125),
-      Measured(M::CLOSED_FORM, M::MEAN_FREE_TIME, 0, 1e-7, 6e-15, 0),
-      Measured(M::BILLIARD, M::INGOING_LAW, 1600, 0.002, -0.001, 0.002),
-      Measured(M::CLOSED_FORM, M::INGOING_LAW, 0, 1e-4, 0, 0),
-      FixedStep(0.01, Measured(M::FIXED_STEP, M::TRAJECTORY, 64, 0.00064, 2.5, 0.25)),
-      Measured(M::BILLIARD, M::TRAJECTORY, 64, 1.6e-5, 31.5, 0.25),
+      FixedStep(0.01, Measured(kFixedStep, kMeanFreeTime, 100, 0.001, 0.4, 0.2)),
+      FixedStep(0.01, Measured(kFixedStep, kMeanFreeTime, 400, 0.004, 0.5, 0.1)),
+      Measured(kBilliard, kMeanFreeTime, 1600, 0.002, 0.0625, 0.03125),
+      Measured(kClosedForm, kMeanFreeTime, 0, 1e-7, 6e-15, 0),
+      Measured(kBilliard, kIngoingLaw, 1600, 0.002, -0.001, 0.002),
+      Measured(kClosedForm, kIngoingLaw, 0, 1e-4, 0, 0),
+      FixedStep(0.01, Measured(kFixedStep, kTrajectory, 64, 0.00064, 2.5, 0.25)),
+      Measured(kBilliard, kTrajectory, 64, 1.6e-5, 31.5, 0.25),
       // The bias is 1/16 at delta = 0.2, and less than 2^-7 + 2 * 2^-6 = 5/128 at 0.1.
-      RelaxationTime(M::BILLIARD, 0.2, 256, 0.25, 0.03125, 0.125),
-      RelaxationTime(M::MARKOV, 0.2, 256, 0.015625, 0.125, 0.0625),
-      RelaxationTime(M::SPECTRUM, 0.2, 0, 1e-6, 0.0625, 0),
-      RelaxationTime(M::BILLIARD, 0.1, 256, 0.5, 0.03125, 0.078125),
-      RelaxationTime(M::SPECTRUM, 0.1, 0, 1e-6, 0.0078125, 0.015625),
+      RelaxationTime(kBilliard, 0.2, 256, 0.25, 0.03125, 0.125),
+      RelaxationTime(kMarkov, 0.2, 256, 0.015625, 0.125, 0.0625),
+      RelaxationTime(kSpectrum, 0.2, 0, 1e-6, 0.0625, 0),
+      RelaxationTime(kBilliard, 0.1, 256, 0.5, 0.03125, 0.078125),
+      RelaxationTime(kSpectrum, 0.1, 0, 1e-6, 0.0078125, 0.015625),
   };
 }
 
 TEST(SpeedAccuracyFigure, AsksForOneComparison) {
-  const v1::CompareMethodsRequest request = ComparisonRequest({.rho = 0.53,
-                                                               .delta = 0.2,
-                                                               .epsilon = 0.25,
-                                                               .seconds_per_curve = 3,
-                                                               .seed = 7,
-                                                               .relaxation_deltas = {0.2, 0.01}});
-  EXPECT_EQ(request.rho(), 0.53);
-  EXPECT_EQ(request.delta(), 0.2);
-  EXPECT_EQ(request.epsilon(), 0.25);
-  EXPECT_EQ(request.seconds_per_curve(), 3);
-  EXPECT_EQ(request.seed(), 7u);
-  EXPECT_THAT(request.relaxation_delta(), ElementsAre(0.2, 0.01));
-  EXPECT_THAT(ComparisonRequest({}).relaxation_delta(), IsEmpty());  // the server's
+  EXPECT_THAT(ComparisonFlags({.rho = 0.53,
+                               .delta = 0.2,
+                               .epsilon = 0.25,
+                               .seconds_per_curve = 3,
+                               .seed = 7,
+                               .relaxation_deltas = {0.2, 0.01}}),
+              ElementsAre("--rho=0.53", "--delta=0.2", "--epsilon=0.25", "--seconds=3", "--seed=7",
+                          "--relaxation-delta=0.2", "--relaxation-delta=0.01"));
+  EXPECT_THAT(ComparisonFlags({}), SizeIs(5));  // the program chooses where relaxation is compared
 }
 
 TEST(SpeedAccuracyFigure, CsvHasEveryMeasurementAndTellsBiasFromChance) {
@@ -79,17 +74,16 @@ TEST(SpeedAccuracyFigure, CsvHasEveryMeasurementAndTellsBiasFromChance) {
 }
 
 TEST(SpeedAccuracyFigure, ABiasIsMoreThanThreeStatisticalErrors) {
-  using M = MethodMeasurement;
-  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::MEAN_FREE_TIME, 100, 1, 0.75, 0.25)));
-  EXPECT_TRUE(IsBiasResolved(Measured(M::BILLIARD, M::MEAN_FREE_TIME, 100, 1, 0.76, 0.25)));
-  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::INGOING_LAW, 100, 1, -0.76, 0.25)));
-  EXPECT_FALSE(IsBiasResolved(Measured(M::BILLIARD, M::TRAJECTORY, 100, 1, 31, 0.25)));
+  EXPECT_FALSE(IsBiasResolved(Measured(kBilliard, kMeanFreeTime, 100, 1, 0.75, 0.25)));
+  EXPECT_TRUE(IsBiasResolved(Measured(kBilliard, kMeanFreeTime, 100, 1, 0.76, 0.25)));
+  EXPECT_FALSE(IsBiasResolved(Measured(kBilliard, kIngoingLaw, 100, 1, -0.76, 0.25)));
+  EXPECT_FALSE(IsBiasResolved(Measured(kBilliard, kTrajectory, 100, 1, 31, 0.25)));
 }
 
 TEST(SpeedAccuracyFigure, ErrorOfAPanelWithoutRunsNamesTheFlag) {
   std::vector<MethodMeasurement> measurements = Measurements();
   for (MethodMeasurement& m : measurements) {
-    if (m.quantity() == MethodMeasurement::INGOING_LAW) m.set_samples(16);
+    if (m.quantity == kIngoingLaw) m.samples = 16;
   }
   EXPECT_THAT(MakeFiles({}, measurements),
               StatusIs(absl::StatusCode::kFailedPrecondition,
@@ -165,7 +159,7 @@ TEST_F(SpeedAccuracyScriptTest, EachOfEightDeltasHasItsColour) {
   std::vector<MethodMeasurement> measurements = Measurements();
   for (const double delta : {0.3, 0.25, 0.15, 0.05, 0.02, 0.01}) {
     measurements.push_back(measurements.back());
-    measurements.back().set_delta(delta);
+    measurements.back().delta = delta;
   }
   const std::string script = MakeFiles({}, measurements)->script;
   EXPECT_THAT(script, HasSubstr("deltas = \"0.3 0.25 0.2 0.15 0.1 0.05 0.02 0.01\"\n"));
@@ -175,9 +169,8 @@ TEST_F(SpeedAccuracyScriptTest, EachOfEightDeltasHasItsColour) {
 
 TEST_F(SpeedAccuracyScriptTest, WithoutRelaxationTimesThereIsNoPanelD) {
   std::vector<MethodMeasurement> measurements = Measurements();
-  std::erase_if(measurements, [](const MethodMeasurement& m) {
-    return m.quantity() == MethodMeasurement::RELAXATION_TIME;
-  });
+  std::erase_if(measurements,
+                [](const MethodMeasurement& m) { return m.quantity == kRelaxationTime; });
   ASSERT_OK_AND_ASSIGN(const SpeedAccuracyFiles files, MakeFiles({}, measurements));
   EXPECT_THAT(files.script, Not(HasSubstr("{/:Bold d}")));
   EXPECT_THAT(files.script, Not(HasSubstr("legend of d")));

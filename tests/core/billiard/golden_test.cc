@@ -2,31 +2,34 @@
 // any number of threads, in any order of the blocks, and in every later version with the same
 // kEngineVersion.
 //
-// To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that blocks of the
-// two versions are not merged. Then run `statistical_test --gtest_filter='*Golden*'` and put the
-// lines that it prints into golden_bits.h. An unintended change of bits is a defect.
+// To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that no
+// point of one version goes on from a checkpoint of the other. Then run `statistical_test
+// --gtest_filter='*Golden*'` and put the lines that it prints into golden_bits.h. An unintended
+// change of bits is a defect.
 //
 // The closed forms beside the estimates and the relative entropy are not compared: their sines and
 // logarithms come from the C library. The summaries of experiments that are compared with the limit
 // are not compared either: the spectrum contributes to their estimates.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <functional>
 #include <iomanip>
 #include <iostream>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "core/experiment/answering_models.h"
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 #include "core/geometry/paper.h"
 #include "tests/core/billiard/each_target.h"
 #include "tests/core/billiard/golden_bits.h"
@@ -128,13 +131,13 @@ TEST_P(Golden, Orbits) {
 std::vector<EnsembleSpec> SpecsOf(Engine engine) {
   const Target collisions = {.collisions = 1000}, samples = {.samples = 1000};
   std::vector<EnsembleSpec> specs = {
-      SpecOf(Experiment::kEquilibrium, PaperPoint(0.2), collisions),
-      SpecOf(Experiment::kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), samples),
-      SpecOf(Experiment::kFirstHit, PaperPoint(0.2, 0.125, 5), samples),
-      SpecOf(Experiment::kFirstHit, PaperPoint(0.2, 0.125, 2.5), samples),
-      SpecOf(Experiment::kEnergyRelaxation, PaperPoint(0.2), {.samples = 100}),
-      SpecOf(Experiment::kEnergyRelaxation, PaperPoint(0.2, 0.01), {.samples = 200}),
-      SpecOf(Experiment::kMarkovProperty, PaperPoint(0.2), {.collisions = 5000})};
+      SpecOf(&kEquilibrium, PaperPoint(0.2), collisions),
+      SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.2, 0.125), samples),
+      SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 5), samples),
+      SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, 2.5), samples),
+      SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 100}),
+      SpecOf(&kEnergyRelaxation, PaperPoint(0.2, 0.01), {.samples = 200}),
+      SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 5000})};
   for (EnsembleSpec& spec : specs) {
     spec.seed = 42;
     spec.model = engine == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;
@@ -147,40 +150,58 @@ std::vector<EnsembleSpec> SpecsOfJumpProcess() {
   std::vector<EnsembleSpec> specs;
   for (EnsembleSpec spec : SpecsOf(Engine::kLanes)) {
     spec.model = Model::kMarkov;
-    if (Answers(spec.model, spec.experiment)) specs.push_back(spec);
+    if (spec.experiment->IsAnsweredBy(spec.model)) specs.push_back(spec);
   }
   return specs;
 }
 
-// The point's blocks, each computed by whichever thread is free, in a scrambled order.
+// One of several threads that compute a point's blocks.
+class SharedQueue : public BlockQueue {
+ public:
+  SharedQueue(PointFold& fold, std::mutex& mutex) : fold_(fold), mutex_(mutex) {}
+
+  std::optional<Block> Next() override {
+    std::lock_guard lock(mutex_);
+    return fold_.NextBlock();
+  }
+  void Done(const Block& block, BlockResult result) override {
+    std::lock_guard lock(mutex_);
+    fold_.Add(block, std::move(result));
+  }
+  // At every opportunity.
+  bool Pause() override { return true; }
+  std::stop_token stop() const override { return {}; }
+
+ private:
+  PointFold& fold_;
+  std::mutex& mutex_;
+};
+
 BlockResult RunInThreads(const PointExperiment& point, size_t threads) {
-  const size_t blocks = point.plan().Blocks(), step = 2 * (blocks / 3) + 1;
-  std::vector<std::optional<BlockResult>> results(blocks);
-  std::atomic<size_t> next = 0;
+  PointFold fold(point);
+  std::mutex mutex;
   const auto work = [&] {
-    for (size_t i; (i = next++) < blocks;) {
-      const size_t block = (blocks - 1 - i) * step % blocks;
-      results[block] = point.RunBlock(block, {});
-    }
+    SharedQueue queue(fold, mutex);
+    const auto run = point.StartRun(queue);
+    while (!run->Advance()) continue;
   };
   {
     std::vector<std::jthread> workers;
     for (size_t i = 0; i < threads; ++i) workers.emplace_back(work);
   }
-  BlockResult merged;
-  for (const auto& result : results) merged.Merge(result.value());
-  return merged;
+  EXPECT_TRUE(fold.finished());
+  return fold.Merged();
 }
 
-bool IsComparedWithTheLimit(Experiment experiment) {
-  return experiment == Experiment::kEnergyRelaxation || experiment == Experiment::kMarkovProperty;
+bool IsComparedWithTheLimit(const ExperimentKind* experiment) {
+  return experiment == &kEnergyRelaxation || experiment == &kMarkovProperty;
 }
 
 std::string NameOf(absl::string_view made_by, const EnsembleSpec& spec) {
-  std::string name = absl::StrCat(made_by, ", ", Name(spec.experiment));
-  if (!spec.grid.exponent.empty()) absl::StrAppend(&name, " ", spec.grid.exponent[0]);
-  if (spec.experiment == Experiment::kEnergyRelaxation && !spec.grid.epsilon.empty()) {
-    absl::StrAppend(&name, " from ", spec.grid.epsilon[0]);
+  std::string name = absl::StrCat(made_by, ", ", spec.experiment->name);
+  if (!spec.grid[kExponent].empty()) absl::StrAppend(&name, " ", spec.grid[kExponent][0]);
+  if (spec.experiment == &kEnergyRelaxation && !spec.grid[kEpsilon].empty()) {
+    absl::StrAppend(&name, " from ", spec.grid[kEpsilon][0]);
   }
   return name;
 }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
+#include <span>
 #include <vector>
 
 #include "core/geometry/paper.h"
@@ -52,7 +54,7 @@ TEST(Orbits, StopEndsThem) {
 }
 
 // A ball that rests where the piston does not come: only the piston has events, for ever.
-class RestingBall : public OrbitSource {
+class RestingBall : public NumberedOrbits {
  public:
   explicit RestingBall(const PairGeometry& geometry) : geometry_(geometry) {}
   PairState Start(uint64_t) override {
@@ -77,7 +79,7 @@ TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
 
 // A ball beyond the left tip, on its way out.
 TEST(Orbits, AStartOutsideOfTheCellEscapes) {
-  class Outside : public OrbitSource {
+  class Outside : public NumberedOrbits {
    public:
     PairState Start(uint64_t) override {
       return {.position = {-0.9, 0}, .direction = {-1, 0}, .ball_speed = 1, .piston = 0.5};
@@ -120,7 +122,7 @@ TEST(Orbits, EscapesInLanesAreTold) {
 
 // A ball that never meets the piston at rest, of a source that always wants to go on.
 TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
-  class GoesOn : public OrbitSource {
+  class GoesOn : public NumberedOrbits {
    public:
     PairState Start(uint64_t) override {
       return {.position = {0, 0}, .direction = {0, 1}, .ball_speed = 1, .piston = 0.5};
@@ -140,7 +142,7 @@ TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
 }
 
 // The same pair for every orbit, of which the ends are told.
-class WithTimeLimit : public OrbitSource {
+class WithTimeLimit : public NumberedOrbits {
  public:
   WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
       : state_(state), limit_(limit), ends_(orbits) {}
@@ -254,6 +256,56 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
         EXPECT_EQ(expired == 0, limit > 1e6);
       });
     }
+  }
+}
+
+// Gives few orbits at a time, at times none, and pauses at every opportunity.
+class DripFedOrbits : public OrbitSource {
+ public:
+  DripFedOrbits(NumberedOrbits& orbits, uint64_t count) : orbits_(orbits), count_(count) {}
+
+  size_t Start(std::span<OrbitStart> starts) override {
+    size_t n = 0;
+    const bool is_dry = running_ > 0 && random_() % 4 != 0;
+    for (; n < starts.size() && next_ < count_ && !is_dry; ++n, ++next_, ++running_) {
+      starts[n] = {next_, orbits_.Start(next_)};
+    }
+    return n;
+  }
+  void Meet(std::span<Meeting> meetings) override {
+    for (Meeting& meeting : meetings) {
+      meeting.after = orbits_.Meet(meeting.orbit, meeting.contact);
+      running_ -= meeting.after == AfterContact::kEnd;
+    }
+  }
+  bool Pause() override { return true; }
+  bool HasMore() const { return next_ < count_; }
+
+ private:
+  NumberedOrbits& orbits_;
+  uint64_t count_;
+  uint64_t next_ = 0;
+  uint64_t running_ = 0;
+  std::minstd_rand random_{5};
+};
+
+// Lanes run empty, are brought together into one group, and are filled again, many times over.
+TEST(Orbits, ASourceThatRunsDryChangesNoBits) {
+  constexpr uint64_t kOrbits = 600;
+  const PairGeometry geometry = *PairGeometry::Create(0.55, 0.05);
+  for (const Engine engine : kEngines) {
+    const RecordedContacts expected = Recorded(engine, geometry, kOrbits, 3);
+    ForEachFusedTarget([&] {
+      RecordedContacts contacts(geometry, kOrbits, 3);
+      DripFedOrbits source(contacts, kOrbits);
+      const auto run = StartOrbits(engine, geometry, source);
+      while (!run->Advance() || source.HasMore()) continue;
+      for (uint64_t orbit = 0; orbit < kOrbits; ++orbit) {
+        const auto &all = expected.by_orbit()[orbit], &found = contacts.by_orbit()[orbit];
+        ASSERT_EQ(found.size(), all.size());
+        for (size_t i = 0; i < all.size(); ++i) ExpectSameBits(found[i], all[i]);
+      }
+    });
   }
 }
 

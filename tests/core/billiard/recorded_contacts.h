@@ -15,7 +15,7 @@ namespace ballpiston {
 
 inline constexpr Engine kEngines[] = {Engine::kReference, Engine::kLanes, Engine::kLanesSingle};
 
-class RecordedContacts : public OrbitSource {
+class RecordedContacts : public NumberedOrbits {
  public:
   RecordedContacts(const PairGeometry& geometry, uint64_t orbits, size_t collisions)
       : geometry_(geometry), collisions_(collisions), by_orbit_(orbits) {}

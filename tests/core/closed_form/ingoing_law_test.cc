@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
+#include "core/closed_form/kernel_moments.h"
 #include "gtest/gtest.h"
 #include "tests/oracle/gauss_legendre.h"
 
@@ -124,6 +126,20 @@ TEST(IngoingLaw, SigmaProbabilityIsTheIntegralOverAlpha) {
                 kIngoingLawRelativeError)
           << ep << " " << sigma;
     }
+  }
+}
+
+// Eqs. intalphaabove and intalphabelow, seen backwards in time: their sigma = +1 is -1 here.
+TEST(IngoingLaw, SignsContributeAsPrinted) {
+  for (double ep : {1e-3, 0.1, 0.2, 0.24}) {
+    const IngoingLaw law(ep);
+    const double normalisation = 4 * std::numbers::pi * PairCollisionRate(ep);
+    const double angle = std::acos(std::sqrt(ep / (0.5 - ep)));
+    const double root = 2 * std::sqrt(0.5 - 2 * ep);
+    const double above = 2 * std::sqrt(ep) * (std::numbers::pi - angle) + root;
+    const double below = -2 * std::sqrt(ep) * angle + root;
+    EXPECT_NEAR(normalisation * law.SigmaProbability(-1), above, 1e-14);
+    EXPECT_NEAR(normalisation * law.SigmaProbability(+1), below, 1e-14);
   }
 }
 

@@ -9,7 +9,8 @@
 
 #include "core/billiard/reference_flow.h"
 #include "core/closed_form/mean_free_time.h"
-#include "core/experiment/point_stream.h"
+#include "core/ensemble/point_fold.h"
+#include "core/ensemble/point_stream.h"
 #include "core/markov/jump_process.h"
 #include "core/sampling/invariant_measure.h"
 #include "tests/core/geometries.h"
@@ -19,7 +20,7 @@ namespace ballpiston {
 namespace {
 
 EnsembleSpec SpecOfOrbits(const PointParameters& point, Model model, int64_t samples) {
-  return SpecOf(Experiment::kEnergyRelaxation, point, {.samples = samples}, model);
+  return SpecOf(&kEnergyRelaxation, point, {.samples = samples}, model);
 }
 
 EnergyRelaxation RelaxationAt(double delta, std::optional<double> epsilon = {}) {
@@ -77,8 +78,8 @@ TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
     const PointParameters point = PaperPoint(0.2, epsilon);
     const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
-    const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
-    CounterRandom random(spec.seed, PointStream(spec.experiment, point), 0);
+    const BlockResult block = *FoldPoint(*PointExperiment::Create(spec, 0));
+    CounterRandom random(spec.seed, PointStream(spec, point), 0);
     ReferenceFlow flow(kPaperPair, DrawFromFlowMeasureAt(kPaperPair, epsilon, random));
     const double lag = 4 * EnergyRelaxation(kPaperPair, point).unit() * kWindowTimes / (kLags - 1);
     double time = 0, integral = 0;
@@ -102,14 +103,14 @@ TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
 
 // The test follows the walker of the first sample itself, in a stream that no billiard uses.
 TEST(EnergyRelaxation, AWalkFollowsTheJumpProcess) {
-  constexpr double kEpsilon = 0.01;
-  const PointParameters point = PaperPoint(0.2, kEpsilon);
+  constexpr double kEnergy = 0.01;
+  const PointParameters point = PaperPoint(0.2, kEnergy);
   const EnsembleSpec spec = SpecOfOrbits(point, Model::kMarkov, 1);
-  const BlockResult block = *PointExperiment::Create(spec, 0)->RunBlock(0, {});
+  const BlockResult block = *FoldPoint(*PointExperiment::Create(spec, 0));
   const EnergyRelaxation relaxation(kPaperPair, point);
-  const uint64_t stream = ~PointStream(spec.experiment, point);
-  JumpWalkers walker(spec.seed, stream, 0, {std::sqrt(2 * kEpsilon)});
-  StepFunction energy(kEpsilon);
+  const uint64_t stream = PointStream(spec, point);
+  JumpWalkers walker(spec.seed, stream, 0, {std::sqrt(2 * kEnergy)});
+  StepFunction energy(kEnergy);
   while (energy.last_jump() < relaxation.orbit_time()) {
     walker.Jump();
     energy.Add(relaxation.unit() * walker.waiting_times()[0], std::pow(walker.u()[0], 2) / 2);
@@ -123,17 +124,16 @@ TEST(EnergyRelaxation, AWalkFollowsTheJumpProcess) {
 // Runs the same 2048 walks in blocks of fewer and of more than 256, the number that walk in step.
 TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
   for (const std::optional<double> epsilon : {std::optional<double>(), std::optional(0.01)}) {
-    const auto merged_of = [epsilon](int64_t samples) {
-      const EnsembleSpec spec = SpecOfOrbits(PaperPoint(0.2, epsilon), Model::kMarkov, samples);
-      const auto point = PointExperiment::Create(spec, 0);
+    const EnsembleSpec spec = SpecOfOrbits(PaperPoint(0.2, epsilon), Model::kMarkov, 2048);
+    const auto point = PointExperiment::Create(spec, 0);
+    const auto in_blocks_of = [&](uint64_t size) {
       BlockResult merged;
-      for (uint64_t i = 0; merged.samples < 2048; ++i) merged.Merge(*point->RunBlock(i, {}));
-      return std::pair(point->plan().block_size, merged);
+      for (uint64_t first = 0; first < 2048; first += size) {
+        merged.Merge(*RunBlock(*point, {.first = first, .samples = size}));
+      }
+      return merged;
     };
-    const auto [small, of_small] = merged_of(2048);
-    const auto [large, of_large] = merged_of(16 * 1024);
-    EXPECT_LT(small, 256u);
-    EXPECT_GT(large, 256u);
+    const BlockResult of_small = in_blocks_of(128), of_large = in_blocks_of(1024);
     ASSERT_EQ(of_small.samples, of_large.samples);
     for (size_t i = 0; i < of_small.moments.size(); ++i) {
       EXPECT_NEAR(of_small.moments[i].mean, of_large.moments[i].mean,

@@ -166,9 +166,8 @@ TEST(MarkovProperty, CountsEveryCollisionOnce) {
   for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
     for (const int64_t collisions : {1, 33, 1000, 40'000}) {
       const auto point = PointExperiment::Create(
-          SpecOf(Experiment::kMarkovProperty, PaperPoint(0.2), {.collisions = collisions}, model),
-          0);
-      const BlockResult merged = RunBlocks(*point);
+          SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = collisions}, model), 0);
+      const BlockResult merged = *FoldPoint(*point);
       const PointSummary summary = point->Summarize(merged);
       EXPECT_EQ(summary.samples, static_cast<uint64_t>(collisions));
       EXPECT_EQ(merged.histograms[0].Total(), summary.samples);

@@ -11,6 +11,7 @@
 #include "core/statistics/moments.h"
 #include "tests/core/billiard/recorded_contacts.h"
 #include "tests/core/geometries.h"
+#include "tests/core/run_orbits.h"
 
 namespace ballpiston {
 namespace {
@@ -27,7 +28,7 @@ struct Counted {
 class CountedReturns : public ReturnOrbits {
  public:
   using ReturnOrbits::ReturnOrbits;
-  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+  AfterContact Meet(uint64_t orbit, const Contact& contact) {
     counted.Add(contact);
     return ReturnOrbits::Meet(orbit, contact);
   }
@@ -62,8 +63,8 @@ TEST(PredictedHits, AreThoseOfReturnsAtAnEnergy) {
   const PairGeometry geometry = PaperGeometry(0.25);
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
     for (const Engine engine : kEngines) {
-      CountedReturns returns(geometry, {epsilon, 1}, {.seed = 1, .stream = 2}, 0, 20'000);
-      ASSERT_TRUE(RunOrbits(engine, geometry, 20'000, returns, {}));
+      CountedReturns returns(geometry, {epsilon, 1}, {.seed = 1, .stream = 2}, {.samples = 20'000});
+      ASSERT_TRUE(RunAll(engine, geometry, returns));
       ExpectCounted(HitsPerReturn(geometry, epsilon), returns.counted);
     }
   }

@@ -8,7 +8,7 @@ namespace ballpiston {
 namespace {
 
 TEST(ReturnOrbits, AnEscapedOrbitIsCountedAndIsNoSample) {
-  ReturnOrbits orbits(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, 0, 2);
+  ReturnOrbits orbits(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2});
   Contact contact;
   contact.state = orbits.Start(0);
   orbits.Meet(0, contact);

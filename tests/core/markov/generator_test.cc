@@ -204,8 +204,9 @@ TEST(Generator, MassIsConservedAndEndsUniform) {
     for (const double t : {0.0, 3.0, 300.0}) {
       const Eigen::VectorXd later =
           mass.cwiseProduct((-InUse().rates() * t).array().exp().matrix());
-      // At u = 1 rounding is told apart by the shortest element, of a measure of some 1e-10.
-      EXPECT_NEAR(one.dot(later), 1, 1e-10) << i << " " << t;
+      // At u = 1 rounding is told apart by the shortest element, of a measure of some 1e-10. Found:
+      // 7e-11 on x86, 1.1e-10 on AArch64.
+      EXPECT_NEAR(one.dot(later), 1, 4e-10) << i << " " << t;
       if (t == 300) {
         EXPECT_NEAR(EnergyOf(InUse()).dot(later), 1.0 / 6, 1e-10);
       }

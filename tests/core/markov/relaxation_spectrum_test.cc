@@ -150,7 +150,8 @@ TEST(RelaxationSpectrum, IntegralsAreThoseOfTheCurves) {
 }
 
 TEST(RelaxationSpectrum, MeanEnergyStartsAtTheInitialEnergyAndForgetsIt) {
-  constexpr double kRounding = 1e-11;  // at epsilon = 1/2; elsewhere 1e-13
+  // At epsilon = 1/2; elsewhere 1e-13. Found: 3e-12 on x86, 1.3e-11 on AArch64.
+  constexpr double kRounding = 5e-11;
   for (const double epsilon : {0.0, 1e-300, 1e-6, 0.01, 0.1, 0.25, 0.4, 0.4999, 0.5}) {
     EXPECT_NEAR(Spectrum().MeanEnergy(epsilon, 0).value, epsilon, kRounding) << epsilon;
     EXPECT_NEAR(Spectrum().MeanEnergy(epsilon, 300).value, kMeanPistonEnergy, kRounding);

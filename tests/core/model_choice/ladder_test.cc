@@ -5,20 +5,21 @@
 
 #include <cmath>
 
+#include "core/billiard/single_precision.h"
 #include "core/experiment/energy_relaxation.h"
 #include "tests/core/model_choice/questions.h"
 
 namespace ballpiston {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
 const Target kTargets[] = {{}, {.tolerance = 1e-6}, {.tolerance = 0.1}, {.budget_seconds = 1}};
 
 TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
-  for (const Experiment experiment :
-       {Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime}) {
+  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     for (const Target& target : kTargets) {
       const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
       EXPECT_EQ(answer->model, Model::kClosedForm);
@@ -29,8 +30,7 @@ TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
 }
 
 TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
-  for (const Experiment experiment :
-       {Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime}) {
+  for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     EnsembleSpec spec = Asked(experiment, 0.1);
     spec.verify = true;
     const std::optional<Answer> answer = Choice(spec, MayNotBeAsked);
@@ -41,9 +41,9 @@ TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
 
 // Measured laws are the billiard's: neither tolerance nor budget makes another model answer.
 TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
-  for (const Experiment experiment : {Experiment::kFirstHit, Experiment::kMarkovProperty}) {
+  for (const ExperimentKind* experiment : {&kFirstHit, &kMarkovProperty}) {
     for (const Target& target : kTargets) {
-      if (experiment == Experiment::kMarkovProperty && target.tolerance) continue;
+      if (experiment == &kMarkovProperty && target.tolerance) continue;
       const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
       EXPECT_EQ(answer->model, Model::kBilliard);
       EXPECT_EQ(answer->model_error, 0);
@@ -129,12 +129,12 @@ TEST(Ladder, OnePilotServesAllSmallerDeltas) {
 TEST(Ladder, APilotServesADecayToo) {
   MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.01});
   EnsembleSpec spec = Relaxation(0.0125, {.tolerance = 0.02});
-  spec.grid.epsilon = {0.4};
+  spec.grid[kEpsilon] = {0.4};
   EXPECT_EQ(Choice(spec, pilots.source())->model, Model::kSpectrum);
   ASSERT_EQ(pilots.asked().size(), 1u);
   EXPECT_GT(pilots.asked()[0].delta, 0.0125);
   EXPECT_EQ(pilots.asked()[0].epsilon, 0.4);
-  spec.grid.epsilon = {1e-6};
+  spec.grid[kEpsilon] = {1e-6};
   EXPECT_EQ(Choice(spec, pilots.source())->model, Model::kBilliard);
   EXPECT_EQ(pilots.asked().size(), 1u);
 }
@@ -168,7 +168,7 @@ TEST(Ladder, BudgetTakesTheBilliardOnceItIsMoreExact) {
     const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}), MayNotBeAsked);
     if (turn == 0 && answer.model == Model::kBilliard) turn = seconds;
     EXPECT_EQ(answer.model, turn == 0 ? Model::kSpectrum : Model::kBilliard) << seconds;
-    EXPECT_EQ(*answer.model_error, turn == 0 ? ExpectedLimitError({kPaperRho, 0.0125, {}, {}}) : 0);
+    EXPECT_EQ(*answer.model_error, turn == 0 ? ExpectedLimitError(PaperPoint(0.0125)) : 0);
   }
   EXPECT_GT(turn, 1);
   EXPECT_LT(turn, 1e4);
@@ -178,7 +178,7 @@ TEST(Ladder, BudgetTakesTheBilliardOnceItIsMoreExact) {
 TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
   EnsembleSpec spec = Relaxation(0.1, {.budget_seconds = 6});
   EXPECT_EQ(BudgetOfAPoint(spec, 4), 24);
-  spec.grid.delta = {0.1, 0.2, 0.3};
+  spec.grid[kDelta] = {0.1, 0.2, 0.3};
   EXPECT_EQ(BudgetOfAPoint(spec, 4), 8);
 }
 
@@ -197,7 +197,7 @@ TEST(Ladder, BudgetBesideAToleranceTakesTheBilliardWhereItReachesThat) {
 TEST(Ladder, AroundTheMeanEnergyRelaxationIsTheBilliards) {
   for (const Target& target : {Target{}, Target{.budget_seconds = 1e-3}}) {
     EnsembleSpec spec = Relaxation(0.01, target);
-    spec.grid.epsilon = {0.15};
+    spec.grid[kEpsilon] = {0.15};
     EXPECT_EQ(Choice(spec, MayNotBeAsked)->model, Model::kBilliard);
     MadeUpPilots none(std::nullopt);
     const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
@@ -228,9 +228,9 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
 }
 
 TEST(Ladder, ANamedModelAnswersWhateverItsError) {
-  for (const Experiment experiment : kExperiments) {
+  for (const ExperimentKind* experiment : kAllExperiments) {
     for (const Model model : kLadder) {
-      if (!Answers(model, experiment)) continue;
+      if (!experiment->IsAnsweredBy(model)) continue;
       EnsembleSpec spec = Asked(experiment, 0.2);
       spec.model = model;
       const Answer answer = *Choice(spec, MayNotBeAsked);
@@ -238,7 +238,7 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
       const bool limit = model == Model::kSpectrum || model == Model::kMarkov;
       if (!limit) {
         EXPECT_EQ(answer.model_error, 0);
-      } else if (experiment == Experiment::kEnergyRelaxation) {
+      } else if (experiment == &kEnergyRelaxation) {
         EXPECT_EQ(answer.model_error, ExpectedLimitError(PointAt(spec, 0)));
       } else {
         EXPECT_FALSE(answer.model_error);  // nobody knows
@@ -248,7 +248,7 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
 }
 
 TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
-  for (const Experiment experiment : kExperiments) {
+  for (const ExperimentKind* experiment : kAllExperiments) {
     MadeUpPilots none(std::nullopt);
     const EnsembleSpec spec = Asked(experiment, 0.05);
     const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
@@ -256,7 +256,7 @@ TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
     for (size_t i = 0; i < ladder.rungs.size(); ++i) {
       const Rung& rung = ladder.rungs[i];
       EXPECT_EQ(rung.model, kLadder[i]);
-      EXPECT_EQ(rung.answers, Answers(rung.model, experiment));
+      EXPECT_EQ(rung.answers, experiment->IsAnsweredBy(rung.model));
       EXPECT_FALSE(rung.reason.empty());
       EXPECT_EQ(rung.work.has_value(), rung.answers);
       if (rung.answers) {
@@ -292,10 +292,8 @@ TEST(Ladder, SamplesAreWhatTheTargetTakes) {
     EXPECT_EQ(*either.samples, *rung(Relaxation(0.1, {.tolerance = 0.3}), model).samples);
   }
   for (const Model model : {Model::kSpectrum, Model::kClosedForm}) {
-    const Rung exact = rung(
-        Asked(model == Model::kSpectrum ? Experiment::kEnergyRelaxation : Experiment::kEquilibrium,
-              0.1),
-        model);
+    const Rung exact =
+        rung(Asked(model == Model::kSpectrum ? &kEnergyRelaxation : &kEquilibrium, 0.1), model);
     EXPECT_EQ(exact.samples, 0);
     EXPECT_EQ(exact.statistical_error, 0);
   }
@@ -316,33 +314,104 @@ TEST(Ladder, ModelErrorIsFromAPilotIfOneIsKnown) {
   }
 }
 
+EnsembleSpec InSinglePrecision(EnsembleSpec spec) {
+  spec.precision = Precision::kSingle;
+  return spec;
+}
+
+// Whoever chose the billiard, and why: in single precision it is not exact.
+TEST(Ladder, SinglePrecisionHasAModelError) {
+  EnsembleSpec verified = InSinglePrecision(Asked(&kEquilibrium, 0.1));
+  verified.verify = true;
+  EnsembleSpec named = InSinglePrecision(Asked(&kFirstHit, 0.1));
+  named.model = Model::kBilliard;
+  EnsembleSpec beside_the_zone = InSinglePrecision(Relaxation(0.1, {.tolerance = 0.01}));
+  beside_the_zone.grid[kEpsilon] = {0.11};
+  for (const EnsembleSpec& spec :
+       {verified, named, beside_the_zone, InSinglePrecision(Asked(&kFirstHit, 0.1)),
+        InSinglePrecision(Relaxation(0.1)), InSinglePrecision(Relaxation(0.2, {.tolerance = 0.01})),
+        InSinglePrecision(Relaxation(0.3, {.budget_seconds = 100}))}) {
+    const Answer answer = *Choice(spec, MayNotBeAsked);
+    EXPECT_EQ(answer.model, Model::kBilliard);
+    EXPECT_EQ(answer.model_error, kSinglePrecisionError);
+    EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
+    MadeUpPilots none(std::nullopt);
+    const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
+    const Rung& billiard = ladder.Chosen();
+    EXPECT_EQ(billiard.model_error, kSinglePrecisionError);
+    EXPECT_THAT(billiard.reason, AllOf(HasSubstr("single"), Not(HasSubstr("exact"))));
+    // The reference is always in double precision.
+    EXPECT_EQ(ladder.rungs.back().model_error, 0);
+    EXPECT_EQ(ladder.rungs.back().reason, "exact");
+  }
+}
+
+// Distances between laws tend to 0: a relative error of them says nothing.
+TEST(Ladder, SinglePrecisionsErrorIsUnknownWhereNoneIsRelative) {
+  const EnsembleSpec spec = InSinglePrecision(Asked(&kMarkovProperty, 0.1));
+  const Answer answer = *Choice(spec, MayNotBeAsked);
+  EXPECT_FALSE(answer.model_error);
+  EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
+}
+
+TEST(Ladder, SinglePrecisionDoesNotTouchOtherModels) {
+  const Answer closed = *Choice(InSinglePrecision(Asked(&kEquilibrium, 0.1)), MayNotBeAsked);
+  EXPECT_EQ(closed.model, Model::kClosedForm);
+  EXPECT_EQ(closed.model_error, 0);
+  MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.005});
+  const Answer spectrum =
+      *Choice(InSinglePrecision(Relaxation(0.0125, {.tolerance = 0.01})), pilots.source());
+  EXPECT_EQ(spectrum.model, Model::kSpectrum);
+  EXPECT_EQ(pilots.asked().size(), 1u);
+}
+
+TEST(Ladder, SinglePrecisionRefusesAToleranceBelowItsError) {
+  for (const Model model : {Model::kAuto, Model::kBilliard}) {
+    for (const ExperimentKind* experiment : {&kEnergyRelaxation, &kFirstHit}) {
+      EnsembleSpec spec =
+          InSinglePrecision(Asked(experiment, 0.2, {.tolerance = 0.99 * kSinglePrecisionError}));
+      spec.model = model;
+      const std::vector<FieldViolation> found = ToleranceViolations(spec);
+      ASSERT_EQ(found.size(), 1u);
+      EXPECT_EQ(found[0].field, "target.tolerance");
+      EXPECT_THAT(found[0].description, HasSubstr("or precision double"));
+      spec.target.tolerance = 1.01 * kSinglePrecisionError;
+      EXPECT_TRUE(ToleranceViolations(spec).empty());
+      spec.target.tolerance = 0.99 * kSinglePrecisionError;
+      spec.precision = Precision::kDouble;
+      EXPECT_TRUE(ToleranceViolations(spec).empty());
+    }
+  }
+}
+
 TEST(Ladder, ReducedModelsRefuseAToleranceBelowTheirError) {
-  const auto violations = [](Experiment experiment, Model model, double tolerance, double delta) {
+  const auto violations = [](const ExperimentKind* experiment, Model model, double tolerance,
+                             double delta) {
     EnsembleSpec spec = Asked(experiment, delta, {.tolerance = tolerance});
     spec.model = model;
     return ToleranceViolations(spec);
   };
   for (const Model model : {Model::kSpectrum, Model::kMarkov}) {
-    const double error = ExpectedLimitError({kPaperRho, 0.2, {}, {}});
-    const auto found = violations(Experiment::kEnergyRelaxation, model, 0.99 * error, 0.2);
+    const double error = ExpectedLimitError(PaperPoint(0.2));
+    const auto found = violations(&kEnergyRelaxation, model, 0.99 * error, 0.2);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].field, "target.tolerance");
     EXPECT_THAT(found[0].description, HasSubstr("model auto or billiard"));
-    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, 1.01 * error, 0.2).empty());
-    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, error / 10, 0.01).empty());
+    EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1.01 * error, 0.2).empty());
+    EXPECT_TRUE(violations(&kEnergyRelaxation, model, error / 10, 0.01).empty());
   }
-  EXPECT_EQ(violations(Experiment::kEquilibrium, Model::kClosedForm, 1e-17, 0.2).size(), 1u);
-  EXPECT_TRUE(violations(Experiment::kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
+  EXPECT_EQ(violations(&kEquilibrium, Model::kClosedForm, 1e-17, 0.2).size(), 1u);
+  EXPECT_TRUE(violations(&kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
   for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
-    EXPECT_TRUE(violations(Experiment::kEnergyRelaxation, model, 1e-5, 0.2).empty());
+    EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1e-5, 0.2).empty());
     // What samples cannot be told to more than the most of them allow.
-    EXPECT_EQ(violations(Experiment::kEnergyRelaxation, model, 1e-9, 0.2).size(), 1u);
+    EXPECT_EQ(violations(&kEnergyRelaxation, model, 1e-9, 0.2).size(), 1u);
   }
   // The worst point of the grid counts; and without a tolerance nothing.
   EnsembleSpec spec = Relaxation(0.01, {.tolerance = 0.01});
   spec.model = Model::kSpectrum;
   EXPECT_TRUE(ToleranceViolations(spec).empty());
-  spec.grid.delta = {0.01, 0.2};
+  spec.grid[kDelta] = {0.01, 0.2};
   EXPECT_EQ(ToleranceViolations(spec).size(), 1u);
   spec.target = {};
   EXPECT_TRUE(ToleranceViolations(spec).empty());

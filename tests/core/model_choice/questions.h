@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/experiment/answering_models.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/experiment/expected_limit_error.h"
 #include "core/model_choice/ladder.h"
 #include "tests/core/one_point_spec.h"
 
@@ -34,20 +35,17 @@ inline Machine SlowerMachine() {
   return machine;
 }
 
-inline EnsembleSpec Asked(Experiment experiment, double delta, const Target& target = {}) {
+inline EnsembleSpec Asked(const ExperimentKind* experiment, double delta,
+                          const Target& target = {}) {
   PointParameters point = PaperPoint(delta);
-  if (experiment == Experiment::kConditionalMeanFreeTime) point = PaperPoint(delta, 0.125);
-  if (experiment == Experiment::kFirstHit) point = PaperPoint(delta, 0.125, 1);
+  if (experiment == &kConditionalMeanFreeTime) point = PaperPoint(delta, 0.125);
+  if (experiment == &kFirstHit) point = PaperPoint(delta, 0.125, 1);
   return SpecOf(experiment, point, target);
 }
 
 inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {
-  return Asked(Experiment::kEnergyRelaxation, delta, target);
+  return Asked(&kEnergyRelaxation, delta, target);
 }
-
-inline constexpr Experiment kExperiments[] = {
-    Experiment::kEquilibrium, Experiment::kConditionalMeanFreeTime, Experiment::kFirstHit,
-    Experiment::kEnergyRelaxation, Experiment::kMarkovProperty};
 
 // Says the same of every place, and remembers the places.
 class MadeUpPilots {

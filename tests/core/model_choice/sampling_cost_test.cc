@@ -33,12 +33,10 @@ Measured ErrorMeasured(const EnsembleSpec& spec) {
 void ExpectWithinAFactorOfTwo(const EnsembleSpec& spec) {
   ASSERT_TRUE(Violations(spec).empty());
   const PointParameters point = PointAt(spec, 0);
-  const PairGeometry geometry = GeometryOf(point.rho, point.delta);
   const Measured measured = ErrorMeasured(spec);
-  const double predicted =
-      RelativeErrorOfOneSample(spec.experiment, geometry, point) / std::sqrt(measured.samples);
-  std::cout << Name(spec.experiment) << " by " << Name(spec.model) << ", delta " << point.delta
-            << ", epsilon " << point.epsilon.value_or(-1) << ": predicted " << predicted
+  const double predicted = spec.experiment->error(point) / std::sqrt(measured.samples);
+  std::cout << spec.experiment->name << " by " << Name(spec.model) << ", delta " << point[kDelta]
+            << ", epsilon " << point.Find(kEpsilon).value_or(-1) << ": predicted " << predicted
             << ", measured " << measured.relative_error << "\n";
   EXPECT_LT(measured.relative_error, 2 * predicted);
   EXPECT_GT(measured.relative_error, predicted / 2);
@@ -46,17 +44,16 @@ void ExpectWithinAFactorOfTwo(const EnsembleSpec& spec) {
 
 TEST(SamplingCost, ErrorInEquilibriumIsWithinAFactorOfTwo) {
   for (const double delta : {0.05, 0.15, 0.32}) {
-    ExpectWithinAFactorOfTwo(Asked(Experiment::kEquilibrium, delta, {.collisions = 10'000}));
+    ExpectWithinAFactorOfTwo(Asked(&kEquilibrium, delta, {.collisions = 10'000}));
   }
 }
 
 TEST(SamplingCost, ErrorOfReturnsIsWithinAFactorOfTwo) {
-  for (const Experiment experiment :
-       {Experiment::kConditionalMeanFreeTime, Experiment::kFirstHit}) {
+  for (const ExperimentKind* experiment : {&kConditionalMeanFreeTime, &kFirstHit}) {
     for (const double delta : {0.05, 0.2}) {
       for (const double epsilon : {0.125, 0.3, 0.45}) {
         EnsembleSpec spec = Asked(experiment, delta, {.samples = 10'000});
-        spec.grid.epsilon = {epsilon};
+        spec.grid[kEpsilon] = {epsilon};
         ExpectWithinAFactorOfTwo(spec);
       }
     }
@@ -66,11 +63,11 @@ TEST(SamplingCost, ErrorOfReturnsIsWithinAFactorOfTwo) {
 TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwo) {
   for (const Model model : {Model::kBilliard, Model::kMarkov}) {
     for (const double delta : {0.1, 0.25}) {
-      EnsembleSpec spec = Relaxation(delta, {.samples = 2'000});
+      EnsembleSpec spec = Relaxation(delta, {.samples = 20'000});
       spec.model = model;
       ExpectWithinAFactorOfTwo(spec);
       for (const double epsilon : {0.01, 0.05, 0.4}) {
-        spec.grid.epsilon = {epsilon};
+        spec.grid[kEpsilon] = {epsilon};
         ExpectWithinAFactorOfTwo(spec);
       }
     }
@@ -78,10 +75,9 @@ TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwo) {
 }
 
 TEST(SamplingCost, NoNumberOfSamplesIsEnoughWhereThereIsNoVariance) {
-  EnsembleSpec spec = Asked(Experiment::kConditionalMeanFreeTime, 0.1);
-  spec.grid.epsilon = {0};
-  const PairGeometry geometry = PaperGeometry(0.1);
-  EXPECT_TRUE(std::isinf(RelativeErrorOfOneSample(spec.experiment, geometry, PointAt(spec, 0))));
+  EnsembleSpec spec = Asked(&kConditionalMeanFreeTime, 0.1);
+  spec.grid[kEpsilon] = {0};
+  EXPECT_TRUE(std::isinf(spec.experiment->error(PointAt(spec, 0))));
 }
 
 // ---- costs, which follow from counts and a machine's rates ----
@@ -93,21 +89,20 @@ MachineRates OnlyOf(double EngineRate::*part) {
 }
 
 double Cost(const EnsembleSpec& spec, const MachineRates& rates) {
-  const PointParameters point = PointAt(spec, 0);
-  return SecondsPerSample(spec, GeometryOf(point.rho, point.delta), point, rates);
+  return SecondsPerSample(spec, PointAt(spec, 0), rates);
 }
 
 TEST(SamplingCost, IsThatOfTheEventsOfASample) {
   const PairGeometry geometry = PaperGeometry(0.1);
   const double hits = HitsPerCollision(geometry).ball_wall;
-  const EnsembleSpec collision = Asked(Experiment::kEquilibrium, 0.1), orbit = Relaxation(0.1);
+  const EnsembleSpec collision = Asked(&kEquilibrium, 0.1), orbit = Relaxation(0.1);
   EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::wall_hit)), hits);
   EXPECT_DOUBLE_EQ(Cost(collision, OnlyOf(&EngineRate::collision)), 1);
   EXPECT_EQ(Cost(collision, OnlyOf(&EngineRate::sample)), 0);
   const double collisions = CollisionsPerOrbit(PointAt(orbit, 0));
   EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::wall_hit)), hits * collisions);
   EXPECT_DOUBLE_EQ(Cost(orbit, OnlyOf(&EngineRate::collision)), collisions);
-  EnsembleSpec returns = Asked(Experiment::kConditionalMeanFreeTime, 0.1);
+  EnsembleSpec returns = Asked(&kConditionalMeanFreeTime, 0.1);
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::wall_hit)),
                    HitsPerReturn(geometry, 0.125).ball_wall);
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::sample)), 1);
@@ -120,13 +115,13 @@ TEST(SamplingCost, JumpsCostWhateverDelta) {
     EnsembleSpec spec = Relaxation(delta);
     spec.model = Model::kMarkov;
     EXPECT_EQ(Cost(spec, rates), kOriginTimes + kWindowTimes);
-    spec.grid.epsilon = {0.4};
+    spec.grid[kEpsilon] = {0.4};
     EXPECT_EQ(Cost(spec, rates), kWindowTimes);
   }
 }
 
 TEST(SamplingCost, IsTheEnginesThatRuns) {
-  EnsembleSpec spec = Asked(Experiment::kEquilibrium, 0.1);
+  EnsembleSpec spec = Asked(&kEquilibrium, 0.1);
   const Machine machine = SomeMachine();
   const double lanes = Cost(spec, machine.rates);
   spec.precision = Precision::kSingle;

@@ -4,22 +4,57 @@
 
 #include <thread>
 #include <utility>
-#include <vector>
 
-#include "core/method_comparison/processor_time.h"
 #include "server/convert/spec.h"
+#include "server/execution/processor_time.h"
 
 namespace ballpiston::torture {
+namespace {
+
+// Blocks of a fold that several threads share, until the window ends.
+class SharedBlocks : public BlockQueue {
+ public:
+  SharedBlocks(PointFold& fold, std::mutex& mutex, Window& window,
+               const std::atomic<BareEngine::Clock::time_point>& end)
+      : fold_(fold), mutex_(mutex), window_(window), end_(end) {}
+
+  std::optional<Block> Next() override {
+    const std::lock_guard lock(mutex_);
+    return fold_.NextBlock();
+  }
+  void Done(const Block& block, BlockResult result) override {
+    const std::lock_guard lock(mutex_);
+    window_.samples += static_cast<double>(result.samples);
+    fold_.Add(block, std::move(result));
+  }
+  bool Pause() override { return BareEngine::Clock::now() >= end_.load(); }
+  std::stop_token stop() const override { return {}; }
+
+ private:
+  PointFold& fold_;
+  std::mutex& mutex_;
+  Window& window_;
+  const std::atomic<BareEngine::Clock::time_point>& end_;
+};
+
+}  // namespace
 
 BareEngine::BareEngine(const v1::EnsembleSpec& question, int workers)
     : experiment_(PointExperiment::Create(server::CheckSpec(question).spec, 0)),
-      workers_(workers) {}
+      fold_(*experiment_) {
+  for (int i = 0; i < workers; ++i) {
+    Worker& worker = workers_.emplace_back();
+    worker.queue = std::make_unique<SharedBlocks>(fold_, mutex_, window_, end_);
+    worker.run = experiment_->StartRun(*worker.queue);
+  }
+}
 
 Window BareEngine::Run(std::chrono::milliseconds length) {
   window_ = {};
   const auto start = Clock::now();
+  end_ = start + length;
   std::vector<std::thread> threads;
-  for (int i = 0; i < workers_; ++i) threads.emplace_back([&] { Work(start + length); });
+  for (Worker& worker : workers_) threads.emplace_back([&] { Work(worker); });
   for (std::thread& thread : threads) thread.join();
   window_.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return window_;
@@ -32,34 +67,11 @@ Window BareEngine::RunInsteadOf(const ServerProcess& server, std::chrono::millis
   return window;
 }
 
-double BareEngine::SamplesOfBlock() const {
-  return static_cast<double>(merged_.samples) / static_cast<double>(merged_blocks_);
-}
-
-void BareEngine::Work(Clock::time_point end) {
-  const double start = ThreadSeconds();
-  do {
-    const uint64_t block = Next();
-    Merge(block, *experiment_->RunBlock(block, {}));
-  } while (Clock::now() < end);
+void BareEngine::Work(Worker& worker) {
+  const double start = server::ThreadSeconds();
+  while (Clock::now() < end_.load()) worker.run->Advance();
   const std::lock_guard lock(mutex_);
-  window_.processor_seconds += ThreadSeconds() - start;
-}
-
-uint64_t BareEngine::Next() {
-  const std::lock_guard lock(mutex_);
-  return next_++;
-}
-
-void BareEngine::Merge(uint64_t block, BlockResult result) {
-  const std::lock_guard lock(mutex_);
-  window_.samples += static_cast<double>(result.samples);
-  early_.emplace(block, std::move(result));
-  while (!early_.empty() && early_.begin()->first == merged_blocks_) {
-    merged_.Merge(early_.begin()->second);
-    early_.erase(early_.begin());
-    ++merged_blocks_;
-  }
+  window_.processor_seconds += server::ThreadSeconds() - start;
 }
 
 }  // namespace ballpiston::torture

@@ -4,14 +4,15 @@
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
 
+#include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "ballpiston/v1/spec.pb.h"
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
 #include "tests/fault/torture/windows.h"
 #include "tests/support/server_process.h"
 
@@ -19,6 +20,8 @@ namespace ballpiston::torture {
 
 class BareEngine {
  public:
+  using Clock = std::chrono::steady_clock;
+
   BareEngine(const v1::EnsembleSpec& question, int workers);
 
   Window Run(std::chrono::milliseconds length);
@@ -26,22 +29,21 @@ class BareEngine {
   // While the server is stopped.
   Window RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length);
 
-  double SamplesOfBlock() const;
-
  private:
-  using Clock = std::chrono::steady_clock;
+  // Its blocks stay on their way between two windows.
+  struct Worker {
+    std::unique_ptr<BlockQueue> queue;
+    std::unique_ptr<BlockRun> run;
+  };
 
-  void Work(Clock::time_point end);
-  uint64_t Next();
-  void Merge(uint64_t block, BlockResult result);
+  void Work(Worker& worker);
 
   const std::unique_ptr<const PointExperiment> experiment_;
-  const int workers_;
-  std::mutex mutex_;
-  uint64_t next_ = 0, merged_blocks_ = 0;
-  std::map<uint64_t, BlockResult> early_;
-  BlockResult merged_;
+  PointFold fold_;
+  std::mutex mutex_;  // guards the fold and the window
   Window window_;
+  std::atomic<Clock::time_point> end_;  // of the window
+  std::vector<Worker> workers_;
 };
 
 }  // namespace ballpiston::torture

@@ -38,7 +38,7 @@ constexpr int kKilled = 128 + SIGKILL;
 // The server passes the most frequent failpoints at every block, the rarest once or twice in all.
 int MostPasses(std::string_view failpoint) {
   if (failpoint.starts_with("store.") || failpoint.starts_with("checkpoint.")) return 30;
-  if (failpoint.starts_with("block.") || failpoint == "resume.block") return 20;
+  if (failpoint.starts_with("block.") || failpoint == "resume.point") return 20;
   return failpoint.starts_with("stop.") ? 1 : 3;
 }
 

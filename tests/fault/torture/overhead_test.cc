@@ -17,8 +17,8 @@ namespace ballpiston::torture {
 namespace {
 
 constexpr double kMostOverhead = 0.02;
-// Enough in a window that the one which is cut short at its end does not matter.
-constexpr double kBlocksInWindow = 10;
+// So many samples in a window, ten blocks, that one which is cut short at its end does not matter.
+constexpr double kLeastSamples = 10 * 65536;
 
 // Whatever this thread begins meanwhile, programs and threads, runs on so many cores: neighbours
 // slow one core more than another.
@@ -53,10 +53,9 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   const std::chrono::milliseconds length(300);
   engine.Run(length);  // both warm
   ServerWindow(server, client, job.name(), length);
-  const double least = kBlocksInWindow * engine.SamplesOfBlock();
   PairedRatio processor, wall;
   for (int i = 0; i < Size(4, 400); ++i) {
-    const Window with = ServerWindow(server, client, job.name(), length, least);
+    const Window with = ServerWindow(server, client, job.name(), length, kLeastSamples);
     const Window bare = engine.RunInsteadOf(server, length);
     processor.Add(with.ProcessorCost(), bare.ProcessorCost());
     wall.Add(with.Cost(), bare.Cost());

@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/library/ensemble_client.h"
-#include "core/experiment/point_experiment.h"
+#include "core/ensemble/point_experiment.h"
 #include "core/geometry/paper.h"
 #include "server/convert/spec.h"
 #include "tests/fault/torture/connected_server.h"
@@ -51,8 +51,8 @@ void CheckCounts(const EnsembleSpec& message, const std::vector<v1::PointResult>
   if (points.size() != PointCount(spec)) throw std::runtime_error("points are missing");
   for (const v1::PointResult& point : points) {
     const auto experiment = PointExperiment::Create(spec, static_cast<size_t>(point.index()));
-    const auto planned = static_cast<double>(experiment->plan().samples);
-    if (experiment->plan().tolerance || planned == point.samples()) continue;
+    const auto planned = static_cast<double>(experiment->plan().samples());
+    if (spec.target.IsOpenEnded() || planned == point.samples()) continue;
     throw std::runtime_error(absl::StrCat("point ", point.index(), " of ",
                                           message.ShortDebugString(), " has ", point.samples(),
                                           " samples, not ", planned));

@@ -21,7 +21,7 @@ std::vector<v1::EnsembleSpec> Questions();
 // Many points, each of much the same cost.
 v1::EnsembleSpec ManyPoints(int points, int64_t samples);
 
-// Never ends by itself; saturates the workers with blocks of some 50 ms.
+// Never ends by itself; saturates the workers with turns of some 50 ms.
 v1::EnsembleSpec Endless();
 
 template <typename Value>
@@ -36,7 +36,7 @@ using Answer = std::map<int, std::string>;
 Answer AnswerOf(const std::vector<v1::PointResult>& points);
 
 // The answers of a server that is not killed. Throws if a point with a number of samples has
-// another number than its plan of blocks gives.
+// another number than its plan gives.
 std::vector<Answer> UndisturbedAnswers(const std::vector<v1::EnsembleSpec>& questions);
 
 }  // namespace ballpiston::torture

@@ -35,8 +35,7 @@ const std::map<std::string, Role>& LeastRoles() {
       {"ListEnsembleJobs", Role::kRead},    {"CancelEnsembleJob", Role::kSubmit},
       {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
       {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
-      {"EvaluatePairs", Role::kRead},       {"CompareMethods", Role::kSubmit},
-      {"GetServerStatus", Role::kRead}};
+      {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead}};
   return *roles;
 }
 

@@ -62,6 +62,39 @@ TEST_F(AnalyticServiceTest, ValuesAreThoseOfTheClosedForms) {
   EXPECT_NEAR(point.canonical(0).mean_h(), 0.5 * point.canonical(0).mean_f(), 1e-15);
 }
 
+TEST_F(AnalyticServiceTest, TemperaturesFollowTheBetasWithTheirRates) {
+  request_.add_beta(4);
+  request_.add_temperature(2);
+  ASSERT_OK(Evaluate());
+  const v1::PairAnalytics& point = response_.points(0);
+  ASSERT_EQ(point.canonical_size(), 2);
+  EXPECT_EQ(point.canonical(0).temperature(), 0.25);
+  const v1::CanonicalAnalytics& canonical = point.canonical(1);
+  EXPECT_EQ(canonical.beta(), 0.5);
+  EXPECT_EQ(canonical.temperature(), 2);
+  EXPECT_NEAR(canonical.mean_f(), 1 / std::sqrt(M_PI), 1e-15);
+  const double rate = canonical.mean_f() * point.area_ball_piston() / point.volume();
+  EXPECT_NEAR(canonical.exchange_rate(), rate, 1e-15 * rate);
+  EXPECT_EQ(canonical.static_conductivity(), canonical.exchange_rate() / 2);
+  const double limit = std::sqrt(2 / M_PI) / point.cell_area();
+  EXPECT_NEAR(canonical.rare_limit_exchange_rate(), limit, 1e-15 * limit);
+}
+
+TEST_F(AnalyticServiceTest, TheWholeRangeOfTemperaturesIsAnswered) {
+  request_.set_delta(0, 1e-100);
+  for (const double temperature : {1e-120, 1e120}) {
+    request_.add_temperature(temperature);
+    request_.add_beta(temperature);
+  }
+  ASSERT_OK(Evaluate());
+  for (const v1::CanonicalAnalytics& row : response_.points(0).canonical()) {
+    for (const double value : {row.mean_f(), row.mean_h(), row.exchange_rate(),
+                               row.static_conductivity(), row.rare_limit_exchange_rate()}) {
+      EXPECT_TRUE(std::isnormal(value)) << row.DebugString();
+    }
+  }
+}
+
 TEST_F(AnalyticServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
   request_.add_rho(0.4);
   request_.add_delta(-1);
@@ -69,10 +102,21 @@ TEST_F(AnalyticServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
   request_.add_epsilon(0.6);
   request_.add_outgoing_epsilon(0.5);
   request_.add_beta(std::numeric_limits<double>::infinity());
+  for (const double wrong : {0.0, -1.0, 1e-121, 1e121, std::nan("")}) {
+    request_.add_temperature(wrong);
+  }
   const grpc::Status status = Evaluate();
   EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-  EXPECT_THAT(DetailsOf(status).fields, ElementsAre("rho[1]", "delta[1]", "delta[2]", "epsilon[0]",
-                                                    "outgoing_epsilon[0]", "beta[0]"));
+  EXPECT_THAT(DetailsOf(status).fields,
+              ElementsAre("rho[1]", "delta[1]", "delta[2]", "epsilon[0]", "outgoing_epsilon[0]",
+                          "beta[0]", "temperature[0]", "temperature[1]", "temperature[2]",
+                          "temperature[3]", "temperature[4]"));
+}
+
+TEST_F(AnalyticServiceTest, ATemperatureOutOfRangeNamesFieldValueAndRange) {
+  request_.add_temperature(1e-121);
+  EXPECT_THAT(Evaluate().error_message(),
+              HasSubstr("temperature[0]: 1e-121 is not in [1e-120, 1e+120]"));
 }
 
 TEST_F(AnalyticServiceTest, ADeltaBeyondTheBoundNamesValueBoundAndRho) {
@@ -99,6 +143,11 @@ TEST_F(AnalyticServiceTest, TooManyPairsOrValuesAreRefused) {
   request_.mutable_delta()->Truncate(1);
   for (int i = 0; i < 200; ++i) request_.add_epsilon(0.1);
   EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("epsilon"));
+  request_.clear_epsilon();
+  for (int i = 0; i < 126; ++i) request_.add_temperature(1);
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("temperature"));
+  request_.mutable_beta()->Swap(request_.mutable_temperature());
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("beta"));
 }
 
 TEST_F(AnalyticServiceTest, HugeWrongListsAreAnsweredQuickly) {
@@ -111,8 +160,14 @@ TEST_F(AnalyticServiceTest, HugeWrongListsAreAnsweredQuickly) {
 
 TEST_F(AnalyticServiceTest, WhatLeavesTheRangeOfDoubleIsAViolation) {
   request_.add_delta(1e-300);
-  request_.add_beta(1e-310);
-  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("delta[1]", "beta[0]"));
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("delta[1]"));
+}
+
+TEST_F(AnalyticServiceTest, AnExchangeRateThatUnderflowsIsAViolation) {
+  request_.set_delta(0, 1e-130);
+  ASSERT_OK(Evaluate());
+  request_.add_temperature(1e-120);
+  EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("delta[0]"));
 }
 
 }  // namespace

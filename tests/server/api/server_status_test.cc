@@ -1,5 +1,6 @@
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "gtest/gtest.h"
 #include "server/api/methods.h"
 #include "server/api/services.h"
+#include "server/api/unary_rpc.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -60,7 +62,6 @@ class ServerStatusTest : public testing::Test {
       nullptr};
   RpcExecutor executor_{1};
   WatchRegistry watches_{std::chrono::milliseconds(1)};
-  ComparisonThread comparisons_{CoreComparer()};
   Activity activity_;
   std::atomic<bool> draining_ = false;
   CallObserver calls_;
@@ -70,7 +71,6 @@ class ServerStatusTest : public testing::Test {
                           .ladder = ladder_,
                           .executor = executor_,
                           .watches = watches_,
-                          .comparisons = comparisons_,
                           .activity = activity_,
                           .draining = draining_,
                           .instance = "test",
@@ -80,6 +80,16 @@ class ServerStatusTest : public testing::Test {
                           .start_time = absl::FromUnixMicros(1'700'000'000'250'000),
                           .store_path = folder_.File("store.sqlite3")};
 };
+
+TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
+  using Request = v1::GetServerStatusRequest;
+  const auto throws = [](ServiceContext&, const Call&, const Request&) -> absl::StatusOr<Request> {
+    throw std::runtime_error("no memory left");
+  };
+  Request response;
+  EXPECT_THAT((Answer<Request, Request>(throws, context_, {}, Request(), response)),
+              StatusIs(grpc::StatusCode::INTERNAL, "no memory left"));
+}
 
 TEST_F(ServerStatusTest, CountsWhatIsQueuedAndComputed) {
   Submit("alice");

@@ -466,27 +466,6 @@ TEST_F(WatchTest, APrincipalsStreamsAreLimited) {
   }
 }
 
-TEST_F(WatchTest, AComparisonIsAStream) {
-  const MethodComparer compare = [this](const MethodComparisonSpec&, const std::stop_token& stop,
-                                        const auto& tell) {
-    tell({.samples = 1});
-    gate_.Pass(stop);
-    return absl::OkStatus();
-  };
-  RunningServer& server = StartWith({.compare = compare, .limits = {.max_streams = 1}});
-  const std::string name = server.Submit(Equilibrium(1, 5));
-  grpc::ClientContext context;
-  const auto comparison = server.method().CompareMethods(&context, SomeComparison());
-  v1::MethodMeasurement measurement;
-  ASSERT_TRUE(comparison->Read(&measurement));
-  WatchStream watch(server, name);
-  EXPECT_FALSE(watch.Next());
-  EXPECT_EQ(ReasonOf(watch.reader->Finish()), "TOO_MANY_STREAMS");
-  gate_.Open();
-  EXPECT_FALSE(comparison->Read(&measurement));
-  EXPECT_OK(comparison->Finish());
-}
-
 class Quiet : public Watch {
  public:
   void Look(std::chrono::steady_clock::time_point) override {}

@@ -6,13 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "ballpiston/v1/storage.pb.h"
+#include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
-#include "server/convert/block_record.h"
 #include "server/convert/errors.h"
+#include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
@@ -38,48 +40,72 @@ BlockResult SomeBlock() {
   return result;
 }
 
-TEST(BlockRecord, ComesBackExactly) {
-  ASSERT_OK_AND_ASSIGN(const auto back, BlockResultFromBytes(BlockRecordBytes(SomeBlock())));
-  EXPECT_TRUE(back == SomeBlock());
-  EXPECT_TRUE(std::signbit(back.batch_means[0].mean_denominator));
+TEST(FoldRecord, ComesBackExactly) {
+  const FoldState state = {.chunk = 7, .blocks = 3, .complete = SomeBlock(), .partial = {}};
+  ASSERT_OK_AND_ASSIGN(const auto back, FoldStateFromBytes(FoldRecordBytes(state)));
+  EXPECT_EQ(back.chunk, 7u);
+  EXPECT_EQ(back.blocks, 3u);
+  EXPECT_TRUE(back.complete == SomeBlock());
+  EXPECT_TRUE(back.partial == BlockResult());
+  EXPECT_TRUE(std::signbit(back.complete.batch_means[0].mean_denominator));
 }
 
-TEST(BlockRecord, GarbageIsDataLoss) {
-  EXPECT_THAT(BlockResultFromBytes("\xff\xff\xff"), StatusIs(absl::StatusCode::kDataLoss));
+TEST(FoldRecord, GarbageIsDataLoss) {
+  EXPECT_THAT(FoldStateFromBytes("\xff\xff\xff"), StatusIs(absl::StatusCode::kDataLoss));
 }
 
-TEST(BlockRecord, ABlockThatItsExperimentCannotWriteIsDataLoss) {
-  const EnsembleSpec spec = {.experiment = Experiment::kEquilibrium,
-                             .grid = {.rho = {0.53}, .delta = {0.1}},
-                             .target = {.collisions = 1000}};
-  const auto experiment = PointExperiment::Create(spec, 0);
-  const BlockPlan& plan = experiment->plan();
-  const BlockResult empty = experiment->EmptyResult();
-  EXPECT_OK(CheckBlock(*experiment, 0, empty));
-  EXPECT_THAT(CheckBlock(*experiment, plan.Blocks(), empty), StatusIs(absl::StatusCode::kDataLoss));
-  EXPECT_THAT(CheckBlock(*experiment, 0, BlockResult()), StatusIs(absl::StatusCode::kDataLoss));
-  BlockResult too_many = empty, no_error = empty;
-  too_many.samples = plan.SamplesIn(0) + 1;
+class StoredFold : public testing::Test {
+ protected:
+  explicit StoredFold(const ExperimentKind& kind = kMarkovProperty)
+      : experiment_(PointExperiment::Create({.experiment = &kind,
+                                             .grid = {{kRho, {0.53}}, {kDelta, {0.1}}},
+                                             .target = {.collisions = 1'000'000}},
+                                            0)) {}
+
+  absl::Status Checked(const FoldState& state) const { return CheckFoldState(*experiment_, state); }
+  BlockResult Empty() const { return experiment_->EmptyResult(); }
+  const ChunkPlan& plan() const { return experiment_->plan(); }
+
+ private:
+  std::unique_ptr<const PointExperiment> experiment_;
+};
+
+TEST_F(StoredFold, ThatLiesWithinThePlanIsAccepted) {
+  EXPECT_OK(Checked({.blocks = 1, .partial = Empty()}));
+  EXPECT_OK(Checked({.chunk = 1, .complete = Empty()}));
+  EXPECT_OK(Checked({.chunk = 1, .blocks = 1, .complete = Empty(), .partial = Empty()}));
+  EXPECT_OK(Checked({.chunk = plan().chunks(), .complete = Empty()}));
+}
+
+TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
+  BlockResult too_many = Empty(), no_error = Empty();
+  too_many.samples = plan().BlockAt(0, 0).samples + 1;
   no_error.health.max_energy_error = kNan;
-  EXPECT_THAT(CheckBlock(*experiment, 0, too_many), StatusIs(absl::StatusCode::kDataLoss));
-  EXPECT_THAT(CheckBlock(*experiment, 0, no_error), StatusIs(absl::StatusCode::kDataLoss));
+  for (const FoldState& state :
+       {FoldState{},  // nothing merged yet
+        FoldState{.chunk = plan().chunks() + 1, .complete = Empty()},
+        FoldState{.chunk = plan().chunks(), .blocks = 1, .complete = Empty(), .partial = Empty()},
+        FoldState{.blocks = plan().BlocksIn(0), .partial = Empty()},
+        FoldState{.blocks = 1},                       // nothing merged
+        FoldState{.complete = Empty()},               // something before the first chunk
+        FoldState{.partial = Empty()},                // or before the first block
+        FoldState{.blocks = 1, .partial = too_many},  // and so on
+        FoldState{.blocks = 1, .partial = no_error}}) {
+    EXPECT_THAT(Checked(state), StatusIs(absl::StatusCode::kDataLoss));
+  }
 }
 
-TEST(BlockRecord, ABlockThatCountsASampleTwiceIsDataLoss) {
-  const EnsembleSpec spec = {.experiment = Experiment::kMarkovProperty,
-                             .grid = {.rho = {0.53}, .delta = {0.1}},
-                             .target = {.collisions = 1000}};
-  const auto experiment = PointExperiment::Create(spec, 0);
-  BlockResult block = experiment->EmptyResult();
+TEST_F(StoredFold, ThatCountsASampleTwiceIsDataLoss) {
+  BlockResult block = Empty();
   block.samples = 3;
   block.histograms[0].counts[0] = 1;
   block.histograms[0].counts[1] = 2;
   block.histograms[1].counts[0] = 3;
-  EXPECT_OK(CheckBlock(*experiment, 0, block));
+  EXPECT_OK(Checked({.blocks = 1, .partial = block}));
   block.histograms[1].counts[1] = 1;
-  EXPECT_THAT(CheckBlock(*experiment, 0, block), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_THAT(Checked({.blocks = 1, .partial = block}), StatusIs(absl::StatusCode::kDataLoss));
   block.histograms[1].counts[1] = std::numeric_limits<uint64_t>::max();  // the sum is 2
-  EXPECT_THAT(CheckBlock(*experiment, 0, block), StatusIs(absl::StatusCode::kDataLoss));
+  EXPECT_THAT(Checked({.blocks = 1, .partial = block}), StatusIs(absl::StatusCode::kDataLoss));
 }
 
 v1::EnsembleSpec OneFirstHit() {
@@ -125,7 +151,7 @@ TEST(Spec, EveryKindOfTargetComesBack) {
 TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
   const auto* experiments = v1::EnsembleSpec::Experiment_descriptor();
   const auto* models = v1::EnsembleSpec::Model_descriptor();
-  std::set<Experiment> seen_experiments;
+  std::set<const ExperimentKind*> seen_experiments;
   std::set<Model> seen_models;
   for (int e = 0; e < experiments->value_count(); ++e) {
     for (int m = 0; m < models->value_count(); ++m) {
@@ -149,7 +175,30 @@ TEST(Spec, EveryValueOfEveryEnumerationComesBack) {
     }
   }
   EXPECT_EQ(seen_experiments.size(), static_cast<size_t>(experiments->value_count()));
+  EXPECT_EQ(seen_experiments.size(), AllExperiments().size() + 1);  // and the missing one
   EXPECT_EQ(seen_models.size(), static_cast<size_t>(models->value_count()) - 1);  // AUTO twice
+}
+
+TEST(Spec, ExperimentsHaveOneName) {
+  for (const ExperimentKind* kind : AllExperiments()) {
+    const auto* value = v1::EnsembleSpec::Experiment_descriptor()->FindValueByNumber(
+        static_cast<int>(kind->number));
+    ASSERT_NE(value, nullptr) << kind->name;
+    std::string name = absl::AsciiStrToLower(value->name());
+    std::replace(name.begin(), name.end(), '_', '-');
+    EXPECT_EQ(name, kind->name);
+  }
+}
+
+TEST(Spec, EveryParameterHasAListInGrids) {
+  EnsembleSpec spec;
+  for (const Parameter* parameter : kParameters) {
+    spec.grid[*parameter] = {3, 5};
+  }
+  const Grid back = CheckSpec(SpecMessage(spec)).spec.grid;
+  for (const Parameter* parameter : kParameters) {
+    EXPECT_EQ(back[*parameter], spec.grid[*parameter]) << parameter->name;
+  }
 }
 
 TEST(Spec, VerifyComesBack) {
@@ -258,10 +307,9 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
 // An answer with everything that a result can hold.
 class ToldExperiment : public PointExperiment {
  public:
-  explicit ToldExperiment(const EnsembleSpec& spec) : PointExperiment(spec, PointAt(spec, 0), {}) {}
-  std::optional<BlockResult> RunBlock(uint64_t, std::stop_token) const override {
-    return BlockResult();
-  }
+  explicit ToldExperiment(const EnsembleSpec& spec)
+      : PointExperiment(spec, PointAt(spec, 0), ChunkPlan()) {}
+  std::unique_ptr<BlockRun> StartRun(BlockQueue&) const override { return nullptr; }
   BlockResult EmptyResult() const override { return BlockResult(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return Summarize(merged).estimates[0];
@@ -312,8 +360,8 @@ TEST(PointResult, DetailsCanBeLeftOutOrCleared) {
 // Relative in an answer, absolute in a result; of the first estimate alone, unless it is 0.
 TEST(PointResult, TheModelsErrorAndReasonComeFromTheAnswer) {
   EnsembleSpec spec;
-  spec.experiment = Experiment::kEnergyRelaxation;
-  spec.grid = {.rho = {0.53}, .delta = {0.1}};
+  spec.experiment = &kEnergyRelaxation;
+  spec.grid = {{kRho, {0.53}}, {kDelta, {0.1}}};
   const auto answered = [&](std::optional<double> error) {
     const auto experiment = PointExperiment::Create(
         spec, 0, {.model = Model::kSpectrum, .reason = "because", .model_error = error});

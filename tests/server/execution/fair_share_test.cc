@@ -24,8 +24,8 @@ SecondsByRun Served(FairShare& share, double seconds, const SecondsByRun& block_
     if (!run) break;
     const auto given = block_seconds.find(*run);
     const double block = given == block_seconds.end() ? 0.1 : given->second;
-    share.BlockBegins(*run);
-    share.BlockEnds(*run, block);
+    share.TurnBegins(*run);
+    share.TurnEnds(*run, block);
     served[*run] += block;
     now += block;
   }
@@ -139,8 +139,8 @@ TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
     while (true) {
       const int64_t chosen = FirstRun(share);
       const double block = chosen == 1 ? 0.1 : 10;
-      share.BlockBegins(chosen);
-      share.BlockEnds(chosen, block);
+      share.TurnBegins(chosen);
+      share.TurnEnds(chosen, block);
       served[chosen == 1 ? 1 : 2] += block;
       if (chosen == run) break;
     }
@@ -175,10 +175,10 @@ TEST(FairShare, BlocksInFlightAreCharged) {
     FairShare share;
     AddRuns(share, {1}, "a");
     AddRuns(share, {2}, of_one_principal ? "a" : "b");
-    share.BlockBegins(1);
+    share.TurnBegins(1);
     EXPECT_EQ(FirstRun(share), 2);
-    share.BlockBegins(2);
-    share.BlockBegins(2);
+    share.TurnBegins(2);
+    share.TurnBegins(2);
     EXPECT_EQ(FirstRun(share), 1);
   }
 }
@@ -186,14 +186,14 @@ TEST(FairShare, BlocksInFlightAreCharged) {
 TEST(FairShare, ARemovedRunIsForgotten) {
   FairShare share;
   AddRuns(share, {1});
-  share.BlockBegins(1);
+  share.TurnBegins(1);
   share.Remove(1);
-  share.BlockEnds(1, 1.0);
+  share.TurnEnds(1, 1.0);
   EXPECT_EQ(FirstRun(share), -1);
   EXPECT_EQ(share.runs(), 0u);
   AddRuns(share, {2, 3}, "a");
   AddRuns(share, {4}, "b");
-  share.BlockBegins(2);
+  share.TurnBegins(2);
   EXPECT_EQ(FirstRun(share), 4);
   share.Remove(2);  // its block counts no more against its principal
   EXPECT_EQ(FirstRun(share), 3);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/engine_version.h"
+#include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/store/pilot_table.h"
@@ -24,8 +25,8 @@ using ::testing::HasSubstr;
 
 // Small enough a delta, and large enough a tolerance, that a pilot decides.
 EnsembleSpec Relaxation(std::vector<double> deltas = {0.005}) {
-  return {.experiment = Experiment::kEnergyRelaxation,
-          .grid = {.rho = {0.5296}, .delta = std::move(deltas)},
+  return {.experiment = &kEnergyRelaxation,
+          .grid = {{kRho, {0.5296}}, {kDelta, std::move(deltas)}},
           .target = {.tolerance = 0.02}};
 }
 
@@ -132,7 +133,7 @@ TEST_F(ModelLadderTest, JobsWaitForARunningPilotOfTheirPlace) {
   gate_.AwaitWaiting(1);
   // Another place's pilot does not wait for this one.
   EnsembleSpec elsewhere = spec;
-  elsewhere.grid.rho = {0.55};
+  elsewhere.grid[kRho] = {0.55};
   EXPECT_NE(Create(ladder, elsewhere), nullptr);
   gate_.Open();
   threads.clear();  // joins
@@ -164,7 +165,7 @@ TEST_F(ModelLadderTest, WaitingAndRunningPilotsCanBeStopped) {
 TEST_F(ModelLadderTest, WithoutNeedNoPilotIsRun) {
   ModelLadder ladder(*store_, 2, Runner());
   EnsembleSpec closed = Relaxation();
-  closed.experiment = Experiment::kEquilibrium;
+  closed.experiment = &kEquilibrium;
   EXPECT_EQ(Create(ladder, closed)->answer().model, Model::kClosedForm);
   EnsembleSpec exact = Relaxation();
   exact.target = {.samples = 100};

@@ -7,7 +7,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "server/execution/run_journal.h"
 
@@ -17,15 +16,21 @@ class RecordingJournal : public RunJournal {
  public:
   void Began() override { ++begun; }
 
-  absl::Status ReadStoredBlocks(size_t point, const OnStoredBlock& on_block) override {
-    for (const auto& [block, result] : stored[point]) on_block(block, result);
-    return absl::OkStatus();
+  absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) override {
+    const auto found = stored.find(point);
+    if (found == stored.end()) return std::nullopt;
+    return found->second;
   }
 
-  uint64_t BlockMerged(MergedBlock block) override {
+  uint64_t Merged(const MergedSamples& news) override {
     std::lock_guard lock(mutex);
-    (block.restored ? restored : merged)[block.point].push_back(block.block);
+    (news.restored ? restored : merged)[news.point] += news.samples;
     return ++changes;
+  }
+
+  void Checkpoint(size_t point, const FoldState& state) override {
+    std::lock_guard lock(mutex);
+    checkpoints[point] = state;
   }
 
   void Worked(double seconds) override {
@@ -53,15 +58,16 @@ class RecordingJournal : public RunJournal {
     return *outcome;
   }
 
-  std::map<size_t, std::map<uint64_t, BlockResult>> stored;  // set before the run
+  std::map<size_t, FoldState> stored;  // set before the run
   std::mutex mutex;
   std::condition_variable changed;
   std::atomic<int> begun = 0;
   int ends = 0;
   double work = 0;
   uint64_t changes = 0;
-  std::map<size_t, std::vector<uint64_t>> merged;
-  std::map<size_t, std::vector<uint64_t>> restored;
+  std::map<size_t, uint64_t> merged;    // samples
+  std::map<size_t, uint64_t> restored;  // likewise
+  std::map<size_t, FoldState> checkpoints;
   std::map<size_t, BlockResult> finished;
   std::optional<absl::Status> outcome;
 };

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/server/execution/recording_journal.h"
@@ -32,7 +33,7 @@ RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& jo
   request.key = key;
   request.spec = spec;
   request.finished.assign(PointCount(spec), false);
-  request.has_stored_blocks = journal != nullptr && !journal->stored.empty();
+  request.has_checkpoints = journal != nullptr && !journal->stored.empty();
   request.journal = journal;
   return request;
 }
@@ -66,24 +67,31 @@ TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
   }
 }
 
-TEST(WorkerPool, BlocksOfAPointAreMergedInOrderAndOnce) {
+TEST(WorkerPool, EveryBlockOfAPointIsMergedOnce) {
   const EnsembleSpec spec = FakeSpec(5, 100);
   WorkerPool pool(8, FakeExperiments());
   const auto journal = AddRun(pool, 1, spec);
   ASSERT_OK(journal->AwaitEnd());
-  for (const auto& [point, blocks] : journal->merged) {
-    EXPECT_EQ(blocks.size(), 100u);
-    EXPECT_TRUE(std::is_sorted(blocks.begin(), blocks.end()));
+  for (const auto& [point, samples] : journal->merged) {
+    EXPECT_EQ(samples, 100 * kFakeSamplesPerBlock);
   }
 }
 
-TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
-  const EnsembleSpec spec = FakeSpec(2, 30);
-  auto journal = std::make_shared<RecordingJournal>();
-  const auto experiment = FakeExperiments()(spec, 1, std::stop_token());
-  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) {  // with gaps, as workers store them
-    journal->stored[1].emplace(block, *experiment->RunBlock(block, {}));
+// A fold of the fake experiment with so many blocks.
+FoldState StateWith(uint64_t blocks, const EnsembleSpec& spec, size_t point) {
+  const auto experiment = FakeExperiments()(spec, point, std::stop_token());
+  PointFold fold(*experiment);
+  for (uint64_t i = 0; i < blocks; ++i) {
+    const std::optional<Block> block = fold.NextBlock();
+    fold.Add(*block, *RunBlock(*experiment, *block));
   }
+  return fold.state();
+}
+
+TEST(WorkerPool, APointGoesOnFromItsCheckpoint) {
+  const EnsembleSpec spec = FakeSpec(2, 80);
+  auto journal = std::make_shared<RecordingJournal>();
+  journal->stored[1] = StateWith(45, spec, 1);
   std::mutex mutex;
   std::set<uint64_t> computed;
   WorkerPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
@@ -93,17 +101,15 @@ TEST(WorkerPool, StoredBlocksAreNotComputedAgain) {
   pool.Add(RunOf(1, spec, journal));
   ASSERT_OK(journal->AwaitEnd());
   ExpectAllPointsRight(spec, *journal);
-  EXPECT_EQ(computed.size(), 25u);
-  for (const uint64_t block : {0u, 1u, 2u, 7u, 9u}) EXPECT_FALSE(computed.contains(block));
+  EXPECT_EQ(computed.size(), 35u);
+  EXPECT_EQ(*computed.begin(), 45u);
+  EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
 }
 
-TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
+TEST(WorkerPool, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   auto journal = std::make_shared<RecordingJournal>();
-  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
-  for (uint64_t block = 0; block < 3; ++block) {
-    journal->stored[0].emplace(block, *experiment->RunBlock(block, {}));
-  }
+  journal->stored[0] = StateWith(3, spec, 0);
   std::atomic<int> computed = 0;
   WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
   pool.Add(RunOf(1, spec, journal));
@@ -112,17 +118,32 @@ TEST(WorkerPool, APointWhoseBlocksAreAllStoredFinishesAtOnce) {
   EXPECT_EQ(computed, 0);
 }
 
-TEST(WorkerPool, AStoredBlockOfAnotherShapeEndsTheRun) {
+TEST(WorkerPool, ACheckpointOfAnotherShapeEndsTheRun) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   auto journal = std::make_shared<RecordingJournal>();
-  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
-  journal->stored[0].emplace(0, *experiment->RunBlock(0, {}));
-  journal->stored[0].emplace(1, *experiment->RunBlock(1, {}));
-  journal->stored[0].at(1).moments.resize(1000);
+  journal->stored[0] = StateWith(2, spec, 0);
+  journal->stored[0].partial.moments.resize(1000);
   WorkerPool pool(2, FakeExperiments());
   pool.Add(RunOf(1, spec, journal));
   EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_TRUE(journal->finished.empty());
+}
+
+// How far the pool is when it is shut down, a later one goes on from.
+TEST(WorkerPool, AShutdownWritesACheckpoint) {
+  const EnsembleSpec spec = FakeSpec(1, 80);
+  Gate gate;
+  WorkerPool pool(1, GatedExperiments(gate, 50));
+  const auto journal = AddRun(pool, 1, spec);
+  gate.AwaitWaiting(1);
+  pool.Shutdown();
+  const auto later = std::make_shared<RecordingJournal>();
+  later->stored = journal->checkpoints;
+  WorkerPool next(2, FakeExperiments());
+  next.Add(RunOf(1, spec, later));
+  ASSERT_OK(later->AwaitEnd());
+  ExpectAllPointsRight(spec, *later);
+  EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
 }
 
 TEST(WorkerPool, FinishedPointsAreNotComputedAgain) {
@@ -148,27 +169,24 @@ TEST(WorkerPool, ARunWithNothingToComputeEnds) {
   EXPECT_EQ(journal->begun, 0);
 }
 
-TEST(WorkerPool, ATolerancePointDoesNotRunFarAhead) {
-  constexpr int kWorkers = 4;
+TEST(WorkerPool, APointDoesNotRunFarAheadOfASlowBlock) {
   Gate gate;
   std::atomic<uint64_t> furthest = 0;
-  EnsembleSpec spec = FakeSpec(1, 0);
-  spec.target = {};
-  spec.target.tolerance = 0.05;
-  WorkerPool pool(kWorkers, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+  const EnsembleSpec spec = FakeSpec(1, 2 * PointFold::kWindow);
+  WorkerPool pool(4, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
                     uint64_t seen = furthest;
                     while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
                     }
                     if (block == 0) gate.Pass(stop);
                     // The last block of the window: no more can be handed out before the first.
-                    if (block == 4 * kWorkers - 1) gate.Open();
+                    if (block == PointFold::kWindow - 1) {
+                      EXPECT_EQ(gate.waiting(), 1);
+                      gate.Open();
+                    }
                   }));
   const auto journal = AddRun(pool, 1, spec);
   ASSERT_OK(journal->AwaitEnd());
-  const uint64_t merged = journal->merged[0].size();
-  EXPECT_LT(merged, 1000u);
-  EXPECT_LE(furthest, merged + 4 * kWorkers);
-  EXPECT_TRUE(journal->finished.at(0) == FakeMerged(spec, 0, merged));
+  ExpectAllPointsRight(spec, *journal);
 }
 
 // ---- budgets ----
@@ -190,7 +208,7 @@ TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
     EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 5u);
     for (const auto& [point, merged] : journal->finished) {
-      const uint64_t blocks = journal->merged[point].size();
+      const uint64_t blocks = journal->merged[point] / kFakeSamplesPerBlock;
       // Blocks that were out of order when the first came are merged with it.
       EXPECT_GE(blocks, 1u);
       EXPECT_LT(blocks, 1000u);
@@ -242,9 +260,9 @@ TEST(WorkerPool, AReachedToleranceEndsBeforeTheBudget) {
     EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 3u);
     for (const auto& [point, merged] : journal->finished) {
-      EXPECT_GT(merged.samples, kMinBlocks * kFakeSamplesPerBlock);
+      EXPECT_GT(merged.samples, 64u);  // more than one chunk
       EXPECT_LT(merged.samples, 1000 * kFakeSamplesPerBlock);
-      EXPECT_TRUE(merged == FakeMerged(spec, point, journal->merged[point].size()));
+      EXPECT_TRUE(merged == FakeMerged(spec, point, merged.samples / kFakeSamplesPerBlock));
     }
   }
 }
@@ -361,17 +379,15 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   EXPECT_EQ(long_run->ends, 0);
 }
 
-// What a worker does with a task. Block 5 of each point was stored before.
+// What a worker does with a task, but for one block a turn.
 void DoTask(const RunTask& task, const EnsembleSpec& spec, Run& run) {
   if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
-    auto open = std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {}));
-    open->merge.Add(5, *open->experiment->RunBlock(5, {}), nullptr);
-    run.PointOpened(opening->point, std::move(open));
-  } else {
-    const auto& block = std::get<BlockTask>(task);
-    OpenPoint* open = run.FindOpen(block.point);
-    open->merge.Add(block.block, *block.experiment->RunBlock(block.block, {}), nullptr);
-    if (open->merge.finished()) run.PointClosed(block.point);
+    run.PointOpened(opening->point,
+                    std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {})));
+  } else if (OpenPoint* open = run.FindOpen(std::get<SessionTask>(task).point)) {
+    const std::optional<Block> block = open->fold.NextBlock();
+    if (block) open->fold.Add(*block, *RunBlock(*open->experiment, *block));
+    if (open->fold.finished()) run.PointClosed(std::get<SessionTask>(task).point);
   }
   run.TaskDone(task);
 }
@@ -381,7 +397,7 @@ TEST(Run, HasATaskUnlessItWaitsForOthersOrIsOver) {
   const EnsembleSpec spec = FakeSpec(4, 10);
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::minstd_rand random(seed);
-    server::Run run(RunOf(1, spec, nullptr), 3);
+    server::Run run(RunOf(1, spec, nullptr));
     std::vector<RunTask> out;
     while (!run.over()) {
       std::optional<RunTask> task = run.NextTask();

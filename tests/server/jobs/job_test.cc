@@ -89,7 +89,7 @@ TEST(Job, TimesAreThoseOfTheTransitions) {
 TEST(Job, ProgressIsTheShareOfWorkDone) {
   Job job(JobWithPoints(4), nullptr);
   job.AddRestoredPoints(1, 100, 1);
-  job.AddBlock(50, 0.5);
+  job.AddSamples(50, 0.5);
   const v1::JobProgress progress = job.Progress();
   EXPECT_EQ(progress.points(), 4);
   EXPECT_EQ(progress.points_done(), 1);

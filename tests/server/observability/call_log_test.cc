@@ -129,26 +129,6 @@ TEST_F(CallLog, ACallOverALimitIsLoggedAndAnInvalidOneIsNot) {
   EXPECT_EQ(FieldOf(lines[0], "request_id").size(), 16u);
 }
 
-TEST_F(CallLog, ExceptionsAreLoggedAsErrorsOfTheServer) {
-  const MethodComparer compare = [](const auto&, const auto&, const auto&) -> absl::Status {
-    throw std::runtime_error("no memory left");
-  };
-  const auto lines = LinesOf([&] {
-    RunningServer server({.compare = compare});
-    grpc::ClientContext context;
-    const auto stream = server.method().CompareMethods(&context, SomeComparison());
-    v1::MethodMeasurement message;
-    while (stream->Read(&message)) {
-    }
-    EXPECT_THAT(stream->Finish(), StatusIs(grpc::StatusCode::INTERNAL));
-  });
-  ASSERT_EQ(lines.size(), 1u);
-  EXPECT_EQ(FieldOf(lines[0], "message"), "call failed: no memory left");
-  EXPECT_EQ(FieldOf(lines[0], "severity"), "ERROR");
-  EXPECT_EQ(FieldOf(lines[0], "method"), "CompareMethods");
-  EXPECT_EQ(FieldOf(lines[0], "principal"), "local");
-}
-
 TEST_F(CallLog, OnlyEventsForTheOperatorAreLogged) {
   using absl::StatusCode;
   const auto verdict = [](StatusCode code, const char* reason = "") {

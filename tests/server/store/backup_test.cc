@@ -33,7 +33,7 @@ class BackupTest : public testing::Test {
   std::string Store() const { return folder_.File("store.sqlite3"); }
   std::string Copy() const { return folder_.File("copy"); }
 
-  // With a job that has succeeded, and one in the midst of it with blocks in the store.
+  // With a job that has succeeded, and one in the midst of it with a checkpoint in the store.
   void MakeStore() {
     Gate gate;
     RunningServer server(
@@ -86,9 +86,10 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
       {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1", "the result of job 1"},
       {"INSERT INTO results (job, point, samples, result, finish) VALUES (77, 0, 1, x'', 1)",
        "a result of no point: job 77, point 0"},
-      {"INSERT INTO blocks VALUES (1, 0, 0, x'')", "blocks of no point of an active job"},
-      {"INSERT INTO blocks VALUES (2, 2, 99, x'ff')", "block 99 of job 2, point 2"},
-      {"INSERT INTO blocks VALUES (2, 0, 0, x'')", "blocks of a finished point"},
+      {"INSERT INTO checkpoints VALUES (1, 0, x'')", "a checkpoint of no point of an active job"},
+      {"INSERT OR REPLACE INTO checkpoints VALUES (2, 2, x'ff')",
+       "the checkpoint of job 2, point 2"},
+      {"INSERT INTO checkpoints VALUES (2, 0, x'')", "a checkpoint of a finished point"},
   };
   MakeStore();
   const std::string sound = Contents(Store());

@@ -60,15 +60,9 @@ class StoreTest : public testing::Test {
     return ReadFrom(store, [&](Database& database) { return FindJob(database, id); });
   }
 
-  static std::vector<std::string> Blocks(Store& store, int64_t job, int64_t point) {
-    std::vector<std::string> blocks;
-    EXPECT_OK(store.Read([&](Database& database) {
-      return ReadBlocks(database, job, point, [&](int64_t block, const std::string& record) {
-        blocks.push_back(std::to_string(block) + record);
-        return absl::OkStatus();
-      });
-    }));
-    return blocks;
+  static std::optional<std::string> Checkpoint(Store& store, int64_t job, int64_t point) {
+    return ReadFrom(store,
+                    [&](Database& database) { return ReadCheckpoint(database, job, point); });
   }
 
   static std::vector<std::string> Results(Store& store, int64_t job) {
@@ -308,20 +302,21 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
         "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
   };
   absl::Status told;
-  store->RecordBlock(1, 0, 0, [] { return "before"; });
+  store->RecordCheckpoint(1, 0, [] { return "before"; });
   store->Record(broken, [&](const absl::Status& status) { told = status; });
-  store->RecordBlock(1, 0, 1, [] { return "after"; });
+  store->RecordCheckpoint(1, 1, [] { return "after"; });
   const absl::Status commit = store->Commit(broken);
   EXPECT_THAT(commit, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_THAT(told, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_FALSE(store->failing());
   EXPECT_EQ(store->pending_writes(), 0);
-  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0before", "1after"));
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "before");
+  EXPECT_EQ(Checkpoint(*store, 1, 1), "after");
 }
 
 TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
   const auto store = Open({.delay = std::chrono::hours(1)});
-  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  store->RecordCheckpoint(1, 0, [] { return "kept"; });
   absl::Status full = absl::ResourceExhaustedError("too many jobs");
   full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
   const absl::Status refused = store->Commit([&](Database& database) {
@@ -332,20 +327,20 @@ TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
   EXPECT_EQ(refused, full);
   EXPECT_FALSE(store->failing());
   EXPECT_FALSE(Find(*store, "half"));
-  EXPECT_EQ(Blocks(*store, 1, 0).size(), 1u);
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
 TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
-  store->RecordBlock(1, 0, 0, [&]() -> std::string {
+  store->RecordCheckpoint(1, 0, [&]() -> std::string {
     if (++attempts < 3) throw std::bad_alloc();
     return "kept";
   });
   while (!store->Flush().ok()) {
   }
-  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
 TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
@@ -357,13 +352,13 @@ TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
   EXPECT_THAT(std::string(store.status().message()), HasSubstr("not a ballpiston store"));
 }
 
-TEST_F(StoreTest, TheFirstWriterOfABlockWins) {
+TEST_F(StoreTest, TheLastCheckpointCounts) {
   const auto store = Open();
-  store->RecordBlock(1, 2, 3, [] { return "first"; });
+  store->RecordCheckpoint(1, 2, [] { return "first"; });
   ASSERT_OK(store->Flush());
-  store->RecordBlock(1, 2, 3, [] { return "second"; });
+  store->RecordCheckpoint(1, 2, [] { return "second"; });
   ASSERT_OK(store->Flush());
-  EXPECT_THAT(Blocks(*store, 1, 2), testing::ElementsAre("3first"));
+  EXPECT_EQ(Checkpoint(*store, 1, 2), "second");
 }
 
 TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
@@ -375,23 +370,24 @@ TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
   EXPECT_THAT(Results(*store, 1), testing::ElementsAre("2first"));
 }
 
-TEST_F(StoreTest, BlocksComeBackInOrder) {
-  const auto store = Open();
-  for (const int block : {10, 9, 2, 11}) {
-    store->RecordBlock(1, 0, block, [] { return "r"; });
-  }
-  ASSERT_OK(store->Flush());
-  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("2r", "9r", "10r", "11r"));
-}
-
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
   const auto store = Open({.delay = std::chrono::hours(1)});
-  for (int block = 0; block < 1000; ++block) {
-    store->RecordBlock(1, 0, block, [] { return "r"; });
+  for (int point = 0; point < 1000; ++point) {
+    store->RecordCheckpoint(1, point, [] { return "r"; });
   }
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->commits(), 1);
-  EXPECT_EQ(store->blocks_written(), 1000);
+  EXPECT_EQ(store->checkpoints_written(), 1000);
+}
+
+TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
+  const auto store = Open({.delay = std::chrono::hours(1)});
+  for (int i = 0; i < 10; ++i) {
+    store->RecordCheckpoint(1, 0, [i] { return std::to_string(i); });
+  }
+  ASSERT_OK(store->Flush());
+  EXPECT_EQ(store->checkpoints_written(), 1);
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "9");
 }
 
 TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
@@ -405,26 +401,26 @@ TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
   EXPECT_LE(store->commits(), 64);
 }
 
-TEST_F(StoreTest, BlocksOfAFinishedPointAreNeitherWrittenNorKept) {
+TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   const auto store = Open({.delay = std::chrono::hours(1)});
-  store->RecordBlock(1, 0, 0, [] { return "r"; });
+  store->RecordCheckpoint(1, 0, [] { return "r"; });
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->blocks_written(), 1);
-  store->RecordBlock(1, 0, 1, [] { return "r"; });
-  store->RecordBlock(1, 5, 0, [] { return "other"; });
+  EXPECT_EQ(store->checkpoints_written(), 1);
+  store->RecordCheckpoint(1, 0, [] { return "r"; });
+  store->RecordCheckpoint(1, 5, [] { return "other"; });
   store->RecordResult(1, {0, 8, "result"});
   ASSERT_OK(store->Flush());
-  EXPECT_EQ(store->blocks_written(), 2);
-  EXPECT_TRUE(Blocks(*store, 1, 0).empty());
-  EXPECT_EQ(Blocks(*store, 1, 5).size(), 1u);
+  EXPECT_EQ(store->checkpoints_written(), 2);
+  EXPECT_FALSE(Checkpoint(*store, 1, 0));
+  EXPECT_EQ(Checkpoint(*store, 1, 5), "other");
 }
 
 TEST_F(StoreTest, ClosingWritesWhatIsPending) {
   {
     const auto store = Open({.delay = std::chrono::hours(1)});
-    store->RecordBlock(1, 0, 0, [] { return "r"; });
+    store->RecordCheckpoint(1, 0, [] { return "r"; });
   }
-  EXPECT_EQ(Blocks(*Open(), 1, 0).size(), 1u);
+  EXPECT_EQ(Checkpoint(*Open(), 1, 0), "r");
 }
 
 TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
@@ -456,14 +452,14 @@ TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
-  store->RecordBlock(1, 0, 0, [] { return "kept"; });
+  store->RecordCheckpoint(1, 0, [] { return "kept"; });
   store->Record([&](Database&) {
     return ++attempts < 4 ? absl::UnavailableError("disk full") : absl::OkStatus();
   });
   while (!store->Flush().ok()) {
   }
   EXPECT_EQ(attempts, 4);
-  EXPECT_THAT(Blocks(*store, 1, 0), testing::ElementsAre("0kept"));
+  EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
 // A disk that hangs is one commit that does not end.
@@ -548,7 +544,7 @@ TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
 TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
-  store->RecordBlock(job, 0, 0, [] { return "r"; });
+  store->RecordCheckpoint(job, 0, [] { return "r"; });
   End(*store, job, v1::EnsembleJob::FAILED);
   const auto found = Find(*store, "a");
   EXPECT_EQ(found->points_done, 2);
@@ -556,7 +552,7 @@ TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
   EXPECT_EQ(found->work, 0.25);
   EXPECT_EQ(found->error, "why");
   EXPECT_TRUE(found->end_time);
-  EXPECT_TRUE(Blocks(*store, job, 0).empty());
+  EXPECT_FALSE(Checkpoint(*store, job, 0));
 }
 
 TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
@@ -573,10 +569,10 @@ TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   store->RecordResult(job, {0, 1, "r"});
-  store->RecordBlock(job, 1, 0, [] { return "r"; });
+  store->RecordCheckpoint(job, 1, [] { return "r"; });
   ASSERT_OK(store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }));
   EXPECT_TRUE(Results(*store, job).empty());
-  EXPECT_TRUE(Blocks(*store, job, 1).empty());
+  EXPECT_FALSE(Checkpoint(*store, job, 1));
   EXPECT_EQ(Find(*store, "a")->engine_version, "2");
 }
 

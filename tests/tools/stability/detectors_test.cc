@@ -28,7 +28,7 @@ std::vector<PairState> Starts() {
 }
 
 // Hands collisions on to a watch, changed.
-class Tampered : public OrbitSource {
+class Tampered : public NumberedOrbits {
  public:
   using Change = void (*)(Contact& contact);
 
@@ -67,7 +67,7 @@ TEST(Detectors, ACollisionToldLateIsAPhantom) {
 }
 
 // From the start to the second collision in one: the ball goes through the piston in between.
-class EverySecond : public OrbitSource {
+class EverySecond : public NumberedOrbits {
  public:
   EverySecond(CollisionWatch& watch, size_t orbits) : watch_(watch), first_(orbits) {}
 

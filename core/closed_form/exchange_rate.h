@@ -1,0 +1,46 @@
+// How often a ball and a piston of the gas exchange energy at temperature T, and the conductivity
+// that follows from it.
+//
+//   exchange rate = <f> |dG_bp|/|G| = sqrt(T/(2 pi)) |dG_bp|/|G|          eq. nucanavg
+//   lim delta -> 0 of exchange rate/delta^2 = sqrt(T/pi)/cell             eq. nucanavgrare
+//   static conductivity = exchange rate/2                  derivation in exchange_rate.cc
+//
+// <f> is the average over the canonical measure, beta = 1/T. |dG_bp| and |G| are those of a pair.
+// In a gas every piston takes area from two balls, so the gas's own exchange rate is higher: at the
+// paper's rho and delta = 0.2 by 2.4 % in a chain and 4.9 % in a lattice, and the difference falls
+// as delta^3. The static conductivity leaves out the dynamic correlations: the true conductivity is
+// a little lower than half of the gas's own exchange rate.
+//
+// Units: the Boltzmann constant is 1, so T is an energy, in the units of the pair's energy. Rates
+// count collisions of one contact (a ball and a piston) in a unit of time. The conductivity is the
+// heat current through the cross-section of one cell, divided by the temperature's difference from
+// one cell to the next. Domain: kMinTemperature <= T <= kMaxTemperature (canonical_measure.h),
+// kMinRho < rho < kMaxRho, every PairGeometry with delta > 1e-140. Below, rates can underflow.
+//
+// Properties, each with the test that bears its name:
+//   1. AccurateAtRandomGeometries: relative error below kExchangeRateRelativeError.
+//   2. RareLimitIsTheLimitOfTheRate.
+//   3. IsTheAverageOfTheMicrocanonicalRate, 1/tau_bp at energy 1/2, over the pair's energy.
+//   4. HalfOfItConductsBetweenUnequalTemperatures: what the kernel carries between a ball and a
+//      piston of slightly different temperatures, half a cell apart, is the static conductivity.
+//
+// Pure functions: safe from any thread.
+#ifndef BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_
+#define BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_
+
+#include "core/closed_form/pair_measures.h"
+
+namespace ballpiston {
+
+inline constexpr double kExchangeRateRelativeError = 6e-15;
+
+double ExchangeRate(const PairMeasures& measures, double temperature);
+
+// lim delta -> 0 of ExchangeRate/delta^2.
+double RareLimitExchangeRate(double rho, double temperature);
+
+double StaticConductivity(double exchange_rate);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_

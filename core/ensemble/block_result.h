@@ -1,0 +1,44 @@
+// What one block of an experiment measured, and what any number of blocks measured together.
+//
+// A plain bag of accumulators; each experiment says what stands at which index. Merging the blocks
+// of a point in the order of their indices gives the same bits whoever computed them. Properties,
+// each with a test of its name:
+//   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
+//   3. EveryBlockHasTheShapeOfTheEmptyOne.
+#ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_
+#define BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/statistics/batch_means.h"
+#include "core/statistics/histogram.h"
+#include "core/statistics/moments.h"
+
+namespace ballpiston {
+
+struct Health {
+  uint64_t escapes = 0;         // orbits that left the cell: anything but 0 is a defect
+  double max_energy_error = 0;  // largest |E - 1/2|/(1/2) seen
+
+  void Merge(const Health& other);
+  friend bool operator==(const Health&, const Health&) = default;
+};
+
+struct BlockResult {
+  uint64_t samples = 0;  // first hits, or ball-piston collisions
+  std::vector<Moments> moments;
+  std::vector<BatchMeans> batch_means;
+  std::vector<Histogram> histograms;
+  Health health;
+
+  // Requires the same experiment and point on both sides, or one side default-constructed.
+  void Merge(const BlockResult& other);
+  // Whether Merge can take it: as many accumulators of each kind, histograms of the same bins.
+  bool HasShapeOf(const BlockResult& other) const;
+  friend bool operator==(const BlockResult&, const BlockResult&) = default;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_

@@ -1,0 +1,65 @@
+// A plan divides a point's samples into chunks, and a chunk into blocks.
+//
+// Workers compute blocks, and the fold merges blocks. A block takes at most about 0.05 s, or has
+// one sample. A chunk has about 32 blocks or more; a tolerance is judged at the end of a chunk.
+// Chunk k has base 2^k samples, up to a maximum that takes about a minute at nominal speed. base
+// takes a few milliseconds or is 64 samples, whichever is more. So a question of 10 ms is answered
+// in about 10 ms, and a question of hours is judged at most a few hundred times. The stated error
+// stays correct, because the sizes at which the tolerance is judged double.
+//
+// All sizes are powers of two, so a rounding difference in the predicted cost of a sample changes
+// the plan only if that cost lies next to a power of two. The sizes depend only on the engine and
+// on that prediction, never on threads or machines.
+#ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
+#define BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_
+
+#include <cstdint>
+
+#include "core/billiard/orbits.h"
+
+namespace ballpiston {
+
+// Samples first ... first + samples - 1 of a point; the index-th block of its chunk.
+struct Block {
+  uint64_t chunk = 0;
+  uint64_t index = 0;
+  uint64_t first = 0;
+  uint64_t samples = 0;
+
+  friend bool operator==(const Block&, const Block&) = default;
+};
+
+class ChunkPlan {
+ public:
+  ChunkPlan() = default;  // for an answer that needs no samples
+  // events_per_sample > 0, in wall hits. Blocks hold `together` samples or more, a power of two:
+  // the samples of one orbit.
+  ChunkPlan(uint64_t samples, Engine engine, double events_per_sample, uint64_t together = 1);
+
+  uint64_t samples() const { return samples_; }  // in total; a maximum for an open-ended target
+  double events_per_sample() const { return events_per_sample_; }
+
+  uint64_t chunks() const;
+  uint64_t FirstSample(uint64_t chunk) const;
+  uint64_t SamplesIn(uint64_t chunk) const;  // chunk < chunks()
+  uint64_t BlocksIn(uint64_t chunk) const;
+  Block BlockAt(uint64_t chunk, uint64_t index) const;
+
+  // The samples of the fewest whole chunks that have at least `samples` samples.
+  uint64_t WholeChunks(double samples) const;
+
+ private:
+  uint64_t FullSize(uint64_t chunk) const;
+  uint64_t BlockSize(uint64_t chunk) const;
+
+  uint64_t samples_ = 0;
+  double events_per_sample_ = 1;
+  uint64_t base_ = 1;  // samples of chunk 0
+  uint64_t doublings_ = 0;
+  uint64_t smallest_block_ = 1;
+  uint64_t largest_block_ = 1;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_CHUNK_PLAN_H_

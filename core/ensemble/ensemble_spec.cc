@@ -1,0 +1,29 @@
+#include "core/ensemble/ensemble_spec.h"
+
+namespace ballpiston {
+
+size_t PointCount(const EnsembleSpec& spec) { return static_cast<size_t>(spec.grid.PointCount()); }
+
+PointParameters PointAt(const EnsembleSpec& spec, size_t index) { return spec.grid.PointAt(index); }
+
+EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model) {
+  EnsembleSpec one = {.experiment = spec.experiment,
+                      .target = spec.target,
+                      .seed = spec.seed,
+                      .model = model,
+                      .precision = spec.precision,
+                      .verify = spec.verify,
+                      .purpose = spec.purpose};  // a copy of the grid would be large
+  for (const Parameter* parameter : kParameters) {
+    if (const auto& value = point.Find(*parameter)) one.grid[*parameter] = {*value};
+  }
+  if (one.target.budget_seconds) *one.target.budget_seconds /= spec.grid.PointCount();
+  return one;
+}
+
+Engine EngineFor(const EnsembleSpec& spec) {
+  if (spec.model == Model::kBilliardReference) return Engine::kReference;
+  return spec.precision == Precision::kSingle ? Engine::kLanesSingle : Engine::kLanes;
+}
+
+}  // namespace ballpiston

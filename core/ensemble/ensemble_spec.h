@@ -1,0 +1,73 @@
+// The specification of a job: an experiment, a grid of parameter points, and a target.
+//
+// The struct holds unchecked input. `Violations` lists all errors, field by field. All other
+// functions of this folder require a spec without violations.
+#ifndef BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_
+#define BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/billiard/orbits.h"
+#include "core/ensemble/model.h"
+#include "core/ensemble/parameter.h"
+
+namespace ballpiston {
+
+struct ExperimentKind;
+
+inline constexpr int64_t kDefaultSamples = 10'000;
+inline constexpr int64_t kMaxSamples = 1'000'000'000'000;
+inline constexpr int64_t kMaxPoints = 100'000;
+inline constexpr double kMaxBudgetSeconds = 1e6;
+
+// At most one member is set, except that a budget and a tolerance may be set together. If no member
+// is set, the target is kDefaultSamples samples or collisions.
+struct Target {
+  std::optional<int64_t> samples = {};     // first hits, or orbits, a point
+  std::optional<int64_t> collisions = {};  // ball-piston collisions a point
+  std::optional<double> tolerance = {};    // relative standard error of the first estimate
+  std::optional<double> budget_seconds = {};
+
+  // The number of samples is not known in advance.
+  bool IsOpenEnded() const { return tolerance || budget_seconds; }
+};
+
+// The use of the random numbers. A pilot shares none with the job for which it runs.
+enum class Purpose { kAnswer, kPilot };
+
+struct EnsembleSpec {
+  const ExperimentKind* experiment = nullptr;
+  Grid grid = {};  // lists that the experiment needs have values; lists that it does not use, none
+  Target target = {};
+  uint64_t seed = 0;
+  Model model = Model::kAuto;
+  Precision precision = Precision::kDouble;
+  bool verify = false;  // if true, AUTO does not choose the closed form
+  Purpose purpose = Purpose::kAnswer;
+};
+
+struct FieldViolation {
+  std::string field;  // path within the spec, e.g. grid.delta[2]
+  std::string description;
+};
+
+// Everything wrong with the spec; empty if it can be run.
+std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
+
+size_t PointCount(const EnsembleSpec& spec);
+PointParameters PointAt(const EnsembleSpec& spec, size_t index);  // index < PointCount
+
+// The same spec for one of its points, by `model`, with that point's share of a budget.
+EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);
+
+// The engine that runs the orbits. In double precision the lanes are as exact as the reference, so
+// AUTO uses the lanes, which are faster.
+Engine EngineFor(const EnsembleSpec& spec);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_ENSEMBLE_SPEC_H_

@@ -1,0 +1,75 @@
+// Each experiment has one row, which describes it to the rest of the program. The row stands in the
+// experiment's file, and experiment/all_experiments.h lists all rows. Validation, plans, ladder,
+// predictions and random streams read rows.
+#ifndef BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_
+#define BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "absl/strings/string_view.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/sample_work.h"
+
+namespace ballpiston {
+
+class PointExperiment;
+
+struct ParameterUse {
+  const Parameter* parameter;
+  bool needed = true;  // or optional
+};
+
+// What a number in the target counts.
+enum class TargetUnit { kSamples, kCollisions, kEither };
+
+// How far the limit delta -> 0 is from the billiard, in the experiment's first estimate.
+struct LimitError {
+  bool (*is_known)(const PointParameters& point);
+  double (*expected)(const PointParameters& point);  // upper bound of the relative error
+};
+
+struct ExperimentKind {
+  absl::string_view name;  // as users write it: "first-hit"
+  uint64_t number;         // as in the API; decides the random streams
+  std::span<const ParameterUse> parameters;
+  TargetUnit unit = TargetUnit::kSamples;
+  std::span<const Model> models;  // that can answer; cheapest first
+
+  // `spec` has one point, which is `point`, and a model of `models`.
+  std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
+                                             const PointParameters& point);
+  // Finds combinations of values, or of values and precision, that are not permitted although each
+  // value alone is.
+  void (*check_grid)(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
+  // Finds why sampling cannot reach a tolerance; null if it always can.
+  void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
+
+  // Of one sample: its work by `model`, its mean number of ball-piston collisions, and the relative
+  // standard error of its first estimate. The error of n samples is 1/sqrt(n) times that of one; it
+  // is infinite if no number of samples is enough.
+  SampleWork (*work)(Model model, const PointParameters& point);
+  double (*collisions)(const PointParameters& point);
+  double (*error)(const PointParameters& point);
+
+  // Samples of one orbit that are measured together; a power of two up to 64.
+  uint64_t samples_together = 1;
+
+  const LimitError* limit_error = nullptr;  // null: no bound is known
+
+  // Besides AUTO, which answers everything.
+  bool IsAnsweredBy(Model model) const;
+  // Whether the whole answer has a closed form.
+  bool HasClosedForm() const { return IsAnsweredBy(Model::kClosedForm); }
+};
+
+// In the order of their numbers; experiment/all_experiments.cc.
+std::span<const ExperimentKind* const> AllExperiments();
+// Null if no experiment has this number.
+const ExperimentKind* FindExperiment(uint64_t number);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_EXPERIMENT_KIND_H_

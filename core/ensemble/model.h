@@ -1,0 +1,48 @@
+// The ladder of models, and the precision of the billiard's lanes.
+#ifndef BALLPISTON_CORE_ENSEMBLE_MODEL_H_
+#define BALLPISTON_CORE_ENSEMBLE_MODEL_H_
+
+#include "absl/strings/string_view.h"
+
+namespace ballpiston {
+
+// kMarkov: the jump process of the limit delta -> 0, sampled. kSpectrum: by its generator. kAuto:
+// the service chooses.
+enum class Model { kAuto, kClosedForm, kSpectrum, kMarkov, kBilliard, kBilliardReference };
+
+// Cheapest first.
+inline constexpr Model kLadder[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov,
+                                    Model::kBilliard, Model::kBilliardReference};
+
+enum class Precision { kDouble, kSingle };
+
+constexpr bool IsOfTheLimit(Model model) {
+  return model == Model::kSpectrum || model == Model::kMarkov;
+}
+
+// Names as users write them, e.g. "billiard_reference".
+constexpr absl::string_view Name(Model model) {
+  switch (model) {
+    case Model::kAuto:
+      return "auto";
+    case Model::kClosedForm:
+      return "closed_form";
+    case Model::kSpectrum:
+      return "spectrum";
+    case Model::kMarkov:
+      return "markov";
+    case Model::kBilliard:
+      return "billiard";
+    case Model::kBilliardReference:
+      return "billiard_reference";
+  }
+  return "unknown";
+}
+
+constexpr absl::string_view Name(Precision precision) {
+  return precision == Precision::kSingle ? "single" : "double";
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_MODEL_H_

@@ -1,0 +1,80 @@
+// The parameters that span grids of questions.
+#ifndef BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_
+#define BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+struct Parameter {
+  absl::string_view name;                  // of the grid's list
+  size_t index;                            // in kParameters; determines random streams
+  absl::Status (*validate)(double value);  // one value alone: name, value, permitted range
+};
+
+inline constexpr double kMaxExponent = 1000;
+inline constexpr double kMaxCells = 1e6;
+
+absl::Status ValidateEpsilon(double epsilon);
+absl::Status ValidateExponent(double exponent);
+absl::Status ValidateCells(double cells);
+
+inline constexpr Parameter kRho = {"rho", 0, ValidateRho};
+inline constexpr Parameter kDelta = {"delta", 1, ValidateSomeDelta};
+inline constexpr Parameter kEpsilon = {"epsilon", 2, ValidateEpsilon};
+inline constexpr Parameter kExponent = {"exponent", 3, ValidateExponent};
+inline constexpr Parameter kCells = {"cells", 4, ValidateCells};  // a whole number
+
+// In the order of a grid's loops, outermost first.
+inline constexpr std::array kParameters = {&kRho, &kDelta, &kEpsilon, &kExponent, &kCells};
+
+// The values of one point; those that its experiment does not use are absent.
+class PointParameters {
+ public:
+  PointParameters() = default;
+  PointParameters(std::initializer_list<std::pair<const Parameter&, std::optional<double>>> values);
+
+  double operator[](const Parameter& parameter) const { return *values_[parameter.index]; }
+  const std::optional<double>& Find(const Parameter& parameter) const {
+    return values_[parameter.index];
+  }
+  void Set(const Parameter& parameter, std::optional<double> value) {
+    values_[parameter.index] = value;
+  }
+
+  friend bool operator==(const PointParameters&, const PointParameters&) = default;
+
+ private:
+  std::array<std::optional<double>, kParameters.size()> values_ = {};
+};
+
+// The product of lists. An empty list means that the parameter is absent at every point.
+class Grid {
+ public:
+  Grid() = default;
+  Grid(std::initializer_list<std::pair<const Parameter&, std::vector<double>>> lists);
+
+  const std::vector<double>& operator[](const Parameter& parameter) const {
+    return lists_[parameter.index];
+  }
+  std::vector<double>& operator[](const Parameter& parameter) { return lists_[parameter.index]; }
+
+  double PointCount() const;                    // exact below 2^53
+  PointParameters PointAt(size_t index) const;  // index < PointCount(); last list varies fastest
+
+ private:
+  std::array<std::vector<double>, kParameters.size()> lists_ = {};
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_PARAMETER_H_

@@ -1,0 +1,66 @@
+#include "core/ensemble/point_experiment.h"
+
+#include <cmath>
+#include <utility>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_stream.h"
+
+namespace ballpiston {
+namespace {
+
+Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
+
+ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
+  const SampleWork work = spec.experiment->work(Sampled(spec.model), point);
+  return ChunkPlan(SamplesAskedFor(spec, point), EngineFor(spec), work.Events(),
+                   spec.experiment->samples_together);
+}
+
+}  // namespace
+
+uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point) {
+  const Target& target = spec.target;
+  if (target.IsOpenEnded()) return kMaxSamples;
+  if (!target.collisions) return static_cast<uint64_t>(target.samples.value_or(kDefaultSamples));
+  return static_cast<uint64_t>(
+      std::ceil(static_cast<double>(*target.collisions) / spec.experiment->collisions(point)));
+}
+
+PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters)
+    : PointExperiment(spec, parameters, PlanFor(spec, parameters)) {}
+
+PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                                 const ChunkPlan& plan)
+    : parameters_(parameters),
+      answer_{.model = Sampled(spec.model)},
+      engine_(EngineFor(spec)),
+      plan_(plan),
+      tolerance_(spec.target.tolerance),
+      random_{spec.seed, PointStream(spec, parameters)} {}
+
+std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
+                                                               size_t index) {
+  const PointParameters point = PointAt(spec, index);
+  return spec.experiment->create(OnePointSpec(spec, point, Sampled(spec.model)), point);
+}
+
+std::unique_ptr<const PointExperiment> PointExperiment::Create(const EnsembleSpec& spec,
+                                                               size_t index, Answer answer) {
+  const PointParameters point = PointAt(spec, index);
+  std::unique_ptr<PointExperiment> experiment =
+      spec.experiment->create(OnePointSpec(spec, point, answer.model), point);
+  experiment->answer_ = std::move(answer);
+  return experiment;
+}
+
+bool MeetsTolerance(const Estimate& estimate, double tolerance) {
+  return estimate.standard_error &&
+         *estimate.standard_error <= tolerance * std::fabs(estimate.value);
+}
+
+bool PointExperiment::ReachesTolerance(const BlockResult& merged) const {
+  return tolerance_ && MeetsTolerance(FirstEstimate(merged), *tolerance_);
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,95 @@
+// An experiment at one point of the grid: a plan of chunks and blocks, a pure function that
+// computes blocks, and a summary of the merged blocks. The server, the tools and the tests use
+// these; point_fold.h combines them.
+//
+// A block depends only on (experiment, point, model, precision, seed, the block's samples): not on
+// the other points of the grid, not on threads and not on earlier calls. Immutable; safe to share
+// between threads.
+#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_
+#define BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/billiard/orbits.h"
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/block_run.h"
+#include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_summary.h"
+#include "core/ensemble/random_stream.h"
+
+namespace ballpiston {
+
+// The model that answers, and its error.
+struct Answer {
+  Model model = Model::kBilliard;  // not kAuto
+  std::string reason = {};         // why the service chose this model; empty if the user chose it
+  // Upper bound of the relative difference between the model's first estimate and the billiard's,
+  // without the statistical error. Empty if no bound is known.
+  std::optional<double> model_error = 0.0;
+};
+
+// Whether the estimate's relative standard error, if it has one, is at most `tolerance`.
+bool MeetsTolerance(const Estimate& estimate, double tolerance);
+
+class PointExperiment {
+ public:
+  virtual ~PointExperiment() = default;
+
+  // The spec must have no violations; index < PointCount(spec). Uses the spec's own model; for AUTO
+  // the billiard, which answers every experiment.
+  static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index);
+  // Uses the model of `answer`, which must be able to answer the experiment.
+  static std::unique_ptr<const PointExperiment> Create(const EnsembleSpec& spec, size_t index,
+                                                       Answer answer);
+
+  // If the plan has no samples, the answer needs no block, and `merged` is empty.
+  const ChunkPlan& plan() const { return plan_; }
+  const PointParameters& parameters() const { return parameters_; }
+  const Answer& answer() const { return answer_; }
+
+  // The queue must outlive the run. The queue's Next must return blocks of plan().
+  virtual std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const = 0;
+
+  // The result before any block. It has the accumulators that every block has; merging needs them.
+  virtual BlockResult EmptyResult() const = 0;
+
+  // The estimate that a tolerance refers to. This and Summarize require at least one merged block
+  // if the plan has blocks.
+  virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;
+
+  // All that was measured. The first estimate is FirstEstimate.
+  virtual PointSummary Summarize(const BlockResult& merged) const = 0;
+
+  // Whether `merged`, the complete chunks, reaches the tolerance; false if there is no tolerance.
+  bool ReachesTolerance(const BlockResult& merged) const;
+
+ protected:
+  // For an answer by sampling.
+  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters);
+  // For an answer that needs no samples.
+  PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters,
+                  const ChunkPlan& plan);
+
+  Engine engine() const { return engine_; }
+  const RandomStream& random() const { return random_; }
+
+ private:
+  PointParameters parameters_;
+  Answer answer_;
+  Engine engine_;
+  ChunkPlan plan_;
+  std::optional<double> tolerance_;
+  RandomStream random_;
+};
+
+// The largest number of samples that the target requests at a point.
+uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_EXPERIMENT_H_

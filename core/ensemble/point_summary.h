@@ -1,0 +1,61 @@
+// What a point's merged blocks say: estimates with errors, and the exact values beside them.
+#ifndef BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
+#define BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ensemble/block_result.h"
+#include "core/statistics/histogram.h"
+#include "core/statistics/kl_divergence.h"
+
+namespace ballpiston {
+
+struct Estimate {
+  std::string name;
+  double value = 0;
+  std::optional<double> standard_error = {};  // empty with too few samples
+  std::optional<double> exact = {};           // the closed form, where there is one
+  std::optional<double> limit = {};           // what the limit delta -> 0 gives here, if known
+  // Of a distance between laws, which is never below 0: its mean if the two were the same.
+  std::optional<double> noise_floor = {};
+
+  // (value - exact)/standard_error; empty unless both exist and the error is not 0.
+  std::optional<double> ZScore() const;
+};
+
+// Counts of the ingoing angle for one sign of the piston's velocity.
+struct SignedHistogram {
+  std::string name;
+  int sigma = 0;
+  Histogram histogram;
+  std::vector<double> expected_probabilities;  // of each bin; over both signs they sum to 1
+};
+
+// A function of time.
+struct CurvePoint {
+  double time = 0;
+  double value = 0;
+  std::optional<double> standard_error = {};
+  std::optional<double> limit = {};  // what the limit delta -> 0 gives here
+};
+
+struct Curve {
+  std::string name;
+  std::vector<CurvePoint> points = {};
+};
+
+struct PointSummary {
+  uint64_t samples = 0;
+  std::vector<Estimate> estimates = {};  // the first one is what a tolerance refers to
+  std::optional<KlDivergence> kl_divergence = {};
+  std::vector<SignedHistogram> histograms = {};
+  std::vector<Curve> curves = {};
+  Health health = {};
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_

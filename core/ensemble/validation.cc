@@ -1,0 +1,175 @@
+// Everything that can be wrong with a specification, field by field.
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "core/arithmetic/number_text.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/experiment_kind.h"
+
+namespace ballpiston {
+namespace {
+
+using Found = std::vector<FieldViolation>;
+
+std::string ListOf(const Parameter& parameter) { return absl::StrCat("grid.", parameter.name); }
+
+const ParameterUse* UseOf(const ExperimentKind& experiment, const Parameter& parameter) {
+  for (const ParameterUse& use : experiment.parameters) {
+    if (use.parameter == &parameter) return &use;
+  }
+  return nullptr;
+}
+
+void CheckUse(const ExperimentKind& experiment, const Parameter& parameter, size_t size,
+              Found& found) {
+  const ParameterUse* use = UseOf(experiment, parameter);
+  if (use == nullptr && size != 0) {
+    found.push_back({ListOf(parameter),
+                     absl::StrCat("has ", size, " values; ", experiment.name, " takes none")});
+  }
+  if (use != nullptr && use->needed && size == 0) {
+    found.push_back({ListOf(parameter),
+                     absl::StrCat("is empty; ", experiment.name, " needs at least one value")});
+  }
+}
+
+bool HasTooManyPoints(const Grid& grid) {
+  return grid.PointCount() > static_cast<double>(kMaxPoints);
+}
+
+void CheckPointCount(const Grid& grid, Found& found) {
+  if (!HasTooManyPoints(grid)) return;
+  found.push_back({"grid", absl::StrFormat("has %.0f points; permitted: 1 to %d", grid.PointCount(),
+                                           kMaxPoints)});
+}
+
+void CheckLists(const EnsembleSpec& spec, Found& found) {
+  for (const Parameter* parameter : kParameters) {
+    CheckUse(*spec.experiment, *parameter, spec.grid[*parameter].size(), found);
+  }
+  CheckPointCount(spec.grid, found);
+}
+
+void CheckEachValue(const Parameter& parameter, const std::vector<double>& values, Found& found) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    const absl::Status status = parameter.validate(values[i]);
+    if (status.ok()) continue;
+    found.push_back(
+        {absl::StrFormat("%s[%d]", ListOf(parameter), i), std::string(status.message())});
+  }
+}
+
+void CheckValues(const EnsembleSpec& spec, Found& found) {
+  if (HasTooManyPoints(spec.grid)) return;  // said already
+  for (const Parameter* parameter : kParameters) {
+    CheckEachValue(*parameter, spec.grid[*parameter], found);
+  }
+  if (spec.experiment != nullptr) spec.experiment->check_grid(spec, found);
+}
+
+void CheckCount(absl::string_view field, const std::optional<int64_t>& count, Found& found) {
+  if (!count || (*count >= 1 && *count <= kMaxSamples)) return;
+  found.push_back({absl::StrCat("target.", field),
+                   absl::StrFormat("is %d; permitted: 1 to %d", *count, kMaxSamples)});
+}
+
+void CheckUnit(const EnsembleSpec& spec, Found& found) {
+  const ExperimentKind& experiment = *spec.experiment;
+  if (experiment.unit == TargetUnit::kCollisions && spec.target.samples) {
+    found.push_back({"target.samples",
+                     absl::StrCat(experiment.name, " counts collisions; use target.collisions")});
+  }
+  if (experiment.unit == TargetUnit::kSamples && spec.target.collisions) {
+    found.push_back({"target.collisions",
+                     absl::StrCat(experiment.name, " counts samples; use target.samples")});
+  }
+}
+
+// Whether the point is answered without sampling.
+bool NeedsNoSamples(const EnsembleSpec& spec) {
+  return spec.model == Model::kClosedForm ||
+         (spec.model == Model::kAuto && !spec.verify && spec.experiment->HasClosedForm());
+}
+
+void CheckTolerance(const EnsembleSpec& spec, Found& found) {
+  if (!spec.target.tolerance) return;
+  if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
+    found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
+                                                      "; permitted: 0 < tolerance < 1")});
+  }
+  const bool can_be_missed = spec.experiment->check_tolerance != nullptr && !NeedsNoSamples(spec);
+  if (can_be_missed && !HasTooManyPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
+}
+
+void CheckBudget(const Target& target, Found& found) {
+  if (!target.budget_seconds) return;
+  if (!(*target.budget_seconds > 0 && *target.budget_seconds <= kMaxBudgetSeconds)) {
+    found.push_back({"target.budget", absl::StrCat("is ", NumberText(*target.budget_seconds),
+                                                   " s; permitted: 0 < budget <= ",
+                                                   NumberText(kMaxBudgetSeconds), " s")});
+  }
+  if (target.samples || target.collisions) {
+    found.push_back({"target.budget",
+                     "stands beside a number of samples or collisions; "
+                     "permitted: alone, or with a tolerance"});
+  }
+}
+
+void CheckTarget(const EnsembleSpec& spec, Found& found) {
+  const Target& target = spec.target;
+  const int kinds =
+      target.samples.has_value() + target.collisions.has_value() + target.tolerance.has_value();
+  if (kinds > 1) found.push_back({"target", "more than one kind is set; permitted: one"});
+  CheckUnit(spec, found);
+  CheckCount("samples", target.samples, found);
+  CheckCount("collisions", target.collisions, found);
+  CheckTolerance(spec, found);
+  CheckBudget(target, found);
+}
+
+std::string AnsweringModels(const ExperimentKind& experiment) {
+  return absl::StrCat(Name(Model::kAuto), ", ",
+                      absl::StrJoin(experiment.models, ", ", [](std::string* out, Model model) {
+                        absl::StrAppend(out, Name(model));
+                      }));
+}
+
+void CheckModel(const EnsembleSpec& spec, Found& found) {
+  if (!spec.experiment->IsAnsweredBy(spec.model)) {
+    found.push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
+                                           spec.experiment->name,
+                                           "; permitted: ", AnsweringModels(*spec.experiment))});
+  }
+  if (spec.precision == Precision::kSingle && spec.model != Model::kAuto &&
+      spec.model != Model::kBilliard) {
+    found.push_back({"precision", absl::StrCat("is single; permitted with model ", Name(spec.model),
+                                               ": double")});
+  }
+  if (spec.verify && spec.model != Model::kAuto) {
+    found.push_back({"verify", absl::StrCat("is set, and model ", Name(spec.model),
+                                            " is given; permitted with model auto")});
+  }
+}
+
+std::string ExperimentNames() {
+  return absl::StrJoin(AllExperiments(), ", ", [](std::string* out, const ExperimentKind* kind) {
+    absl::StrAppend(out, kind->name);
+  });
+}
+
+}  // namespace
+
+std::vector<FieldViolation> Violations(const EnsembleSpec& spec) {
+  Found found;
+  if (spec.experiment == nullptr) {
+    found.push_back({"experiment", absl::StrCat("is missing; permitted: ", ExperimentNames())});
+  } else {
+    CheckLists(spec, found);
+    CheckTarget(spec, found);
+    CheckModel(spec, found);
+  }
+  CheckValues(spec, found);
+  return found;
+}
+
+}  // namespace ballpiston

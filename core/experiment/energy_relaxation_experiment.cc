@@ -1,0 +1,298 @@
+// energy-relaxation: how the piston's energy relaxes (energy_relaxation.h), by the billiard, by the
+// jump process of its limit, or by that process's spectrum.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/arithmetic/number_text.h"
+#include "core/ensemble/block_orbits.h"
+#include "core/ensemble/computed_answer.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/energy_relaxation.h"
+#include "core/experiment/expected_limit_error.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/markov/jump_process.h"
+#include "core/sampling/invariant_measure.h"
+
+namespace ballpiston {
+namespace {
+
+// A group of walkers runs until its slowest walker has finished.
+constexpr uint64_t kWalkersInStep = 256;
+
+// Measurements of a block's orbits, by orbit.
+class OrbitMeasurements {
+ public:
+  OrbitMeasurements(const EnergyRelaxation& relaxation, uint64_t orbits)
+      : relaxation_(relaxation), values_(orbits) {}
+
+  void Set(uint64_t orbit, const StepFunction& energy) {
+    values_[orbit] = relaxation_.Measure(energy);
+  }
+
+  // Those that were set.
+  BlockResult Result() const {
+    BlockResult result = NoRelaxations();
+    for (const std::vector<double>& values : values_) {
+      if (values.empty()) continue;
+      ++result.samples;
+      for (size_t i = 0; i < values.size(); ++i) result.moments[i].Add(values[i]);
+    }
+    return result;
+  }
+
+ private:
+  const EnergyRelaxation& relaxation_;
+  std::vector<std::vector<double>> values_;
+};
+
+class RelaxingOrbits {
+ public:
+  RelaxingOrbits(const PairGeometry& geometry, const EnergyRelaxation& relaxation,
+                 const RandomStream& random, const Block& block)
+      : geometry_(geometry),
+        relaxation_(relaxation),
+        random_(random),
+        first_(block.first),
+        energies_(block.samples),
+        measurements_(relaxation, block.samples) {}
+
+  uint64_t count() const { return energies_.size(); }
+
+  PairState Start(uint64_t orbit) {
+    CounterRandom random = random_.Sample(first_ + orbit);
+    const PairState state = relaxation_.epsilon()
+                                ? DrawFromFlowMeasureAt(geometry_, *relaxation_.epsilon(), random)
+                                : DrawFromFlowMeasure(geometry_, random);
+    energies_[orbit].emplace(state.piston_velocity * state.piston_velocity / 2);
+    return state;
+  }
+
+  AfterContact Meet(uint64_t orbit, const Contact& contact) {
+    std::optional<StepFunction>& energy = energies_[orbit];
+    if (contact.escaped) {
+      ++health_.escapes;
+      energy.reset();
+      return AfterContact::kEnd;
+    }
+    if (!contact.expired) {
+      // The piston leaves with what was the ball's normal component.
+      const double v = contact.state.ball_speed * contact.state.direction.x();
+      energy->Add(contact.time, v * v / 2);
+      health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
+      if (energy->last_jump() < relaxation_.orbit_time()) return AfterContact::kGoOn;
+    }
+    measurements_.Set(orbit, *energy);
+    energy.reset();
+    return AfterContact::kEnd;
+  }
+
+  BlockResult Result() const {
+    BlockResult result = measurements_.Result();
+    result.health = health_;
+    return result;
+  }
+
+ private:
+  PairGeometry geometry_;
+  const EnergyRelaxation& relaxation_;
+  RandomStream random_;
+  uint64_t first_;
+  std::vector<std::optional<StepFunction>> energies_;  // of the orbits that run
+  OrbitMeasurements measurements_;
+  Health health_;
+};
+
+std::vector<double> StartsOfWalkers(const std::optional<double>& epsilon,
+                                    const RandomStream& random, uint64_t first, uint64_t count) {
+  std::vector<double> u(count);
+  for (uint64_t i = 0; i < count; ++i) {
+    u[i] = epsilon ? std::sqrt(2 * *epsilon) : random.Sample(first + i).Uniform();
+  }
+  return u;
+}
+
+// Energies of `count` walkers up to orbit_time, in units of the geometry.
+std::vector<StepFunction> WalkTogether(const EnergyRelaxation& relaxation,
+                                       const RandomStream& random, uint64_t first, uint64_t count) {
+  const std::vector<double> starts = StartsOfWalkers(relaxation.epsilon(), random, first, count);
+  JumpWalkers walkers(random.seed, random.stream, first, starts);
+  std::vector<StepFunction> energies;
+  for (const double u : starts) energies.emplace_back(u * u / 2);
+  for (bool walking = true; walking;) {
+    walkers.Jump();
+    walking = false;
+    for (uint64_t i = 0; i < count; ++i) {
+      if (energies[i].last_jump() >= relaxation.orbit_time()) continue;
+      const double u = walkers.u()[i];
+      energies[i].Add(relaxation.unit() * walkers.waiting_times()[i], u * u / 2);
+      walking = true;
+    }
+  }
+  return energies;
+}
+
+// A block of the jump process. Empty only if `stop` was requested.
+std::optional<BlockResult> WalkBlock(const EnergyRelaxation& relaxation, const RandomStream& random,
+                                     const Block& block, const std::stop_token& stop) {
+  OrbitMeasurements measurements(relaxation, block.samples);
+  for (uint64_t done = 0; done < block.samples; done += kWalkersInStep) {
+    if (stop.stop_requested()) return std::nullopt;
+    const uint64_t together = std::min(kWalkersInStep, block.samples - done);
+    const auto energies = WalkTogether(relaxation, random, block.first + done, together);
+    for (uint64_t i = 0; i < together; ++i) measurements.Set(done + i, energies[i]);
+  }
+  return measurements.Result();
+}
+
+Estimate SpectralGap() {
+  const SpectralValue gap = RelaxationSpectrum::Get().Gap();
+  return {.name = "spectral_gap", .value = gap.value, .standard_error = gap.error};
+}
+
+// The isolated rates after the gap.
+void AddFurtherRates(std::vector<Estimate>& estimates) {
+  const std::vector<SpectralValue> rates = RelaxationSpectrum::Get().IsolatedRates();
+  for (size_t i = 1; i < rates.size(); ++i) {
+    estimates.push_back({.name = absl::StrCat("isolated_rate_", i + 1),
+                         .value = rates[i].value,
+                         .standard_error = rates[i].error});
+  }
+}
+
+// No samples: standard errors are those of the discretisation.
+PointSummary BySpectrum(const EnergyRelaxation& relaxation) {
+  PointSummary summary;
+  summary.estimates = relaxation.EstimatesOfLimit();
+  summary.estimates.push_back(SpectralGap());
+  AddFurtherRates(summary.estimates);
+  summary.curves = {relaxation.CurveOfLimit()};
+  return summary;
+}
+
+// By billiard, billiard_reference or markov.
+class EnergyRelaxationExperiment : public PointExperiment {
+ public:
+  EnergyRelaxationExperiment(const EnsembleSpec& spec, const PointParameters& point)
+      : PointExperiment(spec, point), geometry_(GeometryOf(point)), relaxation_(geometry_, point) {}
+
+  std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
+    if (IsLimit()) {
+      return RunOneByOne(queue, [this](const Block& block, const std::stop_token& stop) {
+        return WalkBlock(relaxation_, random(), block, stop);
+      });
+    }
+    return RunBlockOrbits(
+        engine(), geometry_, relaxation_.orbit_time(),
+        [this](const Block& b) { return RelaxingOrbits(geometry_, relaxation_, random(), b); },
+        queue);
+  }
+
+  BlockResult EmptyResult() const override { return NoRelaxations(); }
+
+  Estimate FirstEstimate(const BlockResult& merged) const override {
+    return Estimates(merged).front();
+  }
+
+  PointSummary Summarize(const BlockResult& merged) const override {
+    PointSummary summary = {.samples = merged.samples, .health = merged.health};
+    summary.estimates = Estimates(merged);
+    if (IsLimit()) summary.estimates.push_back(SpectralGap());
+    summary.curves.push_back(relaxation_.MeasuredCurve(merged));
+    return summary;
+  }
+
+ private:
+  bool IsLimit() const { return answer().model == Model::kMarkov; }
+
+  std::vector<Estimate> Estimates(const BlockResult& merged) const {
+    std::vector<Estimate> estimates = relaxation_.Estimates(merged);
+    if (!IsLimit()) return estimates;
+    // The jump process is the limit.
+    for (Estimate& estimate : estimates) estimate.exact = estimate.limit;
+    return estimates;
+  }
+
+  PairGeometry geometry_;
+  EnergyRelaxation relaxation_;
+};
+
+std::unique_ptr<PointExperiment> CreateRelaxation(const EnsembleSpec& spec,
+                                                  const PointParameters& point) {
+  if (spec.model != Model::kSpectrum) {
+    return std::make_unique<EnergyRelaxationExperiment>(spec, point);
+  }
+  return std::make_unique<ComputedAnswer>(spec, point,
+                                          BySpectrum(EnergyRelaxation(GeometryOf(point), point)));
+}
+
+// The measurements of a step of the energy take most of a jump's time.
+SampleWork WorkOfAnOrbit(Model model, const PointParameters& point) {
+  SampleWork step = {.jumps = 1};
+  if (model != Model::kMarkov) {
+    step = WorkOfACollision(GeometryOf(point));
+    step.jumps = 1;
+  }
+  return step.Times(CollisionsPerOrbit(point));
+}
+
+bool HasRelaxationTimeAt(const PointParameters& point) {
+  return HasRelaxationTime(point.Find(kEpsilon));
+}
+
+// Of int (ep - 1/6) dt over one orbit from epsilon, in mean free times, over its mean.
+double ErrorOfDecay(const PointParameters& point) {
+  constexpr double kScatter = 0.42;
+  const EnergyRelaxation relaxation(GeometryOf(point), point);
+  const double decay = relaxation.EstimatesOfLimit().back().value;
+  return std::fabs(kScatter * 4 * relaxation.unit() / decay);
+}
+
+double ErrorOfAnOrbit(const PointParameters& point) {
+  if (!HasRelaxationTimeAt(point)) return std::numeric_limits<double>::infinity();
+  return point.Find(kEpsilon) ? ErrorOfDecay(point) : 1.25;
+}
+
+// Finds a tolerance at energies where the estimate passes through 0, so a relative error has no
+// meaning.
+void CheckToleranceOfDecay(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  const std::vector<double>& energies = spec.grid[kEpsilon];
+  for (size_t i = 0; i < energies.size(); ++i) {
+    if (HasRelaxationTime(energies[i])) continue;
+    found.push_back({absl::StrFormat("grid.epsilon[%d]", i),
+                     absl::StrCat("is ", NumberText(energies[i]),
+                                  ", from where the mean energy has no relaxation time; permitted "
+                                  "with a tolerance: [0, ",
+                                  kNoDecayFrom, "] or [", kNoDecayTo, ", 0.5]")});
+  }
+}
+
+constexpr ParameterUse kParametersOfRelaxation[] = {
+    {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
+constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
+                                         Model::kBilliardReference};
+constexpr LimitError kLimitErrorOfRelaxation = {.is_known = HasRelaxationTimeAt,
+                                                .expected = ExpectedLimitError};
+
+}  // namespace
+
+constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
+                                                    .number = 4,
+                                                    .parameters = kParametersOfRelaxation,
+                                                    .unit = TargetUnit::kEither,
+                                                    .models = kModelsOfRelaxation,
+                                                    .create = CreateRelaxation,
+                                                    .check_grid = CheckPairGrid,
+                                                    .check_tolerance = CheckToleranceOfDecay,
+                                                    .work = WorkOfAnOrbit,
+                                                    .collisions = CollisionsPerOrbit,
+                                                    .error = ErrorOfAnOrbit,
+                                                    .limit_error = &kLimitErrorOfRelaxation};
+
+}  // namespace ballpiston

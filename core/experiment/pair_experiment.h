@@ -1,0 +1,33 @@
+// Functions that the rows of the ball-piston pair's experiments share.
+#ifndef BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_
+#define BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_
+
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/experiment/predicted_hits.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+inline constexpr ParameterUse kPairAlone[] = {{&kRho}, {&kDelta}};
+
+inline constexpr Model kBilliards[] = {Model::kBilliard, Model::kBilliardReference};
+
+// Requires a valid rho and delta.
+PairGeometry GeometryOf(const PointParameters& point);
+
+// Finds deltas beyond the bound of the largest rho, and deltas so small that the mean free time of
+// the smallest rho leaves the range of double. With single precision also finds rho and delta at
+// which single precision is not permitted (billiard/single_precision.h).
+void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
+
+inline double OneCollision(const PointParameters&) { return 1; }
+
+// The work of a sample that is one collision of an orbit in equilibrium.
+SampleWork WorkOfACollision(const PairGeometry& geometry);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_PAIR_EXPERIMENT_H_

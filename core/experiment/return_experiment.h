@@ -1,0 +1,23 @@
+// Functions that the rows of conditional-mean-free-time and first-hit share. A sample is a return
+// to the collision surface at fixed energies.
+#ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_
+#define BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_
+
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+
+namespace ballpiston {
+
+SampleWork WorkOfAReturn(Model model, const PointParameters& point);
+
+// The relative error of the mean return time for one sample. Rare long returns dominate the mean,
+// so the scatter of their number is its error.
+double ErrorOfAReturn(const PointParameters& point);
+
+// Finds a tolerance at epsilon = 0, where the return time has no variance.
+void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_EXPERIMENT_RETURN_EXPERIMENT_H_

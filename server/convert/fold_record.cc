@@ -1,0 +1,130 @@
+#include "server/convert/fold_record.h"
+
+#include <algorithm>
+
+#include "absl/status/status.h"
+#include "ballpiston/v1/storage.pb.h"
+#include "server/convert/deterministic_bytes.h"
+
+namespace ballpiston::server {
+namespace {
+
+void Fill(const Moments& moments, v1::MomentsRecord& record) {
+  record.set_count(moments.count);
+  record.set_mean(moments.mean);
+  record.set_m2(moments.m2);
+  record.set_m3(moments.m3);
+  record.set_m4(moments.m4);
+}
+
+void Fill(const BatchMeans& means, v1::BatchMeansRecord& record) {
+  record.set_batches(means.batches);
+  record.set_mean_numerator(means.mean_numerator);
+  record.set_mean_denominator(means.mean_denominator);
+  record.set_c_nn(means.c_nn);
+  record.set_c_nd(means.c_nd);
+  record.set_c_dd(means.c_dd);
+}
+
+void Fill(const Histogram& histogram, v1::HistogramRecord& record) {
+  record.set_lower(histogram.lower);
+  record.set_upper(histogram.upper);
+  record.mutable_counts()->Assign(histogram.counts.begin(), histogram.counts.end());
+}
+
+Moments MomentsOf(const v1::MomentsRecord& record) {
+  return {record.count(), record.mean(), record.m2(), record.m3(), record.m4()};
+}
+
+BatchMeans BatchMeansOf(const v1::BatchMeansRecord& record) {
+  return {record.batches(), record.mean_numerator(), record.mean_denominator(),
+          record.c_nn(),    record.c_nd(),           record.c_dd()};
+}
+
+Histogram HistogramOf(const v1::HistogramRecord& record) {
+  return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
+}
+
+// As many in all bins together at the most: a sum of what is damaged may wrap.
+bool HoldsAtMost(uint64_t samples, const Histogram& histogram) {
+  for (const uint64_t count : histogram.counts) {
+    if (count > samples) return false;
+    samples -= count;
+  }
+  return true;
+}
+
+bool CountsNoSampleTwice(const BlockResult& result) {
+  return std::all_of(result.histograms.begin(), result.histograms.end(),
+                     [&](const Histogram& h) { return HoldsAtMost(result.samples, h); });
+}
+
+void Fill(const BlockResult& result, v1::BlockRecord& record) {
+  record.set_samples(result.samples);
+  for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
+  for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
+  for (const Histogram& histogram : result.histograms) Fill(histogram, *record.add_histograms());
+  record.set_escapes(result.health.escapes);
+  record.set_max_energy_error(result.health.max_energy_error);
+}
+
+BlockResult ResultOf(const v1::BlockRecord& record) {
+  BlockResult result;
+  result.samples = record.samples();
+  for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
+  for (const auto& means : record.batch_means()) result.batch_means.push_back(BatchMeansOf(means));
+  for (const auto& counts : record.histograms()) result.histograms.push_back(HistogramOf(counts));
+  result.health.escapes = record.escapes();
+  result.health.max_energy_error = record.max_energy_error();
+  return result;
+}
+
+// Of so many planned samples, or without any.
+bool IsPossible(const PointExperiment& experiment, const BlockResult& result, uint64_t planned) {
+  if (planned == 0) return result == BlockResult();
+  return result.samples <= planned && result.health.max_energy_error >= 0 &&  // not NaN either
+         CountsNoSampleTwice(result) && result.HasShapeOf(experiment.EmptyResult());
+}
+
+bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
+  const ChunkPlan& plan = experiment.plan();
+  const uint64_t chunks = plan.chunks();
+  if (state.chunk == 0 && state.blocks == 0)
+    return false;  // none is written before the first block
+  const bool is_in_the_plan = state.chunk < chunks && state.blocks < plan.BlocksIn(state.chunk);
+  if (!is_in_the_plan && !(state.chunk == chunks && state.blocks == 0)) return false;
+  const uint64_t complete = std::min(plan.FirstSample(state.chunk), plan.samples());
+  const uint64_t partial =
+      state.blocks == 0 ? 0 : plan.BlockAt(state.chunk, state.blocks).first - complete;
+  return IsPossible(experiment, state.complete, complete) &&
+         IsPossible(experiment, state.partial, partial);
+}
+
+}  // namespace
+
+std::string FoldRecordBytes(const FoldState& state) {
+  v1::FoldRecord record;
+  record.set_chunk(state.chunk);
+  record.set_blocks(state.blocks);
+  Fill(state.complete, *record.mutable_complete());
+  Fill(state.partial, *record.mutable_partial());
+  return DeterministicBytes(record);
+}
+
+absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
+  v1::FoldRecord record;
+  if (!record.ParseFromString(bytes)) {
+    return absl::DataLossError("a stored checkpoint cannot be read");
+  }
+  return FoldState{.chunk = record.chunk(),
+                   .blocks = record.blocks(),
+                   .complete = ResultOf(record.complete()),
+                   .partial = ResultOf(record.partial())};
+}
+
+absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {
+  if (IsPossible(experiment, state)) return absl::OkStatus();
+  return absl::DataLossError("a stored checkpoint is not one of its experiment");
+}
+
+}  // namespace ballpiston::server

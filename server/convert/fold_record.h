@@ -1,0 +1,27 @@
+// Exact conversion between the core's FoldState and its record in the store. Pure functions.
+//
+// A record that can be parsed may still be damaged. So before a point is resumed, CheckFoldState
+// checks that the point's experiment can have written the record.
+#ifndef BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
+#define BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+
+namespace ballpiston::server {
+
+std::string FoldRecordBytes(const FoldState& state);
+absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS
+
+// DATA_LOSS unless all of this holds: the state lies within the plan, it has at most the planned
+// samples, its energy error is valid, it has the accumulators that merging needs, and no histogram
+// counts a sample twice.
+absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_

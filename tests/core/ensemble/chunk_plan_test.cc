@@ -1,0 +1,86 @@
+#include "core/ensemble/chunk_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+namespace ballpiston {
+namespace {
+
+constexpr uint64_t kMany = 1'000'000'000'000;
+
+TEST(ChunkPlan, CoversEverySampleOnce) {
+  for (const Engine engine : {Engine::kReference, Engine::kLanes}) {
+    for (const uint64_t samples : {1u, 2u, 63u, 64u, 65u, 1000u, 100'003u}) {
+      for (const double events : {1.0, 37.0, 1e4, 1e9, 1e12, 1e300, double{INFINITY}}) {
+        const ChunkPlan plan(samples, engine, events);
+        uint64_t covered = 0;
+        for (uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
+          ASSERT_EQ(plan.FirstSample(chunk), covered);
+          ASSERT_GE(plan.BlocksIn(chunk), 1u);
+          for (uint64_t i = 0; i < plan.BlocksIn(chunk); ++i) {
+            const Block block = plan.BlockAt(chunk, i);
+            ASSERT_EQ(block.first, covered);
+            ASSERT_GE(block.samples, 1u);
+            covered += block.samples;
+          }
+        }
+        EXPECT_EQ(covered, samples);
+      }
+    }
+  }
+}
+
+TEST(ChunkPlan, ChunksDoubleUpToAMinute) {
+  for (const double events : {1.0, 100.0, 1e5, 1e7, 1e9}) {
+    const ChunkPlan plan(kMany, Engine::kLanes, events);
+    uint64_t chunk = 0;
+    EXPECT_TRUE(std::has_single_bit(plan.SamplesIn(0)));
+    while (plan.SamplesIn(chunk + 1) == 2 * plan.SamplesIn(chunk)) ++chunk;
+    EXPECT_EQ(plan.SamplesIn(chunk + 1), plan.SamplesIn(chunk));
+    const double seconds = 2.5e-9 * events * static_cast<double>(plan.SamplesIn(chunk));
+    EXPECT_LE(seconds, events < 1e8 ? 60 : 64 * 2.5e-9 * events);
+    EXPECT_GT(seconds, 20);
+  }
+}
+
+// Fewer tell no error.
+TEST(ChunkPlan, TheFirstChunkHas64SamplesAndSomeMillisecondsAtLeast) {
+  EXPECT_EQ(ChunkPlan(kMany, Engine::kLanes, 1e9).SamplesIn(0), 64u);
+  EXPECT_EQ(ChunkPlan(kMany, Engine::kLanes, 0x1p10).SamplesIn(0), 1024u);
+  EXPECT_EQ(ChunkPlan(kMany, Engine::kReference, 0x1p8).SamplesIn(0), 256u);
+}
+
+TEST(ChunkPlan, AChunkHas32BlocksOfFiftyMillisecondsAtMost) {
+  for (const double events : {1.0, 100.0, 1e5, 1e7, 1e9}) {
+    const ChunkPlan plan(kMany, Engine::kLanes, events);
+    for (uint64_t chunk = 0; chunk < 30; ++chunk) {
+      EXPECT_GE(plan.BlocksIn(chunk), 32u);
+      const Block block = plan.BlockAt(chunk, 0);
+      EXPECT_TRUE(block.samples == 1 || static_cast<double>(block.samples) * events <= 0x1p24);
+      EXPECT_TRUE(block.samples == 1 || events <= 0x1p24);
+    }
+  }
+}
+
+TEST(ChunkPlan, SizesDoNotDependOnTheNumberOfSamples) {
+  const ChunkPlan few(1000, Engine::kLanes, 1e5), many(kMany, Engine::kLanes, 1e5);
+  EXPECT_EQ(few.BlockAt(1, 3), many.BlockAt(1, 3));
+}
+
+TEST(ChunkPlan, WholeChunksHoldAsManySamplesOrMore) {
+  const ChunkPlan plan(1'000'000, Engine::kLanes, 1e7);
+  for (const double samples : {1.0, 64.0, 65.0, 192.0, 193.0, 5000.0, 77'777.0, 1e6, 1e9}) {
+    uint64_t expected = 0;
+    for (uint64_t chunk = 0; chunk < plan.chunks() && static_cast<double>(expected) < samples;) {
+      expected += plan.SamplesIn(chunk++);
+    }
+    EXPECT_EQ(plan.WholeChunks(samples), expected) << samples;
+  }
+}
+
+TEST(ChunkPlan, AnAnswerWithoutSamplesHasNoChunks) { EXPECT_EQ(ChunkPlan().chunks(), 0u); }
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,110 @@
+#include "tools/method_comparison/trajectory_horizon.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/core/geometries.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+constexpr RandomStream kStreamOfTwins = {31, 7};
+constexpr size_t kTwins = 64;
+
+// Of the ball, a hit: growth of a displacement of 1e-60, which stays small.
+Moments LyapunovExponents() {
+  constexpr int kHits = 60;
+  const TwinOrbits twins(kPaperPair, {32, 7}, kTwins);
+  Moments exponents;
+  for (size_t i = 0; i < kTwins; ++i) {
+    TwinOrbits::State displaced = twins.Start(i);
+    const TwinNumber angle("1e-60");
+    const TwinNumber x = displaced.direction.x(), y = displaced.direction.y();
+    displaced.direction = {TwinNumber(x - angle * y), TwinNumber(y + angle * x)};
+    EventFlow<TwinNumber> one(kPaperPair, twins.Start(i)), other(kPaperPair, displaced);
+    for (int hit = 0; hit < kHits; ++hit) {
+      one.Step();
+      other.Step();
+    }
+    const PairStateOf<TwinNumber>::Vector apart = other.state().direction - one.state().direction;
+    const double ratio = static_cast<double>(TwinNumber(apart.norm() / angle));
+    exponents.Add(std::log(ratio) / kHits);
+  }
+  return exponents;
+}
+
+TrajectoryHorizon HorizonOfMethod(Method method, double time_step = 0) {
+  TwinOrbits twins(kPaperPair, kStreamOfTwins, kTwins);
+  return HorizonOf({method, time_step}, kPaperPair, twins);
+}
+
+double CombinedError(const Moments& a, const Moments& b) {
+  return std::hypot(*a.StandardError(), *b.StandardError());
+}
+
+// Each precision against the next: H' - H = (bits' - bits) log 2/L, with L measured apart. Three
+// comparisons at 4.5 combined standard errors, with a fixed seed; one in 5e4 seeds would fail.
+TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
+  const Moments exponents = LyapunovExponents();
+  const double error_of_exponent = *exponents.StandardError() / exponents.mean;
+  Moments before = HorizonOfMethod(Method::kReferenceSingle).hits;
+  int bits_before = 24;
+  for (const auto& [method, bits] : {std::pair{Method::kReference, 53},
+                                     {Method::kReferenceLongDouble, 64},
+                                     {Method::kReferenceQuadruple, 113}}) {
+    const Moments now = HorizonOfMethod(method).hits;
+    const double expected = (bits - bits_before) * std::numbers::ln2 / exponents.mean;
+    EXPECT_NEAR(now.mean - before.mean, expected,
+                4.5 * std::hypot(CombinedError(now, before), expected * error_of_exponent))
+        << bits << " bits";
+    before = now;
+    bits_before = bits;
+  }
+}
+
+// From a relative error of 1e-16, some 32 hits.
+TEST(TrajectoryHorizon, LanesPartWhenTheReferenceDoes) {
+  const Moments reference = HorizonOfMethod(Method::kReference).hits,
+                lanes = HorizonOfMethod(Method::kLanes).hits;
+  EXPECT_NEAR(reference.mean, 32, 2);
+  EXPECT_NEAR(lanes.mean, reference.mean, 1 + 4.5 * CombinedError(lanes, reference));
+  const Moments single = HorizonOfMethod(Method::kReferenceSingle).hits,
+                lanes_single = HorizonOfMethod(Method::kLanesSingle).hits;
+  EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
+}
+
+TEST(TrajectoryHorizon, SmallerStepsFollowLonger) {
+  double before = -1;
+  for (const double step : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    const double hits = HorizonOfMethod(Method::kFixedStep, step).hits.mean;
+    EXPECT_GT(hits, before) << step;
+    before = hits;
+  }
+  EXPECT_GT(before, 3);
+  EXPECT_LT(before, 8);  // log(1e-3/1e-4) and the hits that err less: far from any engine
+}
+
+TEST(TrajectoryHorizon, HitsFlownAreCounted) {
+  const TrajectoryHorizon horizon = HorizonOfMethod(Method::kLanes);
+  EXPECT_EQ(horizon.hits.count, kTwins);
+  EXPECT_EQ(horizon.wall_hits % kTwins, 0);
+  EXPECT_GT(static_cast<double>(horizon.wall_hits), horizon.hits.mean * kTwins);
+  EXPECT_GT(horizon.seconds, 0);
+}
+
+TEST(TwinOrbits, PlacesLieOnTheOrbit) {
+  TwinOrbits twins(kPaperPair, kStreamOfTwins, 1);
+  EventFlow<TwinNumber> flow(kPaperPair, twins.Start(0));
+  const Eigen::Vector2d start = RoundedTo<double>(twins.Start(0)).position;
+  EXPECT_EQ(twins.PositionAt(0, 0), start);
+  const double duration = static_cast<double>(flow.Step().duration);
+  const Eigen::Vector2d hit = RoundedTo<double>(flow.state()).position;
+  EXPECT_NEAR((*twins.PositionAt(0, duration / 2) - (start + hit) / 2).norm(), 0, 1e-15);
+  EXPECT_NEAR((*twins.PositionAt(0, duration) - hit).norm(), 0, 1e-15);
+  EXPECT_EQ(twins.PositionAt(0, 1e9), std::nullopt);
+}
+
+}  // namespace
+}  // namespace ballpiston::method_comparison

@@ -1,0 +1,62 @@
+#include "tools/method_comparison/energy_relaxation_runs.h"
+
+#include <bit>
+#include <memory>
+
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/experiment/energy_relaxation.h"
+#include "core/experiment/predicted_hits.h"
+#include "tools/method_comparison/processor_time.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+EnsembleSpec SpecOf(const PairGeometry& geometry, uint64_t seed, Method method) {
+  return {.experiment = &kEnergyRelaxation,
+          .grid = {{kRho, {geometry.rho()}}, {kDelta, {geometry.delta()}}},
+          .seed = seed,
+          .model = method == Method::kMarkov ? Model::kMarkov : Model::kBilliard};
+}
+
+PointParameters PointOf(const PairGeometry& geometry) {
+  return {{kRho, geometry.rho()}, {kDelta, geometry.delta()}};
+}
+
+}  // namespace
+
+SampleRange TruthOf(uint64_t orbits) {
+  // Runs are [4^k, 2 4^k): from 2 4^k on there is room for as many.
+  const bool is_start_of_run = std::countr_zero(orbits) % 2 == 0;
+  return {is_start_of_run ? 2 * orbits : orbits, orbits};
+}
+
+double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
+  constexpr double kPerEvent = 2e-9, kPerCollision = 4e-7;
+  return CollisionsPerOrbit(PointOf(geometry_)) *
+         (kPerCollision + kPerEvent * HitsPerCollision(geometry_).Events());
+}
+
+RelaxationTime EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
+  const auto experiment = PointExperiment::Create(SpecOf(geometry_, seed_, method), 0);
+  const double begin = ProcessorSeconds();
+  const BlockResult merged =
+      *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
+  const double seconds = ProcessorSeconds() - begin;
+  const Estimate estimate = experiment->FirstEstimate(merged);
+  return {.value = estimate.value,
+          .error = estimate.standard_error.value_or(0),
+          .samples = merged.samples,
+          .seconds = seconds};
+}
+
+RelaxationTime EnergyRelaxationRuns::BySpectrum() const {
+  RelaxationSpectrum::Get();
+  Estimate time;
+  const double seconds = SecondsOf(
+      [&] { time = EnergyRelaxation(geometry_, PointOf(geometry_)).EstimatesOfLimit().front(); });
+  return {.value = time.value, .error = time.standard_error.value_or(0), .seconds = seconds};
+}
+
+}  // namespace ballpiston::method_comparison

@@ -1,0 +1,32 @@
+// The ingoing angles of returns, counted in the cells of `first-hit`: kIngoingBins bins of alpha
+// for each allowed sign of the piston's velocity.
+#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
+#define BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/closed_form/ingoing_law.h"
+#include "core/experiment/return_orbits.h"
+#include "core/statistics/histogram.h"
+
+namespace ballpiston::method_comparison {
+
+// Exact probabilities of the cells, sigma = -1 first, in the order of an IngoingCounts.
+std::vector<double> IngoingProbabilities(double epsilon);
+
+class IngoingCounts {
+ public:
+  explicit IngoingCounts(double epsilon);
+
+  void Add(const Return& hit);
+
+  std::vector<uint64_t> Counts() const;
+
+ private:
+  std::vector<Histogram> histograms_;  // by sigma: -1, then +1 where it is allowed
+};
+
+}  // namespace ballpiston::method_comparison
+
+#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_

@@ -1,0 +1,53 @@
+// The methods of computing the ball-piston pair that are compared, and the compared quantities.
+#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
+#define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
+
+namespace ballpiston::method_comparison {
+
+enum class Method {
+  kFixedStep,  // naive: moves by a fixed time step, repairs what penetrated
+  kReferenceSingle,
+  kReference,
+  kReferenceLongDouble,  // 64 bits
+  kReferenceQuadruple,   // 113 bits
+  kLanes,
+  kLanesSingle,
+  kClosedForm,
+  kMarkov,    // the jump process of the limit delta -> 0, sampled
+  kSpectrum,  // the same limit by its generator's eigenvalues, without samples
+};
+
+enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime };
+
+// As the output spells them.
+inline const char* Name(Method method) {
+  constexpr const char* kNames[] = {"fixed-step",
+                                    "billiard-reference-single",
+                                    "billiard-reference",
+                                    "billiard-reference-long-double",
+                                    "billiard-reference-quadruple",
+                                    "billiard",
+                                    "billiard-single",
+                                    "closed-form",
+                                    "markov",
+                                    "spectrum"};
+  return kNames[static_cast<int>(method)];
+}
+inline const char* Name(Quantity quantity) {
+  constexpr const char* kNames[] = {"mean-free-time", "ingoing-law", "trajectory",
+                                    "relaxation-time"};
+  return kNames[static_cast<int>(quantity)];
+}
+
+// Distance in cells from which an orbit counts as parted from its twin.
+inline constexpr double kParted = 1e-3;
+
+// One curve of the chart: a method, and for kFixedStep its time step in cells per unit speed.
+struct MethodVariant {
+  Method method;
+  double time_step = 0;  // 0 for the others
+};
+
+}  // namespace ballpiston::method_comparison
+
+#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_

@@ -1,0 +1,316 @@
+#include "tools/method_comparison/method_comparison.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "core/arithmetic/number_text.h"
+#include "core/closed_form/conditional_rate.h"
+#include "core/closed_form/ingoing_law.h"
+#include "core/closed_form/mean_free_time.h"
+#include "core/experiment/long_returns.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/statistics/kl_divergence.h"
+#include "core/statistics/told_error.h"
+#include "tools/method_comparison/energy_relaxation_runs.h"
+#include "tools/method_comparison/ingoing_divergence.h"
+#include "tools/method_comparison/processor_time.h"
+#include "tools/method_comparison/returns.h"
+#include "tools/method_comparison/trajectory_horizon.h"
+#include "tools/method_comparison/twin_orbits.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+constexpr double kTimeSteps[] = {1e-1, 1e-2, 1e-3, 1e-4};
+
+constexpr uint64_t kRungFactor = 4;
+constexpr uint64_t kFewestReturns = 16;
+constexpr size_t kFewestOrbits = 64;
+
+// A rung is run if its expected work is at most this many times seconds_per_curve. Then the largest
+// rung takes between half of seconds_per_curve and twice of it.
+constexpr double kOverrun = 2;
+
+// The truth of a relaxation time may take about this many times seconds_per_curve.
+constexpr double kTruthTimes = 8;
+
+// For sampled methods: the wall hits that the twins need for the method with the longest horizon,
+// 113 bits.
+constexpr size_t kTwinHits = 110;
+
+std::vector<MethodVariant> SampledVariants() {
+  std::vector<MethodVariant> variants;
+  for (const double step : kTimeSteps) variants.push_back({Method::kFixedStep, step});
+  for (const Method method :
+       {Method::kReferenceSingle, Method::kReference, Method::kReferenceLongDouble,
+        Method::kReferenceQuadruple, Method::kLanes, Method::kLanesSingle}) {
+    variants.push_back({method});
+  }
+  return variants;
+}
+
+// The error of the chi-squared law, plus the scatter that a real divergence adds.
+double ErrorOfDivergence(const DivergenceNoise& noise, double excess, uint64_t samples) {
+  const double bias = std::fmax(excess, 0);
+  return std::hypot(noise.standard_deviation, std::sqrt(2 * bias / static_cast<double>(samples)));
+}
+
+class Comparison {
+ public:
+  Comparison(const MethodComparisonSpec& spec, const PairGeometry& geometry,
+             std::vector<PairGeometry> relaxing,
+             const std::function<void(const MethodMeasurement&)>& tell)
+      : spec_(spec),
+        geometry_(geometry),
+        relaxing_(std::move(relaxing)),
+        tell_(tell),
+        exact_(ConditionalMeanFreeTime(geometry, spec.epsilon)),
+        probabilities_(IngoingProbabilities(spec.epsilon)) {}
+
+  void Run() {
+    CompareReturns(Quantity::kMeanFreeTime);
+    CompareReturns(Quantity::kIngoingLaw);
+    CompareTrajectories();
+    for (const PairGeometry& geometry : relaxing_) {
+      CompareRelaxationTimesOf({geometry, spec_.seed});
+    }
+  }
+
+ private:
+  double Limit() const { return kOverrun * spec_.seconds_per_curve; }
+
+  RandomStream Stream(Quantity quantity, uint64_t rung) const {
+    return {spec_.seed, (static_cast<uint64_t>(quantity) << 32) | rung};
+  }
+
+  void CompareReturns(Quantity quantity) {
+    for (const MethodVariant& variant : SampledVariants()) ClimbReturns(quantity, variant);
+    tell_(quantity == Quantity::kMeanFreeTime ? ClosedMeanFreeTime() : ClosedIngoingLaw());
+  }
+
+  void ClimbReturns(Quantity quantity, const MethodVariant& variant) {
+    double expected = PredictedSeconds(variant, geometry_, spec_.epsilon, kFewestReturns);
+    uint64_t samples = kFewestReturns;
+    for (uint64_t rung = 0; expected <= Limit(); ++rung, samples *= kRungFactor) {
+      const ReturnStatistics returns =
+          RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples);
+      if (returns.times.count > 0) tell_(Measured(quantity, variant, returns));
+      expected = returns.seconds * kRungFactor;
+    }
+  }
+
+  MethodMeasurement Measured(Quantity quantity, const MethodVariant& variant,
+                             const ReturnStatistics& returns) {
+    MethodMeasurement measurement = {.method = variant.method,
+                                     .time_step = variant.time_step,
+                                     .quantity = quantity,
+                                     .delta = spec_.delta,
+                                     .samples = returns.times.count,
+                                     .wall_hits = returns.wall_hits,
+                                     .work = returns.seconds};
+    if (quantity == Quantity::kMeanFreeTime) {
+      measurement.value = std::fabs(returns.times.mean - exact_) / exact_;
+      measurement.statistical_error = ErrorOfMean(returns.times) / exact_;
+    } else {
+      const DivergenceNoise noise = NoiseOf(returns.times.count);
+      measurement.value =
+          RelativeEntropy(returns.ingoing.Counts(), probabilities_).value - noise.mean;
+      measurement.statistical_error =
+          ErrorOfDivergence(noise, measurement.value, returns.times.count);
+    }
+    return measurement;
+  }
+
+  DivergenceNoise NoiseOf(uint64_t samples) {
+    const auto [noise, is_new] = noise_.try_emplace(samples);
+    if (is_new) noise->second = NoiseOfDivergence(samples, probabilities_);
+    return noise->second;
+  }
+
+  double ErrorOfMean(const Moments& times) {
+    const double count = static_cast<double>(times.count);
+    const double long_returns = count * LongReturnsPerSample(geometry_, spec_.epsilon);
+    if (TellsItsError(long_returns)) return times.StandardError().value_or(0);
+    return std::sqrt(VarianceOfTimes() / count);
+  }
+
+  // Of as many returns as can tell it, or as time permits.
+  double VarianceOfTimes() {
+    constexpr double kFewest = 256, kMost = 65536;
+    if (variance_of_times_) return *variance_of_times_;
+    const MethodVariant lanes = {Method::kLanes};
+    const double affordable =
+        spec_.seconds_per_curve / PredictedSeconds(lanes, geometry_, spec_.epsilon, 1);
+    const double wanted = kEventsForAnError / LongReturnsPerSample(geometry_, spec_.epsilon);
+    const double samples = std::clamp(wanted, kFewest, std::clamp(affordable, kFewest, kMost));
+    const ReturnStatistics returns =
+        RunReturns(lanes, geometry_, spec_.epsilon, {spec_.seed, ~uint64_t{0}},
+                   static_cast<uint64_t>(samples));
+    return variance_of_times_.emplace(returns.times.Variance().value_or(0));
+  }
+
+  MethodMeasurement ClosedMeanFreeTime() const {
+    return {.method = Method::kClosedForm,
+            .quantity = Quantity::kMeanFreeTime,
+            .delta = spec_.delta,
+            .work = SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
+            .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
+  }
+
+  // The divergence of a law whose cells are off by e each, relatively, is at most e^2/2.
+  MethodMeasurement ClosedIngoingLaw() const {
+    return {.method = Method::kClosedForm,
+            .quantity = Quantity::kIngoingLaw,
+            .delta = spec_.delta,
+            .work = SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
+            .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
+  }
+
+  // All methods share the twins, and the twins cost more than any method, so they determine the
+  // number of orbits.
+  void CompareTrajectories() {
+    std::vector<TwinOrbits> rungs;
+    double expected = 0;
+    for (size_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
+      const double begin = ProcessorSeconds();
+      rungs.emplace_back(geometry_, Stream(Quantity::kTrajectory, rungs.size()), orbits);
+      rungs.back().FlyAhead(kTwinHits);
+      expected = (ProcessorSeconds() - begin) * kRungFactor;
+    }
+    for (const MethodVariant& variant : SampledVariants()) ClimbTrajectories(variant, rungs);
+  }
+
+  void ClimbTrajectories(const MethodVariant& variant, std::span<TwinOrbits> rungs) {
+    double expected = 0;
+    for (size_t rung = 0; rung < rungs.size() && expected <= Limit(); ++rung) {
+      const TrajectoryHorizon horizon = HorizonOf(variant, geometry_, rungs[rung]);
+      tell_({.method = variant.method,
+             .time_step = variant.time_step,
+             .quantity = Quantity::kTrajectory,
+             .delta = spec_.delta,
+             .samples = horizon.hits.count,
+             .wall_hits = horizon.wall_hits,
+             .work = horizon.seconds,
+             .value = horizon.hits.mean,
+             .statistical_error = horizon.hits.StandardError().value_or(0)});
+      expected = horizon.seconds * kRungFactor;
+    }
+  }
+
+  void CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
+    const uint64_t orbits = OrbitsOfTruth(runs);
+    if (orbits < kFewestTruthOrbits) return;
+    const RelaxationTime limit = runs.BySpectrum();  // first, so that no run computes the spectrum
+    const RelaxationTime truth = runs.Run(Method::kLanes, TruthOf(orbits));
+    ClimbRelaxationTimes(runs, Method::kLanes, truth);
+    ClimbRelaxationTimes(runs, Method::kMarkov, truth);
+    tell_(Compared(runs.delta(), Method::kSpectrum, limit, truth));
+  }
+
+  // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a
+  // measured one, so the truth depends on the spec alone.
+  uint64_t OrbitsOfTruth(const EnergyRelaxationRuns& runs) const {
+    const double orbits = kTruthTimes * spec_.seconds_per_curve / runs.PredictedSecondsPerOrbit();
+    return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * orbits));
+  }
+
+  void ClimbRelaxationTimes(const EnergyRelaxationRuns& runs, Method method,
+                            const RelaxationTime& truth) {
+    double expected = 0;
+    for (uint64_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
+      const RelaxationTime measured = runs.Run(method, RunOf(orbits));
+      tell_(Compared(runs.delta(), method, measured, truth));
+      expected = measured.seconds * kRungFactor;
+    }
+  }
+
+  static MethodMeasurement Compared(double delta, Method method, const RelaxationTime& measured,
+                                    const RelaxationTime& truth) {
+    const double ratio = measured.value / truth.value;
+    return {.method = method,
+            .quantity = Quantity::kRelaxationTime,
+            .delta = delta,
+            .samples = measured.samples,
+            .work = measured.seconds,
+            .value = std::fabs(ratio - 1),
+            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value};
+  }
+
+  const MethodComparisonSpec spec_;
+  const PairGeometry geometry_;
+  const std::vector<PairGeometry> relaxing_;
+  const std::function<void(const MethodMeasurement&)>& tell_;
+  const double exact_;
+  const std::vector<double> probabilities_;
+  std::optional<double> variance_of_times_;
+  std::map<uint64_t, DivergenceNoise> noise_;  // by samples: the same for all methods
+};
+
+// Collects all violations, each with its flag.
+class Check {
+ public:
+  void Permit(bool permitted, const std::string& violation) {
+    if (!permitted) violations_.push_back(violation);
+  }
+  void Permit(const std::string& flag, const absl::Status& status) {
+    Permit(status.ok(), absl::StrCat(flag, ": ", status.message()));
+  }
+  std::vector<std::string> Taken() { return std::move(violations_); }
+
+ private:
+  std::vector<std::string> violations_;
+};
+
+// As far as can be told if rho itself is not permitted.
+absl::Status ValidateDelta(double rho, double delta) {
+  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidateSomeDelta(delta);
+}
+
+}  // namespace
+
+std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
+  Check check;
+  check.Permit("--rho", ValidateRho(spec.rho));
+  check.Permit("--delta", ValidateDelta(spec.rho, spec.delta));
+  check.Permit(spec.relaxation_deltas.size() <= kMaxRelaxationDeltas,
+               absl::StrCat("--relaxation-delta: ", spec.relaxation_deltas.size(),
+                            " values; permitted: at most ", kMaxRelaxationDeltas));
+  for (const double delta : spec.relaxation_deltas) {
+    check.Permit("--relaxation-delta", ValidateDelta(spec.rho, delta));
+  }
+  check.Permit(spec.epsilon > 0 && spec.epsilon < 0.5,
+               absl::StrCat("--epsilon: ", NumberText(spec.epsilon), " is not in (0, 1/2)"));
+  check.Permit(
+      spec.seconds_per_curve >= kMinSecondsPerCurve &&
+          spec.seconds_per_curve <= kMaxSecondsPerCurve,
+      absl::StrCat("--seconds: ", NumberText(spec.seconds_per_curve), " is not in [",
+                   NumberText(kMinSecondsPerCurve), ", ", NumberText(kMaxSecondsPerCurve), "]"));
+  return check.Taken();
+}
+
+std::vector<double> DefaultRelaxationDeltas(double rho) {
+  std::vector<double> deltas = {0.2, 0.1, 0.05, 0.025};
+  std::erase_if(deltas, [rho](double delta) { return !ValidateDelta(rho, delta).ok(); });
+  return deltas;
+}
+
+void CompareMethods(const MethodComparisonSpec& spec,
+                    const std::function<void(const MethodMeasurement&)>& tell) {
+  std::vector<PairGeometry> relaxing;
+  for (const double delta : spec.relaxation_deltas) {
+    relaxing.push_back(PairGeometry::Create(spec.rho, delta).value());
+  }
+  Comparison(spec, PairGeometry::Create(spec.rho, spec.delta).value(), relaxing, tell).Run();
+}
+
+}  // namespace ballpiston::method_comparison

@@ -1,0 +1,107 @@
+// Speed against accuracy: measures the error and the work of every method of computing the pair.
+//
+// There are four quantities. Each method computes those that it can, with more and more samples
+// until its time is spent:
+//   kMeanFreeTime  the conditional mean free time of ball and piston at epsilon (eq. numft). A
+//                  sample is one return. value = |measured - exact|/exact.
+//   kIngoingLaw    the law of the ingoing angle of first hits begun from h^(1), histogrammed as
+//                  `first-hit` does. value = its Kullback-Leibler divergence from the exact law
+//                  minus the mean divergence of samples from that law: the noise floor
+//                  (cells - 1)/(2 samples), or its value for few samples a cell
+//                  (ingoing_divergence.h). The difference can be negative.
+//   kTrajectory    single orbits of the ball against a twin of 256 bits. A sample is one orbit.
+//                  value = mean number of wall hits until they are kParted apart; work/wall_hits is
+//                  the cost of one hit.
+//   kRelaxationTime
+//                  the relaxation time of the piston's energy in equilibrium
+//                  (experiment/energy_relaxation.h), at each of several delta: by kLanes, and by
+//                  kMarkov and kSpectrum, which are exact only in the limit delta -> 0. A sample is
+//                  one orbit. value = |measured - truth|/truth. The truth comes from many more
+//                  orbits by kLanes, so the curves of the limit tend to the limit's bias.
+// statistical_error is one standard error of `value` (before its absolute value is taken). A value
+// within about three standard errors shows no bias, only an upper bound of the bias.
+//   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
+//                  that dominate the mean (long_returns.h), from a larger sample by kLanes.
+//   kIngoingLaw    that of chi-squared, sqrt((cells - 1)/2)/samples. For a biased law, which has a
+//                  larger divergence, sqrt(2 value/samples) is added in quadrature.
+//   kTrajectory    from the scatter of the orbits.
+//   kRelaxationTime
+//                  from the scatter of the measured orbits and of the truth's orbits:
+//                  hypot(error, measured/truth * error of the truth)/truth. For the spectrum this
+//                  is in effect the error of the truth, which all methods at one delta share.
+// Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
+// their work are counted.
+// The closed form has no samples and no statistical error. Its value is the bound of its rounding
+// error. Its work is that of one evaluation: of one mean, or of the probabilities of all cells. It
+// computes no orbits. The spectrum computes no orbits either. Its work is that of one evaluation,
+// without the computation of its eigenvalues, which takes 0.1 s once for all parameters.
+//
+// All methods start from the same states. The states of rung k are samples of stream k under the
+// seed, so a curve's points are independent, and only the methods differ. The rungs are 16, 64,
+// 256, ... samples (orbits: from 64). The work of the last rung is expected within a factor of two
+// of seconds_per_curve. A method is left out if by a rough prediction even 16 samples take longer.
+// The truth of a relaxation time takes about 8 times seconds_per_curve. A delta is left out if the
+// truth would not reach kFewestTruthOrbits in this time. So for any valid spec the program takes
+// some 50 times seconds_per_curve, and 10 times more for each delta of a relaxation time.
+//
+// The orbits of kRelaxationTime are samples of the point's own stream (point_stream.h) under the
+// seed. Each rung has its own samples, and so has the truth.
+//
+// Work is processor time, so other programs do not count (but they affect caches and shared cores).
+// Values are functions of the spec; the number of rungs also depends on the work.
+#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
+#define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/paper.h"
+#include "tools/method_comparison/method.h"
+
+namespace ballpiston::method_comparison {
+
+inline constexpr double kMinSecondsPerCurve = 0.01;
+inline constexpr double kMaxSecondsPerCurve = 60;
+
+inline constexpr size_t kMaxRelaxationDeltas = 8;
+inline constexpr uint64_t kFewestTruthOrbits = 256;
+
+struct MethodComparisonSpec {
+  double rho = kPaperRho;
+  double delta = 0.1;
+  double epsilon = 0.125;        // the piston's energy, inside (0, 1/2)
+  double seconds_per_curve = 1;  // work of each method's largest run, about
+  uint64_t seed = 0;
+  std::vector<double> relaxation_deltas = {};  // for kRelaxationTime; if empty, it is left out
+};
+
+struct MethodMeasurement {
+  Method method = Method::kReference;
+  double time_step = 0;  // of kFixedStep, in cells per unit speed; 0 for the others
+  Quantity quantity = Quantity::kMeanFreeTime;
+  double delta = 0;        // of the pair; one of relaxation_deltas for kRelaxationTime
+  uint64_t samples = 0;    // 0 for the closed form and the spectrum
+  uint64_t wall_hits = 0;  // the ball's, in all samples; not counted (0) for kRelaxationTime
+  double work = 0;         // seconds
+  double value = 0;
+  double statistical_error = 0;
+};
+
+// One sentence for each value that is not permitted. It begins with the program's flag.
+std::vector<std::string> Violations(const MethodComparisonSpec& spec);
+
+// The values among 0.2, 0.1, 0.05 and 0.025 that rho permits.
+std::vector<double> DefaultRelaxationDeltas(double rho);
+
+// Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
+// (in the order of the list), then method, then time step (descending), then samples (ascending).
+// The spec must have no violations.
+void CompareMethods(const MethodComparisonSpec& spec,
+                    const std::function<void(const MethodMeasurement&)>& tell);
+
+}  // namespace ballpiston::method_comparison
+
+#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_

@@ -1,0 +1,95 @@
+#include "tools/method_comparison/returns.h"
+
+#include <algorithm>
+
+#include "core/closed_form/conditional_rate.h"
+#include "core/experiment/predicted_hits.h"
+#include "core/experiment/return_orbits.h"
+#include "tools/method_comparison/method_orbits.h"
+#include "tools/method_comparison/processor_time.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+constexpr double kInvariantExponent = 1;
+
+// Returns at a time: in lanes so many that these are full but for the last few, and few enough for
+// memory.
+uint64_t BatchSize(Method method) {
+  return method == Method::kLanes || method == Method::kLanesSingle ? 1 << 17 : 1 << 8;
+}
+
+class CountedReturns : public NumberedOrbits {
+ public:
+  explicit CountedReturns(ReturnOrbits returns) : returns_(std::move(returns)) {}
+
+  PairState Start(uint64_t orbit) override { return returns_.Start(orbit); }
+  AfterContact Meet(uint64_t orbit, const Contact& contact) override {
+    wall_hits_ += contact.ball_wall_hits;
+    return returns_.Meet(orbit, contact);
+  }
+
+  void AddTo(ReturnStatistics& statistics) const {
+    statistics.wall_hits += wall_hits_;
+    for (const Return& hit : returns_.returns()) {
+      if (hit.escaped) continue;
+      statistics.times.Add(hit.time);
+      statistics.ingoing.Add(hit);
+    }
+  }
+
+ private:
+  ReturnOrbits returns_;
+  uint64_t wall_hits_ = 0;
+};
+
+// Of one event, or one time step.
+double PredictedSecondsPerEvent(Method method) {
+  switch (method) {
+    case Method::kFixedStep:
+      return 3e-9;
+    case Method::kReferenceSingle:
+    case Method::kReference:
+      return 4e-8;
+    case Method::kReferenceLongDouble:
+      return 1e-7;
+    case Method::kReferenceQuadruple:
+      return 3e-6;
+    case Method::kLanes:
+    case Method::kLanesSingle:
+      return 4e-9;
+    case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
+                            double epsilon, const RandomStream& random, uint64_t samples) {
+  ReturnStatistics statistics = {.times = {}, .ingoing = IngoingCounts(epsilon)};
+  const double begin = ProcessorSeconds();
+  const uint64_t batch = BatchSize(variant.method);
+  for (uint64_t first = 0; first < samples; first += batch) {
+    const uint64_t count = std::min(batch, samples - first);
+    CountedReturns orbits(ReturnOrbits(geometry, {epsilon, kInvariantExponent}, random,
+                                       {.first = first, .samples = count}));
+    RunMethodOrbits(variant, geometry, count, orbits);
+    orbits.AddTo(statistics);
+  }
+  statistics.seconds = ProcessorSeconds() - begin;
+  return statistics;
+}
+
+double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geometry, double epsilon,
+                        uint64_t samples) {
+  const double events = variant.method == Method::kFixedStep
+                            ? ConditionalMeanFreeTime(geometry, epsilon) / variant.time_step
+                            : HitsPerReturn(geometry, epsilon).Events();
+  return static_cast<double>(samples) * events * PredictedSecondsPerEvent(variant.method);
+}
+
+}  // namespace ballpiston::method_comparison

@@ -1,0 +1,34 @@
+// Returns to the collision surface at fixed energies from the invariant law, by any of the methods:
+// their times, their ingoing angles and their cost.
+#ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
+#define BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
+
+#include <cstdint>
+
+#include "core/ensemble/random_stream.h"
+#include "core/geometry/pair_geometry.h"
+#include "core/statistics/moments.h"
+#include "tools/method_comparison/ingoing_divergence.h"
+#include "tools/method_comparison/method.h"
+
+namespace ballpiston::method_comparison {
+
+// Statistics of the orbits that were not lost.
+struct ReturnStatistics {
+  Moments times;
+  IngoingCounts ingoing;
+  uint64_t wall_hits = 0;  // the ball's
+  double seconds = 0;      // of processor time
+};
+
+// Samples 0 ... samples - 1 of the stream. Not for kClosedForm, kMarkov, kSpectrum.
+ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
+                            double epsilon, const RandomStream& random, uint64_t samples);
+
+// Predicted cost of `samples` returns on a processor of about 3 GHz, within a factor of three.
+double PredictedSeconds(const MethodVariant& variant, const PairGeometry& geometry, double epsilon,
+                        uint64_t samples);
+
+}  // namespace ballpiston::method_comparison
+
+#endif  // BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_

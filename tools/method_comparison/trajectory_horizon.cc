@@ -1,0 +1,168 @@
+#include "tools/method_comparison/trajectory_horizon.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/billiard/lane_balls.h"
+#include "core/billiard/reference_flow.h"
+#include "tools/flows/fixed_step_flow.h"
+#include "tools/method_comparison/processor_time.h"
+
+namespace ballpiston::method_comparison {
+namespace {
+
+// Places of every orbit after each of its hits; fewer if it was lost.
+struct Itineraries {
+  std::vector<std::vector<BallAt>> orbits;
+  double seconds = 0;
+};
+
+// Flies one orbit after the other by `fly`, which fills an itinerary from a start.
+template <typename Start, typename Fly>
+Itineraries FlyEach(const std::vector<Start>& starts, uint64_t hits, const Fly& fly) {
+  Itineraries result;
+  result.orbits.resize(starts.size());
+  for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
+  result.seconds = SecondsOf([&] {
+    for (size_t i = 0; i < starts.size(); ++i) {
+      result.orbits[i].clear();
+      fly(starts[i], result.orbits[i]);
+    }
+  });
+  return result;
+}
+
+template <typename To>
+std::vector<PairStateOf<To>> Starts(const TwinOrbits& twins) {
+  std::vector<PairStateOf<To>> starts;
+  for (size_t i = 0; i < twins.Count(); ++i) starts.push_back(RoundedTo<To>(twins.Start(i)));
+  return starts;
+}
+
+template <typename Real>
+Itineraries FlyEvents(const PairGeometry& geometry, const TwinOrbits& twins, uint64_t hits) {
+  const auto fly = [&](const PairStateOf<Real>& start, std::vector<BallAt>& places) {
+    EventFlow<Real> flow(geometry, start);
+    double time = 0;
+    while (places.size() < hits) {
+      const EventOf<Real> event = flow.Step();
+      if (event.kind != EventKind::kBallWall) return;  // lost
+      time += static_cast<double>(event.duration);
+      const auto& position = flow.state().position;
+      places.push_back(
+          {time, {static_cast<double>(position.x()), static_cast<double>(position.y())}});
+    }
+  };
+  return FlyEach(Starts<Real>(twins), hits, fly);
+}
+
+Itineraries FlyFixedSteps(const PairGeometry& geometry, double time_step, const TwinOrbits& twins,
+                          uint64_t hits) {
+  constexpr uint64_t kMostSteps = 1024;
+  const auto fly = [&](const PairState& start, std::vector<BallAt>& places) {
+    FixedStepFlow flow(geometry, start, time_step);
+    uint64_t steps = 0;
+    while (places.size() < hits) {
+      const FixedSteps done = flow.Advance(kMostSteps);
+      steps += done.steps;
+      if (done.lost) return;
+      if (!done.ball_wall) continue;
+      places.push_back({static_cast<double>(steps) * time_step, flow.state().position});
+    }
+  };
+  return FlyEach(Starts<double>(twins), hits, fly);
+}
+
+using LaneFlights = void(const PairGeometry&, std::span<const LaneFrame>, uint64_t,
+                         std::span<LaneHit>);
+
+// The flights are timed without their records, which the lanes are too fast to carry along.
+Itineraries FlyLanes(LaneFlights& fly, const PairGeometry& geometry, const TwinOrbits& twins,
+                     uint64_t hits) {
+  std::vector<LaneFrame> frames;
+  for (const PairState& start : Starts<double>(twins)) {
+    frames.push_back(FrameOfBallOnWall(start.position, start.direction));
+  }
+  std::vector<LaneHit> recorded(frames.size() * hits);
+  fly(geometry, frames, hits, recorded);
+  Itineraries result;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    std::vector<BallAt>& places = result.orbits.emplace_back();
+    double time = 0;
+    for (size_t k = 0; k < hits; ++k) {
+      const LaneHit& hit = recorded[i * hits + k];
+      places.push_back({time += hit.length, PositionInCell(hit.frame)});
+    }
+  }
+  result.seconds = SecondsOf([&] { fly(geometry, frames, hits, {}); });
+  return result;
+}
+
+Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, const TwinOrbits& twins,
+                uint64_t hits) {
+  switch (variant.method) {
+    case Method::kFixedStep:
+      return FlyFixedSteps(geometry, variant.time_step, twins, hits);
+    case Method::kReferenceSingle:
+      return FlyEvents<float>(geometry, twins, hits);
+    case Method::kReference:
+      return FlyEvents<double>(geometry, twins, hits);
+    case Method::kReferenceLongDouble:
+      return FlyEvents<long double>(geometry, twins, hits);
+    case Method::kReferenceQuadruple:
+      return FlyEvents<Quadruple>(geometry, twins, hits);
+    case Method::kLanes:
+      return FlyLanes(FlyLaneBalls, geometry, twins, hits);
+    case Method::kLanesSingle:
+      return FlyLanes(FlyLaneBallsSingle, geometry, twins, hits);
+    case Method::kClosedForm:
+    case Method::kMarkov:
+    case Method::kSpectrum:
+      break;
+  }
+  return {};
+}
+
+// Hits before the parting; empty if orbit and twin are together at the end of all `hits`.
+std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t hits, size_t orbit,
+                                     TwinOrbits& twins) {
+  for (size_t k = 0; k < places.size(); ++k) {
+    if (!std::isfinite(places[k].time)) return k;
+    const std::optional<Eigen::Vector2d> twin = twins.PositionAt(orbit, places[k].time);
+    if (!twin || !((places[k].position - *twin).norm() <= kParted)) return k;
+  }
+  if (places.size() < hits) return places.size();  // lost
+  return std::nullopt;
+}
+
+// The horizons, empty if some orbit is with its twin to the end; then at the most hits that counts
+// as its horizon.
+std::optional<Moments> Horizons(const Itineraries& itineraries, uint64_t hits, TwinOrbits& twins) {
+  Moments moments;
+  for (size_t i = 0; i < itineraries.orbits.size(); ++i) {
+    const std::optional<uint64_t> together = HitsTogether(itineraries.orbits[i], hits, i, twins);
+    if (!together && hits < kMostHits) return std::nullopt;
+    moments.Add(static_cast<double>(together.value_or(hits)));
+  }
+  return moments;
+}
+
+uint64_t HitsIn(const Itineraries& itineraries) {
+  uint64_t hits = 0;
+  for (const std::vector<BallAt>& places : itineraries.orbits) hits += places.size();
+  return hits;
+}
+
+}  // namespace
+
+TrajectoryHorizon HorizonOf(const MethodVariant& variant, const PairGeometry& geometry,
+                            TwinOrbits& twins) {
+  for (uint64_t hits = 16;; hits *= 2) {
+    const Itineraries itineraries = Fly(variant, geometry, twins, hits);
+    const std::optional<Moments> horizons = Horizons(itineraries, hits, twins);
+    if (horizons) return {*horizons, HitsIn(itineraries), itineraries.seconds};
+  }
+}
+
+}  // namespace ballpiston::method_comparison
