@@ -61,7 +61,7 @@ apt_get() {
   exit 1
 }
 
-# dpkg takes packages for another architecture only if it is told of it.
+# Registers the architecture of each package:architecture, so that dpkg accepts the package.
 add_architectures() {
   local package
   for package; do

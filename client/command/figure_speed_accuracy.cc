@@ -16,7 +16,7 @@
 namespace ballpiston::client {
 namespace {
 
-// Of its two, 1 says that the output cannot be written.
+// The program exits with 1 if it cannot write its output, and with this code if a flag is wrong.
 constexpr int kWrongFlags = 2;
 
 // Runs the program; `*measurements` are what it printed.

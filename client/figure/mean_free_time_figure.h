@@ -5,8 +5,8 @@
 //
 // and, inset, the measured 1/tau_bp against delta beside the closed form (eq. taubpmft).
 //
-// What is here knows the figure: which jobs and closed forms it needs, and how their answers become
-// tables and a gnuplot script. Who asks the server is command/figure.cc.
+// These functions list the jobs and closed forms that the figure needs, and make tables and a
+// gnuplot script from their answers. command/figure.cc asks the server.
 #ifndef BALLPISTON_CLIENT_FIGURE_MEAN_FREE_TIME_FIGURE_H_
 #define BALLPISTON_CLIENT_FIGURE_MEAN_FREE_TIME_FIGURE_H_
 

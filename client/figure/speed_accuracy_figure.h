@@ -15,8 +15,8 @@
 // statistical error, without the truth's; a point is pale by both errors together. Without
 // relaxation times (at a rho that permits none of the program's delta) d is left out.
 //
-// What is here knows the figure: how measurements become a table and a gnuplot script.
-// command/figure_speed_accuracy.cc has them made.
+// These functions make a table and a gnuplot script from measurements.
+// command/figure_speed_accuracy.cc runs the program that measures.
 #ifndef BALLPISTON_CLIENT_FIGURE_SPEED_ACCURACY_FIGURE_H_
 #define BALLPISTON_CLIENT_FIGURE_SPEED_ACCURACY_FIGURE_H_
 
@@ -46,7 +46,7 @@ struct SpeedAccuracyQuestion {
   std::vector<double> relaxation_deltas = {};  // of panel d; none: the program's
 };
 
-// Of the program that measures it.
+// The flags for the program that measures the figure.
 std::vector<std::string> ComparisonFlags(const SpeedAccuracyQuestion& question);
 
 // Whether its value is a bias. False for TRAJECTORY, whose value is no deviation.

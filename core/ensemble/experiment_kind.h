@@ -22,7 +22,7 @@ struct ParameterUse {
   bool needed = true;  // or optional
 };
 
-// What a number in the target counts.
+// The unit of a number in the target.
 enum class TargetUnit { kSamples, kCollisions, kEither };
 
 // How far the limit delta -> 0 is from the billiard, in the experiment's first estimate.
@@ -47,9 +47,9 @@ struct ExperimentKind {
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
-  // Of one sample: its work by `model`, its mean number of ball-piston collisions, and the relative
-  // standard error of its first estimate. The error of n samples is 1/sqrt(n) times that of one; it
-  // is infinite if no number of samples is enough.
+  // These three describe one sample: its work by `model`, its mean number of ball-piston
+  // collisions, and the relative standard error of its first estimate. The error of n samples is
+  // 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
   SampleWork (*work)(Model model, const PointParameters& point);
   double (*collisions)(const PointParameters& point);
   double (*error)(const PointParameters& point);

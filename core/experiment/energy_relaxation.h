@@ -60,7 +60,7 @@ class EnergyRelaxation {
   std::vector<Estimate> Estimates(const BlockResult& merged) const;
   Curve MeasuredCurve(const BlockResult& merged) const;
 
-  // Of the limit, with the errors of its computation.
+  // The same for the limit. The standard errors are those of the computation.
   std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
 

@@ -246,7 +246,7 @@ bool HasRelaxationTimeAt(const PointParameters& point) {
   return HasRelaxationTime(point.Find(kEpsilon));
 }
 
-// Of int (ep - 1/6) dt over one orbit from epsilon, in mean free times, over its mean.
+// The relative standard error that one orbit from epsilon gives for int (ep - 1/6) dt.
 double ErrorOfDecay(const PointParameters& point) {
   constexpr double kScatter = 0.42;
   const EnergyRelaxation relaxation(GeometryOf(point), point);

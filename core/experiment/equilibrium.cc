@@ -4,9 +4,9 @@
 // A block is many orbits of a few collisions, each started from the return map's invariant measure,
 // so nothing has to be burnt in, and orbits are independent; each is one batch of the batch means:
 //   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
-#include "core/experiment/equilibrium.h"
-
 #include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/billiard/orbits.h"
@@ -22,6 +22,14 @@
 
 namespace ballpiston {
 namespace {
+
+// One collision in ten counts as an event for the error (statistics/told_error.h), because long
+// flights are rare and skew the law of the ratio: the z-scores of 100 seeds with 64 collisions had
+// variance 1.35.
+constexpr double kEventsPerCollision = 0.1;
+
+// The largest number of orbits in a block: enough batches for an error.
+constexpr uint64_t kOrbitsPerBlock = 256;
 
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
                       double exact) {

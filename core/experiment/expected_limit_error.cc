@@ -37,7 +37,7 @@ double CuspError(const PairGeometry& geometry) {
   return kMost * std::exp(-Square(geometry.lambda() / kNarrow)) * reached;
 }
 
-// Of the autocorrelation's integral, relatively.
+// The relative error of the autocorrelation's integral.
 double EquilibriumError(const Scales& scales) {
   constexpr double kByTheClock = 0.6, kNearTheBound = 2.2;
   const PairGeometry& geometry = scales.geometry;
@@ -46,7 +46,7 @@ double EquilibriumError(const Scales& scales) {
   return factor * scales.ByTheClock() + CuspError(geometry);
 }
 
-// Of the decay integral, in mean free times.
+// The error of the decay integral, in mean free times.
 double DecayError(const Scales& scales, double epsilon) {
   constexpr double kByTheClock = 0.45, kSlowPiston = 0.16, kBall = 0.35, kCusp = 0.1;
   const double u = std::max(std::sqrt(2 * epsilon), kLeastSpeed);

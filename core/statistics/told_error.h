@@ -7,7 +7,7 @@
 //   mean over samples               the samples
 //   mean return time                the expected number of long returns, where these are rare
 //   mean sigma                      N (1 - mean^2): some four times the samples of the rarer sign
-//   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.h)
+//   mean free times in equilibrium  a tenth of the collisions (experiment/equilibrium.cc)
 //   correlation                     the orbits
 // A quantity that cannot fluctuate has the error 0.
 #ifndef BALLPISTON_CORE_STATISTICS_TOLD_ERROR_H_

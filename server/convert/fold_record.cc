@@ -79,7 +79,8 @@ BlockResult ResultOf(const v1::BlockRecord& record) {
   return result;
 }
 
-// Of so many planned samples, or without any.
+// Whether the experiment can have written this result for that number of planned samples. A result
+// of 0 planned samples is empty.
 bool IsPossible(const PointExperiment& experiment, const BlockResult& result, uint64_t planned) {
   if (planned == 0) return result == BlockResult();
   return result.samples <= planned && result.health.max_energy_error >= 0 &&  // not NaN either

@@ -1,9 +1,9 @@
 // Writes what a job's run reports into the store and into the job.
 //
 // Order in the store: a checkpoint after the point's earlier ones, a point's result after its
-// checkpoints, the end of the job after all of it. The job is seen to have begun, a point to be
-// finished, and the job to have ended, in this order and only when it is on disk: what was told, no
-// restart takes back. Thread-safe.
+// checkpoints, the end of the job after all of it. Clients see that the job has begun,
+// that a point is finished and that the job has ended in this order, and only after the change is
+// on disk. So a restart never takes back a state that a client has seen. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 #define BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
 
