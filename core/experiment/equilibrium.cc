@@ -28,7 +28,7 @@ namespace {
 // variance 1.35.
 constexpr double kEventsPerCollision = 0.1;
 
-// The largest number of orbits in a block: enough batches for an error.
+// About so many orbits are in a block that has as many collisions: enough batches for an error.
 constexpr uint64_t kOrbitsPerBlock = 256;
 
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
