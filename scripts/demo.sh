@@ -10,41 +10,29 @@
 # billiard is asked for by name: left to choose, the service would answer with the closed forms.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-readonly PROGRAMS=$1 RESULTS=demo STATE=$1/../demo
+readonly RESULTS=demo
+PATH=$1:$PATH
 
 readonly RHO=0.529561127988977 DELTAS=0.2,0.1,0.05 SEED=1
 # n/100, and halvings of 1/100 towards both ends of (0, 1/2).
 readonly ENERGIES=0.0003125,0.000625,0.00125,0.0025,0.005,0.01:0.49:49,0.495,0.4975,0.49875,0.499375,0.4996875
 readonly COUNT=$((3 * 3 + 3 * 59))  # z-scores in all
 
-ballpiston() { "$PROGRAMS/ballpiston" "$@" --server "$address"; }
-
 headline() { printf '\n== %s\n' "$*"; }
 
 start_server() {
-  rm -rf "$STATE" "$RESULTS"
-  mkdir -p "$STATE" "$RESULTS"
-  sockets=$(mktemp -d)  # a short path: that of a Unix socket may have 100 bytes
-  address=unix:$sockets/server
-  "$PROGRAMS/ballpistond" --listen "$address" --data-dir "$STATE/data" >"$STATE/server.log" 2>&1 &
-  server=$!
+  rm -rf "$RESULTS"
+  mkdir -p "$RESULTS"
+  data=$(mktemp -d)
   trap stop_server EXIT
-  local deadline=$((SECONDS + 30))
-  until ballpiston list >/dev/null 2>&1; do
-    if ! kill -0 "$server" 2>/dev/null || ((SECONDS > deadline)); then
-      cat "$STATE/server.log" >&2
-      echo "demo: the server does not answer (its log is above)" >&2
-      exit 1
-    fi
-    sleep 0.05
-  done
+  BALLPISTON_SERVER=$(ballpiston server start --data-dir "$data")
+  export BALLPISTON_SERVER
 }
 
 stop_server() {
   trap - EXIT
-  kill "$server" 2>/dev/null || true
-  wait "$server" || echo "demo: the server ended with status $?" >&2
-  rm -rf "$sockets"
+  ballpiston server stop --data-dir "$data" || true
+  rm -rf "$data"
 }
 
 # ask NAME EXPERIMENT FLAG...: submits, watches, prints the table, and keeps the numbers in NAME.csv.

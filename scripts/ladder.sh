@@ -7,33 +7,22 @@
 # and measured relative error of the first estimate. A private server of its own, in a folder that
 # goes at the end. The times are those of this machine, so nothing else should be busy on it.
 set -euo pipefail
-programs=$(cd "$1" && pwd)
-readonly programs RHO=0.529561127988977
+PATH=$(cd "$1" && pwd):$PATH
+readonly RHO=0.529561127988977
 
-sockets=$(mktemp -d)  # a short path: that of a Unix socket may have 100 bytes
-export BALLPISTON_SERVER=unix:$sockets/server
-"$programs/ballpistond" --listen "$BALLPISTON_SERVER" --data-dir "$sockets/data" \
-  >"$sockets/server.log" 2>&1 &
-server=$!
+data=$(mktemp -d)
 stop_server() {
-  kill "$server" 2>/dev/null || true
-  wait "$server" || true
-  rm -rf "$sockets"
+  ballpiston server stop --data-dir "$data" || true
+  rm -rf "$data"
 }
 trap stop_server EXIT
-deadline=$((SECONDS + 30))
-until "$programs/ballpiston" list >/dev/null 2>&1; do
-  if ! kill -0 "$server" 2>/dev/null || ((SECONDS > deadline)); then
-    cat "$sockets/server.log" >&2
-    exit 1
-  fi
-  sleep 0.05
-done
+BALLPISTON_SERVER=$(ballpiston server start --data-dir "$data")
+export BALLPISTON_SERVER
 
 # Of a plan: work of all of it, and the first point's chosen model, statistical error, model error.
 planned() {
-  "$programs/ballpiston" plan "$@" --format json | number work | tail -n 1
-  "$programs/ballpiston" plan "$@" --format csv |
+  ballpiston plan "$@" --format json | number work | tail -n 1
+  ballpiston plan "$@" --format csv |
     awk -F, 'NR > 1 && $6 == "true" && !seen++ {
       print $5, ($10 == "" ? "-" : $10), ($11 == "" ? "-" : $11)
     }'
@@ -51,10 +40,10 @@ ask() {
   local question=$1 plan job work error
   shift
   plan=$(planned "$@" --rho "$RHO" | tr '\n' ' ')
-  job=$("$programs/ballpiston" submit "$@" --rho "$RHO" --fresh)
-  "$programs/ballpiston" watch "$job" --progress none
-  error=$("$programs/ballpiston" result "$job" --format csv | measured_error)
-  work=$("$programs/ballpiston" result "$job" --format json | number work | sed -n 1p)
+  job=$(ballpiston submit "$@" --rho "$RHO" --fresh)
+  ballpiston watch "$job" --progress none
+  error=$(ballpiston result "$job" --format csv | measured_error)
+  work=$(ballpiston result "$job" --format json | number work | sed -n 1p)
   printf '%s|%s|%s|%s\n' "$question" "$plan" "$work" "$error" |
     awk -F'|' '{
       split($2, p, " ")

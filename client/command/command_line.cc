@@ -3,106 +3,324 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <CLI/CLI.hpp>
-#include <optional>
-#include <string>
-#include <vector>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "client/command/config_file.h"
+#include "client/command/reference.h"
+#include "client/command/suggestion.h"
 #include "client/library/quoted.h"
 
 namespace ballpiston::client {
 namespace {
 
-constexpr char kDescription[] = "Rarely interacting billiards, simulated by a service.";
-constexpr char kFooter[] =
-    "Exit codes: 0 done, 2 usage or invalid argument, 3 server unreachable or busy, 4 job failed "
-    "or "
-    "cancelled,\n5 not found, 6 not permitted, 130 interrupted.";
-
-void AddVerbs(CLI::App& app, Action& action) {
-  AddAnalytic(app, action);
-  AddPlan(app, action);
-  AddRun(app, action);
-  AddSubmit(app, action);
-  AddWatch(app, action);
-  AddResult(app, action);
-  AddList(app, action);
-  AddCancel(app, action);
-  AddDelete(app, action);
-  AddStatus(app, action);
-  AddFigure(app, action);
+absl::Status Named(const std::string& name, const absl::Status& status) {
+  if (status.ok()) return status;
+  return absl::Status(status.code(), absl::StrCat(name, ": ", status.message()));
 }
 
-// The verbs that --help shows.
-std::string Verbs(const CLI::App& app) {
-  const auto name = [](std::string* out, const CLI::App* verb) { out->append(verb->get_name()); };
-  const auto offered = [](const CLI::App* verb) { return !verb->get_group().empty(); };
-  return absl::StrJoin(app.get_subcommands(offered), ", ", name);
+// A verb as CLI11 parses it.
+struct ParsedVerb {
+  CLI::App* app = nullptr;
+  std::vector<CLI::Option*> arguments;
+  std::map<const Flag*, CLI::Option*> flags;
+};
+
+// A verb of several words is a subcommand of a subcommand.
+CLI::App* AppOf(CLI::App& program, const std::string& verb) {
+  CLI::App* app = &program;
+  for (const absl::string_view word : absl::StrSplit(verb, ' ')) {
+    const auto there = app->get_subcommands(
+        [word](const CLI::App* subcommand) { return subcommand->get_name() == word; });
+    CLI::App* const next = there.empty() ? app->add_subcommand(std::string(word)) : there.front();
+    app->require_subcommand(1);
+    app = next;
+  }
+  return app;
 }
 
-// Verbs that the command line's contract names and this version lacks: whatever follows them, the
-// answer is the same. `app` has to outlive the action.
-void AddLaterVerbs(CLI::App& app, Action& action) {
-  for (const std::string name : {"trace"}) {
-    CLI::App* verb = app.add_subcommand(name)->group("")->prefix_command();
-    verb->set_help_flag();
-    verb->callback([&app, &action, name] {
-      action = [&app, name](Terminal&) -> absl::StatusOr<ExitCode> {
-        return absl::InvalidArgumentError(
-            absl::StrCat(name, " is not offered by this version; it offers ", Verbs(app)));
+ParsedVerb Add(CLI::App& program, const Verb& verb) {
+  ParsedVerb parsed{.app = AppOf(program, verb.name), .arguments = {}, .flags = {}};
+  for (const Argument& argument : verb.arguments) {
+    CLI::Option* option = parsed.app->add_option(argument.value.name);
+    const bool many = argument.number == Argument::kSeveral || argument.number == Argument::kAny;
+    if (many) option->expected(CLI::detail::expected_max_vector_size);
+    option->required(argument.number == Argument::kRequired ||
+                     argument.number == Argument::kSeveral);
+    parsed.arguments.push_back(option);
+  }
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (flag->name.empty()) continue;
+    CLI::Option* const option = flag->value.IsSwitch() ? parsed.app->add_flag(flag->name)
+                                                       : parsed.app->add_option(flag->name);
+    parsed.flags[flag] = option->envname(flag->variable);
+  }
+  return parsed;
+}
+
+class WordParser {
+ public:
+  WordParser() : program_("", kProgram) {
+    program_.set_version_flag("--version", absl::StrCat(kProgram, " ", BALLPISTON_VERSION));
+    for (const Verb& verb : Verbs()) parsed_[&verb] = Add(program_, verb);
+  }
+
+  absl::StatusOr<CommandLine> Parse(const std::vector<std::string>& words) {
+    if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
+    try {
+      program_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::CallForHelp&) {
+      return CommandLine{.page = TextPage(Chosen())};
+    } catch (const CLI::CallForVersion& version) {
+      return CommandLine{.page = absl::StrCat(version.what(), "\n")};
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(Explanation(error));
+    }
+    CommandLine line{.verb = Chosen()};
+    FindGiven(words, *line.verb, line.options.given);
+    absl::Status status = AddConfig(*line.verb, line.options.given);
+    if (status.ok()) status = ReadArguments(*line.verb, line.options);
+    if (status.ok()) status = ReadFlags(*line.verb, line.options);
+    if (!status.ok()) return status;
+    return line;
+  }
+
+ private:
+  const Verb* Chosen() const {
+    for (const auto& [verb, parsed] : parsed_) {
+      if (parsed.app->parsed()) return verb;
+    }
+    return nullptr;
+  }
+
+  // After --flag or --flag= CLI11 would read the next word, even a flag, as the value.
+  static absl::Status CheckValuesAreThere(const std::vector<std::string>& words) {
+    std::map<std::string, bool> takes_value;
+    for (const Verb& verb : Verbs()) {
+      for (const Flag* flag : FlagsOf(verb))
+        takes_value[LongName(*flag)] |= !flag->value.IsSwitch();
+    }
+    for (auto word = words.begin(); word != words.end() && *word != "--"; ++word) {
+      const std::string name = word->substr(0, word->find('='));
+      const auto flag = takes_value.find(name);
+      if (flag == takes_value.end() || !flag->second) continue;
+      const bool is_empty = *word == name + "=";
+      const bool is_next_a_flag =
+          *word == name && word + 1 != words.end() &&
+          takes_value.contains((word + 1)->substr(0, (word + 1)->find('=')));
+      if (is_empty || is_next_a_flag) {
+        return absl::InvalidArgumentError(absl::StrCat(name, " needs a value"));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  // Only flags on the command line, not those from variables or the config file.
+  void FindGiven(const std::vector<std::string>& words, const Verb& verb,
+                 std::set<std::string>& given) const {
+    const auto end = std::find(words.begin(), words.end(), "--");
+    for (const auto& [flag, option] : parsed_.at(&verb).flags) {
+      if (option->empty()) continue;  // the word may be another flag's value
+      const std::string name = LongName(*flag);
+      const auto is_this = [&name](const std::string& word) {
+        return word == name || absl::StartsWith(word, name + "=");
       };
+      if (std::any_of(words.begin(), end, is_this)) given.insert(name);
+    }
+  }
+
+  // What neither the command line nor the environment says. One target on the command line takes
+  // the place of all of the config file's.
+  absl::Status AddConfig(const Verb& verb, const std::set<std::string>& given) {
+    const ParsedVerb& parsed = parsed_.at(&verb);
+    const CLI::Option* const named = parsed.app->get_option("--config");
+    const std::string path = named->empty() ? UsualConfig() : named->results().front();
+    if (path.empty() || verb.act == &Help) return absl::OkStatus();
+    const bool has_target =
+        std::any_of(TargetFlags().flags.begin(), TargetFlags().flags.end(),
+                    [&given](const Flag& flag) { return given.contains(LongName(flag)); });
+    return ReadConfig(path, verb, [&](const Flag& flag, const std::string& text) {
+      CLI::Option* const option = parsed.flags.at(&flag);
+      const bool is_replaced = has_target && IsOneOf(flag, TargetFlags());
+      if (option->empty() && !is_replaced) option->add_result(text);
     });
   }
-}
 
-// CLI11's own words where they are good ones.
-std::string Explanation(const CLI::App& app, const CLI::Error& error) {
-  const std::vector<std::string> left = app.remaining(true);
-  const bool has_verb = !app.get_subcommands().empty();
-  const bool is_flag = !left.empty() && absl::StartsWith(left[0], "-");
-  if (!has_verb && left.empty()) return absl::StrCat("name a verb: ", Verbs(app));
-  if (!has_verb && !is_flag)
-    return absl::StrCat(Quoted(left[0]), " is not a verb; verbs are ", Verbs(app));
-  if (!left.empty())
-    return absl::StrCat("not expected: ", Shortened(absl::StrJoin(left, " "), kLongestMessage));
-  return Shortened(error.what(), kLongestMessage);
-}
-
-std::string UsageError(const CLI::App* app, const CLI::Error& error) {
-  return absl::StrCat("ballpiston: ", Explanation(*app, error), " (--help tells more)\n");
-}
-
-// The exit code if the command line alone settles the matter: a mistake, or --help.
-std::optional<ExitCode> Parse(CLI::App& app, int argc, const char* const* argv,
-                              Terminal& terminal) {
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error, terminal.out, terminal.err);
-    return code == 0 ? ExitCode::kDone : ExitCode::kUsage;
+  static bool IsOneOf(const Flag& flag, const FlagGroup& group) {
+    return std::any_of(group.flags.begin(), group.flags.end(),
+                       [&flag](const Flag& other) { return &other == &flag; });
   }
-  return std::nullopt;
+
+  absl::Status ReadArguments(const Verb& verb, Options& options) const {
+    for (size_t i = 0; i < verb.arguments.size(); ++i) {
+      for (const std::string& text : parsed_.at(&verb).arguments[i]->results()) {
+        const Value& value = verb.arguments[i].value;
+        absl::Status status = Named(value.name, value.read(text, options));
+        if (!status.ok()) return status;
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ReadFlags(const Verb& verb, Options& options) const {
+    const auto& parsed = parsed_.at(&verb).flags;
+    for (const Flag* flag : FlagsOf(verb)) {
+      const auto option = parsed.find(flag);
+      const bool is_variable = option == parsed.end();  // CLI11 has none without a flag
+      if (!is_variable && option->second->empty()) continue;
+      const std::string text =
+          is_variable ? FromEnvironment(flag->variable) : option->second->results().front();
+      if (is_variable && text.empty()) continue;
+      if (absl::Status bad = ReadFlag(*flag, text, options); !bad.ok()) return bad;
+    }
+    return absl::OkStatus();
+  }
+
+  // The error names the variable, or says that the flag comes from the config file.
+  static absl::Status ReadFlag(const Flag& flag, const std::string& text, Options& options) {
+    const std::string name = LongName(flag);
+    if (!flag.variable.empty()) options.inherited[flag.variable] = Absolute(flag.value, text);
+    if (options.given.contains(name)) {
+      if (IsOneOf(flag, ServerFlags()) || name == "--config") {
+        absl::StrAppend(&options.connection, " ", name,
+                        flag.value.IsSwitch() ? "" : " " + ShellWord(text));
+      }
+      return Named(name, flag.value.read(text, options));
+    }
+    const bool is_variable = !flag.variable.empty() && FromEnvironment(flag.variable) == text;
+    return Named(is_variable ? flag.variable : name + " of the config file",
+                 flag.value.read(text, options));
+  }
+
+  // For a program that runs in another folder.
+  static std::string Absolute(const Value& value, const std::string& text) {
+    std::error_code error;
+    absl::string_view path = text;
+    if (absl::ConsumePrefix(&path, "unix:")) {
+      return "unix:" + std::filesystem::absolute(std::string(path), error).string();
+    }
+    return value.offer == Offer::kFile ? std::filesystem::absolute(text, error).string() : text;
+  }
+
+  // Quoted so that a shell reads it back as one word.
+  static std::string ShellWord(const std::string& text) {
+    constexpr char kPlain[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-[]";
+    if (text.find_first_not_of(kPlain) == std::string::npos) return text;
+    return absl::StrCat("'", absl::StrReplaceAll(text, {{"'", "'\\''"}}), "'");
+  }
+
+  static std::vector<std::string> Names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(verb->get_name());
+    }
+    return names;
+  }
+
+  // The verb that the words before the mistake name; null (the program) if they name none.
+  const CLI::App& Innermost() const {
+    const CLI::App* app = &program_;
+    while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+    return *app;
+  }
+
+  std::string Explanation(const CLI::ParseError& error) const {
+    const CLI::App& app = Innermost();
+    const Verb* verb = Chosen();
+    std::vector<std::string> left = program_.remaining(true);
+    left.erase(std::remove(left.begin(), left.end(), "--"), left.end());
+    const std::string more =
+        absl::StrCat(" (", kProgram, " help", verb == nullptr ? "" : absl::StrCat(" ", verb->name),
+                     " shows its usage)");
+    if (verb == nullptr && left.empty()) {
+      return absl::StrCat("name a verb: ", absl::StrJoin(Names(app), ", "), more);
+    }
+    if (!left.empty()) return absl::StrCat(Unexpected(app, verb, left.front()), more);
+    return absl::StrCat(Missing(verb, error), more);
+  }
+
+  std::string Unexpected(const CLI::App& app, const Verb* verb, const std::string& word) const {
+    if (absl::StartsWith(word, "-")) return NoSuchFlag(verb, word.substr(0, word.find('=')));
+    if (verb != nullptr) return absl::StrCat("not expected: ", Quoted(word));
+    const std::vector<std::string> names = Names(app);
+    return absl::StrCat(Quoted(word), " is not a verb; verbs are ", absl::StrJoin(names, ", "),
+                        DidYouMean(word, names));
+  }
+
+  static std::string NoSuchFlag(const Verb* verb, const std::string& name) {
+    std::vector<std::string> names = {"--help", "--version"};
+    for (const Verb& any : Verbs()) {
+      if (verb != nullptr && &any != verb) continue;
+      for (const Flag* flag : FlagsOf(any)) {
+        for (const absl::string_view part : absl::StrSplit(flag->name, ',')) {
+          names.emplace_back(part);
+        }
+      }
+    }
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      return absl::StrCat("write flags after the verb: ", Quoted(name));
+    }
+    return absl::StrCat(verb == nullptr ? kProgram : verb->name, " has no flag ", Quoted(name),
+                        DidYouMean(name, names));
+  }
+
+  std::string Missing(const Verb* verb, const CLI::ParseError& error) const {
+    const ParsedVerb& parsed = parsed_.at(verb);
+    for (size_t i = 0; i < verb->arguments.size(); ++i) {
+      const Argument& argument = verb->arguments[i];
+      if (parsed.arguments[i]->get_required() && parsed.arguments[i]->count() == 0) {
+        return absl::StrCat(verb->name, " needs ", argument.value.name, ": ", argument.text);
+      }
+    }
+    for (const auto& [flag, option] : parsed.flags) {
+      if (option->count() > 1) return absl::StrCat(LongName(*flag), " is given more than once");
+    }
+    const std::string text = error.what();  // --rho: 1 required LIST missing
+    return absl::StrCat(Shortened(text.substr(0, text.find(':')), kLongestMessage),
+                        " needs a value");
+  }
+
+  CLI::App program_;
+  std::map<const Verb*, ParsedVerb> parsed_;
+};
+
+Verbosity VerbosityOf(const Options& options) {
+  if (options.quiet) return Verbosity::kQuiet;
+  return options.verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+}
+
+VerbResult ParseAndAct(const std::vector<std::string>& words, Terminal& terminal) {
+  const absl::StatusOr<CommandLine> line = ParseCommandLine(words);
+  if (!line.ok()) return line.status();
+  terminal.out << line->page;
+  if (line->verb == nullptr) return ExitCode::kDone;
+  terminal.verbosity = VerbosityOf(line->options);
+  return line->verb->act(line->options, terminal);
 }
 
 }  // namespace
 
-ExitCode RunCommandLine(int argc, const char* const* argv, Terminal& terminal) {
-  // Every error is told here, in the project's words.
-  google::protobuf::SetLogHandler(nullptr);
-  CLI::App app(kDescription, "ballpiston");
-  Action action;
-  app.require_subcommand(1);
-  app.failure_message(UsageError);
-  app.footer(kFooter);
-  AddVerbs(app, action);
-  AddLaterVerbs(app, action);
-  if (const auto code = Parse(app, argc, argv, terminal)) return *code;
-  const absl::StatusOr<ExitCode> code = action(terminal);
-  if (code.ok()) return *code;
-  terminal.err << "ballpiston: " << code.status().message() << std::endl;
-  return ExitCodeOf(code.status());
+absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& words) {
+  return WordParser().Parse(words);
+}
+
+ExitCode RunCommandLine(const std::vector<std::string>& words, Terminal& terminal) {
+  google::protobuf::SetLogHandler(nullptr);  // the program prints every error itself
+  const VerbResult result = ParseAndAct(words, terminal);
+  if (result.ok()) return *result;
+  const char* const prefix = terminal.colour ? "\x1b[1;31mballpiston:\x1b[0m " : "ballpiston: ";
+  terminal.err << prefix << result.status().message() << std::endl;
+  return ExitCodeOf(result.status());
 }
 
 }  // namespace ballpiston::client

@@ -2,14 +2,30 @@
 #ifndef BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
 #define BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
 
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
 #include "client/command/exit_code.h"
-#include "client/command/verbs.h"
+#include "client/command/options.h"
+#include "client/command/terminal.h"
+#include "client/command/verb_table.h"
 
 namespace ballpiston::client {
 
-// Errors of the command line are kUsage with what to do; --help is kDone. Silences Protocol
-// Buffers' own log for the rest of the process.
-ExitCode RunCommandLine(int argc, const char* const* argv, Terminal& terminal);
+struct CommandLine {
+  const Verb* verb = nullptr;  // null: the program's own page
+  Options options = {};
+  std::string page = {};  // text of --help or --version; if set, only this is printed
+};
+
+// Parses the words after the program's name. A flag that is not given takes its value from the
+// environment, else from the config file. INVALID_ARGUMENT names the first mistake: the flag, its
+// text and what is permitted.
+absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& words);
+
+// Silences Protocol Buffers' own log for the rest of the process.
+ExitCode RunCommandLine(const std::vector<std::string>& words, Terminal& terminal);
 
 }  // namespace ballpiston::client
 

@@ -1,6 +1,5 @@
 #include "client/command/create_job.h"
 
-#include <CLI/CLI.hpp>
 #include <limits>
 #include <utility>
 
@@ -9,10 +8,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
-#include "client/command/number_list.h"
-#include "client/command/violations.h"
+#include "client/command/interrupts.h"
 #include "client/library/error_text.h"
-#include "client/library/quoted.h"
 #include "client/library/request_id.h"
 
 namespace ballpiston::client {
@@ -43,54 +40,48 @@ absl::Status WithHint(const absl::Status& status) {
   return with_hint;
 }
 
-absl::Status SetPriority(const std::optional<std::string>& flag, CreateOptions& options) {
-  if (!flag) return absl::OkStatus();
-  const absl::StatusOr<int64_t> priority = ParseCount("--priority", *flag);
-  if (!priority.ok()) return priority.status();
-  using Limits = std::numeric_limits<int32_t>;
-  if (*priority < Limits::min() || *priority > Limits::max()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--priority: ", Quoted(*flag), " is not a number from -100 to 100"));
-  }
-  options.priority = static_cast<int32_t>(*priority);
-  return absl::OkStatus();
+absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
+                                           const v1::EnsembleSpec& spec,
+                                           const CreateOptions& options, const Terminal& terminal) {
+  terminal.Detail(absl::StrCat("request id ", options.request_id));
+  const Interrupts::Scope scope(terminal.interrupts, [&] {
+    terminal.err << "The server may have accepted the job. With --request-id " << options.request_id
+                 << " the same command returns this job.\n";
+  });
+  auto job = connection.Ask([&] { return connection.client.Create(spec, options); });
+  if (!job.ok()) return WithHint(job.status());
+  terminal.Detail(absl::StrCat("job ", job->name()));
+  return job;
 }
 
-absl::Status CheckRequestId(const std::optional<std::string>& flag) {
-  if (!flag || IsRequestId(*flag)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "--request-id: ", Quoted(*flag), " is not a UUID like 123e4567-e89b-12d3-a456-426614174000"));
+// If the job of an id failed or was cancelled, the next id makes a new job.
+absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
+                                       CreateOptions options, const Terminal& terminal) {
+  const auto status = connection.Ask([&] { return connection.client.Status(); });
+  if (!status.ok()) return status.status();
+  const std::string question = absl::StrCat(status->engine_version(), " ", options.fresh, " ",
+                                            options.priority, " ", spec.SerializeAsString(), " ");
+  for (int attempt = 0;; ++attempt) {
+    options.request_id = RequestIdFor(absl::StrCat(question, attempt));
+    auto job = CreateOnce(connection, spec, options, terminal);
+    const bool is_lost = job.ok() && (job->state() == v1::EnsembleJob::FAILED ||
+                                      job->state() == v1::EnsembleJob::CANCELLED ||
+                                      job->state() == v1::EnsembleJob::CANCELLING);
+    if (!is_lost) return job;
+  }
 }
 
 }  // namespace
 
-void JobFlags::AddTo(CLI::App& verb) {
-  verb.add_flag("--fresh", fresh,
-                "compute, even if the same question was answered before and its answer is stored");
-  verb.add_option("--priority", priority,
-                  "-100 to 100, 0 if not given: among your own jobs the higher goes first");
-  verb.add_option("--request-id", request_id,
-                  "a UUID of your own: asked again with it (no answer came), the server gives the "
-                  "job that it made the first time");
-}
-
-absl::StatusOr<CreateOptions> OptionsOf(const JobFlags& flags) {
-  CreateOptions options;
-  options.fresh = flags.fresh;
-  options.request_id = flags.request_id.value_or("");
-  const Violations violations(
-      {SetPriority(flags.priority, options), CheckRequestId(flags.request_id)});
-  if (absl::Status bad = violations.Lines(); !bad.ok()) return bad;
-  return options;
-}
-
 absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
-                                          const v1::EnsembleSpec& spec, CreateOptions options) {
-  const EnsembleClient client(connection.channel);
-  if (options.request_id.empty()) options.request_id = NewRequestId();
-  auto job = connection.Ask([&] { return client.Create(spec, options); });
-  if (!job.ok()) return WithHint(job.status());
-  return job;
+                                          const v1::EnsembleSpec& spec, const Options& options,
+                                          const Terminal& terminal) {
+  CreateOptions create = options.create;
+  if (options.resume && create.request_id.empty()) {
+    return Resume(connection, spec, create, terminal);
+  }
+  if (create.request_id.empty()) create.request_id = NewRequestId();
+  return CreateOnce(connection, spec, create, terminal);
 }
 
 std::string FromStoreText(const v1::EnsembleJob& job) {

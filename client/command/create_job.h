@@ -3,38 +3,23 @@
 #ifndef BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
 #define BALLPISTON_CLIENT_COMMAND_CREATE_JOB_H_
 
-#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "client/command/connection.h"
-#include "client/library/ensemble_client.h"
-
-namespace CLI {
-class App;
-}
+#include "client/command/options.h"
+#include "client/command/terminal.h"
 
 namespace ballpiston::client {
 
-// How a job is asked for, besides its specification.
-struct JobFlags {
-  bool fresh = false;
-  std::optional<std::string> priority;
-  std::optional<std::string> request_id;
-
-  void AddTo(CLI::App& verb);
-};
-
-// INVALID_ARGUMENT if the priority is no whole number (whether it is permitted is the server's to
-// say), or the request id no UUID.
-absl::StatusOr<CreateOptions> OptionsOf(const JobFlags& flags);
-
 // With one id for both attempts (Connection::Ask): a private server that took the job and was gone
-// before it could answer does not get a second one.
+// before it could answer does not get a second one. If the user interrupts it, a message shows the
+// id. With --resume the id is derived from the question and the engine's version.
 //   RESOURCE_EXHAUSTED  with a second line that says what can be done
 absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
-                                          const v1::EnsembleSpec& spec, CreateOptions options = {});
+                                          const v1::EnsembleSpec& spec, const Options& options,
+                                          const Terminal& terminal);
 
 // Of a job with answered_from_store:
 //   answered from the store: ensembleJobs/ID, computed 2026-11-21 12:00 UTC (--fresh computes anew)

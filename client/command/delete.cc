@@ -1,42 +1,23 @@
-// ballpiston delete: deletes an ended job with its results. Prints nothing.
-#include <CLI/CLI.hpp>
-#include <memory>
-
+// ballpiston delete: deletes ended jobs with their results. Prints the name of each.
+#include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
-#include "client/command/flags.h"
-#include "client/command/verbs.h"
-#include "client/command/violations.h"
-#include "client/library/ensemble_client.h"
 
 namespace ballpiston::client {
-namespace {
 
-struct Delete {
-  JobArgument job;
-  ServerFlag server;
-
-  absl::StatusOr<ExitCode> Act(Terminal&) const {
-    const absl::StatusOr<std::string> name = job.Name();
-    const Violations violations({name.status(), server.Check()});
-    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
-    return WithServer(server, [&](const Connection& connection) -> absl::StatusOr<ExitCode> {
-      const EnsembleClient client(connection.channel);
-      const absl::Status status = connection.Ask([&] { return client.Delete(*name); });
-      if (!status.ok()) return status;
-      return ExitCode::kDone;
-    });
-  }
-};
-
-}  // namespace
-
-void AddDelete(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("delete", "delete an ended job and its results");
-  const auto deletion = std::make_shared<Delete>();
-  deletion->job.AddTo(*verb);
-  deletion->server.AddTo(*verb);
-  verb->callback(
-      [&action, deletion] { action = [deletion](Terminal& t) { return deletion->Act(t); }; });
+// A delete is not retried: if the answer to the first was lost, a second finds no such job.
+VerbResult Delete(const Options& options, Terminal& terminal) {
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    absl::Status first_error;
+    for (const std::string& name : options.jobs) {
+      const absl::Status status = connection.client.Delete(name);
+      if (status.ok()) terminal.out << name << " deleted" << std::endl;
+      const bool is_open = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
+      if (is_open) terminal.err << "ballpiston: " << name << " may have been deleted" << std::endl;
+      first_error.Update(status);
+    }
+    if (!first_error.ok()) return first_error;
+    return ExitCode::kDone;
+  });
 }
 
 }  // namespace ballpiston::client

@@ -39,4 +39,13 @@ ExitCode ExitCodeOf(const absl::Status& status) {
   }
 }
 
+ExitCode ExitCodeOf(int exit_status) {
+  for (const ExitCode code :
+       {ExitCode::kDone, ExitCode::kUsage, ExitCode::kUnreachable, ExitCode::kNotFound,
+        ExitCode::kNotPermitted, ExitCode::kInterrupted}) {
+    if (static_cast<int>(code) == exit_status) return code;
+  }
+  return ExitCode::kFailed;
+}
+
 }  // namespace ballpiston::client

@@ -9,7 +9,7 @@ namespace ballpiston::client {
 enum class ExitCode {
   kDone = 0,
   kUsage = 2,        // usage, or an argument that is not valid, or a job too large for the server
-  kUnreachable = 3,  // no server answers, or it takes no more for now: the same may do later
+  kUnreachable = 3,  // no server answers, or the server is busy: retry later
   kFailed = 4,       // the job failed or was cancelled, or its state forbids what was asked
   kNotFound = 5,     // no such job
   kNotPermitted = 6,
@@ -19,6 +19,9 @@ enum class ExitCode {
 // Of a call that failed. What has no code of its own counts as kFailed. Of the server's limits
 // those on a single job are kUsage, and those on what it has to do at once kUnreachable.
 ExitCode ExitCodeOf(const absl::Status& status);
+
+// Converts the exit status of a child program: the same code if it is one of these, else kFailed.
+ExitCode ExitCodeOf(int exit_status);
 
 }  // namespace ballpiston::client
 

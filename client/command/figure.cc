@@ -1,93 +1,187 @@
-// ballpiston figure NAME --out DIR: measures what a figure shows, writes data and a gnuplot script,
-// and draws it. Prints the files' names.
-#include <CLI/CLI.hpp>
-#include <memory>
-#include <string>
+// ballpiston figure NAME --out DIR: runs the figure's script in the folder DIR. The script gets the
+// data with further ballpiston commands, writes CSV and draws with gnuplot. Prints the files'
+// paths.
+//
+// The figures are files: the scripts NAME.sh and NAME.gnuplot in share/ballpiston/figures beside
+// the folder of this program. They are copied to the --out folder unless they exist there: the user
+// may have edited them. A script takes its variables from the environment: ${rho:=...}.
+#include <signal.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "client/command/comparison_program.h"
-#include "client/command/connection.h"
-#include "client/command/figure_folder.h"
-#include "client/command/figures.h"
-#include "client/command/flags.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "client/command/config_file.h"
+#include "client/command/follow_job.h"
 #include "client/command/interrupts.h"
-#include "client/command/verbs.h"
-#include "client/command/violations.h"
-#include "client/figure/mean_free_time_figure.h"
-#include "client/figure/speed_accuracy_figure.h"
-#include "client/library/quoted.h"
+#include "client/command/suggestion.h"
+#include "client/command/verb_table.h"
+#include "client/library/child_process.h"
+#include "client/library/server_process.h"
 
 namespace ballpiston::client {
-
-absl::Status RefuseFlag(const char* flag, const std::optional<std::string>& text,
-                        const char* figure) {
-  if (!text) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(flag, ": ", Quoted(*text), ", but the figure ", figure, " has no such flag"));
-}
-
 namespace {
 
-struct Figure {
-  std::string name;
-  std::string folder;
-  FigureFlags flags;
-  ServerFlag server;
-  ProgressFlag progress;
+namespace fs = std::filesystem;
 
-  void AddTo(CLI::App& verb) {
-    verb.add_option("NAME", name, absl::StrCat(kMeanFreeTimeFigure, " | ", kSpeedAccuracyFigure))
-        ->required();
-    verb.add_option("--out", folder, "folder for data, script and picture")->required();
-    verb.add_option("--rho", flags.rho, "disc radius; the paper's if not given");
-    verb.add_option("--delta", flags.delta,
-                    "mean-free-time: LIST of penetrations, 0.2,0.1,0.05 if not given; "
-                    "speed-accuracy: one, 0.1 if not given");
-    verb.add_option("--relaxation-delta", flags.relaxation_delta,
-                    "speed-accuracy: LIST of at most 8 penetrations at which relaxation times are "
-                    "compared; if not given those of 0.2,0.1,0.05,0.025 that rho permits");
-    verb.add_option("--epsilon", flags.epsilon,
-                    "speed-accuracy: the piston's energy; 0.125 if not given");
-    verb.add_option("--samples", flags.samples,
-                    "mean-free-time: at each point; 10000 if not given");
-    verb.add_option(
-        "--seconds", flags.seconds,
-        "speed-accuracy: work of each method's largest run, 0.01 to 60; 1 if not given");
-    verb.add_option("--seed", flags.seed, "of the random numbers; 0 if not given");
-    server.AddTo(verb);
-    progress.AddTo(verb);
-    verb.footer(absl::StrCat(
-        "The figure speed-accuracy is measured on this machine, without a server, by the program ",
-        kComparisonProgram, ", which has to lie in the folder of ballpiston."));
+constexpr char kScript[] = ".sh";
+constexpr char kPicture[] = ".gnuplot";
+
+fs::path ProgramFolder() { return fs::path(ProgramBeside("")).parent_path(); }
+
+fs::path InstalledFolder() {
+  return ProgramFolder().parent_path() / "share" / kProgram / "figures";
+}
+
+std::string Contents(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+absl::Status CheckInstalled() {
+  if (!FigureNames().empty()) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat("no figures are installed in ", InstalledFolder().string()));
+}
+
+// The first line is "# TITLE".
+VerbResult ListFigures(Terminal& terminal) {
+  if (absl::Status missing = CheckInstalled(); !missing.ok()) return missing;
+  for (const std::string& name : FigureNames()) {
+    const std::string script = Contents(InstalledFolder() / (name + kScript));
+    terminal.out << name << ": " << script.substr(2, script.find('\n') - 1);
   }
+  return ExitCode::kDone;
+}
 
-  absl::StatusOr<MakeFigure> Plan() const {
-    if (name == kMeanFreeTimeFigure) return PlanMeanFreeTime(flags);
-    if (name == kSpeedAccuracyFigure) return PlanSpeedAccuracy(flags);
+absl::Status CheckName(const Options& options) {
+  if (absl::Status missing = CheckInstalled(); !missing.ok()) return missing;
+  const std::vector<std::string> names = FigureNames();
+  if (options.figure.empty()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("figure ", Quoted(name), " is not offered by this version; it offers ",
-                     kMeanFreeTimeFigure, ", ", kSpeedAccuracyFigure));
+        absl::StrCat("name a figure (", absl::StrJoin(names, ", "), ") or give --list"));
   }
+  if (std::find(names.begin(), names.end(), options.figure) == names.end()) {
+    return absl::InvalidArgumentError(absl::StrCat("figure ", NotOneOf(options.figure, names)));
+  }
+  if (!options.out.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError("--out is missing: name a folder for data, script and picture");
+}
 
-  absl::StatusOr<ExitCode> Act(Terminal& terminal) const {
-    const absl::StatusOr<MakeFigure> make = Plan();
-    const absl::StatusOr<ProgressStyle> style = ParseProgressStyle(progress.text);
-    const Violations violations({make.status(), style.status(), server.Check()});
-    if (absl::Status bad = violations.Report(); !bad.ok()) return bad;
-    const FigureFolder out(folder);
-    if (absl::Status made = out.Make(); !made.ok()) return made;
-    Interrupts interrupts;  // before gRPC starts threads
-    return (*make)({server, out, *style, interrupts, terminal});
+absl::Status Provide(const fs::path& folder, const std::string& name, const Terminal& terminal) {
+  const fs::path installed = InstalledFolder() / name, here = folder / name;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && !fs::exists(here, error)) fs::copy_file(installed, here, error);
+  if (error) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--out: cannot write ", here.string(), ": ", error.message()));
   }
-};
+  if (Contents(here) != Contents(installed)) {
+    terminal.Note(absl::StrCat(
+        "ballpiston: using ", here.string(),
+        ", which differs from the installed file; delete it to use the installed one"));
+  }
+  return absl::OkStatus();
+}
+
+// The names in ${NAME:=...}.
+std::set<std::string> VariablesOf(const std::string& script) {
+  std::set<std::string> names;
+  for (size_t at = script.find("${"); at != std::string::npos; at = script.find("${", at + 2)) {
+    const size_t end = script.find(":=", at);
+    if (end != std::string::npos) names.insert(script.substr(at + 2, end - at - 2));
+  }
+  return names;
+}
+
+absl::Status CheckVariables(const Options& options, const std::set<std::string>& names) {
+  for (const auto& [name, value] : options.variables) {
+    const std::string flag = "--" + absl::StrReplaceAll(name, {{"_", "-"}});
+    if (names.contains(name) || !options.given.contains(flag)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag, ": the figure ", options.figure, " has no such variable"));
+  }
+  return absl::OkStatus();
+}
+
+// Sets the environment of the script: this program's folder in PATH, the flags of `figure`, and the
+// script's variables. The user's config file and variables of the same names have no effect.
+void SetEnvironment(const Options& options, const std::set<std::string>& names) {
+  const auto set = [](const std::string& name, const std::string& value) {
+    setenv(name.c_str(), value.c_str(), 1);
+  };
+  const std::string path = FromEnvironment("PATH");
+  set("PATH", absl::StrCat(ProgramFolder().string(), path.empty() ? "" : ":", path));
+  set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
+  for (const auto& [name, value] : options.inherited) set(name, value);
+  set("BALLPISTON_CONFIG", "/dev/null");
+  if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
+  for (const std::string& name : names) unsetenv(name.c_str());
+  for (const auto& [name, value] : options.variables) set(name, value);
+}
+
+// An interruption ends the script and every program that it has started; its jobs continue. With
+// the trap the shell waits until the running command has printed how to watch its job.
+absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) {
+  const std::string commands =
+      absl::StrCat("trap 'exit 130' INT TERM HUP; . ./", options.figure, kScript);
+  const absl::StatusOr<pid_t> pid = StartChild(
+      {.command = {"sh", "-c", commands}, .folder = options.out, .output = "", .own_group = true});
+  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
+  const Interrupts::Scope scope(terminal.interrupts, [&] {
+    kill(-*pid, SIGINT);
+    WaitForChild(*pid).IgnoreError();
+    terminal.err << (isatty(STDERR_FILENO) ? "\r\x1b[K" : "")
+                 << "The figure is not finished: run the same command again.\n";
+  });
+  return WaitForChild(*pid);
+}
 
 }  // namespace
 
-void AddFigure(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("figure", "data, gnuplot script and SVG of a figure");
-  const auto figure = std::make_shared<Figure>();
-  figure->AddTo(*verb);
-  verb->callback([&action, figure] { action = [figure](Terminal& t) { return figure->Act(t); }; });
+std::vector<std::string> FigureNames() {
+  std::set<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(InstalledFolder(), error)) {
+    if (entry.path().extension() == kScript) names.insert(entry.path().stem());
+  }
+  return {names.begin(), names.end()};
+}
+
+VerbResult Figure(const Options& options, Terminal& terminal) {
+  if (options.list) return ListFigures(terminal);
+  if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
+  const fs::path folder = options.out;
+  for (const char* suffix : {kScript, kPicture}) {
+    absl::Status status = Provide(folder, options.figure + suffix, terminal);
+    if (!status.ok()) return status;
+  }
+  const auto names = VariablesOf(Contents(folder / (options.figure + kScript)));
+  if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
+  if (!options.edit) {
+    SetEnvironment(options, names);
+    const absl::StatusOr<int> status = RunScript(options, terminal);
+    if (!status.ok()) return status.status();
+    if (*status != 0) return ExitCodeOf(*status);
+  }
+  std::set<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (absl::StartsWith(entry.path().filename().string(), options.figure)) files.insert(entry);
+  }
+  for (const fs::path& file : files) terminal.out << file.string() << '\n';
+  return ExitCode::kDone;
 }
 
 }  // namespace ballpiston::client

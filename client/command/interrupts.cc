@@ -5,21 +5,25 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdint>
+#include <chrono>
 #include <cstdlib>
 #include <utility>
 
-#include "absl/time/clock.h"
 #include "client/command/exit_code.h"
 
 namespace ballpiston::client {
 namespace {
 
-sigset_t JustSigint() {
+constexpr std::chrono::milliseconds kLongestFarewell(150);
+
+sigset_t SignalsNotIgnored() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    sigaction(signal, nullptr, &action);
+    if (action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
+  }
   return signals;
 }
 
@@ -28,66 +32,47 @@ sigset_t JustSigint() {
 
 }  // namespace
 
-Interrupts::Interrupts(absl::Duration second_press) : second_press_(second_press) {
-  const sigset_t sigint = JustSigint();
-  pthread_sigmask(SIG_BLOCK, &sigint, &old_mask_);
-  signals_ = signalfd(-1, &sigint, SFD_CLOEXEC);
-  quit_ = eventfd(0, EFD_CLOEXEC);
+Interrupts::Interrupts() : signals_(SignalsNotIgnored()) {
+  pthread_sigmask(SIG_BLOCK, &signals_, &old_mask_);
+  signal_file_ = signalfd(-1, &signals_, SFD_CLOEXEC);
+  quit_file_ = eventfd(0, EFD_CLOEXEC);
   thread_ = std::thread([this] { Listen(); });
 }
 
 Interrupts::~Interrupts() {
-  eventfd_write(quit_, 1);
+  eventfd_write(quit_file_, 1);
   thread_.join();
-  close(signals_);
-  close(quit_);
+  close(signal_file_);
+  close(quit_file_);
   pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
 }
 
 void Interrupts::Listen() {
-  pollfd files[] = {{signals_, POLLIN, 0}, {quit_, POLLIN, 0}};
-  while (true) {
-    const int ready = poll(files, 2, MillisecondsToTimeout());
-    if (files[1].revents != 0) return;
-    if (ready == 0) OnTimeout();
-    if (ready > 0) OnSignal();
+  pollfd files[] = {{signal_file_, POLLIN, 0}, {quit_file_, POLLIN, 0}};
+  while (poll(files, 2, -1) < 0) {
   }
-}
-
-int Interrupts::MillisecondsToTimeout() {
+  if (files[0].revents == 0) return;
+  // A stopped terminal (Ctrl-S) or a full pipe must not keep the program from ending.
+  std::thread([] {
+    std::this_thread::sleep_for(kLongestFarewell);
+    EndProgram();
+  }).detach();
   const std::lock_guard lock(mutex_);
-  if (deadline_ == absl::InfiniteFuture()) return -1;
-  const absl::Duration left = std::max(deadline_ - absl::Now(), absl::ZeroDuration());
-  return static_cast<int>(absl::ToInt64Milliseconds(left)) + 1;
+  if (farewell_ != nullptr) (*farewell_)();
+  EndProgram();
 }
 
-void Interrupts::OnSignal() {
-  signalfd_siginfo info;
-  if (read(signals_, &info, sizeof(info)) != sizeof(info)) return;
-  const std::lock_guard lock(mutex_);
-  if (reactions_ == nullptr) EndProgram();
-  const bool first = deadline_ == absl::InfiniteFuture();
-  deadline_ = first ? absl::Now() + second_press_ : absl::InfiniteFuture();
-  first ? reactions_->on_first() : reactions_->on_second();
-}
-
-void Interrupts::OnTimeout() {
-  const std::lock_guard lock(mutex_);
-  if (absl::Now() < deadline_ || reactions_ == nullptr) return;
-  deadline_ = absl::InfiniteFuture();
-  reactions_->on_no_second();
-}
-
-Interrupts::Scope::Scope(Interrupts& interrupts, InterruptReactions reactions)
-    : interrupts_(interrupts), reactions_(std::move(reactions)) {
-  const std::lock_guard lock(interrupts_.mutex_);
-  interrupts_.reactions_ = &reactions_;
+Interrupts::Scope::Scope(Interrupts* interrupts, std::function<void()> farewell)
+    : interrupts_(interrupts), farewell_(std::move(farewell)) {
+  if (interrupts_ == nullptr) return;
+  const std::lock_guard lock(interrupts_->mutex_);
+  outer_ = std::exchange(interrupts_->farewell_, &farewell_);
 }
 
 Interrupts::Scope::~Scope() {
-  const std::lock_guard lock(interrupts_.mutex_);
-  interrupts_.reactions_ = nullptr;
-  interrupts_.deadline_ = absl::InfiniteFuture();
+  if (interrupts_ == nullptr) return;
+  const std::lock_guard lock(interrupts_->mutex_);
+  interrupts_->farewell_ = outer_;
 }
 
 }  // namespace ballpiston::client

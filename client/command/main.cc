@@ -1,18 +1,36 @@
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 
 #include "client/command/command_line.h"
+#include "client/command/interrupts.h"
 #include "client/output/standard_output.h"
+
+namespace {
+
+// See https://no-color.org.
+bool HasColour() {
+  const char* const refused = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  if (refused != nullptr && refused[0] != '\0') return false;
+  return isatty(STDERR_FILENO) && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
+
+}  // namespace
 
 // A closed pipe shows as a failed write (standard_output.h), not as a signal.
 int main(int argc, char** argv) {
   using ballpiston::client::ExitCode;
   std::signal(SIGPIPE, SIG_IGN);
   setenv("GRPC_VERBOSITY", "NONE", 0);  // what went wrong is told here, in the project's words
+  ballpiston::client::Interrupts interrupts;
   ballpiston::client::StandardOutput out;
-  ballpiston::client::Terminal terminal{out, std::cerr};
-  const ExitCode code = ballpiston::client::RunCommandLine(argc, argv, terminal);
+  ballpiston::client::Terminal terminal{.out = out, .err = std::cerr, .interrupts = &interrupts};
+  terminal.colour = HasColour();
+  const ExitCode code = ballpiston::client::RunCommandLine({argv + 1, argv + argc}, terminal);
   const absl::Status written = out.Finish();
   if (written.ok()) return static_cast<int>(code);
   std::cerr << "ballpiston: " << written.message() << '\n';

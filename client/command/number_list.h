@@ -2,12 +2,11 @@
 //
 //   NUMBER  plain decimal or scientific: 0.1, -2, 1e-5. No nan, inf, hexadecimal or blanks.
 //   COUNT   a whole number; 1e6 is one
-//   LIST    items separated by commas, each a NUMBER or a range
+//   LIST    items separated by commas, each a NUMBER or a range; at most 100,000 numbers
 //   range   FROM:TO:COUNT, evenly spaced, both ends included; with :log evenly in the logarithm
-//           (both ends above 0). COUNT is 1 to 100,000; a range of one is its FROM.
+//           (both ends above 0). A range with COUNT 1 is FROM alone.
 //
-// Every error is INVALID_ARGUMENT and names the flag, the text, and what is permitted; of a list,
-// every item that is wrong has its line (violations.h).
+// Every error is INVALID_ARGUMENT; it quotes the text and says what is permitted.
 #ifndef BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 #define BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 
@@ -21,12 +20,10 @@ namespace ballpiston::client {
 
 inline constexpr int64_t kMaxListLength = 100'000;
 
-absl::StatusOr<double> ParseNumber(absl::string_view flag, absl::string_view text);
-absl::StatusOr<int64_t> ParseCount(absl::string_view flag, absl::string_view text);
-absl::StatusOr<uint64_t> ParseSeed(absl::string_view flag, absl::string_view text);
-absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view flag, absl::string_view text);
-// A LIST of whole numbers.
-absl::StatusOr<std::vector<int32_t>> ParseCountList(absl::string_view flag, absl::string_view text);
+absl::StatusOr<double> ParseNumber(absl::string_view text);
+absl::StatusOr<int64_t> ParseCount(absl::string_view text);
+absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
+absl::StatusOr<std::vector<double>> ParseNumberList(absl::string_view text);
 
 }  // namespace ballpiston::client
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "absl/strings/str_cat.h"
 #include "client/command/follow_job.h"
-#include "client/library/ensemble_client.h"
 #include "client/output/number_text.h"
 #include "client/output/result_writer.h"
 #include "client/output/spelling.h"
@@ -19,21 +19,20 @@ void WarnOfEscapes(const v1::PointResult& point, std::ostream& err) {
       << " orbits left the cell; this is a defect, do not trust the point\n";
 }
 
-void NoteUnfinished(const v1::EnsembleJob& job, std::ostream& err) {
-  err << "ballpiston: " << job.name() << " is still " << Spelling(job.state()) << ": "
-      << job.progress().points_done() << " of " << job.progress().points()
-      << " points are finished\n";
+void NoteUnfinished(const v1::EnsembleJob& job, const Terminal& terminal) {
+  terminal.Note(absl::StrCat("ballpiston: ", job.name(), " is still ", Spelling(job.state()), ": ",
+                             job.progress().points_done(), " of ", job.progress().points(),
+                             " points are finished"));
 }
 
 // Each page may be asked for again, of a server that was started again: what came before it has
 // been printed already, and is not asked for twice.
-absl::Status PrintPoints(const Connection& connection, const EnsembleClient& client,
-                         const std::string& name, Format format, ResultWriter& writer,
-                         std::ostream& err) {
+absl::Status PrintPoints(const Connection& connection, const std::string& name, Format format,
+                         ResultWriter& writer, std::ostream& err) {
   std::string token;
   do {
     const auto page =
-        connection.Ask([&] { return client.ResultsPage(name, ViewFor(format), token); });
+        connection.Ask([&] { return connection.client.ResultsPage(name, ViewFor(format), token); });
     if (!page.ok()) return page.status();
     for (const v1::PointResult& point : page->points()) {
       writer.Add(point);
@@ -46,20 +45,19 @@ absl::Status PrintPoints(const Connection& connection, const EnsembleClient& cli
 
 }  // namespace
 
-absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
-                                     Format format, Terminal& terminal, bool answered_from_store) {
-  const EnsembleClient client(connection.channel);
-  absl::StatusOr<v1::EnsembleJob> job = connection.Ask([&] { return client.Get(name); });
+VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
+                       Terminal& terminal, bool answered_from_store) {
+  auto job = connection.Ask([&] { return connection.client.Get(name); });
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
   writer->Begin(*job);
-  const absl::Status status = PrintPoints(connection, client, name, format, *writer, terminal.err);
+  const absl::Status status = PrintPoints(connection, name, format, *writer, terminal.err);
   if (!status.ok()) return status;
   writer->End();
   terminal.out.flush();
-  if (HasEnded(job->state())) return ReportEnd(*job, terminal.err);
-  NoteUnfinished(*job, terminal.err);
+  if (HasEnded(job->state())) return ReportEnd(*job, terminal);
+  NoteUnfinished(*job, terminal);
   return ExitCode::kDone;
 }
 

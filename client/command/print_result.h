@@ -4,18 +4,16 @@
 
 #include <string>
 
-#include "absl/status/statusor.h"
 #include "client/command/connection.h"
-#include "client/command/verbs.h"
+#include "client/command/terminal.h"
 #include "client/output/format.h"
 
 namespace ballpiston::client {
 
 // kFailed for a job that failed or was cancelled; what it finished is printed all the same.
 // `answered_from_store`: Create said so, which the server does not remember.
-absl::StatusOr<ExitCode> PrintResult(const Connection& connection, const std::string& name,
-                                     Format format, Terminal& terminal,
-                                     bool answered_from_store = false);
+VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
+                       Terminal& terminal, bool answered_from_store = false);
 
 }  // namespace ballpiston::client
 

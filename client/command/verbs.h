@@ -1,39 +1,41 @@
-// The program's verbs. Each function adds one to the command line; parsing stores what the chosen
-// one will do, and nothing is done before the whole command line was found to be right.
+// The functions of the verbs. Each verb is in the file of its name; the verbs of `server` are in
+// server.cc. The parser has already checked the command line.
 #ifndef BALLPISTON_CLIENT_COMMAND_VERBS_H_
 #define BALLPISTON_CLIENT_COMMAND_VERBS_H_
 
-#include <functional>
-#include <ostream>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/command/exit_code.h"
-
-namespace CLI {
-class App;
-}
+#include "client/command/options.h"
+#include "client/command/terminal.h"
 
 namespace ballpiston::client {
 
-struct Terminal {
-  std::ostream& out;  // results only
-  std::ostream& err;  // progress, notes, errors
-};
+using VerbResult = absl::StatusOr<ExitCode>;
 
-using Action = std::function<absl::StatusOr<ExitCode>(Terminal&)>;
+VerbResult Analytic(const Options& options, Terminal& terminal);
+VerbResult Plan(const Options& options, Terminal& terminal);
+VerbResult Run(const Options& options, Terminal& terminal);
+VerbResult Submit(const Options& options, Terminal& terminal);
+VerbResult Watch(const Options& options, Terminal& terminal);
+VerbResult Result(const Options& options, Terminal& terminal);
+VerbResult ListJobs(const Options& options, Terminal& terminal);
+VerbResult Cancel(const Options& options, Terminal& terminal);
+VerbResult Delete(const Options& options, Terminal& terminal);
+VerbResult Figure(const Options& options, Terminal& terminal);
+VerbResult ServerStart(const Options& options, Terminal& terminal);
+VerbResult ServerStop(const Options& options, Terminal& terminal);
+VerbResult ServerStatus(const Options& options, Terminal& terminal);
+VerbResult ServerToken(const Options& options, Terminal& terminal);
+VerbResult ServerBackup(const Options& options, Terminal& terminal);
+VerbResult ServerCheck(const Options& options, Terminal& terminal);
+VerbResult Help(const Options& options, Terminal& terminal);
+VerbResult Complete(const Options& options, Terminal& terminal);
 
-void AddAnalytic(CLI::App& app, Action& action);
-void AddPlan(CLI::App& app, Action& action);
-void AddRun(CLI::App& app, Action& action);
-void AddSubmit(CLI::App& app, Action& action);
-void AddWatch(CLI::App& app, Action& action);
-void AddResult(CLI::App& app, Action& action);
-void AddList(CLI::App& app, Action& action);
-void AddCancel(CLI::App& app, Action& action);
-void AddDelete(CLI::App& app, Action& action);
-void AddStatus(CLI::App& app, Action& action);
-void AddFigure(CLI::App& app, Action& action);
+// The names of the installed figures.
+std::vector<std::string> FigureNames();
 
 }  // namespace ballpiston::client
 

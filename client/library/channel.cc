@@ -10,9 +10,6 @@ namespace {
 
 constexpr int kKeepaliveMilliseconds = 30'000;
 
-// A job's specification may hold 100,000 numbers, a page of jobs a thousand specifications.
-constexpr int kMaxMessageBytes = 256 << 20;
-
 // The second entry has no retry policy, and a method's own entry wins over the default.
 constexpr char kServiceConfig[] = R"({"methodConfig": [
   {"name": [{}],
@@ -35,7 +32,7 @@ grpc::ChannelArguments Arguments() {
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
   // A server on this machine or in this laboratory is not behind the web proxy.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  arguments.SetMaxReceiveMessageSize(kMaxMessageBytes);
+  arguments.SetMaxReceiveMessageSize(-1);  // the server decides how large its answers are
   arguments.SetServiceConfigJSON(kServiceConfig);
   return arguments;
 }

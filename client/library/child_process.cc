@@ -26,9 +26,6 @@ class FileActions {
                                        O_WRONLY | O_CREAT | O_APPEND, 0600);
       posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
     }
-    if (child.standard_output >= 0) {
-      posix_spawn_file_actions_adddup2(&actions_, child.standard_output, STDOUT_FILENO);
-    }
     if (!child.folder.empty()) {
       posix_spawn_file_actions_addchdir_np(&actions_, child.folder.c_str());
     }
@@ -50,12 +47,12 @@ class Attributes {
     sigset_t signals;
     sigemptyset(&signals);
     posix_spawnattr_setsigmask(&attributes_, &signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGPIPE);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&signals, signal);
     posix_spawnattr_setsigdefault(&attributes_, &signals);
-    const int session = child.detached ? POSIX_SPAWN_SETSID : 0;
-    posix_spawnattr_setflags(
-        &attributes_, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | session));
+    int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;  // the group: by default its own
+    if (child.detached) flags |= POSIX_SPAWN_SETSID;
+    if (child.own_group) flags |= POSIX_SPAWN_SETPGROUP;
+    posix_spawnattr_setflags(&attributes_, static_cast<short>(flags));
   }
   ~Attributes() { posix_spawnattr_destroy(&attributes_); }
   Attributes(const Attributes&) = delete;

@@ -1,4 +1,4 @@
-// Starting other programs: the private server, the comparison of methods, gnuplot.
+// Starting other programs: servers, the scripts of figures.
 //
 // A child starts with no signal blocked or ignored and with no file open but the standard three,
 // whatever this program has set up for itself.
@@ -18,9 +18,9 @@ namespace ballpiston::client {
 struct ChildProcess {
   std::vector<std::string> command;  // the program's path or name (then sought in PATH), arguments
   std::string folder;                // to run in; empty: this program's
-  std::string output;     // file that standard output and error are appended to; empty: inherited
-  bool detached = false;  // in a session of its own, so that Ctrl-C here does not reach it
-  int standard_output = -1;  // an open file, as of a pipe; -1: as `output` says
+  std::string output;      // file that standard output and error are appended to; empty: inherited
+  bool detached = false;   // in its own session, so that Ctrl-C here does not reach it
+  bool own_group = false;  // in its own group, so that a signal also reaches its children
 };
 
 // The path of a program in the folder of this one, whether it is there or not.

@@ -8,10 +8,10 @@
 //     FIELD: DESCRIPTION
 //     and M more                                  if the server left some out
 //
+// and the google.rpc.Status itself travels on as the absl::Status's payload.
+//
 // A message that is too large for the transport is told in plain words, with both sizes, and so is
 // a method that the server lacks.
-//
-// and the google.rpc.Status itself travels on as the absl::Status's payload.
 #ifndef BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
 #define BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
 

@@ -25,12 +25,11 @@ namespace ballpiston::client {
 struct LocalServer {
   std::string folder;   // data and log
   std::string socket;   // at most kMaxSocketPath bytes long
-  std::string program;  // what to start: a path, or a name to be sought in PATH
+  std::string program;  // what to start (server_process.h)
   // To wait for a server that lives and does not answer.
   absl::Duration start_time = absl::Minutes(1);
 
   std::string Address() const { return "unix:" + socket; }
-  std::string Log() const { return folder + "/server.log"; }
 };
 
 // From the environment: XDG_STATE_HOME, HOME, TMPDIR, BALLPISTON_SERVER_PROGRAM (else `ballpistond`

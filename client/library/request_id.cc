@@ -14,13 +14,25 @@ uint64_t Random64() {
   return (uint64_t{device()} << 32) | device();
 }
 
-}  // namespace
+// FNV-1a with a given basis.
+uint64_t Hash(absl::string_view text, uint64_t basis) {
+  for (const char c : text) basis = (basis ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return basis;
+}
 
-std::string NewRequestId() {
-  const uint64_t high = (Random64() & ~uint64_t{0xf000}) | 0x4000;               // version 4
-  const uint64_t low = (Random64() & ~(uint64_t{3} << 62)) | uint64_t{2} << 62;  // variant 1
+std::string Uuid(uint64_t high, uint64_t low, uint64_t version) {
+  high = (high & ~uint64_t{0xf000}) | version << 12;
+  low = (low & ~(uint64_t{3} << 62)) | uint64_t{2} << 62;  // variant 1
   return absl::StrFormat("%08x-%04x-%04x-%04x-%012x", high >> 32, (high >> 16) & 0xffff,
                          high & 0xffff, low >> 48, low & 0xffffffffffff);
+}
+
+}  // namespace
+
+std::string NewRequestId() { return Uuid(Random64(), Random64(), 4); }
+
+std::string RequestIdFor(absl::string_view text) {
+  return Uuid(Hash(text, 0xcbf29ce484222325), Hash(text, 0x9e3779b97f4a7c15), 8);
 }
 
 bool IsRequestId(absl::string_view text) {

@@ -1,10 +1,13 @@
 #include "client/output/analytic_output.h"
 
-#include <string>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
 
-#include "absl/strings/str_cat.h"
+#include <string>
+#include <utility>
+
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
+#include "client/output/csv_row.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
 #include "client/output/text_table.h"
@@ -12,123 +15,83 @@
 namespace ballpiston::client {
 namespace {
 
-using Pair = v1::PairAnalytics;
-using Energy = v1::EnergyAnalytics;
-using Canonical = v1::CanonicalAnalytics;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using Cells = std::vector<std::string>;
 
-struct PairColumn {
-  const char* name;
-  double (Pair::*value)() const;
-};
-
-// The reference table's columns in its order; the bounds are printed after the energies' in CSV, so
-// that what both tables have comes first.
-constexpr PairColumn kPairColumns[] = {{"rho", &Pair::rho},
-                                       {"delta", &Pair::delta},
-                                       {"lambda", &Pair::lambda},
-                                       {"eta", &Pair::eta},
-                                       {"cell_area", &Pair::cell_area},
-                                       {"volume", &Pair::volume},
-                                       {"area_ball_piston", &Pair::area_ball_piston},
-                                       {"area_ball_wall", &Pair::area_ball_wall},
-                                       {"area_piston_wall", &Pair::area_piston_wall},
-                                       {"tau_ball_piston", &Pair::tau_ball_piston},
-                                       {"tau_ball_wall", &Pair::tau_ball_wall},
-                                       {"tau_piston_wall", &Pair::tau_piston_wall}};
-constexpr PairColumn kBoundColumns[] = {{"pair_delta_bound", &Pair::pair_delta_bound},
-                                        {"gas_delta_bound", &Pair::gas_delta_bound},
-                                        {"rare_limit_rate", &Pair::rare_limit_rate}};
-
-struct EnergyColumn {
-  const char* name;
-  double (Energy::*value)() const;
-};
-
-constexpr EnergyColumn kEnergyColumns[] = {
-    {"epsilon", &Energy::epsilon},
-    {"phi", &Energy::phi},
-    {"f", &Energy::f},
-    {"j", &Energy::j},
-    {"h", &Energy::h},
-    {"mean_free_time_conditional", &Energy::mean_free_time_conditional}};
-
-struct CanonicalColumn {
-  const char* name;
-  double (Canonical::*value)() const;
-};
-
-constexpr CanonicalColumn kCanonicalColumns[] = {
-    {"beta", &Canonical::beta},
-    {"temperature", &Canonical::temperature},
-    {"mean_f", &Canonical::mean_f},
-    {"mean_energy_current", &Canonical::mean_energy_current},
-    {"mean_h", &Canonical::mean_h},
-    {"exchange_rate", &Canonical::exchange_rate},
-    {"static_conductivity", &Canonical::static_conductivity},
-    {"rare_limit_exchange_rate", &Canonical::rare_limit_exchange_rate}};
-
-template <typename Columns>
-void AppendNames(const Columns& columns, std::vector<std::string>& cells) {
-  for (const auto& column : columns) cells.push_back(column.name);
-}
-
-// Without a message the cells stay empty.
-template <typename Columns, typename Message>
-void AppendValues(const Columns& columns, const Message* message, std::vector<std::string>& cells) {
-  for (const auto& column : columns) {
-    cells.push_back(message == nullptr ? "" : ExactText((message->*column.value)()));
+// The numbers of a message are its columns, in the proto's order.
+std::vector<const FieldDescriptor*> Columns(const google::protobuf::Descriptor& descriptor) {
+  std::vector<const FieldDescriptor*> columns;
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor* field = descriptor.field(i);
+    const bool is_number = field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
+    if (is_number && !field->is_repeated()) columns.push_back(field);
   }
+  return columns;
 }
 
-std::string CsvRow(const Pair& pair, const Energy* energy, const Canonical* canonical) {
-  std::vector<std::string> cells;
-  AppendValues(kPairColumns, &pair, cells);
-  AppendValues(kEnergyColumns, energy, cells);
-  AppendValues(kBoundColumns, &pair, cells);
-  AppendValues(kCanonicalColumns, canonical, cells);
-  return absl::StrCat(absl::StrJoin(cells, ","), "\n");
+template <typename Type>
+Cells Names() {
+  Cells names;
+  for (const FieldDescriptor* column : Columns(*Type::descriptor()))
+    names.push_back(column->name());
+  return names;
+}
+
+Cells Values(const Message& message, std::string (*text)(double)) {
+  Cells cells;
+  for (const FieldDescriptor* column : Columns(*message.GetDescriptor())) {
+    cells.push_back(text(message.GetReflection()->GetDouble(message, column)));
+  }
+  return cells;
+}
+
+Cells Joined(Cells cells, const Cells& more, const Cells& still_more) {
+  cells.insert(cells.end(), more.begin(), more.end());
+  cells.insert(cells.end(), still_more.begin(), still_more.end());
+  return cells;
 }
 
 void PrintCsv(const v1::EvaluatePairsResponse& response, std::ostream& out) {
-  std::vector<std::string> names;
-  AppendNames(kPairColumns, names);
-  AppendNames(kEnergyColumns, names);
-  AppendNames(kBoundColumns, names);
-  AppendNames(kCanonicalColumns, names);
-  out << absl::StrJoin(names, ",") << '\n';
-  for (const Pair& pair : response.points()) {
-    if (pair.energies().empty() && pair.canonical().empty()) out << CsvRow(pair, nullptr, nullptr);
-    for (const Energy& energy : pair.energies()) out << CsvRow(pair, &energy, nullptr);
-    for (const Canonical& row : pair.canonical()) out << CsvRow(pair, nullptr, &row);
+  const Cells energies = Names<v1::EnergyAnalytics>(), averages = Names<v1::CanonicalAnalytics>();
+  const Cells no_energy(energies.size()), no_averages(averages.size());
+  out << CsvRow(Joined(Names<v1::PairAnalytics>(), energies, averages));
+  for (const v1::PairAnalytics& pair : response.points()) {
+    const Cells cells = Values(pair, &ExactText);
+    if (pair.energies().empty() && pair.canonical().empty()) {
+      out << CsvRow(Joined(cells, no_energy, no_averages));
+    }
+    for (const auto& energy : pair.energies()) {
+      out << CsvRow(Joined(cells, Values(energy, &ExactText), no_averages));
+    }
+    for (const auto& row : pair.canonical()) {
+      out << CsvRow(Joined(cells, no_energy, Values(row, &ExactText)));
+    }
   }
 }
 
 std::string TableCell(double x) { return absl::StrFormat("%.15g", x); }
 
-void PrintQuantities(const Pair& pair, std::ostream& out) {
+void PrintQuantities(const v1::PairAnalytics& pair, std::ostream& out) {
   TextTable table({{"quantity", TextTable::Column::kLeft}, {"value", TextTable::Column::kLeft}});
-  const auto add = [&](const PairColumn& column) {
-    table.AddRow({column.name, TableCell((pair.*column.value)())});
-  };
-  for (const PairColumn& column : kPairColumns) add(column);
-  for (const PairColumn& column : kBoundColumns) add(column);
+  const Cells names = Names<v1::PairAnalytics>(), values = Values(pair, &TableCell);
+  for (size_t i = 0; i < names.size(); ++i) table.AddRow({names[i], values[i]});
   table.Print(out);
 }
 
-template <typename Columns, typename Message>
-std::vector<std::string> TableCells(const Columns& columns, const Message& message) {
-  std::vector<std::string> cells;
-  for (const auto& column : columns) cells.push_back(TableCell((message.*column.value)()));
-  return cells;
+TextTable TableOf(const Cells& titles) {
+  std::vector<TextTable::Column> columns;
+  for (const std::string& title : titles) columns.push_back({title});
+  return TextTable(columns);
 }
 
-void PrintEnergies(const Pair& pair, const std::vector<double>& outgoing, std::ostream& out) {
-  std::vector<TextTable::Column> columns;
-  for (const EnergyColumn& column : kEnergyColumns) columns.push_back({column.name});
-  for (const double energy : outgoing) columns.push_back({absl::StrFormat("W(%g)", energy)});
-  TextTable table(columns);
-  for (const Energy& energy : pair.energies()) {
-    std::vector<std::string> cells = TableCells(kEnergyColumns, energy);
+void PrintEnergies(const v1::PairAnalytics& pair, const std::vector<double>& outgoing,
+                   std::ostream& out) {
+  Cells titles = Names<v1::EnergyAnalytics>();
+  for (const double energy : outgoing) titles.push_back(absl::StrFormat("W(%g)", energy));
+  TextTable table = TableOf(titles);
+  for (const v1::EnergyAnalytics& energy : pair.energies()) {
+    Cells cells = Values(energy, &TableCell);
     for (const double w : energy.kernel()) cells.push_back(TableCell(w));
     table.AddRow(std::move(cells));
   }
@@ -136,11 +99,9 @@ void PrintEnergies(const Pair& pair, const std::vector<double>& outgoing, std::o
   table.Print(out, 2);
 }
 
-void PrintCanonical(const Pair& pair, std::ostream& out) {
-  std::vector<TextTable::Column> columns;
-  for (const CanonicalColumn& column : kCanonicalColumns) columns.push_back({column.name});
-  TextTable table(columns);
-  for (const Canonical& row : pair.canonical()) table.AddRow(TableCells(kCanonicalColumns, row));
+void PrintCanonical(const v1::PairAnalytics& pair, std::ostream& out) {
+  TextTable table = TableOf(Names<v1::CanonicalAnalytics>());
+  for (const auto& row : pair.canonical()) table.AddRow(Values(row, &TableCell));
   out << '\n';
   table.Print(out, 2);
 }
@@ -148,7 +109,7 @@ void PrintCanonical(const Pair& pair, std::ostream& out) {
 void PrintTable(const v1::EvaluatePairsResponse& response, const std::vector<double>& outgoing,
                 std::ostream& out) {
   const char* separator = "";
-  for (const Pair& pair : response.points()) {
+  for (const v1::PairAnalytics& pair : response.points()) {
     out << separator;
     separator = "\n";
     PrintQuantities(pair, out);

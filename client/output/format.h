@@ -2,9 +2,6 @@
 #ifndef BALLPISTON_CLIENT_OUTPUT_FORMAT_H_
 #define BALLPISTON_CLIENT_OUTPUT_FORMAT_H_
 
-#include "absl/status/statusor.h"
-#include "absl/strings/string_view.h"
-
 namespace ballpiston::client {
 
 enum class Format {
@@ -13,8 +10,6 @@ enum class Format {
   kJsonl,  // one JSON object a line, one line a point
   kCsv     // a header, then one row for each point and estimate
 };
-
-absl::StatusOr<Format> ParseFormat(absl::string_view text);
 
 }  // namespace ballpiston::client
 

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "absl/time/time.h"
+#include "client/output/csv_row.h"
 #include "client/output/json.h"
 #include "client/output/number_text.h"
 #include "client/output/spelling.h"
@@ -47,18 +46,14 @@ Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs) {
   return differ;
 }
 
-// A principal's name may hold any character.
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
-}
-
 void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
          "priority\n";
   for (const v1::EnsembleJob& job : jobs) {
-    out << absl::StrJoin(CellsOf(job), ",") << ',' << Quoted(job.principal()) << ','
-        << job.priority() << '\n';
+    std::vector<std::string> cells = CellsOf(job);
+    cells.push_back(job.principal());  // it may hold any character
+    cells.push_back(absl::StrCat(job.priority()));
+    out << CsvRow(cells);
   }
 }
 

@@ -7,8 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
-#include "absl/strings/string_view.h"
+#include "client/output/csv_row.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
@@ -29,12 +28,6 @@ bool IsChosen(const v1::PointPlan& point, const v1::ModelPlan& model) {
   return point.model() == model.model() && model.model() != v1::EnsembleSpec::MODEL_UNSPECIFIED;
 }
 
-// As RFC 4180 has it: in quotes where a comma, a quote or a line's end would be misread.
-std::string CsvText(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
-}
-
 std::string WholeReason(const v1::PointPlan& point, const v1::ModelPlan& model) {
   if (!IsChosen(point, model) || point.reason().empty()) return model.reason();
   if (model.reason().empty() || model.reason() == point.reason()) return point.reason();
@@ -48,7 +41,7 @@ Cells CsvCells(const v1::PointPlan& point, const v1::ModelPlan& model) {
   Append({Spelling(model.model()), truth(IsChosen(point, model)), truth(model.answers()),
           number(model.has_samples(), model.samples()), number(model.has_work(), model.work()),
           number(model.has_statistical_error(), model.statistical_error()),
-          number(model.has_model_error(), model.model_error()), CsvText(WholeReason(point, model))},
+          number(model.has_model_error(), model.model_error()), WholeReason(point, model)},
          cells);
   return cells;
 }
@@ -58,7 +51,7 @@ void PrintCsv(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
          "model_error,reason\n";
   for (const v1::PointPlan& point : plan.points()) {
     for (const v1::ModelPlan& model : point.models()) {
-      out << absl::StrJoin(CsvCells(point, model), ",") << '\n';
+      out << CsvRow(CsvCells(point, model));
     }
   }
 }

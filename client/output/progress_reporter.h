@@ -1,49 +1,60 @@
-// Tells on standard error how a watched job gets on.
+// Shows the progress of a watched job on standard error.
 //
 //   bar   one line, redrawn: bar, points, samples a second, time left, and the running estimate of
 //         the point that changed last
-//   json  one object a line: {"job", "state", "progress", "samples_per_second", "seconds_left",
-//         "points"}, or a note's {"note"}; the points that changed since the line before,
-//         unfinished ones first, the newest of each kind first; the state of a job that had ended
-//         before is told last, and STATE_UNSPECIFIED with its points
-//   none  nothing but notes
+//   json  one v1.WatchProgress per line, with the points that changed: unfinished ones first, the
+//         newest of each kind first
+//   none  only notes
 //
-// Thread-safe: notes come from the thread that handles Ctrl-C while the bar is being redrawn.
+// Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.
 #ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_
 #define BALLPISTON_CLIENT_OUTPUT_PROGRESS_REPORTER_H_
 
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <ostream>
+#include <string>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/progress.pb.h"
+#include "client/output/progress_meter.h"
 
 namespace ballpiston::client {
 
-enum class ProgressStyle { kBar, kJson, kNone };
-
-// `auto` is a bar if standard error is a terminal.
-absl::StatusOr<ProgressStyle> ParseProgressStyle(absl::string_view text);
+enum class ProgressStyle { kAuto, kBar, kJson, kNone };
 
 class ProgressReporter {
  public:
-  virtual ~ProgressReporter() = default;
+  // kAuto is a bar if standard error is a terminal, else none. `name` is the job's; `err` has to
+  // outlive the reporter.
+  ProgressReporter(ProgressStyle style, std::ostream& err, absl::string_view name);
 
-  virtual void OnJob(const v1::EnsembleJob& job) = 0;
-  virtual void OnSnapshot(const v1::StatisticsSnapshot& snapshot) = 0;
-  virtual void OnDisconnect(const absl::Status& why, absl::Duration pause) = 0;
-  virtual void OnEnd() = 0;  // the watch is over; nothing but notes comes after this
-  // A line for the user that is not progress; shown whatever the style.
-  virtual void Note(absl::string_view text) = 0;
+  void OnJob(const v1::EnsembleJob& job);
+  void OnSnapshot(const v1::StatisticsSnapshot& snapshot);
+  void OnDisconnect(const absl::Status& why, absl::Duration pause);
+  void OnEnd();  // the watch is over; only notes follow
+  // Lines for the user that are not progress; every style shows them.
+  void Note(absl::string_view text);
+  // The last words before the program ends: clears the bar, which is not drawn again.
+  void Farewell(absl::string_view text);
+
+ private:
+  void Show(const v1::StatisticsSnapshot& changes);
+  void WriteJson(const v1::StatisticsSnapshot& changes, absl::string_view note);
+  void WriteLines(absl::string_view text);
+
+  const ProgressStyle style_;
+  std::ostream& err_;
+  std::timed_mutex mutex_;
+  v1::EnsembleJob job_;
+  bool named_ = false;  // the job
+  bool drawn_ = false;  // a line that has no end yet
+  ProgressMeter meter_;
+  std::optional<v1::PointResult> point_;
 };
-
-// `name` is that of the job that is watched; it may be left out where there are only notes. `err`
-// has to outlive the reporter.
-std::unique_ptr<ProgressReporter> NewProgressReporter(ProgressStyle style, std::ostream& err,
-                                                      absl::string_view name = "");
 
 }  // namespace ballpiston::client
 

@@ -10,18 +10,49 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/output/csv_row.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
 #include "client/output/parameter_text.h"
-#include "client/output/result_row.h"
 #include "client/output/spelling.h"
 #include "client/output/text_table.h"
 
 namespace ballpiston::client {
 namespace {
 
-std::string ExactOrEmpty(std::optional<double> x) { return x ? ExactText(*x) : ""; }
+// The estimates in their order, then the divergence and its noise floor where they exist.
+std::vector<v1::Estimate> EstimatesOf(const v1::PointResult& point) {
+  std::vector<v1::Estimate> rows(point.estimates().begin(), point.estimates().end());
+  if (!point.has_kl_divergence()) return rows;
+  const v1::KlDivergence& kl = point.kl_divergence();
+  const auto add = [&rows](const char* name, double value, double error) {
+    rows.emplace_back().set_name(name);
+    rows.back().set_value(value);
+    rows.back().set_standard_error(error);
+  };
+  add("kl_divergence", kl.value(), kl.standard_error());
+  add("kl_noise_floor", kl.noise_floor(), kl.noise_error());
+  return rows;
+}
+
+// A field of an estimate that may be absent.
+struct Field {
+  bool (v1::Estimate::*is_there)() const;
+  double (v1::Estimate::*value)() const;
+
+  std::optional<double> Of(const v1::Estimate& estimate) const {
+    if (!(estimate.*is_there)()) return std::nullopt;
+    return (estimate.*value)();
+  }
+};
+
+constexpr Field kError = {&v1::Estimate::has_standard_error, &v1::Estimate::standard_error};
+constexpr Field kExact = {&v1::Estimate::has_exact, &v1::Estimate::exact};
+constexpr Field kZScore = {&v1::Estimate::has_z_score, &v1::Estimate::z_score};
+constexpr Field kModelError = {&v1::Estimate::has_model_error, &v1::Estimate::model_error};
+constexpr Field kNoiseFloor = {&v1::Estimate::has_noise_floor, &v1::Estimate::noise_floor};
+constexpr Field kLimit = {&v1::Estimate::has_limit, &v1::Estimate::limit};
 
 class CsvWriter : public ResultWriter {
  public:
@@ -34,14 +65,14 @@ class CsvWriter : public ResultWriter {
   void Add(const v1::PointResult& point) override {
     std::vector<std::string> cells = ParameterColumns(point.parameters());
     cells.insert(cells.end(), {Spelling(point.model()), ExactText(point.samples())});
-    const std::string prefix = absl::StrJoin(cells, ",");
-    for (const ResultRow& row : ResultRows(point)) {
-      out_ << prefix << ',' << row.name << ',' << ExactText(row.value);
-      for (const auto& x : {row.standard_error, row.exact, row.z_score, row.model_error,
-                            row.noise_floor, row.limit}) {
-        out_ << ',' << ExactOrEmpty(x);
+    for (const v1::Estimate& row : EstimatesOf(point)) {
+      std::vector<std::string> all = cells;
+      all.insert(all.end(), {row.name(), ExactText(row.value())});
+      for (const Field& field : {kError, kExact, kZScore, kModelError, kNoiseFloor, kLimit}) {
+        const std::optional<double> x = field.Of(row);
+        all.push_back(x ? ExactText(*x) : "");
       }
-      out_ << '\n';
+      out_ << CsvRow(all);
     }
   }
   void End() override {}
@@ -83,18 +114,18 @@ class JsonWriter : public ResultWriter {
 // Columns that a table has only if some estimate has them.
 struct ExtraColumn {
   const char* title;
-  std::optional<double> ResultRow::*value;
+  Field field;
   // In the places of the estimate beside it; an error has its own two digits.
   bool is_error;
 };
-constexpr ExtraColumn kExtraColumns[] = {{"model_error", &ResultRow::model_error, true},
-                                         {"noise_floor", &ResultRow::noise_floor, false},
-                                         {"limit", &ResultRow::limit, false}};
+constexpr ExtraColumn kExtraColumns[] = {{"model_error", kModelError, true},
+                                         {"noise_floor", kNoiseFloor, false},
+                                         {"limit", kLimit, false}};
 
-std::string ExtraCell(const ExtraColumn& column, const ResultRow& row) {
-  const std::optional<double> x = row.*column.value;
+std::string ExtraCell(const ExtraColumn& column, const v1::Estimate& row) {
+  const std::optional<double> x = column.field.Of(row);
   if (!x) return "";
-  return column.is_error ? TwoDigits(*x) : Measured(row.value, row.standard_error, x).exact;
+  return column.is_error ? TwoDigits(*x) : Measured(row.value(), kError.Of(row), x).exact;
 }
 
 // Keeps the rows until the end, when the columns' widths are known.
@@ -109,7 +140,7 @@ class TableWriter : public ResultWriter {
     parameters_.Include(point.parameters());
     reasons_.Add(point.parameters(), point.model(), point.reason());
     points_.push_back({point.parameters(), Spelling(point.model()), ExactText(point.samples()),
-                       ResultRows(point)});
+                       EstimatesOf(point)});
   }
 
   void End() override {
@@ -125,7 +156,7 @@ class TableWriter : public ResultWriter {
   struct Point {
     v1::PointParameters parameters;
     std::string model, samples;
-    std::vector<ResultRow> rows;
+    std::vector<v1::Estimate> rows;
   };
 
   bool HasSeveralModels() const { return models_.size() > 1; }
@@ -133,8 +164,9 @@ class TableWriter : public ResultWriter {
   void FindExtraColumns() {
     for (const ExtraColumn& column : kExtraColumns) {
       const bool present = std::any_of(points_.begin(), points_.end(), [&](const Point& point) {
-        return std::any_of(point.rows.begin(), point.rows.end(),
-                           [&](const ResultRow& row) { return (row.*column.value).has_value(); });
+        return std::any_of(point.rows.begin(), point.rows.end(), [&](const v1::Estimate& row) {
+          return column.field.Of(row).has_value();
+        });
       });
       if (present) extra_columns_.push_back(column);
     }
@@ -170,11 +202,11 @@ class TableWriter : public ResultWriter {
 
   void AddRows(const Point& point, TextTable& table) const {
     const std::vector<std::string> point_cells = PointCells(point);
-    for (const ResultRow& row : point.rows) {
+    for (const v1::Estimate& row : point.rows) {
       std::vector<std::string> cells = point_cells;
-      const MeasuredText text = Measured(row.value, row.standard_error, row.exact);
-      const std::string z = row.z_score ? absl::StrFormat("%+.2f", *row.z_score) : "";
-      cells.insert(cells.end(), {row.name, text.value, text.error, text.exact, z});
+      const MeasuredText text = Measured(row.value(), kError.Of(row), kExact.Of(row));
+      const std::string z = row.has_z_score() ? absl::StrFormat("%+.2f", row.z_score()) : "";
+      cells.insert(cells.end(), {row.name(), text.value, text.error, text.exact, z});
       for (const ExtraColumn& column : extra_columns_) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }

@@ -1,6 +1,7 @@
 #include <limits>
 #include <utility>
 
+#include "server/api/list_filter.h"
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
 
@@ -18,6 +19,7 @@ absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
   query.max_jobs = check.PageSize(request.page_size());
   query.before = check.PageStart(request.page_token(), kList, std::numeric_limits<int64_t>::max());
   query.max_bytes = kMaxPageBytes;
+  query.filter = ReadListFilter(request, check);
   if (!check.ok()) return check.status();
   absl::StatusOr<JobsPage> page = service.book.List(call.caller, query);
   if (!page.ok()) return page.status();

@@ -31,6 +31,52 @@ size_t MostBytesOf(const JobRecord& record) {
          record.error.size();
 }
 
+// Collects the records of one page, newest first, until one of the query's bounds is reached.
+class PageOfRecords {
+ public:
+  explicit PageOfRecords(const JobsQuery& query) : query_(query) {}
+
+  // False: the page ends before this record.
+  bool Take(JobRecord record) {
+    const size_t bytes = MostBytesOf(record);
+    if (HasReadEnough(bytes) || IsFull()) return End();
+    const bool matches = query_.filter.Matches(record);
+    if (matches && !HasRoom(bytes)) return End();
+    ++read_;
+    bytes_read_ += bytes;
+    last_read_ = record.sequence;
+    if (!matches) return true;
+    bytes_ += bytes;
+    records_.push_back(std::move(record));
+    return true;
+  }
+
+  const std::vector<JobRecord>& records() const { return records_; }
+  std::optional<int64_t> next_before() const { return next_before_; }
+
+ private:
+  bool IsFull() const { return records_.size() == static_cast<size_t>(query_.max_jobs); }
+  bool HasRoom(size_t bytes) const {
+    return records_.empty() || bytes_ + bytes <= query_.max_bytes;
+  }
+  bool HasReadEnough(size_t bytes) const {
+    return read_ > 0 &&
+           (read_ == query_.max_jobs_read || bytes_read_ + bytes > query_.max_bytes_read);
+  }
+  bool End() {
+    next_before_ = last_read_;
+    return false;
+  }
+
+  const JobsQuery& query_;
+  std::vector<JobRecord> records_;
+  size_t bytes_ = 0;  // of these
+  int read_ = 0;      // records read, matching or not
+  size_t bytes_read_ = 0;
+  int64_t last_read_ = 0;
+  std::optional<int64_t> next_before_;
+};
+
 // The job, if the caller may see it.
 absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Principal& caller,
                                                    const std::string& id) {
@@ -348,28 +394,20 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
 
 absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery& query) {
   const bool everybodys = caller.role == Role::kAdmin;
-  std::vector<JobRecord> records;
-  JobsPage page;
-  size_t bytes = 0;
-  const auto take = [&](JobRecord record) {
-    bytes += MostBytesOf(record);
-    const bool full = records.size() == static_cast<size_t>(query.max_jobs);
-    const bool ends = full || (!records.empty() && bytes > query.max_bytes);
-    if (ends) page.next_before = records.back().sequence;
-    if (!ends) records.push_back(std::move(record));
-    return !ends;
-  };
+  PageOfRecords records(query);
   const absl::Status read = store_.Read([&](Database& database) {
     return ReadJobs(database, everybodys ? std::nullopt : std::optional(caller.name), query.before,
-                    take);
+                    [&](JobRecord record) { return records.Take(std::move(record)); });
   });
   if (!read.ok()) return StoreFailure(read);
-  for (const JobRecord& record : records) {
+  JobsPage page{.jobs = {}, .next_before = records.next_before()};
+  for (const JobRecord& record : records.records()) {
     // How far an active one has come, the store does not know.
     absl::StatusOr<v1::EnsembleJob> job =
         HasEnded(record.state) ? JobMessage(record) : Get(caller, record.id);
     if (absl::IsNotFound(job.status())) continue;  // it has ended and was deleted just now
     if (!job.ok()) return job.status();
+    if (!query.filter.MatchesState(job->state())) continue;  // it has changed since the read
     page.jobs.push_back(*std::move(job));
   }
   return page;

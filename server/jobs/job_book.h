@@ -27,21 +27,31 @@
 #include "server/jobs/acceptance.h"
 #include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
+#include "server/jobs/job_filter.h"
 #include "server/limits.h"
 #include "server/security/principal.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
 
+// The most that one page reads from the store while it looks for jobs that match. 2,000 small jobs
+// take 4 ms, 16 MiB of large ones 12 ms.
+inline constexpr int kMaxJobsRead = 2000;
+inline constexpr size_t kMaxJobBytesRead = size_t{16} << 20;
+
 struct JobsQuery {
+  JobFilter filter = {};
   int64_t before = 0;  // newest first, those older than this sequence
   int max_jobs = 1;
   size_t max_bytes = 0;  // ends a page that has a job already
+  // These end a page too, even if it has no job yet. At least one job is read.
+  int max_jobs_read = kMaxJobsRead;
+  size_t max_bytes_read = kMaxJobBytesRead;
 };
 
 struct JobsPage {
   std::vector<v1::EnsembleJob> jobs;
-  std::optional<int64_t> next_before;  // none: this is the last page
+  std::optional<int64_t> next_before;  // where the next page begins; none: this is the last page
 };
 
 // What a watch needs of a job.

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -16,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/observability/log.h"
@@ -27,6 +29,24 @@ namespace {
 constexpr char kLockFile[] = "lock";  // clients look at both, too (client/library/local_server.cc)
 constexpr char kAddressFile[] = "server.address";
 constexpr char kClientsLog[] = "server.log";  // where a client that starts a server has it write
+
+// Whether the file contains nothing or a process id. If not, another program wrote it.
+bool IsAServersLock(int file) {
+  char text[32];
+  const ssize_t size = pread(file, text, sizeof(text), 0);
+  if (size < 0 || size == sizeof(text)) return false;
+  return std::all_of(text, text + size, [](char c) { return absl::ascii_isdigit(c) || c == '\n'; });
+}
+
+bool EmptyLock(int file) { return IsAServersLock(file) && ftruncate(file, 0) == 0; }
+
+// The file is emptied first, so a reader sees no mixture of two ids. Without the id the
+// server works, but clients cannot stop it. So a disk that does not accept the id is no failure.
+void WriteProcessId(int file) {
+  if (!EmptyLock(file)) return;
+  const std::string line = absl::StrCat(getpid(), "\n");
+  [[maybe_unused]] const ssize_t written = pwrite(file, line.data(), line.size(), 0);
+}
 
 // A client that looks whether a server lives here has the lock for a moment: hence attempts.
 // Returns errno.
@@ -146,6 +166,7 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   if (lock < 0) return NotWritable(path, errno);
   const int error = Lock(lock);
   if (error == 0) {
+    WriteProcessId(lock);
     unlink(AddressFile(path).c_str());  // left by one that is gone
     return DataDirectory(path, lock);
   }
@@ -167,6 +188,7 @@ DataDirectory& DataDirectory::operator=(DataDirectory&& other) noexcept {
 DataDirectory::~DataDirectory() {
   if (lock_ < 0) return;
   unlink(AddressFile(path_).c_str());
+  EmptyLock(lock_);
   close(lock_);
 }
 

@@ -1,10 +1,23 @@
 // The folder a server keeps its state in, held by one server at a time.
 //
 // Made, readable by its owner only, if it does not exist. One of our user's that others may enter
-// is closed to them if it is empty or has been a server's, and that is logged. A lock on the file
-// `lock` in it, held as long as this object lives (and released by the kernel when the process
-// dies), keeps a second server out, and tells clients that a server lives here. Where it listens is
-// in the file `server.address`.
+// is closed to them if it is empty or has been a server's, and that is logged.
+//
+// Two files in it are for clients, and for servers that are kept out:
+//   lock            The server holds an exclusive lock (flock) on it as long as this object lives.
+//                   The kernel releases the lock when the process ends, however it ends. The file
+//                   contains the server's process id: one line of decimal digits.
+//   server.address  One line: where the server listens. Written when it listens.
+//
+// A client that wants to stop the server tests the lock, then reads the id, then sends SIGTERM:
+//   - The file is not locked: no server is here. The file's content means nothing.
+//   - It is locked and contains a line: that is the server's id. There is one exception: a server
+//     that was killed leaves its id, and the next server replaces it only some microseconds after
+//     it has taken the lock. The old id is that of a dead process: if there is no such process, or
+//     it is not a ballpistond, read the file again.
+//   - It is locked and empty: the server is about to write its id, retry; or the disk is full.
+// The server empties the file before it releases the lock. It never changes a file `lock` that
+// contains something else, which another program must have written.
 #ifndef BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 #define BALLPISTON_SERVER_STORE_DATA_DIRECTORY_H_
 

@@ -16,6 +16,9 @@ grpc::Status FakeEnsembleService::CreateEnsembleJob(grpc::ServerContext*,
   if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   if (!create_end.ok()) return create_end;
   *job = jobs.at(0);
+  if (asked_.create.size() <= created_states.size()) {
+    job->set_state(created_states[asked_.create.size() - 1]);
+  }
   job->set_answered_from_store(answers_from_store);
   return grpc::Status::OK;
 }
@@ -43,8 +46,11 @@ grpc::Status FakeEnsembleService::GetEnsembleJob(grpc::ServerContext*,
 grpc::Status FakeEnsembleService::ListEnsembleJobs(grpc::ServerContext*,
                                                    const v1::ListEnsembleJobsRequest* request,
                                                    v1::ListEnsembleJobsResponse* page) {
+  const std::lock_guard lock(mutex_);
+  asked_.list.push_back(*request);
   const size_t from = request->page_token().empty() ? 0 : std::stoul(request->page_token());
-  const size_t to = std::min(from + static_cast<size_t>(page_size), jobs.size());
+  const auto size = static_cast<size_t>(std::min(page_size, request->page_size()));
+  const size_t to = std::min(from + size, jobs.size());
   for (size_t i = from; i < to; ++i) *page->add_jobs() = jobs[i];
   if (to < jobs.size()) page->set_next_page_token(std::to_string(to));
   return grpc::Status::OK;
@@ -57,13 +63,20 @@ grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
   asked_.cancel.push_back(*request);
   if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   *job = JobIn(v1::EnsembleJob::CANCELLED);
-  if (request->request_id() == asked_.cancel.front().request_id()) return grpc::Status::OK;
+  job->set_name(request->name());
+  const auto first = std::find_if(
+      asked_.cancel.begin(), asked_.cancel.end(),
+      [&](const v1::CancelEnsembleJobRequest& asked) { return asked.name() == request->name(); });
+  if (first->request_id() == request->request_id()) return grpc::Status::OK;
   return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
 }
 
 grpc::Status FakeEnsembleService::DeleteEnsembleJob(grpc::ServerContext*,
                                                     const v1::DeleteEnsembleJobRequest* request,
                                                     google::protobuf::Empty*) {
+  const std::lock_guard lock(mutex_);
+  asked_.remove.push_back(*request);
+  if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   return Find(request->name()) == nullptr ? JobNotFound(request->name()) : grpc::Status::OK;
 }
 
@@ -114,6 +127,7 @@ FakeServer::~FakeServer() {
 void FakeServer::Start() {
   grpc::ServerBuilder builder;
   builder.AddListeningPort(Address(), grpc::InsecureServerCredentials());
+  builder.SetMaxReceiveMessageSize(largest_request);
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
   builder.RegisterService(&server);

@@ -33,17 +33,20 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_attempts = 0;  // this many attempts to create or cancel a job fail first
+  int unavailable_attempts = 0;  // of create, cancel and delete, this many fail first
   grpc::Status create_end;
+  std::vector<v1::EnsembleJob::State> created_states;  // of the jobs that Create makes, in order
   bool answers_from_store = false;  // Create answers with this value of answered_from_store
-  int page_size = 2;                // the size that the client asks for is ignored
+  int page_size = 2;                // at most, whatever the client asks for
   int unavailable_later_pages = 0;  // this many attempts to list a page after the first one fail
 
   // The requests so far.
   struct Requests {
     std::vector<v1::WatchEnsembleJobRequest> watch;
     std::vector<v1::CreateEnsembleJobRequest> create;
+    std::vector<v1::ListEnsembleJobsRequest> list;
     std::vector<v1::CancelEnsembleJobRequest> cancel;
+    std::vector<v1::DeleteEnsembleJobRequest> remove;
     std::vector<v1::PlanEnsembleJobRequest> plan;
     std::vector<v1::ListResultsRequest> results;
   };
@@ -109,6 +112,7 @@ class FakeServer {
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
   FakeServerService server;
+  int largest_request = 4 << 20;  // bytes; -1: any
 
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }

@@ -84,14 +84,17 @@ TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {
             std::string::npos);
 }
 
-// A client uses the lock and the address to see that a server is starting or stopping.
-TEST_F(PrivateServerTest, AServerLocksItsFolderAndWritesItsAddressThere) {
+// A client uses the lock and the address to see that a server is starting or stopping, and the
+// process id to stop it.
+TEST_F(PrivateServerTest, AServerLocksItsFolderAndWritesItsIdAndAddressThere) {
   ASSERT_THAT(Client(kRun), ExitsWith(0));
   const int lock = open(State("lock").c_str(), O_RDONLY | O_CLOEXEC);
   ASSERT_GE(lock, 0);
   EXPECT_NE(flock(lock, LOCK_SH | LOCK_NB), 0);
   EXPECT_EQ(errno, EWOULDBLOCK);
   close(lock);
+  ASSERT_EQ(Servers().size(), 1u);
+  EXPECT_EQ(Contents(State("lock")), std::to_string(Servers()[0]) + "\n");
   EXPECT_EQ(Contents(State("server.address")), "unix:" + State("server.socket") + "\n");
 }
 

@@ -3,6 +3,7 @@
 #ifndef BALLPISTON_TESTS_FUZZ_RULES_H_
 #define BALLPISTON_TESTS_FUZZ_RULES_H_
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ void RequireNamed(const std::vector<FieldViolation>& violations, const std::stri
 // Accepted: it has points that make pairs, and comes back from the core's form and from bytes as it
 // went. Refused: every violation is named and they can be sent. True if it was accepted.
 bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input);
+
+// The size and the token of a page of `list`, which begins at `first` without a token. Accepted:
+// the page has a size and a start, and a token made of the start leads back there. Refused: the
+// error can be sent.
+void RequirePage(int32_t page_size, const std::string& page_token, const std::string& list,
+                 int64_t first, const std::string& input);
 
 }  // namespace ballpiston::fuzz
 

@@ -212,7 +212,7 @@ TEST(IncludeRules, SupportOfTestsIsForTestsOfAllLayers) {
       "#include \"tests/support/paths.h\"\n";
   EXPECT_THAT(WrongIncludes("tests/support/process.cc", text), IsEmpty());
   for (const char* include : {"\"core/geometry/pair_geometry.h\"", "\"server/ballpiston_server.h\"",
-                              "\"client/library/ensemble_client.h\"", "\"ballpiston/v1/spec.pb.h\"",
+                              "\"client/library/client.h\"", "\"ballpiston/v1/spec.pb.h\"",
                               "\"grpcpp/channel.h\"", "\"tests/core/geometries.h\""}) {
     ExpectWrong("tests/support/process.cc", include);
   }

@@ -23,7 +23,9 @@ std::map<std::string, std::string> CleanEnvironment(const TemporaryFolder& home)
           {"BALLPISTON_CERT", ""},       {"BALLPISTON_KEY", ""},
           {"BALLPISTON_TLS", ""},        {"BALLPISTON_TOKEN", ""},
           {"BALLPISTON_TOKEN_FILE", ""}, {"BALLPISTON_SERVER_PROGRAM", ""},
-          {"BALLPISTON_FAILPOINT", ""}};
+          {"BALLPISTON_FAILPOINT", ""},  {"XDG_CONFIG_HOME", ""},
+          {"BALLPISTON_CONFIG", ""},     {"BALLPISTON_PROGRESS", ""},
+          {"BALLPISTON_QUIET", ""},      {"BALLPISTON_VERBOSE", ""}};
 }
 
 ProcessOptions ServerCommand(const TemporaryFolder& home, std::vector<std::string> flags) {

@@ -17,7 +17,7 @@ enum class Method {
   kSpectrum,  // the same limit by its generator's eigenvalues, without samples
 };
 
-enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime };
+enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime, kLimitFloor };
 
 // As the output spells them.
 inline const char* Name(Method method) {
@@ -35,7 +35,7 @@ inline const char* Name(Method method) {
 }
 inline const char* Name(Quantity quantity) {
   constexpr const char* kNames[] = {"mean-free-time", "ingoing-law", "trajectory",
-                                    "relaxation-time"};
+                                    "relaxation-time", "limit-floor"};
   return kNames[static_cast<int>(quantity)];
 }
 

@@ -23,6 +23,7 @@
 #include "core/statistics/told_error.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
 #include "tools/method_comparison/ingoing_divergence.h"
+#include "tools/method_comparison/limit_floor.h"
 #include "tools/method_comparison/processor_time.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
@@ -84,6 +85,7 @@ class Comparison {
     for (const PairGeometry& geometry : relaxing_) {
       CompareRelaxationTimesOf({geometry, spec_.seed});
     }
+    for (const auto& [delta, floor] : floors_) tell_(floor);
   }
 
  private:
@@ -93,9 +95,18 @@ class Comparison {
     return {spec_.seed, (static_cast<uint64_t>(quantity) << 32) | rung};
   }
 
+  void Tell(MethodMeasurement measurement) const {
+    const double error = measurement.statistical_error;
+    if (measurement.quantity != Quantity::kRelaxationTime) measurement.own_error = error;
+    if (measurement.quantity != Quantity::kTrajectory) {
+      measurement.bias_resolved = measurement.value > kResolved * error;
+    }
+    tell_(measurement);
+  }
+
   void CompareReturns(Quantity quantity) {
     for (const MethodVariant& variant : SampledVariants()) ClimbReturns(quantity, variant);
-    tell_(quantity == Quantity::kMeanFreeTime ? ClosedMeanFreeTime() : ClosedIngoingLaw());
+    Tell(quantity == Quantity::kMeanFreeTime ? ClosedMeanFreeTime() : ClosedIngoingLaw());
   }
 
   void ClimbReturns(Quantity quantity, const MethodVariant& variant) {
@@ -104,7 +115,7 @@ class Comparison {
     for (uint64_t rung = 0; expected <= Limit(); ++rung, samples *= kRungFactor) {
       const ReturnStatistics returns =
           RunReturns(variant, geometry_, spec_.epsilon, Stream(quantity, rung), samples);
-      if (returns.times.count > 0) tell_(Measured(quantity, variant, returns));
+      if (returns.times.count > 0) Tell(Measured(quantity, variant, returns));
       expected = returns.seconds * kRungFactor;
     }
   }
@@ -194,15 +205,15 @@ class Comparison {
     double expected = 0;
     for (size_t rung = 0; rung < rungs.size() && expected <= Limit(); ++rung) {
       const TrajectoryHorizon horizon = HorizonOf(variant, geometry_, rungs[rung]);
-      tell_({.method = variant.method,
-             .time_step = variant.time_step,
-             .quantity = Quantity::kTrajectory,
-             .delta = spec_.delta,
-             .samples = horizon.hits.count,
-             .wall_hits = horizon.wall_hits,
-             .work = horizon.seconds,
-             .value = horizon.hits.mean,
-             .statistical_error = horizon.hits.StandardError().value_or(0)});
+      Tell({.method = variant.method,
+            .time_step = variant.time_step,
+            .quantity = Quantity::kTrajectory,
+            .delta = spec_.delta,
+            .samples = horizon.hits.count,
+            .wall_hits = horizon.wall_hits,
+            .work = horizon.seconds,
+            .value = horizon.hits.mean,
+            .statistical_error = horizon.hits.StandardError().value_or(0)});
       expected = horizon.seconds * kRungFactor;
     }
   }
@@ -212,9 +223,11 @@ class Comparison {
     if (orbits < kFewestTruthOrbits) return;
     const RelaxationTime limit = runs.BySpectrum();  // first, so that no run computes the spectrum
     const RelaxationTime truth = runs.Run(Method::kLanes, TruthOf(orbits));
-    ClimbRelaxationTimes(runs, Method::kLanes, truth);
+    const MethodMeasurement billiard = ClimbRelaxationTimes(runs, Method::kLanes, truth);
     ClimbRelaxationTimes(runs, Method::kMarkov, truth);
-    tell_(Compared(runs.delta(), Method::kSpectrum, limit, truth));
+    const MethodMeasurement spectrum = Compared(runs.delta(), Method::kSpectrum, limit, truth);
+    Tell(spectrum);
+    floors_.try_emplace(runs.delta(), LimitFloorOf(spectrum, billiard));
   }
 
   // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a
@@ -224,14 +237,18 @@ class Comparison {
     return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * orbits));
   }
 
-  void ClimbRelaxationTimes(const EnergyRelaxationRuns& runs, Method method,
-                            const RelaxationTime& truth) {
+  // The longest run.
+  MethodMeasurement ClimbRelaxationTimes(const EnergyRelaxationRuns& runs, Method method,
+                                         const RelaxationTime& truth) const {
+    MethodMeasurement longest;
     double expected = 0;
     for (uint64_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
       const RelaxationTime measured = runs.Run(method, RunOf(orbits));
-      tell_(Compared(runs.delta(), method, measured, truth));
+      longest = Compared(runs.delta(), method, measured, truth);
+      Tell(longest);
       expected = measured.seconds * kRungFactor;
     }
+    return longest;
   }
 
   static MethodMeasurement Compared(double delta, Method method, const RelaxationTime& measured,
@@ -243,7 +260,8 @@ class Comparison {
             .samples = measured.samples,
             .work = measured.seconds,
             .value = std::fabs(ratio - 1),
-            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value};
+            .statistical_error = std::hypot(measured.error, ratio * truth.error) / truth.value,
+            .own_error = measured.error / truth.value};
   }
 
   const MethodComparisonSpec spec_;
@@ -254,6 +272,7 @@ class Comparison {
   const std::vector<double> probabilities_;
   std::optional<double> variance_of_times_;
   std::map<uint64_t, DivergenceNoise> noise_;  // by samples: the same for all methods
+  std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
 };
 
 // Collects all violations, each with its flag.

@@ -18,8 +18,11 @@
 //                  kMarkov and kSpectrum, which are exact only in the limit delta -> 0. A sample is
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
 //                  orbits by kLanes, so the curves of the limit tend to the limit's bias.
+// A fifth quantity follows from the relaxation times:
+//   kLimitFloor    the limit's bias at one delta, or an upper bound of it. work = the work at which
+//                  the billiard is as exact (limit_floor.h). By kSpectrum, without samples.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
-// within about three standard errors shows no bias, only an upper bound of the bias.
+// within kResolved standard errors shows no bias, only an upper bound of the bias.
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
 //                  that dominate the mean (long_returns.h), from a larger sample by kLanes.
 //   kIngoingLaw    that of chi-squared, sqrt((cells - 1)/2)/samples. For a biased law, which has a
@@ -29,6 +32,7 @@
 //                  from the scatter of the measured orbits and of the truth's orbits:
 //                  hypot(error, measured/truth * error of the truth)/truth. For the spectrum this
 //                  is in effect the error of the truth, which all methods at one delta share.
+//                  own_error is the run's own part, error/truth: what more orbits make smaller.
 // Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
 // their work are counted.
 // The closed form has no samples and no statistical error. Its value is the bound of its rounding
@@ -55,6 +59,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +73,9 @@ inline constexpr double kMaxSecondsPerCurve = 60;
 
 inline constexpr size_t kMaxRelaxationDeltas = 8;
 inline constexpr uint64_t kFewestTruthOrbits = 256;
+
+// Statistical errors from which on a deviation is a bias: chance alone exceeds them once in 400.
+inline constexpr double kResolved = 3;
 
 struct MethodComparisonSpec {
   double rho = kPaperRho;
@@ -85,9 +93,11 @@ struct MethodMeasurement {
   double delta = 0;        // of the pair; one of relaxation_deltas for kRelaxationTime
   uint64_t samples = 0;    // 0 for the closed form and the spectrum
   uint64_t wall_hits = 0;  // the ball's, in all samples; not counted (0) for kRelaxationTime
-  double work = 0;         // seconds
+  std::optional<double> work = 0;  // seconds; empty for a kLimitFloor that no run determines
   double value = 0;
   double statistical_error = 0;
+  double own_error = 0;  // of kRelaxationTime without the truth's; else statistical_error
+  std::optional<bool> bias_resolved = {};  // empty for kTrajectory, whose value is no deviation
 };
 
 // One sentence for each value that is not permitted. It begins with the program's flag.
@@ -98,6 +108,7 @@ std::vector<double> DefaultRelaxationDeltas(double rho);
 
 // Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
 // (in the order of the list), then method, then time step (descending), then samples (ascending).
+// At the end comes one kLimitFloor for each delta that has relaxation times, by descending delta.
 // The spec must have no violations.
 void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell);

@@ -1,20 +1,29 @@
 // The flags, the output and the exit status of the program `method_comparison`.
 //
-// Prints one JSON object a line for each measurement, as soon as it is made:
+// Prints CSV: a header, then one row for each measurement, as soon as it is made:
 //
-//   {"method":"billiard","time_step":0,"quantity":"mean-free-time","delta":0.1,"samples":4096,
-//    "wall_hits":301923,"work_seconds":0.0031,"value":0.012,"statistical_error":0.017}
+//   rho,delta,epsilon,method,time_step,quantity,samples,wall_hits,work_seconds,value,...
+//   0.53,0.1,0.125,billiard,0,mean-free-time,4096,301923,0.0031,0.012,...
 //
-// method_comparison.h says what they are, method.h the names.
+// The last columns are statistical_error, own_error and bias_resolved (1 or 0). rho and epsilon are
+// those of the spec; method_comparison.h explains the other columns, method.h the names. A number
+// reads back as the same double. A value that is not known is an empty field.
 //
-// Exit status: 0 success; 1 standard output cannot be written; 2 a wrong flag or value: standard
-// error names each value that is not permitted.
+// Progress is one line on standard error, which is redrawn and cleared at the end.
+//
+// Exit status: 0 success; 1 standard output cannot be written, or a quantity has no measurement of
+// kFewestDrawn samples, so its panel of the chart is empty (all rows are printed nevertheless); 2 a
+// wrong flag or value: standard error names each value that is not permitted.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
 
+#include <cstdint>
 #include <ostream>
 
 namespace ballpiston::method_comparison {
+
+// Errors estimated from fewer samples are mostly chance themselves; the chart does not draw them.
+inline constexpr uint64_t kFewestDrawn = 64;
 
 // `out` and `error` are the program's standard output and standard error.
 int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostream& error);

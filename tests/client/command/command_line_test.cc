@@ -1,191 +1,212 @@
-// The whole program but its main function, against a fake server.
+// The whole program but its main function: how words are read, and what each verb prints.
 #include "client/command/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tests/client/fake_server.h"
+#include "absl/strings/str_split.h"
+#include "tests/client/program.h"
 #include "tests/support/scoped_variable.h"
-#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
 
-struct Outcome {
-  int code;
-  std::string out;
-  std::string err;
-};
+class CommandLineTest : public ProgramTest {};
 
-Outcome Ballpiston(std::vector<std::string> words) {
-  std::vector<const char*> argv = {"ballpiston"};
-  for (const std::string& word : words) argv.push_back(word.c_str());
-  std::ostringstream out, err;
-  Terminal terminal{out, err};
-  const ExitCode code = RunCommandLine(static_cast<int>(argv.size()), argv.data(), terminal);
-  return {static_cast<int>(code), out.str(), err.str()};
+TEST_F(CommandLineTest, HelpAndVersionExitWithZero) {
+  const Outcome program = Ballpiston({"--help"});
+  EXPECT_EQ(program.code, 0);
+  EXPECT_THAT(program.out, HasSubstr("Exit codes:"));
+  EXPECT_EQ(Ballpiston({"help"}).out, program.out);
+  const Outcome version = Ballpiston({"--version"});
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, ::testing::MatchesRegex("ballpiston [0-9.]+\n"));
 }
 
-// A home whose private server is the one at `address`; no other can be started.
-class PrivateHome {
- public:
-  explicit PrivateHome(const std::string& address) {
-    std::filesystem::create_directory(folder_.File("ballpiston"));
-    std::filesystem::create_symlink(address.substr(std::string("unix:").size()),
-                                    folder_.File("ballpiston/server.socket"));
+TEST_F(CommandLineTest, HelpOfAVerbIsItsPage) {
+  for (const Verb& verb : Verbs()) {
+    Words help = absl::StrSplit(verb.name, ' '), flag = help;
+    help.insert(help.begin(), "help");
+    flag.push_back("--help");
+    const Outcome page = Ballpiston(help);
+    EXPECT_EQ(page.code, 0) << page.err;
+    EXPECT_THAT(page.out, StartsWith("ballpiston " + verb.name + ": "));
+    EXPECT_EQ(page.out, Ballpiston(flag).out);
   }
-
- private:
-  const TemporaryFolder folder_;
-  const ScopedVariable state_home_{"XDG_STATE_HOME", folder_.path()};
-  const ScopedVariable server_program_{"BALLPISTON_SERVER_PROGRAM", "/bin/false"};
-};
-
-class CommandLineTest : public ::testing::Test {
- protected:
-  CommandLineTest() {
-    v1::EnsembleJob job = JobIn(v1::EnsembleJob::SUCCEEDED);
-    job.mutable_progress()->set_points(1);
-    job.mutable_progress()->set_points_done(1);
-    server_.ensemble.jobs = {job};
-    server_.ensemble.watches = {{{JobMessage(job, "t")}, grpc::Status::OK}};
-    v1::PointResult point;
-    v1::Estimate* estimate = point.add_estimates();
-    estimate->set_name("mean_hit_time");
-    estimate->set_value(1.5);
-    server_.ensemble.points = {point};
-  }
-
-  Outcome WithServer(std::vector<std::string> words) {
-    words.insert(words.end(), {"--server", server_.Address()});
-    return Ballpiston(words);
-  }
-  v1::EnsembleJob& job() { return server_.ensemble.jobs[0]; }
-
-  FakeServer server_;
-};
-
-TEST_F(CommandLineTest, HelpIsNoMistake) {
-  const Outcome outcome = Ballpiston({"--help"});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("Exit codes:"));
-  EXPECT_EQ(Ballpiston({"run", "--help"}).code, 0);
 }
 
 TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
-  const std::vector<std::string> mistakes[] = {{},
-                                               {"dance"},
-                                               {"run"},
-                                               {"run", "first-hit", "--speed", "3"},
-                                               {"run", "first-hit", "--rho"},
-                                               {"run", "first-hit", "--format", "xml"},
-                                               {"run", "first-hit", "--progress", "loud"},
-                                               {"run", "first-hit", "--rho", "1", "--rho", "2"},
-                                               {"run", "first-hit", "second"},
-                                               {"run", "first-hit", "--priority", "high"},
-                                               {"run", "first-hit", "--priority", "1e10"},
-                                               {"submit", "first-hit", "--priority", "0.5"},
-                                               {"submit", "brownian"},
-                                               {"submit", "first-hit", "--request-id", "42"},
-                                               {"run", "first-hit", "--request-id", ""},
-                                               {"watch"},
-                                               {"watch", "a", "b"},
-                                               {"result", ""},
-                                               {"result", "ensembleJobs/"},
-                                               {"result", "a/b"},
-                                               {"result", "ensembleJobs/\xff"},
-                                               {"watch", "\xc3\xa9"},
-                                               {"cancel", "ABC"},
-                                               {"delete", std::string(64, 'a')},
-                                               {"plan"},
-                                               {"plan", "brownian"},
-                                               {"plan", "equilibrium", "--progress", "bar"},
-                                               {"plan", "equilibrium", "--format", "xml"},
-                                               {"trace", "--events", "5"},
-                                               {"list", "--server", "nowhere"},
-                                               {"status", "--format", "csv"},
-                                               {"status", "now"},
-                                               {"analytic", "--rho", "0.53"},
-                                               {"figure", "portrait", "--out", "x"},
-                                               {"figure", "mean-free-time"},
-                                               {"figure", "speed-accuracy"}};
-  for (const auto& words : mistakes) {
+  const Words mistakes[] = {{},
+                            {"dance"},
+                            {"server"},
+                            {"server", "dance"},
+                            {"help", "dance"},
+                            {"run"},
+                            {"run", "first-hit", "--speed", "3"},
+                            {"run", "first-hit", "--rho"},
+                            {"run", "first-hit", "--rho="},
+                            {"run", "first-hit", "--rho", "1", "--rho", "2"},
+                            {"run", "first-hit", "--format", "xml"},
+                            {"run", "first-hit", "--progress", "loud"},
+                            {"run", "first-hit", "second"},
+                            {"run", "first-hit", "--priority", "high"},
+                            {"submit", "first-hit", "--priority", "0.5"},
+                            {"submit", "brownian"},
+                            {"submit", ""},
+                            {"submit", "first-hit", "--request-id", "42"},
+                            {"submit", "first-hit", "--request-id", ""},
+                            {"watch"},
+                            {"watch", "a", "b"},
+                            {"watch", "\xc3\xa9"},
+                            {"result", ""},
+                            {"result", "ensembleJobs/"},
+                            {"result", "a/b"},
+                            {"result", "ensembleJobs/\xff"},
+                            {"cancel"},
+                            {"cancel", "ABC"},
+                            {"delete", "a", std::string(64, 'a')},
+                            {"plan"},
+                            {"plan", "equilibrium", "--progress", "bar"},
+                            {"list", "--state", "sleeping"},
+                            {"list", "--since", "yesterday"},
+                            {"list", "--limit", "0"},
+                            {"list", "--server", "nowhere"},
+                            {"list", "--server", "--ca"},
+                            {"status", "now"},
+                            {"analytic", "--rho", "nan"},
+                            {"figure"},
+                            {"figure", "portrait", "--out", "x"},
+                            {"figure", "mean-free-time"},
+                            {"server", "token", "ada:read"},
+                            {"server", "start", "--listen", "localhost:0"}};
+  for (const Words& words : mistakes) {
     const Outcome outcome = Ballpiston(words);
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err.rfind("ballpiston: ", 0), 0u) << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("ballpiston: "));
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
 }
 
-TEST_F(CommandLineTest, AFigureRefusesTheFlagsOfAnother) {
-  const Outcome chart = Ballpiston({"figure", "speed-accuracy", "--out", "x", "--samples", "9",
-                                    "--delta", "0.1,0.2", "--progress", "loud"});
-  EXPECT_EQ(chart.code, 2);
-  EXPECT_THAT(chart.err, HasSubstr("not valid, 3 violations"));
-  EXPECT_THAT(chart.err, HasSubstr("--samples: '9', but the figure speed-accuracy has no such"));
-  EXPECT_THAT(chart.err, HasSubstr("--delta: '0.1,0.2'"));
-  const Outcome times = Ballpiston({"figure", "mean-free-time", "--out", "x", "--seconds", "9",
-                                    "--epsilon", "0.1", "--relaxation-delta", "0.2"});
-  EXPECT_THAT(times.err, HasSubstr("--seconds: '9', but the figure mean-free-time has no such"));
-  EXPECT_THAT(times.err, HasSubstr("--epsilon: '0.1', but"));
-  EXPECT_THAT(times.err, HasSubstr("--relaxation-delta: '0.2', but"));
+TEST_F(CommandLineTest, AMistakeIsNamed) {
+  const std::pair<Words, std::string> mistakes[] = {
+      {{"run", "first-hit", "--rho"}, "--rho needs a value (ballpiston help run shows its usage)"},
+      {{"watch"}, "watch needs JOB: ensembleJobs/ID, or the ID alone (ballpiston help watch"},
+      {{"run", "first-hit", "again"}, "not expected: 'again' (ballpiston help run"},
+      {{"run", "first-hit", "--rho", "1", "--rho", "2"}, "--rho is given more than once"},
+      {{"--quiet", "run", "first-hit"}, "write flags after the verb: '--quiet'"},
+      {{"--rho", "1", "run", "first-hit"}, "write flags after the verb: '--rho'"},
+      {{"run", "first-hit", "--rho", "x", "--delta", "y"},
+       "--rho: 'x' is not a decimal number such as 0.1 or 1e-3\n"},
+      {{"result", "ensembleJobs/\xff\x1b"}, "JOB: 'ensembleJobs/\\xff\\x1b' is not a job's name"},
+      {{"list", "--since", "31.1.2026"}, "--since: '31.1.2026' is not a date (UTC): write 2026-01"},
+      {{"submit", "equilibrium", "--request-id", "42"},
+       "--request-id: '42' is not a UUID like 123e4567-"}};
+  for (const auto& [words, text] : mistakes) {
+    EXPECT_THAT(Ballpiston(words).err, StartsWith("ballpiston: " + text));
+  }
 }
 
-TEST_F(CommandLineTest, DeltasOfRelaxationAreAList) {
-  const Outcome chart =
-      Ballpiston({"figure", "speed-accuracy", "--out", "x", "--relaxation-delta", "0.1,x,0.2,"});
-  EXPECT_EQ(chart.code, 2);
-  EXPECT_THAT(chart.err, HasSubstr("--relaxation-delta: 'x'"));
+TEST_F(CommandLineTest, TheNameThatWasMeantIsSuggested) {
+  const std::pair<Words, std::string> mistakes[] = {
+      {{"rnu"}, "run"},
+      {{"srever", "start"}, "server"},
+      {{"server", "strat"}, "start"},
+      {{"help", "serve", "start"}, "server start"},
+      {{"run", "first-hit", "--foramt", "csv"}, "--format"},
+      {{"run", "first-hit", "--sample=9"}, "--samples"},
+      {{"run", "frist-hit"}, "first-hit"},
+      {{"run", "first-hit", "--format", "jsno"}, "json"},
+      {{"list", "--state", "running,queud"}, "queued"},
+      {{"figure", "mean-free-tim", "--out", "x"}, "mean-free-time"}};
+  for (const auto& [words, meant] : mistakes) {
+    EXPECT_THAT(Ballpiston(words).err, HasSubstr("; did you mean " + meant + "?"));
+  }
+  for (const Words& words : {Words{"xyz"},
+                             {"run", "first-hit", "--xyz"},
+                             {"run", "first-hit", "--format", "xyz"},
+                             {"run", "first-hit", "--" + std::string(100'000, 'x')}}) {
+    EXPECT_THAT(Ballpiston(words).err, Not(HasSubstr("did you mean")));
+  }
 }
 
-TEST_F(CommandLineTest, MistakesOfAllFlagsAreShownAtOnce) {
-  const Outcome run = Ballpiston({"run", "first-hit", "--exponent", "x", "--samples", "y",
-                                  "--format", "xml", "--progress", "loud", "--server", "z"});
-  EXPECT_EQ(run.code, 2);
-  EXPECT_EQ(run.err,
-            "ballpiston: not valid, 5 violations:\n"
-            "  --exponent: 'x' is not a decimal number such as 0.1 or 1e-3\n"
-            "  --samples: 'y' is not a whole number such as 10000 or 1e6\n"
-            "  --format: 'xml' is not one of table, json, jsonl, csv\n"
-            "  --progress: 'loud' is not one of auto, bar, json, none\n"
-            "  --server: 'z' is not a server's address: the port is missing (write host:port or "
-            "unix:PATH)\n");
-  const Outcome analytic =
-      Ballpiston({"analytic", "--rho", "nan", "--delta", "inf", "--epsilon", "nan"});
-  EXPECT_EQ(analytic.code, 2);
-  EXPECT_EQ(analytic.err,
-            "ballpiston: not valid, 3 violations:\n"
-            "  --rho: 'nan' is not a decimal number such as 0.1 or 1e-3\n"
-            "  --delta: 'inf' is not a decimal number such as 0.1 or 1e-3\n"
-            "  --epsilon: 'nan' is not a decimal number such as 0.1 or 1e-3\n");
-}
-
-TEST_F(CommandLineTest, WhatIsNotAJobsNameIsShownEscaped) {
-  const Outcome outcome = Ballpiston({"result", "ensembleJobs/\xff\x1b"});
-  EXPECT_THAT(outcome.err, HasSubstr("'ensembleJobs/\\xff\\x1b' is not a job's name"));
-}
-
-TEST_F(CommandLineTest, VerbsOfLaterVersionsAreKnownAsSuch) {
-  for (const auto& words : {std::vector<std::string>{"trace", "--rho", "0.53", "--events", "9"},
-                            {"trace", "--help"},
-                            {"trace", "run", "list"}}) {
+TEST_F(CommandLineTest, AMessageIsShortHoweverLongTheWord) {
+  const std::string word(100'000, 'x');
+  for (const Words& words : {Words{word},
+                             {"run", word},
+                             {"run", "--" + word},
+                             {"run", "--rho", word},
+                             {"run", "--format", word},
+                             {"run", "first-hit", word},
+                             {"help", word},
+                             {"watch", word}}) {
     const Outcome outcome = Ballpiston(words);
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err,
-              "ballpiston: trace is not offered by this version; it offers analytic, plan, run, "
-              "submit, watch, result, list, cancel, delete, status, figure\n");
+    EXPECT_LT(outcome.err.size(), 600u);
   }
+}
+
+TEST_F(CommandLineTest, AfterTwoHyphensAllWordsAreArguments) {
+  const auto line =
+      ParseCommandLine({"server", "start", "--workers", "2", "--", "--data-dir", "x"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->options.data_dir, "");
+  EXPECT_FALSE(line->options.given.contains("--data-dir"));
+  EXPECT_THAT(line->options.server_flags, ElementsAre("--data-dir", "x", "--workers", "2"));
+}
+
+// Hints repeat them: ballpiston watch JOB --server h:1 --tls
+TEST_F(CommandLineTest, TheFlagsThatChooseTheServerAreKept) {
+  const auto line = ParseCommandLine({"watch", "abc", "--tls", "-q", "--server=h:1"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->options.connection, " --server h:1 --tls");
+  EXPECT_THAT(line->options.given, ElementsAre("--server", "--tls"));
+}
+
+// ---- notes ----
+
+TEST_F(CommandLineTest, QuietPrintsResultsAndErrorsOnly) {
+  job().set_state(v1::EnsembleJob::RUNNING);
+  server_.ensemble.answers_from_store = true;
+  server_.Start();
+  for (const Words& words :
+       {Words{"submit", "first-hit"}, {"result", "abc"}, {"cancel", "abc"}, {"run", "first-hit"}}) {
+    Words quiet = words;
+    quiet.push_back("-q");
+    const Outcome outcome = WithServer(quiet);
+    EXPECT_EQ(outcome.err, "") << words[0];
+    EXPECT_NE(outcome.out, "") << words[0];
+  }
+  EXPECT_NE(Ballpiston({"list", "--quiet", "--limit", "0"}).err, "");
+}
+
+TEST_F(CommandLineTest, VerboseNamesServerRequestAndJob) {
+  server_.Start();
+  const Outcome outcome = WithServer({"submit", "first-hit", "-v"});
+  EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
+  const std::string id = server_.ensemble.Asked().create.at(0).request_id();
+  EXPECT_EQ(outcome.err, "ballpiston: server " + server_.Address() + "\nballpiston: request id " +
+                             id + "\nballpiston: job ensembleJobs/abc\n");
+  EXPECT_EQ(WithServer({"submit", "first-hit"}).err, "");
+}
+
+TEST_F(CommandLineTest, ErrorsAreRedOnATerminal) {
+  std::ostringstream out, err;
+  Terminal terminal{.out = out, .err = err, .colour = true};
+  RunCommandLine({"dance"}, terminal);
+  EXPECT_THAT(err.str(), StartsWith("\x1b[1;31mballpiston:\x1b[0m 'dance'"));
 }
 
 // A server that answers with bytes that are no text; Protocol Buffers would log it.
@@ -197,51 +218,7 @@ TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// The channel tries four times; then the server has left.
-constexpr int kAttempts = 4;
-
-TEST_F(CommandLineTest, APrivateServerThatIsJustLeavingIsAskedAgainWithTheSameId) {
-  const PrivateHome home(server_.Address());
-  server_.ensemble.unavailable_attempts = kAttempts;
-  server_.Start();
-  const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
-  const auto asked = server_.ensemble.Asked().create;
-  ASSERT_EQ(std::ssize(asked), kAttempts + 1);
-  EXPECT_EQ(asked.front().request_id(), asked.back().request_id());
-}
-
-// Another id would be that of a second cancel, of a job that has ended by then.
-TEST_F(CommandLineTest, ACancelIsAskedAgainWithTheSameId) {
-  const PrivateHome home(server_.Address());
-  server_.ensemble.unavailable_attempts = kAttempts;
-  server_.Start();
-  const Outcome outcome = Ballpiston({"cancel", "abc"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(std::ssize(server_.ensemble.Asked().cancel), kAttempts + 1);
-}
-
-TEST_F(CommandLineTest, APrivateServerIsAskedAgainOnce) {
-  const PrivateHome home(server_.Address());
-  server_.ensemble.unavailable_attempts = 100;
-  server_.Start();
-  EXPECT_EQ(Ballpiston({"submit", "first-hit"}).code, 3);
-  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), 2 * kAttempts);
-}
-
-TEST_F(CommandLineTest, ANamedServerIsNotAskedAgain) {
-  server_.ensemble.unavailable_attempts = kAttempts;
-  server_.Start();
-  EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
-  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kAttempts);
-}
-
-TEST_F(CommandLineTest, WithoutAServerExitsWithThreeAndNamesIt) {
-  const Outcome outcome = WithServer({"list"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("no answer from the server at " + server_.Address()));
-}
+// ---- jobs ----
 
 TEST_F(CommandLineTest, SubmitPrintsTheNameAlone) {
   server_.Start();
@@ -251,12 +228,6 @@ TEST_F(CommandLineTest, SubmitPrintsTheNameAlone) {
   EXPECT_EQ(outcome.err, "");
 }
 
-TEST_F(CommandLineTest, TheServerMayComeFromTheEnvironment) {
-  server_.Start();
-  const ScopedVariable address("BALLPISTON_SERVER", server_.Address());
-  EXPECT_EQ(Ballpiston({"list"}).code, 0);
-}
-
 TEST_F(CommandLineTest, RunPrintsTheResult) {
   server_.Start();
   const Outcome outcome = WithServer({"run", "first-hit", "--format", "csv"});
@@ -264,7 +235,7 @@ TEST_F(CommandLineTest, RunPrintsTheResult) {
   EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time,1.5,,,,,,\n"));
 }
 
-TEST_F(CommandLineTest, TablesAreAskedForWithoutHistograms) {
+TEST_F(CommandLineTest, TablesAreRequestedWithoutHistograms) {
   server_.Start();
   WithServer({"result", "abc"});
   WithServer({"result", "abc", "--format", "json"});
@@ -284,28 +255,17 @@ TEST_F(CommandLineTest, ResultOfAnActiveJobSaysSo) {
             "ballpiston: ensembleJobs/abc is still running: 1 of 9 points are finished\n");
 }
 
-TEST_F(CommandLineTest, AFailedJobExitsWithFourAndItsReason) {
+TEST_F(CommandLineTest, AFailedJobExitsWithFourItsReasonAndWhatItFinished) {
   job().set_state(v1::EnsembleJob::FAILED);
   job().mutable_error()->set_message("tolerance not reached within the budget: point 0");
   server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
   server_.Start();
-  for (const auto& words :
-       {std::vector<std::string>{"run", "first-hit"}, {"watch", "abc"}, {"result", "abc"}}) {
+  for (const Words& words : {Words{"run", "first-hit"}, {"result", "abc"}, {"watch", "abc"}}) {
     const Outcome outcome = WithServer(words);
     EXPECT_EQ(outcome.code, 4);
-    EXPECT_THAT(outcome.err, HasSubstr("ensembleJobs/abc failed: tolerance not reached within the "
-                                       "budget: point 0\n"));
-  }
-}
-
-TEST_F(CommandLineTest, WhatAFailedJobFinishedIsPrinted) {
-  job().set_state(v1::EnsembleJob::FAILED);
-  server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
-  server_.Start();
-  for (const auto& words : {std::vector<std::string>{"run", "first-hit"}, {"result", "abc"}}) {
-    const Outcome outcome = WithServer(words);
-    EXPECT_EQ(outcome.code, 4);
-    EXPECT_THAT(outcome.out, HasSubstr("mean_hit_time"));
+    EXPECT_THAT(outcome.err, EndsWith("ensembleJobs/abc failed: tolerance not reached within the "
+                                      "budget: point 0\n"));
+    EXPECT_THAT(outcome.out, HasSubstr(words[0] == "watch" ? "" : "mean_hit_time"));
   }
 }
 
@@ -319,28 +279,58 @@ TEST_F(CommandLineTest, AnUnknownJobExitsWithFive) {
   }
 }
 
-TEST_F(CommandLineTest, ARequestIdOfOnesOwnIsPassedOn) {
-  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+TEST_F(CommandLineTest, CancelPrintsTheStateOfEachJob) {
   server_.Start();
-  for (const char* verb : {"submit", "run"}) {
-    const Outcome outcome = WithServer({verb, "first-hit", "--request-id", id});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(server_.ensemble.Asked().create.back().request_id(), id);
-  }
-  const Outcome wrong = WithServer({"submit", "first-hit", "--request-id", "42"});
-  EXPECT_EQ(wrong.err.rfind("ballpiston: --request-id: '42' is not a UUID like 1", 0), 0u)
-      << wrong.err;
+  const Outcome outcome = WithServer({"cancel", "abc", "ensembleJobs/d"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "ensembleJobs/abc cancelled\nensembleJobs/d cancelled\n");
+  EXPECT_EQ(outcome.err,
+            "0 of 0 points are finished and stay\n0 of 0 points are finished and stay\n");
 }
 
-TEST_F(CommandLineTest, CancelPrintsTheStateAndRefusalExitsWithFour) {
+TEST_F(CommandLineTest, CancelOfAnEndedJobExitsWithFourAfterAllJobs) {
   server_.Start();
-  EXPECT_EQ(WithServer({"cancel", "abc"}).out, "ensembleJobs/abc cancelled\n");
-  const Outcome again = WithServer({"cancel", "abc"});
+  WithServer({"cancel", "b"});
+  const Outcome again = WithServer({"cancel", "-q", "a", "b", "c"});
   EXPECT_EQ(again.code, 4);
+  EXPECT_EQ(again.out, "ensembleJobs/a cancelled\nensembleJobs/c cancelled\n");
   EXPECT_EQ(again.err, "ballpiston: has ended already\n");
 }
 
-TEST_F(CommandLineTest, EscapedOrbitsAreNotPassedOverInSilence) {
+TEST_F(CommandLineTest, DeletePrintsEachDeletedJob) {
+  server_.ensemble.jobs.push_back(job());
+  job().set_name("ensembleJobs/d");
+  server_.Start();
+  const Outcome outcome = WithServer({"delete", "abc", "d", "none"});
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_EQ(outcome.out, "ensembleJobs/abc deleted\nensembleJobs/d deleted\n");
+}
+
+TEST_F(CommandLineTest, ListSendsItsFilters) {
+  server_.Start();
+  const Outcome outcome =
+      WithServer({"list", "--state", "running,queued", "--experiment", "first_hit,equilibrium",
+                  "--since", "2026-01-31", "--limit", "10"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto asked = server_.ensemble.Asked().list;
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_THAT(asked[0].states(), ElementsAre(v1::EnsembleJob::RUNNING, v1::EnsembleJob::QUEUED));
+  EXPECT_THAT(asked[0].experiments(),
+              ElementsAre(v1::EnsembleSpec::FIRST_HIT, v1::EnsembleSpec::EQUILIBRIUM));
+  EXPECT_EQ(asked[0].since().seconds(), 1769817600);
+  EXPECT_EQ(asked[0].page_size(), 10);
+}
+
+TEST_F(CommandLineTest, ListWithALimitEndsThere) {
+  server_.ensemble.jobs.assign(9, job());
+  server_.Start();
+  const std::string out = WithServer({"list", "--limit", "3", "--format", "jsonl"}).out;
+  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 3);
+  const std::string all = WithServer({"list", "--format", "jsonl"}).out;
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 9);
+}
+
+TEST_F(CommandLineTest, EscapedOrbitsAreReported) {
   server_.ensemble.points[0].mutable_health()->set_escapes(3);
   server_.Start();
   EXPECT_THAT(WithServer({"result", "abc"}).err, HasSubstr("point 0: 3 orbits left the cell"));
@@ -366,7 +356,7 @@ TEST_F(CommandLineTest, PlanPrintsTheLadderAndMakesNoJob) {
   EXPECT_TRUE(spec.verify());
 }
 
-TEST_F(CommandLineTest, APlanForWhatIsNotValidExitsWithTwo) {
+TEST_F(CommandLineTest, AnInvalidQuestionExitsWithTwo) {
   server_.ensemble.plan_end = InvalidSpec("spec.target.tolerance", "-1 is not in (0, 1)");
   server_.Start();
   const Outcome outcome = WithServer({"plan", "equilibrium", "--tolerance", "-1"});
@@ -375,98 +365,30 @@ TEST_F(CommandLineTest, APlanForWhatIsNotValidExitsWithTwo) {
   EXPECT_EQ(outcome.err, "ballpiston: spec.target.tolerance: -1 is not in (0, 1) (INVALID_SPEC)\n");
 }
 
-TEST_F(CommandLineTest, APlanWithoutAServerExitsWithThree) {
-  EXPECT_EQ(WithServer({"plan", "equilibrium"}).code, 3);
-}
+// ---- closed forms and the server ----
 
-// ---- how a job is asked for, and what becomes of it ----
-
-TEST_F(CommandLineTest, FreshAndPriorityReachTheServer) {
-  server_.Start();
-  EXPECT_EQ(WithServer({"submit", "equilibrium"}).code, 0);
-  EXPECT_EQ(WithServer({"submit", "equilibrium", "--fresh", "--priority", "-7"}).code, 0);
-  EXPECT_EQ(WithServer({"run", "equilibrium", "--priority", "100", "--fresh"}).code, 0);
-  const auto asked = server_.ensemble.Asked().create;
-  ASSERT_EQ(asked.size(), 3u);
-  EXPECT_FALSE(asked[0].fresh());
-  EXPECT_EQ(asked[0].priority(), 0);
-  EXPECT_TRUE(asked[1].fresh());
-  EXPECT_EQ(asked[1].priority(), -7);
-  EXPECT_TRUE(asked[2].fresh());
-  EXPECT_EQ(asked[2].priority(), 100);
-}
-
-TEST_F(CommandLineTest, AnAnswerFromTheStoreIsTold) {
-  job().mutable_end_time()->set_seconds(1700000000);
-  server_.ensemble.answers_from_store = true;
-  server_.Start();
-  const std::string told = "answered from the store: " + job().name() +
-                           ", computed 2023-11-14 22:13 UTC (--fresh computes anew)";
-  const Outcome submitted = WithServer({"submit", "equilibrium"});
-  EXPECT_EQ(submitted.out, job().name() + "\n");
-  EXPECT_EQ(submitted.err, told + "\n");
-  const Outcome table = WithServer({"run", "equilibrium"});
-  EXPECT_EQ(table.err, told + "\n");
-  EXPECT_EQ(table.out, WithServer({"result", job().name()}).out);
-  EXPECT_THAT(WithServer({"run", "equilibrium", "--progress", "json"}).err,
-              testing::StartsWith("{\"note\": \"" + told + "\"}\n{\"job\": "));
-  const Outcome quiet =
-      WithServer({"run", "equilibrium", "--progress", "none", "--format", "json"});
-  EXPECT_EQ(quiet.err, "");
-  EXPECT_THAT(quiet.out, HasSubstr("\"answered_from_store\":true"));
-}
-
-TEST_F(CommandLineTest, AnAnswerThatWasComputedIsNotSaidToBeFromTheStore) {
-  server_.Start();
-  EXPECT_EQ(WithServer({"submit", "equilibrium"}).err, "");
-  const Outcome run = WithServer({"run", "equilibrium", "--format", "json"});
-  EXPECT_EQ(run.err, "");
-  EXPECT_THAT(run.out, HasSubstr("\"answered_from_store\":false"));
-}
-
-TEST_F(CommandLineTest, AFullQueueExitsWithThreeAndSaysWhatToDo) {
-  server_.ensemble.create_end = LimitExceeded("QUEUE_FULL", "10 jobs are active already");
-  server_.Start();
-  for (const char* verb : {"run", "submit"}) {
-    const Outcome outcome = WithServer({verb, "equilibrium"});
-    EXPECT_EQ(outcome.code, 3);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err,
-              "ballpiston: 10 jobs are active already (QUEUE_FULL)\n"
-              "Try again when some of them have ended.\n");
-  }
-}
-
-TEST_F(CommandLineTest, AJobThatIsTooLargeForTheServerExitsWithTwoAndSaysWhatToDo) {
-  server_.ensemble.create_end = LimitExceeded("TOO_MANY_POINTS", "the grid has 9 points");
-  server_.Start();
-  const Outcome outcome = WithServer({"submit", "equilibrium"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err,
-            "ballpiston: the grid has 9 points (TOO_MANY_POINTS)\n"
-            "Split the grid between several jobs.\n");
-}
-
-TEST_F(CommandLineTest, AnalyticPrintsWhatTheServerEvaluates) {
+TEST_F(CommandLineTest, AnalyticPrintsTheAnswer) {
   server_.analytic.response.add_points()->set_rho(0.53);
   server_.Start();
   const Outcome outcome =
       WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--format", "jsonl"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.out.rfind("{\"rho\":0.53,", 0), 0u);
+  EXPECT_THAT(outcome.out, StartsWith("{\"rho\":0.53,"));
 }
 
 TEST_F(CommandLineTest, AnalyticSendsEveryList) {
   server_.Start();
   WithServer({"analytic", "--rho", "0.53", "--delta", "0.1", "--epsilon", "0.2,0.3",
               "--outgoing-epsilon", "0.4", "--beta", "5", "--temperature", "6:8:3"});
+  EXPECT_THAT(server_.analytic.asked.rho(), ElementsAre(0.53));
+  EXPECT_THAT(server_.analytic.asked.delta(), ElementsAre(0.1));
   EXPECT_THAT(server_.analytic.asked.epsilon(), ElementsAre(0.2, 0.3));
   EXPECT_THAT(server_.analytic.asked.outgoing_epsilon(), ElementsAre(0.4));
   EXPECT_THAT(server_.analytic.asked.beta(), ElementsAre(5));
   EXPECT_THAT(server_.analytic.asked.temperature(), ElementsAre(6, 7, 8));
 }
 
-TEST_F(CommandLineTest, StatusPrintsWhatTheServerTells) {
+TEST_F(CommandLineTest, StatusPrintsTheServersAnswer) {
   server_.server.status.set_version("1.2.3");
   server_.server.status.set_queued_jobs(17);
   server_.Start();
@@ -475,28 +397,47 @@ TEST_F(CommandLineTest, StatusPrintsWhatTheServerTells) {
   EXPECT_THAT(table.out, HasSubstr("server    1.2.3\n"));
   EXPECT_THAT(table.out, HasSubstr("17 queued"));
   EXPECT_EQ(table.err, "");
-  EXPECT_THAT(WithServer({"status", "--format", "json"}).out, HasSubstr("\"queued_jobs\":17,"));
+  EXPECT_THAT(WithServer({"server", "status", "--format", "json"}).out,
+              HasSubstr("\"queued_jobs\":17,"));
 }
 
-TEST_F(CommandLineTest, StatusOfAPrivateServerAsksTheOneThatRuns) {
-  const PrivateHome home(server_.Address());
-  server_.Start();
-  EXPECT_EQ(Ballpiston({"status"}).code, 0);
+// ---- figures ----
+
+TEST_F(CommandLineTest, FigureListsItsNames) {
+  EXPECT_THAT(Ballpiston({"figure", "--list"}).out, HasSubstr("mean-free-time: "));
 }
 
-// The one that could be started is /bin/false: its failure would be told.
-TEST_F(CommandLineTest, StatusStartsNoServer) {
-  const PrivateHome home(server_.Address());
-  const Outcome outcome = Ballpiston({"status"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err.rfind("ballpiston: no private server is running (", 0), 0u) << outcome.err;
+TEST_F(CommandLineTest, FigureCopiesItsScriptsAndPrintsTheirPaths) {
+  const std::string folder = home_.File("figures");
+  const Outcome outcome = Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, folder + "/mean-free-time.gnuplot\n" + folder + "/mean-free-time.sh\n");
+  WriteFile(folder + "/mean-free-time.sh", "# mine\n");
+  EXPECT_EQ(Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder}).err,
+            "ballpiston: using " + folder +
+                "/mean-free-time.sh, which differs from the installed file; delete it to use the "
+                "installed one\n");
+  EXPECT_EQ(Contents(folder + "/mean-free-time.sh"), "# mine\n");
 }
 
-TEST_F(CommandLineTest, StatusOfANamedServerThatIsNotThereNamesIt) {
-  const Outcome outcome = WithServer({"status"});
-  EXPECT_EQ(outcome.code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("no answer from the server at " + server_.Address()));
+TEST_F(CommandLineTest, AFigureWithoutTheVariableExitsWithTwo) {
+  const Outcome outcome =
+      Ballpiston({"figure", "mean-free-time", "--out", home_.File("figures"), "--seconds", "9"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "ballpiston: --seconds: the figure mean-free-time has no such variable\n");
+}
+
+// The script in the folder is run with the flags as variables, and its exit code returned.
+TEST_F(CommandLineTest, FigureRunsTheScriptInItsFolder) {
+  const std::string folder = home_.File("figures");
+  Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder});
+  WriteFile(folder + "/mean-free-time.sh",
+            "echo ${rho:=1} ${delta:=2} $BALLPISTON_SERVER >mean-free-time.csv; exit 3\n");
+  const ScopedVariable server("BALLPISTON_SERVER"), rho("rho");  // the figure sets both
+  const Outcome outcome =
+      Ballpiston({"figure", "mean-free-time", "--out", folder, "--rho", "7", "--server", "h:1"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_EQ(Contents(folder + "/mean-free-time.csv"), "7 2 h:1\n");
 }
 
 }  // namespace

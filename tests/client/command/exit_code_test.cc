@@ -42,5 +42,12 @@ TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
   }
 }
 
+TEST(ExitCode, OfAProgramIsItsOwnOrFour) {
+  for (const int status : {0, 2, 3, 4, 5, 6, 130}) {
+    EXPECT_EQ(static_cast<int>(ExitCodeOf(status)), status);
+  }
+  for (const int status : {1, 7, 127, 143}) EXPECT_EQ(ExitCodeOf(status), ExitCode::kFailed);
+}
+
 }  // namespace
 }  // namespace ballpiston::client

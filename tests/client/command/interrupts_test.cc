@@ -5,112 +5,141 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <condition_variable>
-#include <mutex>
-#include <string>
-#include <vector>
+#include <chrono>
+#include <iostream>
+#include <latch>
+#include <thread>
 
 namespace ballpiston::client {
 namespace {
 
-using ::testing::ElementsAre;
+using ::testing::AllOf;
+using ::testing::ExitedWithCode;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-// If one thread does not block SIGINT, the signal ends the program. The mask is set before main, so
-// that all threads inherit it, those of the time limit and of gRPC too. The client constructs
+sigset_t Signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  return signals;
+}
+
+// If one thread does not block a signal, the signal ends the program. The mask is set before main,
+// so that all threads inherit it, those of the time limit and of gRPC too. The client constructs
 // Interrupts before it starts a thread.
-[[maybe_unused]] const bool kSigintIsBlocked = [] {
-  sigset_t sigint;
-  sigemptyset(&sigint);
-  sigaddset(&sigint, SIGINT);
-  return pthread_sigmask(SIG_BLOCK, &sigint, nullptr) == 0;
+[[maybe_unused]] const bool kSignalsAreBlocked = [] {
+  const sigset_t signals = Signals();
+  return pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0;
 }();
 
-void PressCtrlC() { kill(getpid(), SIGINT); }
+void Send(int signal) { kill(getpid(), signal); }
 
-// Records the calls of the reactions, in order.
-class Events {
- public:
-  InterruptReactions Of(const std::string& scope) {
-    return {.on_first = [this, scope] { Add(scope + ": first"); },
-            .on_second = [this, scope] { Add(scope + ": second"); },
-            .on_no_second = [this, scope] { Add(scope + ": no second"); }};
-  }
-
-  // Waits until there are `count` events, and returns all.
-  std::vector<std::string> Await(size_t count) {
-    std::unique_lock lock(mutex_);
-    news_.wait(lock, [&] { return events_.size() >= count; });
-    return events_;
-  }
-
- private:
-  void Add(const std::string& event) {
-    const std::lock_guard lock(mutex_);
-    events_.push_back(event);
-    news_.notify_one();
-  }
-
-  std::mutex mutex_;
-  std::condition_variable news_;
-  std::vector<std::string> events_;
+// The statements end the process; without a signal they would last for ever.
+class InterruptsDeathTest : public ::testing::Test {
+ protected:
+  InterruptsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 };
 
-TEST(Interrupts, PressesAreFirstAndSecondInTurn) {
-  Interrupts interrupts(absl::Minutes(5));
-  Events events;
-  const Interrupts::Scope scope(interrupts, events.Of("job"));
-  for (size_t presses = 1; presses <= 3; ++presses) {
-    PressCtrlC();
-    events.Await(presses);
+TEST_F(InterruptsDeathTest, EachSignalEndsTheProgram) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EXIT(
+        {
+          Interrupts interrupts;
+          Send(signal);
+          while (true) pause();
+        },
+        ExitedWithCode(130), "")
+        << signal;
   }
-  EXPECT_THAT(events.Await(3), ElementsAre("job: first", "job: second", "job: first"));
 }
 
-TEST(Interrupts, AfterATimeoutTheNextPressIsAFirstPress) {
-  Interrupts interrupts(absl::Milliseconds(10));
-  Events events;
-  const Interrupts::Scope scope(interrupts, events.Of("job"));
-  for (size_t presses = 1; presses <= 2; ++presses) {
-    PressCtrlC();
-    events.Await(2 * presses);
-  }
-  EXPECT_THAT(events.Await(4),
-              ElementsAre("job: first", "job: no second", "job: first", "job: no second"));
-}
-
-// A first press for one job does not count for the next job.
-TEST(Interrupts, TheEndOfAScopeForgetsTheFirstPress) {
-  Interrupts interrupts(absl::Minutes(5));
-  Events events;
-  for (const char* job : {"a", "b"}) {
-    const Interrupts::Scope scope(interrupts, events.Of(job));
-    PressCtrlC();
-    events.Await(job[0] == 'a' ? 1 : 2);
-  }
-  EXPECT_THAT(events.Await(2), ElementsAre("a: first", "b: first"));
-}
-
-TEST(InterruptsDeathTest, OutsideOfScopesAPressEndsTheProgram) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
+TEST_F(InterruptsDeathTest, TheInnermostFarewellRuns) {
   EXPECT_EXIT(
       {
         Interrupts interrupts;
-        { const Interrupts::Scope ended(interrupts, {}); }
-        PressCtrlC();
-        pause();
+        const Interrupts::Scope outer(&interrupts, [] { std::cerr << "outer"; });
+        const Interrupts::Scope inner(&interrupts, [] { std::cerr << "inner"; });
+        {
+          const Interrupts::Scope ended(&interrupts, [] { std::cerr << "ended"; });
+        }
+        Send(SIGINT);
+        while (true) pause();
       },
-      ::testing::ExitedWithCode(130), "");
+      ExitedWithCode(130),
+      AllOf(HasSubstr("inner"), Not(HasSubstr("outer")), Not(HasSubstr("ended"))));
 }
 
-TEST(Interrupts, LeavesTheSignalMaskAsItWas) {
-  sigset_t sigint, mask;
-  sigemptyset(&sigint);
-  sigaddset(&sigint, SIGINT);
-  pthread_sigmask(SIG_UNBLOCK, &sigint, &mask);
-  { const Interrupts interrupts; }
-  sigset_t after;
-  pthread_sigmask(SIG_SETMASK, &mask, &after);
-  EXPECT_FALSE(sigismember(&after, SIGINT));
+TEST_F(InterruptsDeathTest, AFarewellThatHangsDoesNotKeepTheProgram) {
+  EXPECT_EXIT(
+      {
+        Interrupts interrupts;
+        const Interrupts::Scope scope(&interrupts, [] {
+          while (true) pause();
+        });
+        Send(SIGTERM);
+        while (true) pause();
+      },
+      ExitedWithCode(130), "");
+}
+
+// The scope's owner would destroy what the farewell uses.
+TEST_F(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
+  EXPECT_EXIT(
+      {
+        Interrupts interrupts;
+        std::latch begun(1);
+        {
+          const Interrupts::Scope scope(&interrupts, [&] {
+            begun.count_down();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          });
+          Send(SIGINT);
+          begun.wait();
+        }
+        _exit(0);
+      },
+      ExitedWithCode(130), "");
+}
+
+bool IsBlocked(int signal) {
+  sigset_t mask;
+  pthread_sigmask(SIG_BLOCK, nullptr, &mask);
+  return sigismember(&mask, signal) == 1;
+}
+
+class InterruptsTest : public ::testing::Test {
+ protected:
+  InterruptsTest() {
+    const sigset_t signals = Signals();
+    pthread_sigmask(SIG_UNBLOCK, &signals, &old_);
+  }
+  ~InterruptsTest() override { pthread_sigmask(SIG_SETMASK, &old_, nullptr); }
+
+  sigset_t old_;
+};
+
+TEST_F(InterruptsTest, LeavesTheSignalMaskAsItWas) {
+  {
+    const Interrupts interrupts;
+    EXPECT_TRUE(IsBlocked(SIGINT) && IsBlocked(SIGTERM) && IsBlocked(SIGHUP));
+  }
+  EXPECT_FALSE(IsBlocked(SIGINT) || IsBlocked(SIGTERM) || IsBlocked(SIGHUP));
+}
+
+TEST_F(InterruptsTest, AnIgnoredSignalStaysIgnored) {
+  const auto old = signal(SIGHUP, SIG_IGN);
+  {
+    const Interrupts interrupts;
+    EXPECT_FALSE(IsBlocked(SIGHUP));
+    EXPECT_TRUE(IsBlocked(SIGINT));
+    Send(SIGHUP);
+  }
+  signal(SIGHUP, old);
+}
+
+TEST_F(InterruptsTest, AScopeWithoutInterruptsHasNoEffect) {
+  const Interrupts::Scope scope(nullptr, [] { std::abort(); });
 }
 
 }  // namespace

@@ -25,8 +25,6 @@ class PrintResultTest : public ::testing::Test {
     for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
     server_.ensemble.unavailable_later_pages = kAttemptsOfChannel;
     server_.Start();
-    connection_.address = server_.Address();
-    connection_.channel = server_.Channel();
   }
 
   absl::StatusOr<ExitCode> Print() {
@@ -35,7 +33,13 @@ class PrintResultTest : public ::testing::Test {
   }
 
   FakeServer server_;
-  Connection connection_;
+  const std::shared_ptr<grpc::Channel> channel_ = server_.Channel();
+  Connection connection_{.address = server_.Address(),
+                         .channel = channel_,
+                         .client = Client(channel_),
+                         .local = {},
+                         .flags = "",
+                         .security = {}};
   std::ostringstream out_, err_;
 };
 

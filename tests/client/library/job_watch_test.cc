@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "tests/client/fake_server.h"
 #include "tests/support/status_matchers.h"
 
@@ -61,8 +61,7 @@ class JobWatch : public ::testing::Test {
       pauses_.push_back(absl::ToDoubleMilliseconds(pause));
       after_disconnect_();
     };
-    return EnsembleClient(server_.Channel())
-        .Watch(kJobName, callbacks, options_, stop_.get_token());
+    return Client(server_.Channel()).Watch(kJobName, callbacks, options_, stop_.get_token());
   }
 
   std::vector<std::string> Tokens() const {

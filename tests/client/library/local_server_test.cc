@@ -103,14 +103,15 @@ TEST_F(LocalServerTest, UsesAServerThatAnswers) {
   const LocalServer server{
       .folder = home_.string(), .socket = running.SocketPath(), .program = Program("exit 1")};
   EXPECT_OK(ConnectToLocalServer(server));
-  EXPECT_FALSE(fs::exists(server.Log()));  // no program was started
+  EXPECT_FALSE(fs::exists(home_ / "server.log"));  // no program was started
 }
 
 TEST_F(LocalServerTest, ErrorQuotesAProgramThatExits) {
   server_program_.Set(Program("echo first; echo the disk is full; exit 9"));
   EXPECT_THAT(ConnectToLocalServer(*FindLocalServer()),
               StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("exit status 9: the disk is full\n  log: " + home_.string())));
+                       HasSubstr("ended at once with exit status 9: the disk is full\n  log: " +
+                                 home_.string())));
 }
 
 TEST_F(LocalServerTest, ErrorNamesAMissingProgram) {
@@ -173,8 +174,9 @@ TEST_F(LocalServerTest, DoesNotWaitForAServerThatListensElsewhere) {
                            .start_time = absl::Hours(1)};
   const FolderInUse in_use(home_);
   WriteFile(home_ / "server.address", "127.0.0.1:50051\n");
-  EXPECT_THAT(ConnectToLocalServer(server),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("exit status 2: why")));
+  EXPECT_THAT(
+      ConnectToLocalServer(server),
+      StatusIs(absl::StatusCode::kUnavailable, HasSubstr("ended at once with exit status 2: why")));
 }
 
 // The other server ends: the program is started again, and runs until the test's folder is removed.

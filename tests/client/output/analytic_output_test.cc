@@ -27,12 +27,12 @@ std::string PrintedPairs(Format format, const std::string& energies = R"(
   return out.str();
 }
 
-TEST(AnalyticCsv, HasTheReferenceColumnsFirst) {
+TEST(AnalyticCsv, HasTheColumnsOfPairThenEnergyThenTemperature) {
   EXPECT_EQ(
       PrintedPairs(Format::kCsv),
-      R"(rho,delta,lambda,eta,cell_area,volume,area_ball_piston,area_ball_wall,area_piston_wall,tau_ball_piston,tau_ball_wall,tau_piston_wall,epsilon,phi,f,j,h,mean_free_time_conditional,pair_delta_bound,gas_delta_bound,rare_limit_rate,beta,temperature,mean_f,mean_energy_current,mean_h,exchange_rate,static_conductivity,rare_limit_exchange_rate
-0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0,0.9,0.2,0.07,0.03,24,0.3255,0.2,10,,,,,,,,
-0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.1,0.8,0.3,0.06,0.04,27,0.3255,0.2,10,,,,,,,,
+      R"(rho,delta,lambda,eta,cell_area,volume,area_ball_piston,area_ball_wall,area_piston_wall,tau_ball_piston,tau_ball_wall,tau_piston_wall,pair_delta_bound,gas_delta_bound,rare_limit_rate,epsilon,phi,f,j,h,mean_free_time_conditional,beta,temperature,mean_f,mean_energy_current,mean_h,exchange_rate,static_conductivity,rare_limit_exchange_rate
+0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.3255,0.2,10,0,0.9,0.2,0.07,0.03,24,,,,,,,,
+0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.3255,0.2,10,0.1,0.8,0.3,0.06,0.04,27,,,,,,,,
 )");
 }
 
@@ -40,18 +40,19 @@ TEST(AnalyticCsv, WithoutEnergiesHasARowForThePair) {
   const std::string text = PrintedPairs(Format::kCsv, "");
   EXPECT_EQ(
       text.substr(text.find('\n') + 1),
-      "0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,,,,,,,0.3255,0.2,10,,,,,,,,\n");
+      "0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.3255,0.2,10,,,,,,,,,,,,,,\n");
 }
 
 TEST(AnalyticCsv, ATemperatureHasARowAfterTheEnergies) {
-  const std::string pair = "0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9";
-  const std::string row = ",0.3255,0.2,10,2,0.5,0.3,0.04,0.05,0.06,0.03,2.7\n";
+  const std::string pair =
+      "0.529561127988977,0.1,0.3489125293076058,1,2,3,4,5,6,7,8,9,0.3255,0.2,10";
+  const std::string row = ",2,0.5,0.3,0.04,0.05,0.06,0.03,2.7\n";
   const std::string alone = PrintedPairs(Format::kCsv, kCanonical);
   EXPECT_EQ(alone.substr(alone.find('\n') + 1), pair + ",,,,,," + row);
   const std::string both =
       PrintedPairs(Format::kCsv, std::string("energies { epsilon: 0.25 phi: 1 }") + kCanonical);
   EXPECT_EQ(both.substr(both.find('\n') + 1),
-            pair + ",0.25,1,0,0,0,0,0.3255,0.2,10,,,,,,,,\n" + pair + ",,,,,," + row);
+            pair + ",0.25,1,0,0,0,0,,,,,,,,\n" + pair + ",,,,,," + row);
 }
 
 TEST(AnalyticJson, HasTheProtosNamesAtFullPrecision) {

@@ -1,21 +1,28 @@
 #include <gmock/gmock.h>
+#include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <future>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
 
+#include "absl/strings/str_split.h"
+#include "ballpiston/v1/progress.pb.h"
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
-#include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::StartsWith;
 
 const absl::Time kFirstReading = absl::FromUnixSeconds(1'000'000);
 
@@ -106,53 +113,83 @@ v1::EnsembleJob RunningJob() {
   return job;
 }
 
-std::string Reported(ProgressStyle style) {
+// A reporter with the text that it wrote.
+struct Reported {
+  explicit Reported(ProgressStyle style) : reporter(style, err, "ensembleJobs/abc") {}
+  std::string Text() const { return err.str(); }
+
   std::ostringstream err;
-  const auto reporter = NewProgressReporter(style, err);
-  reporter->OnJob(RunningJob());
+  ProgressReporter reporter;
+};
+
+v1::StatisticsSnapshot Snapshot() {
   v1::StatisticsSnapshot snapshot;
   *snapshot.mutable_progress() = Progress(50, 1000, 0.5);
   *snapshot.add_points() = ConditionalPoint();
-  reporter->OnSnapshot(snapshot);
+  return snapshot;
+}
+
+// A whole job, from its begin to its end.
+std::string ReportOf(ProgressStyle style) {
+  Reported report(style);
+  report.reporter.OnJob(RunningJob());
+  report.reporter.OnSnapshot(Snapshot());
   v1::EnsembleJob job = RunningJob();
   job.set_state(v1::EnsembleJob::SUCCEEDED);
   *job.mutable_progress() = Progress(100, 2000, 1);
-  reporter->OnJob(job);
-  reporter->OnEnd();
-  return err.str();
+  report.reporter.OnJob(job);
+  report.reporter.OnEnd();
+  return report.Text();
+}
+
+// What a terminal shows, line by line. It knows the carriage return and the clearing of the rest of
+// a line.
+std::vector<std::string> Screen(const std::string& text) {
+  std::vector<std::string> lines = {""};
+  size_t column = 0;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 3, "\x1b[K") == 0) {
+      lines.back().resize(column);
+      i += 2;
+    } else if (text[i] == '\n') {
+      lines.emplace_back();
+      column = 0;
+    } else if (text[i] == '\r') {
+      column = 0;
+    } else {
+      lines.back().resize(std::max(lines.back().size(), column + 1));
+      lines.back()[column++] = text[i];
+    }
+  }
+  return lines;
 }
 
 TEST(ProgressBar, NamesTheJobOnceRedrawsOneLineAndEndsWithTheState) {
-  const std::string text = Reported(ProgressStyle::kBar);
-  EXPECT_THAT(text, StartsWith("\rensembleJobs/abc\x1b[K\n"));
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  const std::string text = ReportOf(ProgressStyle::kBar);
   EXPECT_THAT(text, HasSubstr("50/100 points"));
-  EXPECT_THAT(text, HasSubstr("\rsucceeded: 100 of 100 points, 2000 samples\x1b[K\n"));
+  EXPECT_THAT(Screen(text),
+              ElementsAre("ensembleJobs/abc", "succeeded: 100 of 100 points, 2000 samples", ""));
 }
 
 // The user can compare the work with the plan.
 TEST(ProgressBar, EndsWithTheWorkIfTheServerSendsIt) {
-  std::ostringstream err;
-  const auto reporter = NewProgressReporter(ProgressStyle::kBar, err);
+  Reported report(ProgressStyle::kBar);
   v1::EnsembleJob job = RunningJob();
   job.set_work(192);
-  reporter->OnJob(job);
-  reporter->OnEnd();
-  EXPECT_THAT(err.str(), HasSubstr("0 samples, 3.2 min of one core\x1b[K\n"));
+  report.reporter.OnJob(job);
+  report.reporter.OnEnd();
+  EXPECT_THAT(report.Text(), HasSubstr("0 samples, 3.2 min of one core\n"));
 }
 
 // The server sends the point that changed last first.
 TEST(ProgressBar, HasThePointThatChangedLast) {
-  std::ostringstream err;
-  const auto reporter = NewProgressReporter(ProgressStyle::kBar, err);
-  v1::StatisticsSnapshot snapshot;
-  *snapshot.mutable_progress() = Progress(50, 1000, 0.5);
-  *snapshot.add_points() = ConditionalPoint();
+  Reported report(ProgressStyle::kBar);
+  v1::StatisticsSnapshot snapshot = Snapshot();
   *snapshot.add_points() = ConditionalPoint();
   snapshot.mutable_points(1)->mutable_estimates(0)->set_value(99.5);
-  reporter->OnSnapshot(snapshot);
-  EXPECT_THAT(err.str(), HasSubstr("tau_conditional 21.63"));
-  EXPECT_THAT(err.str(), Not(HasSubstr("99.5")));
+  report.reporter.OnSnapshot(snapshot);
+  EXPECT_THAT(report.Text(), HasSubstr("tau_conditional 21.63"));
+  EXPECT_THAT(report.Text(), Not(HasSubstr("99.5")));
 }
 
 v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
@@ -168,64 +205,96 @@ v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
 
 // At the end of a job with one worker no point is being computed.
 TEST(ProgressBar, HasThePointThatFinishedLast) {
-  std::ostringstream err;
-  NewProgressReporter(ProgressStyle::kBar, err)->OnSnapshot(WithFinishedPoints(0));
-  EXPECT_THAT(err.str(), HasSubstr("tau_conditional 66.5"));
+  Reported report(ProgressStyle::kBar);
+  report.reporter.OnSnapshot(WithFinishedPoints(0));
+  EXPECT_THAT(report.Text(), HasSubstr("tau_conditional 66.5"));
+}
+
+// Nothing of the bar may stay beside the first line, which is shorter.
+TEST(ProgressBar, ANoteClearsTheWholeBarFirst) {
+  Reported report(ProgressStyle::kBar);
+  report.reporter.OnSnapshot(Snapshot());
+  report.reporter.Note("a\nb");
+  EXPECT_THAT(Screen(report.Text()), ElementsAre("a", "b", ""));
+}
+
+TEST(ProgressBar, ANoteClearsTheMessageOfALostConnection) {
+  Reported report(ProgressStyle::kBar);
+  report.reporter.OnDisconnect(absl::UnavailableError("gone"), absl::Seconds(1.5));
+  EXPECT_THAT(Screen(report.Text()), ElementsAre("connection lost, trying again in 1.5 s"));
+  report.reporter.Note("a");
+  EXPECT_THAT(Screen(report.Text()), ElementsAre("a", ""));
+}
+
+// The farewell keeps its lock for the rest of the process, so all of this lives as long.
+TEST(ProgressBar, IsNotDrawnAfterTheFarewell) {
+  static auto& report = *new Reported(ProgressStyle::kBar);
+  report.reporter.OnSnapshot(Snapshot());
+  report.reporter.Farewell("a\nb");
+  const std::string farewell = report.Text();
+  EXPECT_THAT(Screen(farewell), ElementsAre("a", "b", ""));
+  static auto& redrawn = *new std::promise<void>;
+  std::thread([] {
+    report.reporter.OnSnapshot(Snapshot());
+    redrawn.set_value();
+  }).detach();
+  EXPECT_EQ(redrawn.get_future().wait_for(std::chrono::milliseconds(50)),
+            std::future_status::timeout);
+}
+
+// ---- JSON ----
+
+std::vector<v1::WatchProgress> JsonLines(const std::string& text) {
+  std::vector<v1::WatchProgress> lines;
+  for (const absl::string_view line : absl::StrSplit(text, '\n', absl::SkipEmpty())) {
+    EXPECT_TRUE(
+        google::protobuf::util::JsonStringToMessage(std::string(line), &lines.emplace_back()).ok())
+        << line;
+  }
+  return lines;
+}
+
+TEST(ProgressJson, IsOneMessageALine) {
+  const auto lines = JsonLines(ReportOf(ProgressStyle::kJson));
+  ASSERT_EQ(lines.size(), 3u);
+  for (const v1::WatchProgress& line : lines) EXPECT_EQ(line.job(), "ensembleJobs/abc");
+  EXPECT_EQ(lines[0].state(), v1::EnsembleJob::RUNNING);
+  EXPECT_EQ(lines[0].progress().points(), 100);
+  EXPECT_FALSE(lines[0].has_samples_per_second());
+  EXPECT_FALSE(lines[0].has_seconds_left());
+  EXPECT_EQ(lines[1].progress().samples(), 1000);
+  EXPECT_GT(lines[1].samples_per_second(), 0);
+  EXPECT_GT(lines[1].seconds_left(), 0);
+  ASSERT_EQ(lines[1].points_size(), 1);
+  EXPECT_EQ(lines[1].points(0).parameters().delta(), 0.1);
+  EXPECT_EQ(lines[2].state(), v1::EnsembleJob::SUCCEEDED);
 }
 
 TEST(ProgressJson, HasUnfinishedAndFinishedPointsNewestFirst) {
-  std::ostringstream err;
-  const auto reporter = NewProgressReporter(ProgressStyle::kJson, err);
-  v1::EnsembleJob job;
-  job.set_name("ensembleJobs/abc");
-  reporter->OnJob(job);
-  reporter->OnSnapshot(WithFinishedPoints(1));
-  const std::string text = err.str();
-  EXPECT_LT(text.find("21.63"), text.find("66.5"));
-  EXPECT_LT(text.find("66.5"), text.find("55.5"));
-  EXPECT_NE(text.find("55.5"), std::string::npos);
+  Reported report(ProgressStyle::kJson);
+  report.reporter.OnSnapshot(WithFinishedPoints(1));
+  const auto lines = JsonLines(report.Text());
+  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(lines[0].points_size(), 3);
+  EXPECT_EQ(lines[0].points(0).estimates(0).value(), 21.63214);
+  EXPECT_EQ(lines[0].points(1).estimates(0).value(), 66.5);
+  EXPECT_EQ(lines[0].points(2).estimates(0).value(), 55.5);
 }
 
-// The server sends the points first, and the state last.
-TEST(ProgressJson, HasThePointsOfAnEndedJob) {
-  std::ostringstream err;
-  const auto reporter = NewProgressReporter(ProgressStyle::kJson, err, "ensembleJobs/abc");
-  reporter->OnSnapshot(WithFinishedPoints(0));
-  EXPECT_THAT(err.str(),
-              StartsWith(R"({"job": "ensembleJobs/abc", "state": "STATE_UNSPECIFIED", )"));
-  EXPECT_THAT(err.str(), HasSubstr("66.5"));
-}
-
-TEST(ProgressJson, NotesAreObjects) {
-  std::ostringstream err;
-  NewProgressReporter(ProgressStyle::kJson, err)->Note("a \"hint\"\nof two lines");
-  EXPECT_EQ(err.str(), "{\"note\": \"a \\\"hint\\\"\\nof two lines\"}\n");
-}
-
-TEST(ProgressJson, IsOneObjectALine) {
-  const std::string text = Reported(ProgressStyle::kJson);
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
-  EXPECT_THAT(text,
-              StartsWith(R"({"job": "ensembleJobs/abc", "state": "RUNNING", "progress": )"
-                         R"({"points":100,"points_done":0,"samples":0,"fraction":0}, )"
-                         R"("samples_per_second": null, "seconds_left": null, "points": []})"));
-  EXPECT_THAT(text, HasSubstr(R"("points": [{"index":0,"parameters":{"rho":0,"delta":0.1,)"));
-  EXPECT_THAT(text, HasSubstr(R"("state": "SUCCEEDED")"));
+TEST(ProgressJson, NotesAreMessages) {
+  Reported report(ProgressStyle::kJson);
+  report.reporter.Note("a \"hint\"\nof two lines");
+  const auto lines = JsonLines(report.Text());
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].note(), "a \"hint\"\nof two lines");
+  EXPECT_EQ(lines[0].job(), "ensembleJobs/abc");
 }
 
 TEST(ProgressNone, PrintsNotesOnly) {
-  EXPECT_EQ(Reported(ProgressStyle::kNone), "");
-  std::ostringstream err;
-  NewProgressReporter(ProgressStyle::kNone, err)->Note("hint");
-  EXPECT_EQ(err.str(), "hint\n");
-}
-
-TEST(ProgressStyle, IsOneOfFour) {
-  EXPECT_THAT(ParseProgressStyle("bar"), IsOkAndHolds(ProgressStyle::kBar));
-  EXPECT_THAT(ParseProgressStyle("json"), IsOkAndHolds(ProgressStyle::kJson));
-  EXPECT_THAT(ParseProgressStyle("none"), IsOkAndHolds(ProgressStyle::kNone));
-  EXPECT_OK(ParseProgressStyle("auto"));
-  EXPECT_THAT(ParseProgressStyle("loud"), StatusIs(absl::StatusCode::kInvalidArgument));
+  EXPECT_EQ(ReportOf(ProgressStyle::kNone), "");
+  Reported report(ProgressStyle::kNone);
+  report.reporter.Note("hint");
+  EXPECT_EQ(report.Text(), "hint\n");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
 #include "tests/fault/torture/connected_server.h"
@@ -36,7 +36,7 @@ Channels ConnectionsTo(ConnectedServer& server) {
 // Repeats the call while the server is down. Returns the name of the job, or another error.
 std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
                            const v1::EnsembleSpec& spec, const std::string& request_id) {
-  const client::EnsembleClient client(channel);
+  const client::Client client(channel);
   while (true) {
     const auto job = client.Create(spec, {.request_id = request_id});
     if (job.ok()) return job->name();
@@ -89,7 +89,7 @@ class BatchOfCreates : public testing::Test {
     server_.Start();
     const auto channel = server_.Connect();
     EXPECT_EQ(CreateInTheEnd(channel, spec, id), name);
-    const client::EnsembleClient client(channel);
+    const client::Client client(channel);
     v1::EnsembleSpec other = spec;
     other.set_seed(spec.seed() + 1);
     const auto rejected = client.Create(other, {.request_id = id});

@@ -11,7 +11,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/library/channel.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
@@ -65,7 +65,7 @@ TEST(ClientLibrary, WatchesAgainSoonAfterARestart) {
   server.Start();
   // The library's own channel: nothing else in this process hurries it.
   ASSERT_OK_AND_ASSIGN(const auto channel, client::OpenChannel(server.address()));
-  const client::EnsembleClient client(channel);
+  const client::Client client(channel);
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Told told;
   client::WatchCallbacks callbacks;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/hung_readers.h"
@@ -85,7 +85,7 @@ class HungClients : public testing::Test {
   HungClients()
       : server_({.workers = 2, .flags = {absl::StrFormat("--drain-seconds=%g", kDrainSeconds)}}) {
     server_.Start();
-    const client::EnsembleClient client(server_.Connect());
+    const client::Client client(server_.Connect());
     name_ = OrThrow(client.Create(ManyPoints(20'000, 1'000))).name();
   }
 
@@ -130,7 +130,7 @@ TEST_F(HungClients, CallsWithoutAMessageDoNotDelayTheStop) {
   const CallWithoutMessage watch(channel, service + "WatchEnsembleJob");
   const CallWithoutMessage health(channel, "/grpc.health.v1.Health/Check");
   // Answered after them, on the same connection: so they have arrived.
-  ASSERT_OK(client::EnsembleClient(channel).Get(name_));
+  ASSERT_OK(client::Client(channel).Get(name_));
   CheckStop("calls without a message");
 }
 

@@ -16,7 +16,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "server/observability/failpoint.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
@@ -127,7 +127,7 @@ void KillManyTimes(int kills, ConnectedServer& server, Findings& findings) {
 
 std::set<std::string> NamesOn(ConnectedServer& server) {
   std::set<std::string> names;
-  for (const v1::EnsembleJob& job : OrThrow(client::EnsembleClient(server.Connect()).List())) {
+  for (const v1::EnsembleJob& job : OrThrow(client::Client(server.Connect()).List())) {
     EXPECT_TRUE(names.insert(job.name()).second);
   }
   return names;

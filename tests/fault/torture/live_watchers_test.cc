@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "client/library/job_watch.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
@@ -85,7 +85,7 @@ double HealthP99(grpc::GenericStub& stub, int checks) {
 }
 
 // Creates jobs until the server rejects one; returns how many it accepted.
-int FillQueue(const client::EnsembleClient& client) {
+int FillQueue(const client::Client& client) {
   std::atomic<int> asked = 0, taken = 0;
   std::vector<std::thread> threads;
   for (int i = 0; i < 16; ++i) {
@@ -155,7 +155,7 @@ class LiveWatchers : public testing::Test {
 };
 
 TEST_F(LiveWatchers, AllHearTheEndAndHealthAnswersWithAFullQueue) {
-  const client::EnsembleClient client(server_.Connect());
+  const client::Client client(server_.Connect());
   Health("a quiet server");
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));
   Health("one job");

@@ -48,7 +48,7 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   BareEngine engine(question, workers);
   ConnectedServer server({.workers = workers});
   server.Start();
-  const client::EnsembleClient client(server.Connect());
+  const client::Client client(server.Connect());
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(question));
   const std::chrono::milliseconds length(300);
   engine.Run(length);  // both warm

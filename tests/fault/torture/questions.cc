@@ -1,7 +1,7 @@
 #include "tests/fault/torture/questions.h"
 
 #include "absl/strings/str_cat.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/geometry/paper.h"
 #include "server/convert/spec.h"
@@ -101,7 +101,7 @@ Answer AnswerOf(const std::vector<v1::PointResult>& points) {
 std::vector<Answer> UndisturbedAnswers(const std::vector<EnsembleSpec>& questions) {
   ConnectedServer server;
   server.Start();
-  const client::EnsembleClient client(server.Connect());
+  const client::Client client(server.Connect());
   std::vector<Answer> answers;
   for (const EnsembleSpec& question : questions) {
     const std::string name = OrThrow(client.Create(question)).name();

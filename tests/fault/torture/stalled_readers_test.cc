@@ -109,7 +109,7 @@ class StalledReaders : public testing::Test {
   Findings findings_{"stalled readers"};
   BareEngine engine_{Endless(), kWorkers};
   ConnectedServer server_;
-  std::optional<client::EnsembleClient> client_;
+  std::optional<client::Client> client_;
   std::string name_;
   double mib_without_ = 0;
   PairedRatio processor_, time_;

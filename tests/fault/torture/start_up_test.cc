@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_name.h"
 #include "server/store/job_table.h"
@@ -78,7 +78,7 @@ void Fill(const std::string& path, int jobs) {
 double SecondsToFirstAnswer(ConnectedServer& server) {
   const auto start = std::chrono::steady_clock::now();
   server.Start();
-  const client::EnsembleClient client(server.Connect());
+  const client::Client client(server.Connect());
   EXPECT_THAT(client.Get("ensembleJobs/" + server::RandomId()),
               StatusIs(absl::StatusCode::kNotFound));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
@@ -50,7 +50,7 @@ class WatchedJob {
   }
 
  private:
-  const client::EnsembleClient client_;
+  const client::Client client_;
   std::mutex mutex_;
   uint64_t seed_ = 0;
   std::string name_;
@@ -74,7 +74,7 @@ class Watches : public testing::Test {
 
   // To the client library a restart is a pause.
   void FollowToTheEnd() {
-    const client::EnsembleClient client(server_.Connect());
+    const client::Client client(server_.Connect());
     while (!enough_) {
       const std::string name = watched_->Now();
       int ends = 0;

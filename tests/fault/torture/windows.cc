@@ -22,8 +22,7 @@ struct Reading {
   Clock::time_point at;
 };
 
-Reading Read(const ServerProcess& server, const client::EnsembleClient& client,
-             const std::string& job) {
+Reading Read(const ServerProcess& server, const client::Client& client, const std::string& job) {
   const v1::EnsembleJob now = OrThrow(client.Get(job));
   if (client::HasEnded(now.state())) throw std::runtime_error("the job is too short to measure");
   return {now.progress().samples(), server.ProcessorSeconds(), Clock::now()};
@@ -49,7 +48,7 @@ double Median(std::vector<double> values) {
 
 }  // namespace
 
-Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
+Window ServerWindow(const ServerProcess& server, const client::Client& client,
                     const std::string& job, std::chrono::milliseconds length,
                     double least_samples) {
   const Reading start = Read(server, client, job);

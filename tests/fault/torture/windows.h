@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "tests/support/server_process.h"
 
 namespace ballpiston::torture {
@@ -30,7 +30,7 @@ struct Window {
 
 // What the server spends, all of its threads, and what a job of its gets done meanwhile: for so
 // long, and on until it is as much as `least_samples`, for the machine may be busy.
-Window ServerWindow(const ServerProcess& server, const client::EnsembleClient& client,
+Window ServerWindow(const ServerProcess& server, const client::Client& client,
                     const std::string& job, std::chrono::milliseconds length,
                     double least_samples = 1);
 

@@ -295,6 +295,117 @@ TEST(EnsembleService, PagesOfLargeJobsStayBelowTwoMebibytes) {
   EXPECT_EQ(pages.size(), 2u);
 }
 
+std::vector<std::string> NamesOf(const v1::ListEnsembleJobsResponse& page) {
+  std::vector<std::string> names;
+  for (const EnsembleJob& job : page.jobs()) names.push_back(job.name());
+  return names;
+}
+
+TEST(EnsembleService, JobsAreFilteredByTheirPresentState) {
+  Gate gate;
+  RunningServer server(
+      {.workers = 1,
+       .factory = FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
+         if (seed == 2) gate.Pass(stop);
+       })});
+  const std::string succeeded = server.Succeeded(Equilibrium(1, 2));
+  const std::string running = server.Submit(Equilibrium(1, 2, 2));
+  gate.AwaitWaiting(1);
+  const std::string queued = server.Submit(Equilibrium(1, 2, 3));  // the only worker waits
+  const auto listed = [&](const std::vector<EnsembleJob::State>& states) {
+    v1::ListEnsembleJobsRequest request;
+    for (const EnsembleJob::State state : states) request.add_states(state);
+    return NamesOf(server.List(request));
+  };
+  EXPECT_THAT(listed({}), ElementsAre(queued, running, succeeded));
+  EXPECT_THAT(listed({EnsembleJob::QUEUED}), ElementsAre(queued));
+  EXPECT_THAT(listed({EnsembleJob::RUNNING}), ElementsAre(running));
+  EXPECT_THAT(listed({EnsembleJob::SUCCEEDED, EnsembleJob::QUEUED, EnsembleJob::QUEUED}),
+              ElementsAre(queued, succeeded));
+  EXPECT_THAT(listed({EnsembleJob::FAILED}), ElementsAre());
+}
+
+TEST(EnsembleService, JobsAreFilteredByExperiment) {
+  RunningServer server;
+  const std::string equilibrium = server.Submit(Equilibrium(1, 2));
+  const std::string first_hit = server.Submit(SmallFirstHit());
+  const auto listed = [&](const std::vector<v1::EnsembleSpec::Experiment>& experiments) {
+    v1::ListEnsembleJobsRequest request;
+    for (const auto experiment : experiments) request.add_experiments(experiment);
+    return NamesOf(server.List(request));
+  };
+  EXPECT_THAT(listed({v1::EnsembleSpec::EQUILIBRIUM}), ElementsAre(equilibrium));
+  EXPECT_THAT(listed({v1::EnsembleSpec::FIRST_HIT}), ElementsAre(first_hit));
+  EXPECT_THAT(listed({v1::EnsembleSpec::FIRST_HIT, v1::EnsembleSpec::EQUILIBRIUM}),
+              ElementsAre(first_hit, equilibrium));
+  EXPECT_THAT(listed({v1::EnsembleSpec::MARKOV_PROPERTY}), ElementsAre());
+}
+
+TEST(EnsembleService, JobsAreFilteredByTheirTimeOfCreation) {
+  RunningServer server;
+  std::vector<EnsembleJob> jobs;
+  for (const int points : {1, 2, 3}) {
+    jobs.push_back(server.Created(CreateRequest(Equilibrium(points, 2))));
+  }
+  v1::ListEnsembleJobsRequest request;
+  *request.mutable_since() = jobs[1].create_time();
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(jobs[2].name(), jobs[1].name()));
+  request.mutable_since()->set_seconds(253'402'300'799);  // the end of the year 9999
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre());
+}
+
+TEST(EnsembleService, APageTokenIsAPositionForAnyFilter) {
+  RunningServer server;
+  const std::string oldest = server.Succeeded(Equilibrium(1, 2, 1));
+  const std::string older = server.Submit(SmallFirstHit());
+  server.Submit(Equilibrium(1, 2, 2));
+  v1::ListEnsembleJobsRequest request;
+  request.set_page_size(1);
+  request.set_page_token(server.List(request).next_page_token());
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(older));
+  request.add_experiments(v1::EnsembleSpec::EQUILIBRIUM);
+  EXPECT_THAT(NamesOf(server.List(request)), ElementsAre(oldest));
+}
+
+TEST(EnsembleService, WrongFiltersAreRefusedWithWhatIsPermitted) {
+  RunningServer server;
+  v1::ListEnsembleJobsRequest request;
+  request.add_states(EnsembleJob::RUNNING);
+  request.add_states(EnsembleJob::STATE_UNSPECIFIED);
+  request.add_states(static_cast<EnsembleJob::State>(7));
+  request.add_experiments(v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED);
+  request.add_experiments(static_cast<v1::EnsembleSpec::Experiment>(-1));
+  request.mutable_since()->set_seconds(253'402'300'800);
+  request.mutable_since()->set_nanos(-1);
+  const auto refused = [&] {
+    grpc::ClientContext context;
+    v1::ListEnsembleJobsResponse response;
+    return server.ensemble().ListEnsembleJobs(&context, request, &response);
+  };
+  EXPECT_THAT(refused(), IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
+  EXPECT_THAT(refused().error_message(),
+              HasSubstr("states[1]: is 0; permitted: QUEUED, RUNNING, CANCELLING, SUCCEEDED, "
+                        "FAILED, CANCELLED"));
+  EXPECT_THAT(DetailsOf(refused()).fields,
+              ElementsAre("states[1]", "states[2]", "experiments[0]", "experiments[1]",
+                          "since.seconds", "since.nanos"));
+  request.clear_states();
+  request.clear_experiments();
+  EXPECT_THAT(refused().error_message(),
+              HasSubstr("since.seconds: is 253402300800; permitted: -62135596800 to "
+                        "253402300799"));
+}
+
+TEST(EnsembleService, MillionsOfWrongFiltersAreRefused) {
+  RunningServer server;
+  v1::ListEnsembleJobsRequest request;
+  for (int i = 0; i < 4'000'000; ++i) request.add_states(EnsembleJob::STATE_UNSPECIFIED);
+  grpc::ClientContext context;
+  v1::ListEnsembleJobsResponse response;
+  EXPECT_THAT(server.ensemble().ListEnsembleJobs(&context, request, &response),
+              StatusIs(grpc::StatusCode::INVALID_ARGUMENT, HasSubstr("(and 99 more)")));
+}
+
 TEST(EnsembleService, BadPagesAreRefused) {
   RunningServer server;
   const std::string name = server.Submit(Equilibrium(1, 2));

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "client/library/ensemble_client.h"
+#include "client/library/client.h"
 #include "gtest/gtest.h"
 #include "tests/server/call_by_name.h"
 #include "tests/server/fake_experiments.h"
@@ -98,7 +98,7 @@ TEST_F(OldConnections, AreReplacedDuringAWatchThatGoesOn) {
   client::WatchOptions options;
   options.max_backoff = absl::Milliseconds(50);
   ASSERT_OK_AND_ASSIGN(const auto ended,
-                       client::EnsembleClient(server_.channel()).Watch(name, callbacks, options));
+                       client::Client(server_.channel()).Watch(name, callbacks, options));
   EXPECT_EQ(ended.state(), v1::EnsembleJob::SUCCEEDED);
   EXPECT_GE(cuts, 3);
 }
@@ -129,7 +129,7 @@ TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsOfWhichNoneFails) {
   const std::string name = Submit(1);
   const LostConnections lost(server_.channel());
   while (lost.count() < 3) {
-    ASSERT_OK(client::EnsembleClient(server_.channel()).Get(name));
+    ASSERT_OK(client::Client(server_.channel()).Get(name));
   }
   gate_.Open();
 }

@@ -23,10 +23,42 @@ class DataFolder : public ::testing::Test {
     ASSERT_EQ(chmod(path_.c_str(), mode), 0);
   }
   mode_t Mode() const { return ModeOf(path_); }
+  static std::string OwnId() { return std::to_string(getpid()) + "\n"; }
 
   TemporaryFolder folder_;
   const std::string path_ = folder_.File("data");
 };
+
+TEST_F(DataFolder, TheLockHasTheServersProcessIdWhileItIsHeld) {
+  {
+    ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
+    EXPECT_EQ(Contents(directory.FilePath("lock")), OwnId());
+  }
+  EXPECT_EQ(Contents(path_ + "/lock"), "");
+}
+
+TEST_F(DataFolder, TheProcessIdOfAKilledServerIsReplaced) {
+  Make(0700);
+  WriteFile(path_ + "/lock", "123456789012345\n");
+  ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
+  EXPECT_EQ(Contents(path_ + "/lock"), OwnId());
+}
+
+TEST_F(DataFolder, AServerThatIsKeptOutDoesNotChangeTheProcessId) {
+  ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
+  WriteFile(path_ + "/lock", "12345\n");
+  EXPECT_THAT(DataDirectory::Open(path_), StatusIs(absl::StatusCode::kFailedPrecondition));
+  EXPECT_EQ(Contents(path_ + "/lock"), "12345\n");
+}
+
+TEST_F(DataFolder, AFileOfAnotherProgramNamedLockIsUnchanged) {
+  Make(0700);
+  for (const std::string text : {"the safe's combination\n", "12345678901234567890123456789012"}) {
+    WriteFile(path_ + "/lock", text);
+    EXPECT_OK(DataDirectory::Open(path_));
+    EXPECT_EQ(Contents(path_ + "/lock"), text);
+  }
+}
 
 TEST_F(DataFolder, ANewFolderHasMode0700WhateverTheMask) {
   const mode_t before = umask(0);

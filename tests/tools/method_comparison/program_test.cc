@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@ namespace {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 ProcessResult RunComparison(std::vector<std::string> flags) {
@@ -22,23 +24,56 @@ ProcessResult RunComparison(std::vector<std::string> flags) {
   return RunProgram({.command = std::move(flags)});
 }
 
-TEST(Program, PrintsAnObjectALineForEachMeasurement) {
+TEST(Program, PrintsARowForEachMeasurement) {
   const ProcessResult result =
       RunComparison({"--seconds", "0.01", "--delta=0.2", "--relaxation-delta", "0.2,0.3"});
   EXPECT_THAT(result, ExitsWith(0));
   std::istringstream lines(result.out);
-  for (std::string line; std::getline(lines, line);) {
-    EXPECT_THAT(line, StartsWith("{\"method\":\""));
-    EXPECT_THAT(line, EndsWith("}"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "rho,delta,epsilon,method,time_step,quantity,samples,wall_hits,work_seconds,value,"
+            "statistical_error,own_error,bias_resolved");
+  while (std::getline(lines, line)) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 12) << line;
   }
+  const std::string rho = "\n0.529561127988977,";
   for (const char* curve :
-       {R"("fixed-step","time_step":0.01,"quantity":"mean-free-time","delta":0.2,"samples":16,)",
-        R"("closed-form","time_step":0,"quantity":"ingoing-law","delta":0.2,"samples":0,)",
-        R"("billiard-reference-quadruple","time_step":0,"quantity":"trajectory")",
-        R"("markov","time_step":0,"quantity":"relaxation-time","delta":0.3,"samples":64,)"}) {
-    EXPECT_THAT(result.out, HasSubstr(curve));
+       {"0.2,0.125,fixed-step,0.01,mean-free-time,16,", "0.2,0.125,closed-form,0,ingoing-law,0,",
+        "0.2,0.125,billiard-reference-quadruple,0,trajectory,",
+        "0.3,0.125,markov,0,relaxation-time,64,", "0.3,0.125,spectrum,0,limit-floor,0,0,"}) {
+    EXPECT_THAT(result.out, HasSubstr(rho + curve));
   }
-  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(result.err, "");  // no progress: standard error is no terminal
+}
+
+TEST(Program, AnEmptyListOfRelaxationDeltasIsTheDefault) {
+  const ProcessResult result =
+      RunComparison({"--delta=0.2", "--seconds=0.01", "--relaxation-delta="});
+  EXPECT_THAT(result, ExitsWith(0));
+  for (const char* delta : {"0.2", "0.1", "0.05", "0.025"}) {
+    EXPECT_THAT(result.out, HasSubstr(std::string("\n0.529561127988977,") + delta +
+                                      ",0.125,spectrum,0,limit-floor,"));
+  }
+}
+
+TEST(Program, ProgressIsOneLineThatIsClearedAtTheEnd) {
+  const ProcessResult result = RunComparison(
+      {"--seconds", "0.01", "--delta=0.2", "--relaxation-delta=0.2", "--progress", "bar"});
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_THAT(result.err, StartsWith("\r  1 measurements  mean-free-time, fixed-step 0.1: "));
+  EXPECT_THAT(result.err, EndsWith("\r\x1b[K"));
+  EXPECT_THAT(result.err, Not(HasSubstr("\n")));
+}
+
+// All rows are printed nevertheless.
+TEST(Program, APanelWithoutRunsExitsWithOneAndNamesTheFlags) {
+  const ProcessResult result =
+      RunComparison({"--seconds=0.01", "--delta=1e-9", "--relaxation-delta=1e-9"});
+  EXPECT_THAT(result, ExitsWith(1));
+  EXPECT_THAT(result.out, HasSubstr(",trajectory,"));
+  EXPECT_THAT(result.err, HasSubstr("no method has 64 samples of mean-free-time in that time"));
+  EXPECT_THAT(result.err, HasSubstr("--seconds or a larger --delta"));
 }
 
 TEST(Program, EveryValueThatIsNotPermittedIsNamed) {

@@ -1,0 +1,205 @@
+// ballpiston completion: scripts for three shells, which ask this program for the words that fit
+// (`completion words -- WORD...`), and those words, made from the table of verbs.
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "client/command/connection.h"
+#include "client/command/verb_table.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+// Each passes the words so far; the last one is the word to complete. FILES stands for the names of
+// files. bash splits --flag=value into three words.
+constexpr char kBash[] = R"bash(# bash completion for ballpiston
+_ballpiston() {
+  local words=("${COMP_WORDS[@]:1:COMP_CWORD}") word=${COMP_WORDS[COMP_CWORD]} offers
+  [[ $word == = ]] && word=
+  mapfile -t offers < <(ballpiston completion words -- "${words[@]}" 2>/dev/null)
+  if [[ ${offers[0]} == FILES ]]; then
+    compopt -o filenames
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+  else
+    mapfile -t COMPREPLY < <(compgen -W "${offers[*]%%$'\t'*}" -- "$word")
+  fi
+}
+complete -F _ballpiston ballpiston
+)bash";
+
+constexpr char kZsh[] = R"zsh(#compdef ballpiston
+_ballpiston() {
+  local -a offers
+  offers=(${(f)"$(ballpiston completion words -- "${(@)words[2,CURRENT]}" 2>/dev/null)"})
+  if [[ $offers[1] == FILES ]]; then _files; else
+    offers=(${offers//$'\t'/:})
+    _describe ballpiston offers
+  fi
+}
+if [[ $funcstack[1] == _ballpiston ]]; then _ballpiston "$@"; else compdef _ballpiston ballpiston; fi
+)zsh";
+
+constexpr char kFish[] = R"fish(# fish completion for ballpiston
+function __ballpiston_offers
+  set -l words (commandline -opc) (commandline -ct)
+  set -l offers (ballpiston completion words -- $words[2..-1] 2>/dev/null)
+  if test "$offers[1]" = FILES
+    __fish_complete_path (commandline -ct)
+  else
+    string join \n -- $offers
+  end
+end
+complete -c ballpiston -f -a '(__ballpiston_offers)'
+)fish";
+
+// The verb that the words begin with, and how many of them name it.
+const Verb* FindVerb(const Strings& words, size_t& length) {
+  for (const Verb& verb : Verbs()) {
+    const Strings names = absl::StrSplit(verb.name, ' ');
+    if (words.size() <= names.size()) continue;
+    length = names.size();
+    if (std::equal(names.begin(), names.end(), words.begin())) return &verb;
+  }
+  return nullptr;
+}
+
+// The flag if the word is one that takes a value.
+const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (!flag->name.empty() && !flag->value.IsSwitch() && LongName(*flag) == word) return flag;
+  }
+  return nullptr;
+}
+
+// The argument that the last word is; null if the verb has no further one.
+const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin) {
+  size_t before = 0;
+  for (size_t i = begin; i + 1 < words.size(); ++i) {
+    const bool is_flag = absl::StartsWith(words[i], "-");
+    if (!is_flag) ++before;
+    if (is_flag && FlagWithValue(verb, words[i]) != nullptr) ++i;
+  }
+  if (before < verb.arguments.size()) return &verb.arguments[before];
+  if (verb.arguments.empty()) return nullptr;
+  const Argument& last = verb.arguments.back();
+  const bool many = last.number == Argument::kSeveral || last.number == Argument::kAny;
+  return many ? &last : nullptr;
+}
+
+// The next words of verbs that begin with the words so far.
+Strings VerbOffers(Strings so_far) {
+  so_far.pop_back();
+  std::set<std::string> offers;
+  for (const Verb& verb : Verbs()) {
+    const Strings names = absl::StrSplit(verb.name, ' ');
+    if (names.size() <= so_far.size()) continue;
+    if (!std::equal(so_far.begin(), so_far.end(), names.begin())) continue;
+    const std::string& next = names[so_far.size()];
+    const bool is_whole = names.size() == so_far.size() + 1;
+    offers.insert(is_whole ? absl::StrCat(next, "\t", verb.summary) : next);
+  }
+  return {offers.begin(), offers.end()};
+}
+
+// The names of the newest jobs. Empty if no server runs: completion starts no server.
+Strings JobNames(const Options& options, const Terminal& terminal) {
+  constexpr int kMost = 50;
+  Strings names;
+  const VerbResult ignored =
+      WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+        const auto jobs = connection.client.List({}, kMost);
+        if (!jobs.ok()) return jobs.status();
+        for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
+        return ExitCode::kDone;
+      });
+  return names;
+}
+
+Strings ValueOffers(const Value& value, const Options& options, const Terminal& terminal) {
+  switch (value.offer) {
+    case Offer::kChoices:
+      return value.choices;
+    case Offer::kFile:
+      return {"FILES"};
+    case Offer::kJob:
+      return JobNames(options, terminal);
+    case Offer::kFigure:
+      return FigureNames();
+    case Offer::kNothing:
+      break;
+  }
+  return {};
+}
+
+Strings FlagOffers(const Verb& verb) {
+  Strings offers;
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (!flag->name.empty()) offers.push_back(absl::StrCat(LongName(*flag), "\t", flag->text));
+  }
+  return offers;
+}
+
+// Makes two words of --flag=value, which bash passes as three words, and zsh and fish as one. There
+// the offers have to begin with --flag= likewise: returns this, else "".
+std::string SplitValue(Strings& words) {
+  if (words.back() == "=") words.back() = "";
+  std::erase(words, "=");
+  const std::string last = words.back();
+  const size_t equals = last.find('=');
+  if (!absl::StartsWith(last, "--") || equals == std::string::npos) return "";
+  words.back() = last.substr(0, equals);
+  words.push_back(last.substr(equals + 1));
+  return last.substr(0, equals + 1);
+}
+
+// The last word is the one to complete.
+Strings Offers(Strings words, const Options& options, const Terminal& terminal) {
+  if (words.empty()) words = {""};
+  const std::string prefix = SplitValue(words);
+  size_t length = 0;
+  const Verb* const verb = FindVerb(words, length);
+  if (verb == nullptr) return VerbOffers(words);
+  if (const Flag* const flag = FlagWithValue(*verb, words[words.size() - 2])) {
+    Strings offers = ValueOffers(flag->value, options, terminal);
+    if (!prefix.empty() && flag->value.offer == Offer::kFile) return {};
+    for (std::string& offer : offers) offer.insert(0, prefix);
+    return offers;
+  }
+  if (!prefix.empty()) return {};
+  const Argument* const argument = ArgumentAt(*verb, words, length);
+  if (absl::StartsWith(words.back(), "-") || argument == nullptr) return FlagOffers(*verb);
+  if (verb->act == &Help)
+    return VerbOffers({words.begin() + static_cast<long>(length), words.end()});
+  const Strings values = ValueOffers(argument->value, options, terminal);
+  return values.empty() ? FlagOffers(*verb) : values;
+}
+
+}  // namespace
+
+VerbResult Complete(const Options& options, Terminal& terminal) {
+  switch (options.completion) {
+    case Completion::kBash:
+      terminal.out << kBash;
+      break;
+    case Completion::kZsh:
+      terminal.out << kZsh;
+      break;
+    case Completion::kFish:
+      terminal.out << kFish;
+      break;
+    case Completion::kWords:
+      for (const std::string& offer : Offers(options.words, options, terminal)) {
+        terminal.out << offer << '\n';
+      }
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,89 @@
+#include "client/command/config_file.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/command/suggestion.h"
+#include "client/library/quoted.h"
+
+namespace ballpiston::client {
+namespace {
+
+const Flag* FindFlag(const Verb& verb, const std::string& key) {
+  for (const Flag* flag : FlagsOf(verb)) {
+    if (LongName(*flag) == "--" + key) return flag;
+  }
+  return nullptr;
+}
+
+// Of one verb, or of all.
+std::vector<std::string> Keys(const std::string& verb_name) {
+  std::set<std::string> keys;
+  for (const Verb& verb : Verbs()) {
+    if (!verb_name.empty() && verb.name != verb_name) continue;
+    for (const Flag* flag : FlagsOf(verb)) {
+      if (!flag->name.empty()) keys.insert(LongName(*flag).substr(2));
+    }
+  }
+  return {keys.begin(), keys.end()};
+}
+
+absl::Status CheckKey(const std::string& section, const std::string& key) {
+  std::vector<std::string> keys = Keys(section);
+  keys.erase(std::remove(keys.begin(), keys.end(), "config"), keys.end());
+  if (keys.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("[", section, "] is not a verb"));
+  }
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(Quoted(key), " is not a flag",
+                                                 section.empty() ? "" : " of " + section,
+                                                 DidYouMean(key, keys)));
+}
+
+}  // namespace
+
+std::string FromEnvironment(const std::string& variable) {
+  const char* value = std::getenv(variable.c_str());
+  return value == nullptr ? "" : value;
+}
+
+std::string UsualConfig() {
+  std::string folder = FromEnvironment("XDG_CONFIG_HOME");
+  if (folder.empty() || folder[0] != '/') folder = FromEnvironment("HOME") + "/.config";
+  std::error_code error;
+  const std::string path = folder + "/ballpiston/config.toml";
+  return std::filesystem::exists(path, error) ? path : "";
+}
+
+absl::Status ReadConfig(const std::string& path, const Verb& verb,
+                        const std::function<void(const Flag&, const std::string& text)>& add) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    return absl::InvalidArgumentError(absl::StrCat(path, " is a folder"));
+  }
+  std::vector<CLI::ConfigItem> items;
+  try {
+    items = CLI::ConfigTOML().from_file(path);
+  } catch (const CLI::Error& error) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", error.what()));
+  }
+  for (const std::string& wanted : {verb.name, std::string()}) {
+    for (const CLI::ConfigItem& item : items) {
+      const std::string section = absl::StrJoin(item.parents, " ");
+      if (item.name == "++" || item.name == "--") continue;  // a section's begin and end
+      if (absl::Status bad = CheckKey(section, item.name); !bad.ok()) {
+        return absl::InvalidArgumentError(absl::StrCat(path, ": ", bad.message()));
+      }
+      const Flag* const flag = FindFlag(verb, item.name);
+      if (section == wanted && flag != nullptr) add(*flag, absl::StrJoin(item.inputs, ","));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace ballpiston::client

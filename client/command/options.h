@@ -1,0 +1,59 @@
+// What a command line asks for. A verb has some of these (verb_table.h); the others keep their
+// defaults.
+#ifndef BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
+#define BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ballpiston/v1/analytic.pb.h"
+#include "ballpiston/v1/ensemble.pb.h"
+#include "client/library/channel_security.h"
+#include "client/library/client.h"
+#include "client/output/format.h"
+#include "client/output/progress_reporter.h"
+
+namespace ballpiston::client {
+
+enum class PageFormat { kText, kMan, kMarkdown };
+enum class Completion { kBash, kZsh, kFish, kWords };
+
+struct Options {
+  v1::EnsembleSpec spec;
+  std::string spec_file;
+  v1::EvaluatePairsRequest closed_forms;
+
+  CreateOptions create;
+  bool resume = false;
+  std::vector<std::string> jobs;  // names, ensembleJobs/ID
+  v1::ListEnsembleJobsRequest which_jobs;
+  int64_t limit = Client::kAllJobs;
+
+  std::string server;
+  ChannelSecurity security;
+  std::string data_dir, access_file, credential, file;
+  std::vector<std::string> server_flags;  // for ballpistond
+
+  std::string figure, out;
+  bool list = false, edit = false;
+  std::map<std::string, std::string> variables;  // of the figure's script
+
+  Format format = Format::kTable;
+  ProgressStyle progress = ProgressStyle::kAuto;
+  bool quiet = false, verbose = false;
+  std::vector<std::string> words;  // of help and completion
+  PageFormat page = PageFormat::kText;
+  Completion completion = Completion::kBash;
+
+  std::set<std::string> given;  // the flags on the command line, such as --rho
+  std::string connection;       // flags that choose the server: " --server ..."
+  std::map<std::string, std::string>
+      inherited;  // environment of a figure: variable, value of its flag
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_OPTIONS_H_

@@ -1,0 +1,213 @@
+#include "client/command/reference.h"
+
+#include <set>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr size_t kWidth = 80;
+
+// The content of a page, the same in every format.
+struct Section {
+  std::string title;
+  std::vector<Remark> entries;
+};
+
+struct Page {
+  std::string name, summary, synopsis, description;
+  std::vector<Section> sections;
+  std::vector<std::string> examples;
+};
+
+std::string Described(const std::string& text, const Value& value, const std::string& variable) {
+  std::string whole = text;
+  if (!value.choices.empty()) {
+    absl::StrAppend(&whole, ": ", absl::StrJoin(value.choices, " | "));
+  }
+  if (!variable.empty()) absl::StrAppend(&whole, " [", variable, "]");
+  return whole;
+}
+
+std::string TermOf(const Flag& flag) {
+  if (flag.name.empty()) return flag.variable;
+  const std::string names = absl::StrReplaceAll(flag.name, {{",", ", "}});
+  return flag.value.IsSwitch() ? names : absl::StrCat(names, " ", flag.value.name);
+}
+
+Section SectionOf(const FlagGroup& group) {
+  Section section{.title = group.title, .entries = {}};
+  for (const Flag& flag : group.flags) {
+    section.entries.push_back(
+        {TermOf(flag), Described(flag.text, flag.value, flag.name.empty() ? "" : flag.variable)});
+  }
+  return section;
+}
+
+std::string SynopsisOf(const Argument& argument) {
+  const bool many = argument.number == Argument::kSeveral || argument.number == Argument::kAny;
+  const bool needed =
+      argument.number == Argument::kRequired || argument.number == Argument::kSeveral;
+  const std::string word = absl::StrCat(argument.value.name, many ? "..." : "");
+  return needed ? absl::StrCat(" ", word) : absl::StrCat(" [", word, "]");
+}
+
+Page PageOf(const Verb& verb) {
+  Page page{.name = absl::StrCat(kProgram, " ", verb.name),
+            .summary = verb.summary,
+            .synopsis = absl::StrCat(kProgram, " ", verb.name),
+            .description = verb.description,
+            .sections = {},
+            .examples = {}};
+  Section arguments{.title = "Arguments", .entries = {}};
+  for (const Argument& argument : verb.arguments) {
+    page.synopsis += SynopsisOf(argument);
+    arguments.entries.push_back(
+        {argument.value.name, Described(argument.text, argument.value, "")});
+  }
+  page.synopsis += " [FLAG...]";
+  if (!arguments.entries.empty()) page.sections.push_back(std::move(arguments));
+  for (const FlagGroup* group : verb.groups) page.sections.push_back(SectionOf(*group));
+  page.sections.back().entries.push_back({"-h, --help", "print this page"});
+  for (const std::string& example : verb.examples) {
+    page.examples.push_back(absl::StrCat(kProgram, " ", example));
+  }
+  return page;
+}
+
+Page ProgramPage() {
+  Page page{.name = kProgram,
+            .summary = "rarely interacting billiards, simulated by a service",
+            .synopsis = absl::StrCat(kProgram, " VERB [ARGUMENT...] [FLAG...]"),
+            .description =
+                "Results go to standard output, everything else to standard error. "
+                "help VERB shows the flags of a verb.",
+            .sections = {},
+            .examples = {"ballpiston run equilibrium --rho 0.5296 --delta 0.1,0.2",
+                         "ballpiston help run"}};
+  Section verbs{.title = "Verbs", .entries = {}};
+  for (const Verb& verb : Verbs()) verbs.entries.push_back({verb.name, verb.summary});
+  page.sections = {verbs,
+                   {"Flags without a verb",
+                    {{"-h, --help", "print this page"}, {"--version", "print the version"}}},
+                   {"Exit codes", ExitCodes()},
+                   {"Files", Files()}};
+  return page;
+}
+
+Page PageOf(const Verb* verb) { return verb == nullptr ? ProgramPage() : PageOf(*verb); }
+
+// ---- text ----
+
+// The text in lines of at most kWidth characters, all but the first one indented.
+std::string Wrapped(absl::string_view text, size_t column, size_t indent) {
+  std::string out;
+  for (const absl::string_view word : absl::StrSplit(text, ' ')) {
+    const bool fits = column + 1 + word.size() <= kWidth;
+    if (!out.empty()) {
+      absl::StrAppend(&out, fits ? " " : "\n", fits ? "" : std::string(indent, ' '));
+      column = fits ? column + 1 : indent;
+    }
+    absl::StrAppend(&out, word);
+    column += word.size();
+  }
+  return out;
+}
+
+// The text beside the term, or below a long one.
+std::string TextEntry(const Remark& entry) {
+  constexpr size_t kColumn = 26;
+  std::string line = absl::StrCat("  ", entry.name);
+  line += line.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ')
+                                    : std::string(kColumn - line.size(), ' ');
+  return absl::StrCat(line, Wrapped(entry.text, kColumn, kColumn), "\n");
+}
+
+std::string Text(const Page& page) {
+  std::string out = absl::StrCat(page.name, ": ", page.summary, "\n\n  ", page.synopsis, "\n");
+  if (!page.description.empty()) {
+    absl::StrAppend(&out, "\n", Wrapped(page.description, 0, 0), "\n");
+  }
+  for (const Section& section : page.sections) {
+    absl::StrAppend(&out, "\n", section.title, ":\n");
+    for (const Remark& entry : section.entries) out += TextEntry(entry);
+  }
+  out += "\nExamples:\n";
+  for (const std::string& example : page.examples) absl::StrAppend(&out, "  ", example, "\n");
+  return out;
+}
+
+// ---- man ----
+
+std::string Roff(const std::string& text) {
+  std::string safe = absl::StrReplaceAll(text, {{"\\", "\\e"}, {"-", "\\-"}});
+  const bool is_command = absl::StartsWith(safe, ".") || absl::StartsWith(safe, "'");
+  return is_command ? absl::StrCat("\\&", safe) : safe;
+}
+
+std::string RoffSection(const Section& section) {
+  std::string out = absl::StrCat(".SH \"", Roff(section.title), "\"\n");
+  for (const Remark& entry : section.entries) {
+    absl::StrAppend(&out, ".TP\n.B ", Roff(entry.name), "\n", Roff(entry.text), "\n");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string TextPage(const Verb* verb) { return Text(PageOf(verb)); }
+
+std::string ManPage(const Verb* verb) {
+  const Page page = PageOf(verb);
+  std::string out =
+      absl::StrCat(".TH ", absl::AsciiStrToUpper(PageName(verb)), " 1 \"\" \"", kProgram, " ",
+                   BALLPISTON_VERSION, "\" \"User Commands\"\n.SH NAME\n", Roff(PageName(verb)),
+                   " \\- ", Roff(page.summary), "\n.SH SYNOPSIS\n", Roff(page.synopsis), "\n");
+  if (!page.description.empty()) {
+    absl::StrAppend(&out, ".SH DESCRIPTION\n", Roff(page.description), "\n");
+  }
+  for (const Section& section : page.sections) out += RoffSection(section);
+  out += ".SH EXAMPLES\n";
+  for (const std::string& example : page.examples) {
+    absl::StrAppend(&out, ".PP\n", Roff(example), "\n");
+  }
+  std::vector<std::string> others;
+  if (verb != nullptr) others.push_back(kProgram);
+  if (verb == nullptr) {
+    for (const Verb& other : Verbs()) others.push_back(PageName(&other));
+  }
+  return absl::StrCat(out, ".SH \"SEE ALSO\"\n", Roff(absl::StrJoin(others, "(1), ")), "(1)\n");
+}
+
+std::string MarkdownReference() {
+  std::string out =
+      "# The command line\n\nWritten by `ballpiston help --format markdown`; a test compares the "
+      "two. Most verbs have the\ngroups Server and General flags; only the first such verb shows "
+      "them.\n";
+  std::set<std::string> shown;
+  const auto add = [&](const Verb* verb) {
+    Page page = PageOf(verb);
+    std::erase_if(page.sections, [&shown](const Section& section) {
+      const bool is_shared = section.title == "Server" || section.title == "General flags";
+      return is_shared && !shown.insert(section.title).second;
+    });
+    absl::StrAppend(&out, "\n## ", page.name, "\n\n```\n", Text(page), "```\n");
+  };
+  add(nullptr);
+  for (const Verb& verb : Verbs()) add(&verb);
+  return out;
+}
+
+std::string PageName(const Verb* verb) {
+  if (verb == nullptr) return kProgram;
+  return absl::StrCat(kProgram, "-", absl::StrReplaceAll(verb->name, {{" ", "-"}}));
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,130 @@
+// ballpiston server: starts, stops, checks and backs up servers of this machine, makes tokens, and
+// shows what any server is doing.
+#include <signal.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "client/command/connection.h"
+#include "client/command/interrupts.h"
+#include "client/library/child_process.h"
+#include "client/library/server_process.h"
+#include "client/output/status_output.h"
+
+namespace ballpiston::client {
+namespace {
+
+// A server of this machine: its data folder and how to start it.
+absl::StatusOr<ServerProgram> ProgramOf(const Options& options) {
+  if (options.data_dir.empty()) {
+    if (std::getenv("BALLPISTON_SERVER") != nullptr) {
+      return absl::InvalidArgumentError(
+          "BALLPISTON_SERVER is set, so this command does not use the private server: give "
+          "--data-dir, or unset the variable");
+    }
+    const absl::StatusOr<LocalServer> local = FindLocalServer();
+    if (!local.ok()) return local.status();
+    return ServerProgram{local->program, local->folder, {"--listen", local->Address()}};
+  }
+  std::error_code error;
+  const std::string folder = std::filesystem::absolute(options.data_dir, error).string();
+  return ServerProgram{UsualServerProgram(), folder, {}};
+}
+
+absl::Status CheckStart(const Options& options) {
+  if (!options.given.contains("--listen") || !options.data_dir.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "--listen: the private server has a fixed address; to start a server with another address, "
+      "give it its own folder with --data-dir");
+}
+
+// Runs ballpistond with these flags and waits for its end. Its output is this program's output.
+VerbResult RunProgram(std::vector<std::string> flags, const Terminal& terminal) {
+  flags.insert(flags.begin(), UsualServerProgram());
+  terminal.Detail(absl::StrJoin(flags, " "));
+  const auto pid = StartChild({.command = std::move(flags), .folder = "", .output = ""});
+  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
+  const Interrupts::Scope scope(terminal.interrupts, [&] { kill(*pid, SIGTERM); });
+  const absl::StatusOr<int> status = WaitForChild(*pid);
+  if (!status.ok()) return status.status();
+  return ExitCodeOf(*status);
+}
+
+VerbResult RunOnStore(const Options& options, std::vector<std::string> flags,
+                      const Terminal& terminal) {
+  const absl::StatusOr<ServerProgram> program = ProgramOf(options);
+  if (!program.ok()) return program.status();
+  flags.insert(flags.end(), {"--data-dir", program->folder});
+  return RunProgram(std::move(flags), terminal);
+}
+
+}  // namespace
+
+VerbResult ServerStart(const Options& options, Terminal& terminal) {
+  if (absl::Status bad = CheckStart(options); !bad.ok()) return bad;
+  absl::StatusOr<ServerProgram> program = ProgramOf(options);
+  if (!program.ok()) return program.status();
+  if (const auto running = FindServer(program->folder); running && !running->address.empty()) {
+    if (!options.server_flags.empty()) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          "a server runs in ", program->folder,
+          " already, so these flags have no effect: stop it first (ballpiston server stop)"));
+    }
+    terminal.Note(
+        "a server runs there already; if a client started that server, it stops when it is idle");
+    terminal.out << running->address << '\n';
+    return ExitCode::kDone;
+  }
+  std::error_code error;
+  std::filesystem::create_directories(program->folder, error);  // for the log
+  if (error) {
+    return absl::PermissionDeniedError(absl::StrCat("--data-dir: cannot make the folder ",
+                                                    program->folder, ": ", error.message()));
+  }
+  program->run_in = "";  // so that relative paths in its flags are correct
+  for (const std::string& flag : options.server_flags) program->flags.push_back(flag);
+  const absl::StatusOr<std::string> address = StartServer(*program);
+  if (!address.ok()) return address.status();
+  terminal.Detail(absl::StrCat("log ", program->Log()));
+  terminal.out << *address << '\n';
+  return ExitCode::kDone;
+}
+
+VerbResult ServerStop(const Options& options, Terminal&) {
+  const absl::StatusOr<ServerProgram> program = ProgramOf(options);
+  if (!program.ok()) return program.status();
+  if (absl::Status stopped = StopServer(program->folder); !stopped.ok()) return stopped;
+  return ExitCode::kDone;
+}
+
+VerbResult ServerStatus(const Options& options, Terminal& terminal) {
+  return WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    const auto status = connection.client.Status();
+    if (!status.ok()) return status.status();
+    PrintStatus(*status, absl::Now(), options.format, terminal.out);
+    return ExitCode::kDone;
+  });
+}
+
+VerbResult ServerToken(const Options& options, Terminal& terminal) {
+  if (options.access_file.empty()) {
+    return absl::InvalidArgumentError("server token needs --access-file FILE");
+  }
+  return RunProgram({"--access-file", options.access_file, "--new-token", options.credential},
+                    terminal);
+}
+
+VerbResult ServerBackup(const Options& options, Terminal& terminal) {
+  return RunOnStore(options, {"--backup", options.file}, terminal);
+}
+
+VerbResult ServerCheck(const Options& options, Terminal& terminal) {
+  return RunOnStore(options, {"--check"}, terminal);
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,34 @@
+// Where a verb writes: results to standard output, everything else to standard error.
+#ifndef BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
+#define BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
+
+#include <ostream>
+
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+
+class Interrupts;
+
+enum class Verbosity { kQuiet, kNormal, kVerbose };
+
+struct Terminal {
+  std::ostream& out;
+  std::ostream& err;
+  Interrupts* interrupts = nullptr;  // null: the program does not handle signals
+  Verbosity verbosity = Verbosity::kNormal;
+  bool colour = false;  // standard error accepts colours
+
+  // A line for the user; --quiet suppresses it.
+  void Note(absl::string_view text) const {
+    if (verbosity != Verbosity::kQuiet) err << text << std::endl;
+  }
+  // A line that only --verbose shows.
+  void Detail(absl::string_view text) const {
+    if (verbosity == Verbosity::kVerbose) err << "ballpiston: " << text << std::endl;
+  }
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_TERMINAL_H_

@@ -1,0 +1,129 @@
+#include "client/command/value.h"
+
+#include <algorithm>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "client/command/number_list.h"
+#include "client/library/quoted.h"
+#include "client/library/request_id.h"
+
+namespace ballpiston::client {
+namespace {
+
+// Parses the text with `parse` and stores the result.
+template <typename T, typename Parse>
+Value Parsed(std::string name, Parse parse, Store<T> store, Offer offer = Offer::kNothing) {
+  return {.name = std::move(name),
+          .read =
+              [store = std::move(store), parse](const std::string& text, Options& options) {
+                absl::StatusOr<T> value = parse(text);
+                if (value.ok()) store(options, *std::move(value));
+                return value.status();
+              },
+          .offer = offer};
+}
+
+absl::Status NotPermitted(absl::string_view text, absl::string_view reason) {
+  return absl::InvalidArgumentError(absl::StrCat(Quoted(text), " ", reason));
+}
+
+absl::StatusOr<bool> ParseBool(const std::string& text) {
+  bool value = false;
+  if (absl::SimpleAtob(text, &value)) return value;
+  return NotPermitted(text, "is neither true nor false");
+}
+
+absl::StatusOr<std::string> ParseText(const std::string& text) {
+  if (!text.empty()) return text;
+  return absl::InvalidArgumentError("is empty");
+}
+
+// ensembleJobs/ID, or the ID alone.
+absl::StatusOr<std::string> ParseJobName(const std::string& text) {
+  constexpr absl::string_view kCollection = "ensembleJobs/";
+  constexpr size_t kLongest = 63;
+  const absl::string_view id = absl::StripPrefix(text, kCollection);
+  const bool is_id = std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-';
+  });
+  if (is_id && !id.empty() && id.size() <= kLongest) return absl::StrCat(kCollection, id);
+  return NotPermitted(
+      text,
+      "is not a job's name: write ensembleJobs/ID, or the ID alone; an ID is 1 to 63 of "
+      "a-z, 0-9 and hyphen");
+}
+
+absl::StatusOr<std::string> ParseRequestId(const std::string& text) {
+  if (IsRequestId(text)) return text;
+  return NotPermitted(text, "is not a UUID like 123e4567-e89b-12d3-a456-426614174000");
+}
+
+absl::StatusOr<absl::Time> ParseDate(const std::string& text) {
+  absl::Time time;
+  std::string error;
+  for (const char* format : {"%Y-%m-%d", "%Y-%m-%dT%H:%M:%SZ"}) {
+    if (absl::ParseTime(format, text, &time, &error)) return time;
+  }
+  return NotPermitted(text, "is not a date (UTC): write 2026-01-31 or 2026-01-31T12:00:00Z");
+}
+
+}  // namespace
+
+Value Switch(Store<bool> store) { return Parsed("", ParseBool, std::move(store)); }
+
+Value Text(std::string name, Store<std::string> store, Offer offer) {
+  return Parsed(std::move(name), ParseText, std::move(store), offer);
+}
+
+Value File(Store<std::string> store) { return Text("FILE", std::move(store), Offer::kFile); }
+
+Value Number(std::string name, Store<double> store) {
+  return Parsed(std::move(name), ParseNumber, std::move(store));
+}
+
+Value Count(Store<int64_t> store) { return Parsed("N", ParseCount, std::move(store)); }
+
+Value Seed(Store<uint64_t> store) { return Parsed("SEED", ParseSeed, std::move(store)); }
+
+Value List(Store<std::vector<double>> store) {
+  return Parsed("LIST", ParseNumberList, std::move(store));
+}
+
+Value Words(std::string name, Store<std::string> store) {
+  const auto any = [](const std::string& text) -> absl::StatusOr<std::string> { return text; };
+  return Parsed(std::move(name), any, std::move(store));
+}
+
+Value Date(Store<absl::Time> store) { return Parsed("DATE", ParseDate, std::move(store)); }
+
+Value Job() {
+  const Store<std::string> store = [](Options& options, std::string name) {
+    options.jobs.push_back(std::move(name));
+  };
+  return Parsed("JOB", ParseJobName, store, Offer::kJob);
+}
+
+Value RequestId() {
+  const Store<std::string> store = [](Options& options, std::string id) {
+    options.create.request_id = std::move(id);
+  };
+  return Parsed("UUID", ParseRequestId, store);
+}
+
+Value Variable(std::string name, std::string variable) {
+  return Text(std::move(name),
+              [variable = std::move(variable)](Options& options, std::string text) {
+                options.variables[variable] = std::move(text);
+              });
+}
+
+Value Passed(std::string name, std::string flag) {
+  return Text(std::move(name), [flag = std::move(flag)](Options& options, std::string text) {
+    options.server_flags.insert(options.server_flags.end(), {flag, std::move(text)});
+  });
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,103 @@
+// Kinds of values that flags and arguments have: each reads a text and stores what it means.
+//
+// An error is INVALID_ARGUMENT and says what the text is and what is permitted:
+// 'x' is not a decimal number such as 0.1 or 1e-3. The server checks whether a number is
+// physical.
+#ifndef BALLPISTON_CLIENT_COMMAND_VALUE_H_
+#define BALLPISTON_CLIENT_COMMAND_VALUE_H_
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_split.h"
+#include "absl/time/time.h"
+#include "client/command/options.h"
+#include "client/command/suggestion.h"
+#include "client/output/spelling.h"
+
+namespace ballpiston::client {
+
+// What shell completion offers for such a value.
+enum class Offer { kNothing, kChoices, kFile, kJob, kFigure };
+
+struct Value {
+  std::string name;  // as help shows it: LIST, N, FILE; empty for a switch
+  std::function<absl::Status(const std::string& text, Options& options)> read;
+  Offer offer = Offer::kNothing;
+  std::vector<std::string> choices = {};
+
+  bool IsSwitch() const { return name.empty(); }
+};
+
+template <typename T>
+using Store = std::function<void(Options&, T)>;
+
+// Stores into a member: To(&Options::format).
+template <typename T>
+Store<T> To(T Options::*member) {
+  return [member](Options& options, T value) { options.*member = std::move(value); };
+}
+
+Value Switch(Store<bool> store);
+Value Text(std::string name, Store<std::string> store, Offer offer = Offer::kNothing);
+Value File(Store<std::string> store);
+Value Number(std::string name, Store<double> store);
+Value Count(Store<int64_t> store);  // N
+Value Seed(Store<uint64_t> store);
+Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
+Value Words(std::string name, Store<std::string> store);  // each word
+Value Date(Store<absl::Time> store);
+Value Job();                                             // into Options::jobs
+Value RequestId();                                       // a UUID
+Value Variable(std::string name, std::string variable);  // of a figure's script
+Value Passed(std::string name, std::string flag);        // to ballpistond, with its flag
+
+template <typename T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+// Every value of a proto's enumeration except the unspecified one.
+template <typename Enum>
+Choices<Enum> EnumChoices() {
+  Choices<Enum> choices;
+  for (const std::string& name : Spellings<Enum>()) {
+    choices.emplace_back(name, *FromSpelling<Enum>(name));
+  }
+  return choices;
+}
+
+// Also accepts capitals and underscores, as in JSON.
+template <typename T>
+Value OneOf(std::string name, Choices<T> choices, Store<T> store) {
+  Value value{.name = std::move(name), .read = {}, .offer = Offer::kChoices};
+  for (const auto& choice : choices) value.choices.push_back(choice.first);
+  value.read = [store = std::move(store), choices = std::move(choices), names = value.choices](
+                   const std::string& text, Options& options) {
+    for (const auto& [choice, meaning] : choices) {
+      if (choice != SpellingOfName(text)) continue;
+      store(options, meaning);
+      return absl::OkStatus();
+    }
+    return absl::InvalidArgumentError(NotOneOf(text, names));
+  };
+  return value;
+}
+
+// Several choices, separated by commas; calls `store` for each.
+template <typename T>
+Value SomeOf(std::string name, Choices<T> choices, Store<T> store) {
+  Value value = OneOf(std::move(name), std::move(choices), std::move(store));
+  value.read = [read = value.read](const std::string& texts, Options& options) {
+    for (const absl::string_view text : absl::StrSplit(texts, ',')) {
+      if (absl::Status bad = read(std::string(text), options); !bad.ok()) return bad;
+    }
+    return absl::OkStatus();
+  };
+  return value;
+}
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_VALUE_H_

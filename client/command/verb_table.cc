@@ -1,0 +1,492 @@
+#include "client/command/verb_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Spec = v1::EnsembleSpec;
+
+constexpr char kListForm[] = "LIST: a,b,c or from:to:count or from:to:count:log, or a mixture";
+
+// ---- where values go ----
+
+Store<std::string> Security(std::string ChannelSecurity::*member) {
+  return
+      [member](Options& options, std::string text) { options.security.*member = std::move(text); };
+}
+
+// Appends to a list of a message of the options: Grid(&v1::Grid::mutable_rho).
+using Numbers = google::protobuf::RepeatedField<double>;
+
+Value Grid(Numbers* (v1::Grid::*list)()) {
+  return List([list](Options& options, const std::vector<double>& numbers) {
+    (options.spec.mutable_grid()->*list)()->Add(numbers.begin(), numbers.end());
+  });
+}
+
+Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
+  return List([list](Options& options, const std::vector<double>& numbers) {
+    (options.closed_forms.*list)()->Add(numbers.begin(), numbers.end());
+  });
+}
+
+// Both parts of a duration have the number's sign. A duration holds 10,000 years; the server
+// permits less.
+void SetBudget(Options& options, double seconds) {
+  constexpr double kMost = 315576000000;
+  seconds = std::clamp(seconds, -kMost, kMost);
+  google::protobuf::Duration& budget = *options.spec.mutable_target()->mutable_budget();
+  budget.set_seconds(static_cast<int64_t>(seconds));
+  budget.set_nanos(static_cast<int32_t>((seconds - std::trunc(seconds)) * 1e9));
+}
+
+Choices<Format> Formats() {
+  return {{"table", Format::kTable},
+          {"json", Format::kJson},
+          {"jsonl", Format::kJsonl},
+          {"csv", Format::kCsv}};
+}
+
+// Clamped to the range of the API's field. The server checks the permitted range.
+int32_t Clamped(int64_t priority) {
+  using Limits = std::numeric_limits<int32_t>;
+  return static_cast<int32_t>(std::clamp<int64_t>(priority, Limits::min(), Limits::max()));
+}
+
+// ---- flags ----
+
+const FlagGroup kCommon = {
+    "General flags",
+    {{"-q,--quiet", Switch(To(&Options::quiet)), "print no progress and no notes, only errors",
+      "BALLPISTON_QUIET"},
+     {"-v,--verbose", Switch(To(&Options::verbose)),
+      "print which server, request ids and programs are used", "BALLPISTON_VERBOSE"},
+     {"--config", File([](Options&, const std::string&) {}),
+      "config file to read instead of ~/.config/ballpiston/config.toml", "BALLPISTON_CONFIG"}}};
+
+const FlagGroup kServer = {
+    "Server",
+    {{"--server", Text("ADDRESS", To(&Options::server)),
+      "host:port or unix:PATH; by default the private server, which the client starts when needed",
+      "BALLPISTON_SERVER"},
+     {"--ca", File(Security(&ChannelSecurity::ca)),
+      "TLS: PEM file of the authority that signed the server's certificate", "BALLPISTON_CA"},
+     {"--tls", Switch([](Options& options, bool tls) { options.security.tls = tls; }),
+      "TLS: trust the certificate authorities of this system", "BALLPISTON_TLS"},
+     {"--cert", File(Security(&ChannelSecurity::certificate)),
+      "TLS: PEM file of your certificate, if the server requires one", "BALLPISTON_CERT"},
+     {"--key", File(Security(&ChannelSecurity::key)), "TLS: PEM file of the private key of --cert",
+      "BALLPISTON_KEY"},
+     {"--token-file", File(Security(&ChannelSecurity::token_file)),
+      "TLS: file with your token; other users must not be able to read it",
+      "BALLPISTON_TOKEN_FILE"},
+     {"", Text("TOKEN", Security(&ChannelSecurity::token)),
+      "your token; there is no flag for it, because all users of a machine can see command lines",
+      "BALLPISTON_TOKEN"}}};
+
+const FlagGroup kGrid = {
+    absl::StrCat("Grid (", kListForm, ")"),
+    {{"--rho", Grid(&v1::Grid::mutable_rho), "disc radii, 1/2 < rho < 1/sqrt(2)"},
+     {"--delta", Grid(&v1::Grid::mutable_delta),
+      "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
+     {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
+      "the piston's energies, 0 to 1/2; energy-relaxation needs none"},
+     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"}}};
+
+const FlagGroup kTarget = {
+    "Target (at most one; --tolerance and --budget can be combined)",
+    {{"--samples", Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_samples(n); }),
+      "first hits, or orbits, per point"},
+     {"--collisions",
+      Count([](Options& o, int64_t n) { o.spec.mutable_target()->set_collisions(n); }),
+      "ball-piston collisions per point"},
+     {"--tolerance",
+      Number("REL", [](Options& o, double x) { o.spec.mutable_target()->set_tolerance(x); }),
+      "relative standard error of the first estimate; a point ends when it reaches this error"},
+     {"--budget", Number("SECONDS", &SetBudget),
+      "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
+      "this time is too short"}}};
+
+const FlagGroup kMethod = {
+    "Method",
+    {{"--seed", Seed([](Options& o, uint64_t seed) { o.spec.set_seed(seed); }),
+      "seed of the random numbers, by default 0"},
+     {"--model",
+      OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
+                         [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
+      "by default auto, which chooses the cheapest model that can answer"},
+     {"--precision",
+      OneOf<Spec::Precision>(
+          "PRECISION", EnumChoices<Spec::Precision>(),
+          [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
+      "floating-point precision of the billiard, by default double"},
+     {"--verify", Switch([](Options& o, bool verify) { o.spec.set_verify(verify); }),
+      "with --model auto: also simulate the points that a closed form answers, and print the "
+      "exact values beside the simulated ones"},
+     {"--spec", File(To(&Options::spec_file)),
+      "JSON file with the whole question (- for standard input); it replaces EXPERIMENT and all "
+      "flags of grid, target and method"}}};
+
+const FlagGroup kJob = {
+    "Job",
+    {{"--fresh", Switch([](Options& o, bool fresh) { o.create.fresh = fresh; }),
+      "compute the answer even if the server has stored one for the same question"},
+     {"--resume", Switch(To(&Options::resume)),
+      "derive the request id from the question: after an interruption, the same command returns "
+      "the job that it made before, unless that job failed or was cancelled"},
+     {"--request-id", RequestId(),
+      "idempotency key: a retry with the same UUID returns the original job"},
+     {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
+      "-100 to 100, by default 0; the server runs your jobs with a higher priority first"}}};
+
+const FlagGroup kFormat = {"Output",
+                           {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
+                             "format of the result on standard output, by default table"}}};
+
+const FlagGroup kProgress = {
+    "Progress",
+    {{"--progress",
+      OneOf("STYLE",
+            Choices<ProgressStyle>{{"auto", ProgressStyle::kAuto},
+                                   {"bar", ProgressStyle::kBar},
+                                   {"json", ProgressStyle::kJson},
+                                   {"none", ProgressStyle::kNone}},
+            To(&Options::progress)),
+      "progress on standard error; by default auto, which shows a bar if standard error is a "
+      "terminal, else nothing",
+      "BALLPISTON_PROGRESS"}}};
+
+const FlagGroup kClosedForms = {
+    kListForm,
+    {{"--rho", Asked(&v1::EvaluatePairsRequest::mutable_rho), "disc radii, 1/2 < rho < 1/sqrt(2)"},
+     {"--delta", Asked(&v1::EvaluatePairsRequest::mutable_delta),
+      "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
+     {"--epsilon", Asked(&v1::EvaluatePairsRequest::mutable_epsilon),
+      "the piston's energies, 0 to 1/2: conditional rates, and moments of the kernel"},
+     {"--outgoing-epsilon", Asked(&v1::EvaluatePairsRequest::mutable_outgoing_epsilon),
+      "outgoing energies: the kernel W; not in CSV"},
+     {"--temperature", Asked(&v1::EvaluatePairsRequest::mutable_temperature),
+      "temperatures: canonical averages, exchange rate, static conductivity"},
+     {"--beta", Asked(&v1::EvaluatePairsRequest::mutable_beta),
+      "inverse temperatures: the same quantities"}}};
+
+const FlagGroup kListFilter = {
+    "Which jobs",
+    {{"--state",
+      SomeOf<v1::EnsembleJob::State>(
+          "STATES", EnumChoices<v1::EnsembleJob::State>(),
+          [](Options& o, v1::EnsembleJob::State state) { o.which_jobs.add_states(state); }),
+      "only jobs in one of these states"},
+     {"--experiment",
+      SomeOf<Spec::Experiment>(
+          "EXPERIMENTS", EnumChoices<Spec::Experiment>(),
+          [](Options& o, Spec::Experiment x) { o.which_jobs.add_experiments(x); }),
+      "only jobs with one of these experiments"},
+     {"--since", Date([](Options& o, absl::Time time) {
+        o.which_jobs.mutable_since()->set_seconds(absl::ToUnixSeconds(time));
+      }),
+      "only jobs submitted at this time (UTC) or later"},
+     {"--limit", Count(To(&Options::limit)), "largest number of jobs to list, by default all"}}};
+
+const FlagGroup kFigure = {
+    "Figure",
+    {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
+     {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
+     {"--edit", Switch(To(&Options::edit)),
+      "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
+
+const FlagGroup kVariables = {
+    "Variables of a figure's script",
+    {{"--rho", Variable("X", "rho"), "disc radius"},
+     {"--delta", Variable("LIST", "delta"), "the piston's penetrations"},
+     {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
+      "penetrations at which relaxation times are compared, at most 8"},
+     {"--epsilon", Variable("X", "epsilon"), "the piston's energy"},
+     {"--samples", Variable("N", "samples"), "first hits per point"},
+     {"--collisions", Variable("N", "collisions"), "ball-piston collisions per point"},
+     {"--seconds", Variable("SECONDS", "seconds"),
+      "computing time of the longest run of each method"},
+     {"--seed", Variable("SEED", "seed"), "seed of the random numbers"}}};
+
+const FlagGroup kDataFolder = {
+    "Which server",
+    {{"--data-dir", File(To(&Options::data_dir)),
+      "the data folder of a server on this machine; by default the private server's folder"}}};
+
+const FlagGroup kStart = {"Settings",
+                          {{"--listen", Passed("ADDRESS", "--listen"),
+                            "unix:PATH or host:port; by default a socket in the data folder"},
+                           {"--workers", Passed("N", "--workers"),
+                            "number of threads that compute; by default one for each core"}}};
+
+const FlagGroup kToken = {
+    "Access",
+    {{"--access-file", File(To(&Options::access_file)), "the server's access file; required"}}};
+
+const FlagGroup kPage = {
+    "Page",
+    {{"--format",
+      OneOf("FORMAT",
+            Choices<PageFormat>{{"text", PageFormat::kText},
+                                {"man", PageFormat::kMan},
+                                {"markdown", PageFormat::kMarkdown}},
+            To(&Options::page)),
+      "format of the page, by default text; markdown prints all pages"},
+     {"--out", File(To(&Options::out)), "folder to write the man pages of all verbs to"}}};
+
+// ---- arguments ----
+
+const Store<std::string> kWords = [](Options& options, std::string word) {
+  options.words.push_back(std::move(word));
+};
+
+// Optional, because --spec stands in its place.
+const Argument kExperiment = {
+    OneOf<Spec::Experiment>("EXPERIMENT", EnumChoices<Spec::Experiment>(),
+                            [](Options& o, Spec::Experiment x) { o.spec.set_experiment(x); }),
+    "what to measure", Argument::kOptional};
+const Argument kOneJob = {Job(), "ensembleJobs/ID, or the ID alone"};
+const Argument kSomeJobs = {Job(), "ensembleJobs/ID, or the ID alone", Argument::kSeveral};
+
+// ---- verbs ----
+
+const std::vector<const FlagGroup*> kQuestion = {&kGrid, &kTarget, &kMethod};
+
+std::vector<const FlagGroup*> With(std::vector<const FlagGroup*> groups,
+                                   std::vector<const FlagGroup*> more) {
+  groups.insert(groups.end(), more.begin(), more.end());
+  groups.push_back(&kCommon);
+  return groups;
+}
+
+std::vector<Verb> JobVerbs() {
+  return {
+      {"run",
+       "submit a job, watch it, print its result",
+       "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
+       "the server has answered the same question before, it returns the stored answer.",
+       {kExperiment},
+       With(kQuestion, {&kJob, &kFormat, &kProgress, &kServer}),
+       {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
+        "run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1,2 --samples 1e5 "
+        "--format csv"},
+       &Run},
+      {"submit",
+       "submit a job, print its name",
+       "Standard output contains only the name. By then the job is on the server's disk.",
+       {kExperiment},
+       With(kQuestion, {&kJob, &kServer}),
+       {"submit equilibrium --rho 0.51:0.7:20 --delta 0.01 --model billiard --collisions 1e6",
+        "submit --spec question.json --priority 10"},
+       &Submit},
+      {"watch",
+       "show a job's progress until it ends",
+       "Ctrl-C ends the client, but not the job.",
+       {kOneJob},
+       With({&kProgress, &kServer}, {}),
+       {"watch ensembleJobs/ID", "watch ID --progress json 2>progress.jsonl"},
+       &Watch},
+      {"result",
+       "print a job's result: the points that it has finished so far",
+       "",
+       {kOneJob},
+       With({&kFormat, &kServer}, {}),
+       {"result ensembleJobs/ID", "result ID --format json >result.json"},
+       &Result},
+      {"list",
+       "list the jobs, the newest first",
+       "",
+       {},
+       With({&kListFilter, &kFormat, &kServer}, {}),
+       {"list --state running,queued", "list --experiment first-hit --since 2026-01-31 --limit 10"},
+       &ListJobs},
+      {"cancel",
+       "stop jobs; the points that they finished stay",
+       "Prints each job's name and state.",
+       {kSomeJobs},
+       With({&kServer}, {}),
+       {"cancel ensembleJobs/ID", "cancel ID1 ID2"},
+       &Cancel},
+      {"delete",
+       "delete ended jobs and their results",
+       "Prints the name of each job that it deleted.",
+       {kSomeJobs},
+       With({&kServer}, {}),
+       {"delete ensembleJobs/ID", "delete ID1 ID2"},
+       &Delete}};
+}
+
+std::vector<Verb> ServerVerbs() {
+  std::vector<Verb> verbs = {
+      {"server start",
+       "start a server on this machine, print its address",
+       "The server runs until it is stopped. If a server already runs in the data folder, the "
+       "command prints the address of that server, which may stop when it is idle. Words after -- "
+       "are flags for ballpistond.",
+       {{Words("FLAG",
+               [](Options& o, std::string flag) { o.server_flags.push_back(std::move(flag)); }),
+         "flags for ballpistond, after --", Argument::kAny}},
+       With({&kDataFolder, &kStart}, {}),
+       {"server start",
+        "server start --data-dir data --listen 127.0.0.1:50051 --workers 8 -- "
+        "--metrics-listen 127.0.0.1:9464"},
+       &ServerStart},
+      {"server stop",
+       "stop a server on this machine",
+       "Returns when the server has ended. The server resumes its jobs when it is started again.",
+       {},
+       With({&kDataFolder}, {}),
+       {"server stop", "server stop --data-dir data"},
+       &ServerStop},
+      {"server status",
+       "show what the server is doing and what it permits",
+       "Starts no server.",
+       {},
+       With({&kFormat, &kServer}, {}),
+       {"server status",
+        "server status --server lab.example.org:50051 --ca authority.pem "
+        "--token-file ada.token --format json"},
+       &ServerStatus},
+      {"server token",
+       "make a token, append its hash to an access file, print the token",
+       "ROLE is read, submit or admin. The token is printed once; keep it in a file that other "
+       "users cannot read.",
+       {{Text("PRINCIPAL:ROLE[:DAYS]", To(&Options::credential)),
+         "the user, the role, and the days until the token expires"}},
+       With({&kToken}, {}),
+       {"server token ada:submit --access-file access | (umask 077; cat >ada.token)",
+        "server token backup:read:365 --access-file access | (umask 077; cat >backup.token)"},
+       &ServerToken},
+      {"server backup",
+       "copy a server's store to a file, and check the copy",
+       "The server can be running.",
+       {{File(To(&Options::file)), "the file to write; it must not exist"}},
+       With({&kDataFolder}, {}),
+       {"server backup store-2026-01-31.sqlite3", "server backup copy.sqlite3 --data-dir data"},
+       &ServerBackup},
+      {"server check",
+       "check the whole store of a server",
+       "The server can be running. The exit code is 0 if the store is sound.",
+       {},
+       With({&kDataFolder}, {}),
+       {"server check", "server check --data-dir data"},
+       &ServerCheck}};
+  Verb status = verbs[2];
+  status.name = "status";
+  status.summary = "the same as server status";
+  verbs.push_back(std::move(status));
+  return verbs;
+}
+
+std::vector<Verb> AllVerbs() {
+  std::vector<Verb> verbs = {
+      {"analytic",
+       "evaluate the closed forms",
+       "For every pair of rho and delta.",
+       {},
+       With({&kClosedForms, &kFormat, &kServer}, {}),
+       {"analytic --rho 0.5296 --delta 0.2 --epsilon 0.1,0.2",
+        "analytic --rho 0.5296 --delta 0.1:0.3:5 --temperature 1:2:3 --format csv"},
+       &Analytic},
+      {"plan",
+       "show what each model would cost and how well it would answer",
+       "Runs nothing.",
+       {kExperiment},
+       With(kQuestion, {&kFormat, &kServer}),
+       {"plan energy-relaxation --rho 0.5296 --delta 0.2,0.0125 --tolerance 0.01",
+        "plan first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1 --samples 1e6 "
+        "--format csv"},
+       &Plan}};
+  const auto append = [&verbs](std::vector<Verb> more) {
+    verbs.insert(verbs.end(), more.begin(), more.end());
+  };
+  append(JobVerbs());
+  append({{"figure",
+           "draw a figure: data, gnuplot script and SVG",
+           "After an interruption, the same command resumes the jobs of the figure. If the --out "
+           "folder already contains scripts of the figure, these are used unchanged.",
+           {{Text("NAME", To(&Options::figure), Offer::kFigure),
+             "one of the names that --list prints", Argument::kOptional}},
+           With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
+           {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
+           &Figure}});
+  append(ServerVerbs());
+  append({{"help",
+           "print the help of the program or of a verb",
+           "",
+           {{Words("VERB", kWords), "words of the verb, such as: server start", Argument::kAny}},
+           With({&kPage}, {}),
+           {"help run", "help --format man --out man1"},
+           &Help},
+          {"completion",
+           "print a script that completes command lines in a shell",
+           "The script also completes names of jobs if a server is running.",
+           {{OneOf("SHELL",
+                   Choices<Completion>{{"bash", Completion::kBash},
+                                       {"zsh", Completion::kZsh},
+                                       {"fish", Completion::kFish},
+                                       {"words", Completion::kWords}},
+                   To(&Options::completion)),
+             "the shell; the scripts themselves use words"},
+            {Words("WORD", kWords), "after --: the words so far; the last one is completed",
+             Argument::kAny}},
+           With({&kServer}, {}),
+           {"completion bash >~/.local/share/bash-completion/completions/ballpiston",
+            "completion fish >~/.config/fish/completions/ballpiston.fish"},
+           &Complete}});
+  return verbs;
+}
+
+}  // namespace
+
+const std::vector<Verb>& Verbs() {
+  static const auto* const verbs = new std::vector<Verb>(AllVerbs());
+  return *verbs;
+}
+
+const FlagGroup& ServerFlags() { return kServer; }
+const FlagGroup& TargetFlags() { return kTarget; }
+
+const std::vector<Remark>& ExitCodes() {
+  static const auto* const codes = new std::vector<Remark>{
+      {"0", "done"},
+      {"2", "wrong usage or an invalid argument, or a job too large for the server"},
+      {"3", "no server answers, or the server is busy: retry later"},
+      {"4", "the job failed or was cancelled, or its state does not permit the call"},
+      {"5", "no such job"},
+      {"6", "not authenticated or not authorised"},
+      {"130", "interrupted"}};
+  return *codes;
+}
+
+const std::vector<Remark>& Files() {
+  static const auto* const files = new std::vector<Remark>{
+      {"~/.config/ballpiston/config.toml",
+       "values for flags that are not given. A line such as format = \"csv\" holds for every verb "
+       "that has the flag; below [run] it holds for this verb alone. Environment variables "
+       "override the file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
+      {"~/.local/state/ballpiston",
+       "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
+       "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"}};
+  return *files;
+}
+
+std::vector<const Flag*> FlagsOf(const Verb& verb) {
+  std::vector<const Flag*> flags;
+  for (const FlagGroup* group : verb.groups) {
+    for (const Flag& flag : group->flags) flags.push_back(&flag);
+  }
+  return flags;
+}
+
+std::string LongName(const Flag& flag) {
+  return flag.name.empty() ? "" : flag.name.substr(flag.name.find("--"));
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,68 @@
+// The program's verbs with their arguments and flags. The parser (command_line.h), help, man pages,
+// the reference (reference.h) and shell completion (completion.cc) all use this one table.
+//
+// A new verb is a row here, its function in verbs.h and its file.
+#ifndef BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_
+#define BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_
+
+#include <string>
+#include <vector>
+
+#include "client/command/value.h"
+#include "client/command/verbs.h"
+
+namespace ballpiston::client {
+
+inline constexpr char kProgram[] = "ballpiston";
+
+struct Flag {
+  std::string name;  // --rho; -q,--quiet; empty: there is only the variable
+  Value value;
+  std::string text;
+  std::string variable = "";  // environment variable, used if the flag is not given
+};
+
+struct FlagGroup {
+  std::string title;
+  std::vector<Flag> flags;
+};
+
+struct Argument {
+  Value value;
+  std::string text;
+  enum { kRequired, kOptional, kSeveral, kAny } number = kRequired;  // kSeveral: at least one
+};
+
+struct Verb {
+  std::string name;  // run; server start
+  std::string summary;
+  std::string description;
+  std::vector<Argument> arguments;
+  std::vector<const FlagGroup*> groups;
+  std::vector<std::string> examples;  // without the program's name
+  VerbResult (*act)(const Options& options, Terminal& terminal);
+};
+
+// In the order in which help shows them.
+const std::vector<Verb>& Verbs();
+
+// The flags that choose the server, and the flags that say how much is computed.
+const FlagGroup& ServerFlags();
+const FlagGroup& TargetFlags();
+
+// The exit codes, and the files and variables that the program reads: (name, text).
+struct Remark {
+  std::string name, text;
+};
+const std::vector<Remark>& ExitCodes();
+const std::vector<Remark>& Files();
+
+// All flags of the verb.
+std::vector<const Flag*> FlagsOf(const Verb& verb);
+
+// --rho for --rho; --quiet for -q,--quiet.
+std::string LongName(const Flag& flag);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_VERB_TABLE_H_

@@ -1,0 +1,28 @@
+# Speed against accuracy of every method, measured on this machine
+#
+# Run by `ballpiston figure speed-accuracy --out DIR`, whose flags replace these values, or by hand:
+# sh speed-accuracy.sh. It needs no server. No other program should be busy on the machine.
+set -eu
+: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${delta:=0.1}"              # of panels a and b
+: "${epsilon:=0.125}"          # the piston's energy in panels a and b
+: "${relaxation_delta:=}"      # of panel d, at most 8; empty: those of 0.2,0.1,0.05,0.025 that rho permits
+: "${seconds:=1}"              # work of each method's largest run, 0.01 to 60
+: "${seed:=0}"
+
+case ${BALLPISTON_PROGRESS:-auto} in
+  none | json) progress=--progress=none ;;
+  bar) progress=--progress=bar ;;
+  *) progress= ;;  # a bar on a terminal
+esac
+
+method_comparison --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
+  --relaxation-delta="$relaxation_delta" --seconds "$seconds" --seed "$seed" $progress \
+  >speed-accuracy.csv.part
+mv speed-accuracy.csv.part speed-accuracy.csv
+
+if command -v gnuplot >/dev/null; then
+  gnuplot speed-accuracy.gnuplot
+else
+  echo "gnuplot is not installed; to draw the figure later: gnuplot speed-accuracy.gnuplot" >&2
+fi

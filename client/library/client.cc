@@ -1,0 +1,135 @@
+#include "client/library/client.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/time/clock.h"
+#include "client/library/request_id.h"
+#include "client/library/unary_call.h"
+
+namespace ballpiston::client {
+namespace {
+
+using Stub = v1::EnsembleService::StubInterface;
+
+constexpr int kPageSize = 1000;
+
+// gRPC checks only every 5 s whether a channel is connected again, unless a caller waits for it.
+constexpr absl::Duration kLongestConnecting = absl::Seconds(1);
+constexpr absl::Duration kLookForStop = absl::Milliseconds(50);
+
+void AwaitConnection(grpc::ChannelInterface& channel, const std::stop_token& stop) {
+  const absl::Time limit = absl::Now() + kLongestConnecting;
+  while (!stop.stop_requested() && absl::Now() < limit) {
+    if (channel.WaitForConnected(absl::ToChronoTime(absl::Now() + kLookForStop))) return;
+  }
+}
+
+}  // namespace
+
+Client::Client(const std::shared_ptr<grpc::ChannelInterface>& channel, absl::Duration timeout)
+    : channel_(channel),
+      ensembles_(v1::EnsembleService::NewStub(channel)),
+      analytic_(v1::AnalyticService::NewStub(channel)),
+      server_(v1::ServerService::NewStub(channel)),
+      timeout_(timeout) {}
+
+absl::StatusOr<v1::EnsembleJob> Client::Create(const v1::EnsembleSpec& spec,
+                                               const CreateOptions& options) const {
+  v1::CreateEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  request.set_request_id(options.request_id.empty() ? NewRequestId() : options.request_id);
+  request.set_fresh(options.fresh);
+  request.set_priority(options.priority);
+  return CallUnary(*ensembles_, &Stub::CreateEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<v1::PlanEnsembleJobResponse> Client::Plan(const v1::EnsembleSpec& spec) const {
+  v1::PlanEnsembleJobRequest request;
+  *request.mutable_spec() = spec;
+  return CallUnary(*ensembles_, &Stub::PlanEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<v1::EnsembleJob> Client::Get(const std::string& name) const {
+  v1::GetEnsembleJobRequest request;
+  request.set_name(name);
+  return CallUnary(*ensembles_, &Stub::GetEnsembleJob, request, timeout_);
+}
+
+absl::StatusOr<std::vector<v1::EnsembleJob>> Client::List(v1::ListEnsembleJobsRequest request,
+                                                          int64_t most) const {
+  std::vector<v1::EnsembleJob> jobs;
+  request.clear_page_token();
+  do {
+    const int64_t missing = most - std::ssize(jobs);
+    request.set_page_size(static_cast<int32_t>(std::min<int64_t>(kPageSize, missing)));
+    auto page = CallUnary(*ensembles_, &Stub::ListEnsembleJobs, request, timeout_);
+    if (!page.ok()) return page.status();
+    for (v1::EnsembleJob& job : *page->mutable_jobs()) jobs.push_back(std::move(job));
+    request.set_page_token(page->next_page_token());
+  } while (!request.page_token().empty() && std::ssize(jobs) < most);
+  return jobs;
+}
+
+absl::StatusOr<v1::EnsembleJob> Client::Cancel(const std::string& name,
+                                               const std::string& request_id) const {
+  v1::CancelEnsembleJobRequest request;
+  request.set_name(name);
+  request.set_request_id(request_id.empty() ? NewRequestId() : request_id);
+  return CallUnary(*ensembles_, &Stub::CancelEnsembleJob, request, timeout_);
+}
+
+absl::Status Client::Delete(const std::string& name) const {
+  v1::DeleteEnsembleJobRequest request;
+  request.set_name(name);
+  return CallUnary(*ensembles_, &Stub::DeleteEnsembleJob, request, timeout_).status();
+}
+
+absl::StatusOr<v1::ListResultsResponse> Client::ResultsPage(const std::string& name,
+                                                            v1::ListResultsRequest::View view,
+                                                            const std::string& page_token) const {
+  v1::ListResultsRequest request;
+  request.set_parent(name);
+  request.set_page_size(kPageSize);
+  request.set_page_token(page_token);
+  request.set_view(view);
+  return CallUnary(*ensembles_, &Stub::ListResults, request, timeout_);
+}
+
+absl::StatusOr<std::vector<v1::PointResult>> Client::Results(
+    const std::string& name, v1::ListResultsRequest::View view) const {
+  std::vector<v1::PointResult> points;
+  std::string token;
+  do {
+    const auto page = ResultsPage(name, view, token);
+    if (!page.ok()) return page.status();
+    points.insert(points.end(), page->points().begin(), page->points().end());
+    token = page->next_page_token();
+  } while (!token.empty());
+  return points;
+}
+
+absl::StatusOr<v1::EvaluatePairsResponse> Client::EvaluatePairs(
+    const v1::EvaluatePairsRequest& request) const {
+  return CallUnary(*analytic_, &v1::AnalyticService::StubInterface::EvaluatePairs, request,
+                   timeout_);
+}
+
+absl::StatusOr<v1::ServerStatus> Client::Status() const {
+  return CallUnary(*server_, &v1::ServerService::StubInterface::GetServerStatus,
+                   v1::GetServerStatusRequest(), timeout_);
+}
+
+absl::StatusOr<v1::EnsembleJob> Client::Watch(const std::string& name,
+                                              const WatchCallbacks& callbacks,
+                                              const WatchOptions& options,
+                                              std::stop_token stop) const {
+  WatchOptions connecting = options;
+  connecting.before_reattach = [&] {
+    if (options.before_reattach) options.before_reattach();
+    AwaitConnection(*channel_, stop);
+  };
+  return WatchJob(*ensembles_, name, callbacks, connecting, stop);
+}
+
+}  // namespace ballpiston::client

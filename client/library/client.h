@@ -1,0 +1,101 @@
+// A server's API: jobs (submit, look up, watch, cancel, delete, fetch results), closed forms, and
+// the server itself.
+//
+//   auto channel = OpenChannel("localhost:50051");
+//   Client client(*channel);
+//   absl::StatusOr<v1::EnsembleJob> job = client.Create(spec);
+//   job = client.Watch(job->name(), {});
+//   absl::StatusOr<std::vector<v1::PointResult>> points = client.Results(job->name());
+//
+// Errors are the server's, as error_text.h renders them, with its code; UNAVAILABLE or
+// DEADLINE_EXCEEDED if it cannot be reached. Safe to share between threads.
+#ifndef BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
+#define BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "ballpiston/v1/analytic.grpc.pb.h"
+#include "ballpiston/v1/ensemble.grpc.pb.h"
+#include "ballpiston/v1/server.grpc.pb.h"
+#include "client/library/job_watch.h"
+
+namespace ballpiston::client {
+
+// How a job is asked for, besides its specification.
+struct CreateOptions {
+  // A UUID (request_id.h), for a caller that may ask again: asked twice with one id, the server
+  // answers with the job made first. Empty: one of its own for each call of Create; the channel's
+  // retries carry it, so that a job is not made twice either way.
+  std::string request_id = {};
+  bool fresh = false;    // computes, even if the server has the answer in its store
+  int32_t priority = 0;  // among one's own jobs the higher goes first; -100 to 100
+};
+
+class Client {
+ public:
+  // `timeout` bounds each single call, not a watch.
+  explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
+                  absl::Duration timeout = absl::Seconds(60));
+
+  // The job, or one that answered the same question before: then answered_from_store is set, here
+  // and nowhere else.
+  absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
+                                         const CreateOptions& options = {}) const;
+
+  // What each model would cost and how well it would answer. Runs nothing.
+  absl::StatusOr<v1::PlanEnsembleJobResponse> Plan(const v1::EnsembleSpec& spec) const;
+
+  absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
+  // The newest first. Fetches as many pages as needed; the request's page fields are ignored.
+  static constexpr int64_t kAllJobs = std::numeric_limits<int64_t>::max();
+  absl::StatusOr<std::vector<v1::EnsembleJob>> List(v1::ListEnsembleJobsRequest request = {},
+                                                    int64_t most = kAllJobs) const;
+  // `request_id` as in CreateOptions: asked again with it, a job that this has cancelled is none
+  // that had ended.
+  absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
+                                         const std::string& request_id = {}) const;
+  // Do not retry: if the first attempt succeeded, the second finds no such job.
+  absl::Status Delete(const std::string& name) const;
+
+  // The finished points in grid order, page by page, so that a large result need not fit into
+  // memory. `page_token`: empty for the first page, else next_page_token of the page before.
+  absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
+                                                      v1::ListResultsRequest::View view,
+                                                      const std::string& page_token) const;
+  // All pages.
+  absl::StatusOr<std::vector<v1::PointResult>> Results(
+      const std::string& name,
+      v1::ListResultsRequest::View view = v1::ListResultsRequest::FULL) const;
+
+  absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(
+      const v1::EvaluatePairsRequest& request) const;
+
+  // The first call to a server takes most of a second, because the server measures its speed.
+  absl::StatusOr<v1::ServerStatus> Status() const;
+
+  // See job_watch.h.
+  absl::StatusOr<v1::EnsembleJob> Watch(const std::string& name, const WatchCallbacks& callbacks,
+                                        const WatchOptions& options = {},
+                                        std::stop_token stop = {}) const;
+
+ private:
+  std::shared_ptr<grpc::ChannelInterface> channel_;
+  std::shared_ptr<v1::EnsembleService::StubInterface> ensembles_;
+  std::shared_ptr<v1::AnalyticService::StubInterface> analytic_;
+  std::shared_ptr<v1::ServerService::StubInterface> server_;
+  absl::Duration timeout_;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_LIBRARY_CLIENT_H_

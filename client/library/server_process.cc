@@ -1,0 +1,165 @@
+#include "client/library/server_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "client/library/child_process.h"
+
+namespace ballpiston::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kProgramName[] = "ballpistond";
+constexpr uintmax_t kMaxLogBytes = 1 << 20;
+constexpr absl::Duration kLookInterval = absl::Milliseconds(20);
+
+// A server holds a lock on the file `lock` in its folder as long as it runs, and writes its process
+// id there. It writes the address on which it listens to the file `server.address`.
+constexpr char kLockFile[] = "/lock";
+constexpr char kAddressFile[] = "/server.address";
+
+std::string FirstLine(const std::string& path) {
+  std::string line;
+  std::getline(std::ifstream(path), line);
+  return line;
+}
+
+bool IsLocked(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool locked = flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file);
+  return locked;
+}
+
+// Whether the process has the file open. The number alone does not prove this: the server may be on
+// another machine with the same folder, or a later process may have the number.
+bool HasOpen(pid_t pid, const std::string& path) {
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(absl::StrCat("/proc/", pid, "/fd"), error)) {
+    if (fs::equivalent(file.path(), path, error)) return true;
+  }
+  return false;
+}
+
+// Waits until the condition is true or the time is over; returns whether it is true. A check of a
+// folder takes its lock for a moment if nobody has it, hence the pauses.
+template <typename Condition>
+bool Await(absl::Duration timeout, Condition condition) {
+  const absl::Time deadline = absl::Now() + timeout;
+  while (!condition()) {
+    if (absl::Now() > deadline) return false;
+    absl::SleepFor(kLookInterval);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string UsualServerProgram() {
+  const char* chosen = std::getenv("BALLPISTON_SERVER_PROGRAM");
+  std::error_code error;
+  if (chosen != nullptr && chosen[0] != '\0') {
+    // The server starts in another folder: a relative path has to be made absolute here.
+    const bool is_path = absl::string_view(chosen).find('/') != absl::string_view::npos;
+    return is_path ? fs::absolute(chosen, error).string() : chosen;
+  }
+  const std::string beside = ProgramBeside(kProgramName);
+  return access(beside.c_str(), X_OK) == 0 ? beside : kProgramName;
+}
+
+absl::StatusOr<StartedServer> StartedServer::Start(const ServerProgram& program) {
+  std::error_code error;
+  if (fs::file_size(program.Log(), error) > kMaxLogBytes && !error) {
+    fs::rename(program.Log(), program.Log() + ".old", error);
+  }
+  const uintmax_t log_size = fs::file_size(program.Log(), error);
+  std::vector<std::string> command = {program.program, "--data-dir", program.folder};
+  command.insert(command.end(), program.flags.begin(), program.flags.end());
+  unsetenv("BALLPISTON_TOKEN");  // the server does not need the user's secret
+  const absl::StatusOr<pid_t> pid = StartChild({.command = std::move(command),
+                                                .folder = program.run_in,
+                                                .output = program.Log(),
+                                                .detached = true});
+  if (!pid.ok()) return absl::UnavailableError(pid.status().message());
+  return StartedServer(program, error ? 0 : log_size, *pid);
+}
+
+bool StartedServer::HasEnded() {
+  if (!exit_status_) exit_status_ = ExitStatus(pid_);
+  return exit_status_.has_value();
+}
+
+absl::Status StartedServer::Failure() const {
+  std::ifstream log(program_.Log());
+  log.seekg(static_cast<std::streamoff>(log_start_));
+  std::string last = "(it wrote nothing)";
+  for (std::string line; std::getline(log, line);) {
+    if (!line.empty()) last = line;
+  }
+  constexpr int kWrongFlags = 2, kNotPermitted = 6;
+  const int status = exit_status_.value_or(0);
+  const auto code = status == kWrongFlags     ? absl::StatusCode::kInvalidArgument
+                    : status == kNotPermitted ? absl::StatusCode::kPermissionDenied
+                                              : absl::StatusCode::kUnavailable;
+  const std::string what =
+      exit_status_ ? absl::StrCat("ended at once with exit status ", status) : "does not answer";
+  return absl::Status(code, absl::StrCat("the server ", program_.program, " ", what, ": ", last,
+                                         "\n  log: ", program_.Log()));
+}
+
+std::optional<RunningServer> FindServer(const std::string& folder) {
+  if (!IsLocked(folder + kLockFile)) return std::nullopt;
+  RunningServer server;
+  const bool is_known = absl::SimpleAtoi(FirstLine(folder + kLockFile), &server.pid) &&
+                        HasOpen(server.pid, folder + kLockFile);
+  if (!is_known) server.pid = 0;
+  server.address = FirstLine(folder + kAddressFile);
+  return server;
+}
+
+absl::StatusOr<std::string> StartServer(const ServerProgram& program, absl::Duration timeout) {
+  absl::StatusOr<StartedServer> started = StartedServer::Start(program);
+  if (!started.ok()) return started.status();
+  std::string address;
+  Await(timeout, [&] {
+    const auto server = FindServer(program.folder);
+    if (server) address = server->address;  // perhaps another one, started at the same time
+    return !address.empty() || (started->HasEnded() && !server);
+  });
+  if (!address.empty()) return address;
+  return started->Failure();
+}
+
+absl::Status StopServer(const std::string& folder, absl::Duration timeout) {
+  const auto server = FindServer(folder);
+  if (!server) return absl::UnavailableError(absl::StrCat("no server runs in ", folder));
+  if (server->pid == 0) {
+    return absl::UnavailableError(absl::StrCat("the server that uses ", folder,
+                                               " is just starting, or is on another machine"));
+  }
+  if (kill(server->pid, SIGTERM) != 0) {
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot stop the server in ", folder));
+  }
+  const bool ended = Await(timeout, [&] {
+    const auto now = FindServer(folder);
+    return !now || now->pid != server->pid;
+  });
+  if (ended) return absl::OkStatus();
+  return absl::DeadlineExceededError(
+      absl::StrCat("the server in ", folder, " (process ", server->pid, ") is still stopping"));
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,17 @@
+// Reads the filters of a ListEnsembleJobsRequest.
+#ifndef BALLPISTON_SERVER_API_LIST_FILTER_H_
+#define BALLPISTON_SERVER_API_LIST_FILTER_H_
+
+#include "ballpiston/v1/ensemble.pb.h"
+#include "server/api/request_check.h"
+#include "server/jobs/job_filter.h"
+
+namespace ballpiston::server {
+
+// Adds to `check` what is wrong: a state or experiment that is unspecified or unknown, and a time
+// that is no google.protobuf.Timestamp (years 1 to 9999). At most 100 violations of each list.
+JobFilter ReadListFilter(const v1::ListEnsembleJobsRequest& request, RequestCheck& check);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_API_LIST_FILTER_H_

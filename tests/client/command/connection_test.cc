@@ -1,0 +1,132 @@
+// Which server a verb talks to, and what happens if it does not answer.
+#include "client/command/connection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/client/program.h"
+#include "tests/support/scoped_variable.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// The channel itself attempts a call up to this many times, but not a delete.
+constexpr int kChannelAttempts = 4;
+
+class ConnectionTest : public ProgramTest {
+ protected:
+  void StartPrivateServer(int unavailable_attempts = 0) {
+    home_.UseAsPrivateServer(server_.Address());
+    server_.ensemble.unavailable_attempts = unavailable_attempts;
+    server_.Start();
+  }
+};
+
+TEST_F(ConnectionTest, TheServerMayComeFromTheEnvironmentOrTheConfigFile) {
+  server_.Start();
+  EXPECT_EQ(Ballpiston({"list"}).code, 3);
+  home_.WriteConfig("server = \"" + server_.Address() + "\"\n");
+  EXPECT_EQ(Ballpiston({"list"}).code, 0);
+  home_.WriteConfig("");
+  const ScopedVariable address("BALLPISTON_SERVER", server_.Address());
+  EXPECT_EQ(Ballpiston({"list"}).code, 0);
+}
+
+TEST_F(ConnectionTest, WithoutAServerExitsWithThreeAndNamesIt) {
+  for (const char* verb : {"list", "status"}) {
+    const Outcome outcome = WithServer({verb});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.err,
+                StartsWith("ballpiston: no answer from the server at " + server_.Address() + ": "));
+  }
+}
+
+TEST_F(ConnectionTest, VariablesOfTlsHaveNoEffectOverAUnixSocket) {
+  StartPrivateServer();
+  const ScopedVariable tls("BALLPISTON_TLS", "true"), token("BALLPISTON_TOKEN", "secret");
+  home_.WriteConfig("ca = \"/no/such/file\"\n");
+  EXPECT_EQ(WithServer({"list"}).code, 0);
+  EXPECT_EQ(Ballpiston({"list"}).code, 0);
+  const ScopedVariable other("BALLPISTON_SERVER", "localhost:1");
+  EXPECT_THAT(Ballpiston({"list"}).err, HasSubstr("/no/such/file"));
+}
+
+TEST_F(ConnectionTest, FlagsOfTlsAreRejectedOverAUnixSocket) {
+  StartPrivateServer();
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--tls"}, {"--ca", "file"}, {"--token-file", "file"}}) {
+    std::vector<std::string> words = {"list"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const Outcome of_private = Ballpiston(words);
+    EXPECT_EQ(of_private.code, 2);
+    EXPECT_THAT(of_private.err, HasSubstr("the private server needs no TLS and no token"));
+    const Outcome named = WithServer(words);
+    EXPECT_EQ(named.code, 2);
+    EXPECT_THAT(named.err, StartsWith("ballpiston: --server: "));
+  }
+}
+
+TEST_F(ConnectionTest, APrivateServerThatIsLeavingGetsTheSameIdAgain) {
+  StartPrivateServer(kChannelAttempts);
+  const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "ensembleJobs/abc\n");
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(std::ssize(asked), kChannelAttempts + 1);
+  EXPECT_EQ(asked.front().request_id(), asked.back().request_id());
+}
+
+// With another id the second cancel would find a job that has ended.
+TEST_F(ConnectionTest, ACancelIsRepeatedWithTheSameId) {
+  StartPrivateServer(kChannelAttempts);
+  const Outcome outcome = Ballpiston({"cancel", "abc"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().cancel), kChannelAttempts + 1);
+}
+
+// After a lost answer a second delete would find no job.
+TEST_F(ConnectionTest, ADeleteIsNotRepeated) {
+  StartPrivateServer(1);
+  const Outcome outcome = Ballpiston({"delete", "abc"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, StartsWith("ballpiston: ensembleJobs/abc may have been deleted\n"
+                                      "ballpiston: no answer from the server at "));
+  EXPECT_EQ(server_.ensemble.Asked().remove.size(), 1u);
+}
+
+TEST_F(ConnectionTest, APrivateServerIsAskedTwiceAtMost) {
+  StartPrivateServer(100);
+  EXPECT_EQ(Ballpiston({"submit", "first-hit"}).code, 3);
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), 2 * kChannelAttempts);
+}
+
+TEST_F(ConnectionTest, ANamedServerIsAskedOnce) {
+  server_.ensemble.unavailable_attempts = kChannelAttempts;
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
+  EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
+}
+
+TEST_F(ConnectionTest, StatusOfAPrivateServerIsThatOfTheRunningOne) {
+  StartPrivateServer();
+  EXPECT_EQ(Ballpiston({"status"}).code, 0);
+}
+
+// The one that could be started is /bin/false; the message would quote its failure.
+TEST_F(ConnectionTest, StatusStartsNoServer) {
+  home_.UseAsPrivateServer(server_.Address());
+  const Outcome outcome = Ballpiston({"status"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, StartsWith("ballpiston: no private server is running ("));
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,157 @@
+// How a job is submitted: its request id, its options, answers from the store, limits.
+#include "client/command/create_job.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/library/request_id.h"
+#include "tests/client/program.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class CreateJobTest : public ProgramTest {
+ protected:
+  // The request id of `submit --resume WORDS`.
+  std::string IdOfResumed(std::vector<std::string> words) {
+    words.insert(words.begin(), {"submit", "--resume"});
+    const Outcome outcome = WithServer(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return server_.ensemble.Asked().create.back().request_id();
+  }
+};
+
+TEST_F(CreateJobTest, ResumedJobsOfOneQuestionHaveOneId) {
+  server_.server.status.set_engine_version("7");
+  server_.Start();
+  const std::string id = IdOfResumed({"first-hit", "--rho", "0.53"});
+  EXPECT_TRUE(IsRequestId(id));
+  EXPECT_EQ(IdOfResumed({"first-hit", "--rho=0.53"}), id);
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"first-hit", "--rho", "0.54"},
+        {"first-hit", "--rho", "0.53", "--seed", "1"},
+        {"first-hit", "--rho", "0.53", "--fresh"},
+        {"first-hit", "--rho", "0.53", "--priority", "1"}}) {
+    EXPECT_NE(IdOfResumed(other), id);
+  }
+  server_.server.status.set_engine_version("8");
+  EXPECT_NE(IdOfResumed({"first-hit", "--rho", "0.53"}), id);
+}
+
+TEST_F(CreateJobTest, AResumedJobThatWasLostIsFollowedByTheNextOne) {
+  server_.ensemble.created_states = {v1::EnsembleJob::FAILED, v1::EnsembleJob::CANCELLED,
+                                     v1::EnsembleJob::CANCELLING, v1::EnsembleJob::QUEUED};
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "--resume", "first-hit"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 4u);
+  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
+  EXPECT_NE(asked[1].request_id(), asked[2].request_id());
+  EXPECT_NE(asked[2].request_id(), asked[3].request_id());
+}
+
+TEST_F(CreateJobTest, WithoutResumeEachJobHasItsId) {
+  server_.ensemble.created_states = {v1::EnsembleJob::FAILED};
+  server_.Start();
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_NE(asked[0].request_id(), asked[1].request_id());
+}
+
+TEST_F(CreateJobTest, TheUsersRequestIdIsSent) {
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  server_.Start();
+  for (const char* verb : {"submit", "run"}) {
+    const Outcome outcome = WithServer({verb, "first-hit", "--resume", "--request-id", id});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(server_.ensemble.Asked().create.back().request_id(), id);
+  }
+}
+
+TEST_F(CreateJobTest, FreshAndPriorityReachTheServer) {
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "equilibrium"}).code, 0);
+  EXPECT_EQ(WithServer({"submit", "equilibrium", "--fresh", "--priority", "-7"}).code, 0);
+  EXPECT_EQ(WithServer({"run", "equilibrium", "--priority", "1e10", "--fresh"}).code, 0);
+  const auto asked = server_.ensemble.Asked().create;
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_FALSE(asked[0].fresh());
+  EXPECT_EQ(asked[0].priority(), 0);
+  EXPECT_TRUE(asked[1].fresh());
+  EXPECT_EQ(asked[1].priority(), -7);
+  EXPECT_TRUE(asked[2].fresh());
+  EXPECT_EQ(asked[2].priority(), INT32_MAX);  // the server rejects it
+}
+
+TEST_F(CreateJobTest, AnAnswerFromTheStoreIsNoted) {
+  job().mutable_end_time()->set_seconds(1700000000);
+  server_.ensemble.answers_from_store = true;
+  server_.Start();
+  const std::string note = "answered from the store: " + job().name() +
+                           ", computed 2023-11-14 22:13 UTC (--fresh computes anew)";
+  const Outcome submitted = WithServer({"submit", "equilibrium"});
+  EXPECT_EQ(submitted.out, job().name() + "\n");
+  EXPECT_EQ(submitted.err, note + "\n");
+  const Outcome table = WithServer({"run", "equilibrium"});
+  EXPECT_EQ(table.err, note + "\n");
+  EXPECT_EQ(table.out, WithServer({"result", job().name()}).out);
+  EXPECT_THAT(WithServer({"run", "equilibrium", "--progress", "json"}).err,
+              HasSubstr("\"note\":\"" + note + "\"}\n{\"job\":"));
+  const Outcome quiet =
+      WithServer({"run", "equilibrium", "--progress", "none", "--format", "json"});
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_THAT(quiet.out, HasSubstr("\"answered_from_store\":true"));
+}
+
+TEST_F(CreateJobTest, AComputedAnswerHasNoNote) {
+  server_.Start();
+  EXPECT_EQ(WithServer({"submit", "equilibrium"}).err, "");
+  const Outcome run = WithServer({"run", "equilibrium", "--format", "json"});
+  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.out, HasSubstr("\"answered_from_store\":false"));
+}
+
+TEST_F(CreateJobTest, AFullQueueExitsWithThreeAndAHint) {
+  server_.ensemble.create_end = LimitExceeded("QUEUE_FULL", "10 jobs are active already");
+  server_.Start();
+  for (const char* verb : {"run", "submit"}) {
+    const Outcome outcome = WithServer({verb, "equilibrium"});
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err,
+              "ballpiston: 10 jobs are active already (QUEUE_FULL)\n"
+              "Try again when some of them have ended.\n");
+  }
+}
+
+TEST_F(CreateJobTest, ATooLargeJobExitsWithTwoAndAHint) {
+  server_.ensemble.create_end = LimitExceeded("TOO_MANY_POINTS", "the grid has 9 points");
+  server_.Start();
+  const Outcome outcome = WithServer({"submit", "equilibrium"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "ballpiston: the grid has 9 points (TOO_MANY_POINTS)\n"
+            "Split the grid between several jobs.\n");
+}
+
+// Such a request has more than gRPC's usual limit of 4 MiB; the server has one of its own.
+TEST_F(CreateJobTest, LargeRequestsAreSent) {
+  server_.largest_request = -1;
+  server_.Start();
+  const std::string list = "0:1:100000";
+  const Outcome outcome = WithServer({"submit", "first-hit", "--rho", list, "--delta", list,
+                                      "--epsilon", list, "--exponent", list});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(server_.ensemble.Asked().create.at(0).spec().grid().exponent_size(), 100'000);
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,109 @@
+#include "client/command/question.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_split.h"
+#include "tests/client/message_text.h"
+#include "tests/client/program.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+
+class QuestionTest : public ::testing::Test {
+ protected:
+  // Of `run WORDS`.
+  static absl::StatusOr<v1::EnsembleSpec> Spec(const std::string& words) {
+    const auto line = ParseCommandLine(absl::StrSplit("run " + words, ' ', absl::SkipEmpty()));
+    return line.ok() ? SpecOf(line->options) : line.status();
+  }
+
+  const EmptyHome home_;
+};
+
+TEST_F(QuestionTest, EachFlagReachesItsField) {
+  const std::pair<std::string, std::string> table[] = {
+      {"", ""},
+      {"--rho 0.53 --delta=0.1,0.2", "grid { rho: 0.53 delta: [0.1, 0.2] }"},
+      {"--epsilon 0.25 --exponent 0:2:3", "grid { epsilon: 0.25 exponent: [0, 1, 2] }"},
+      {"--samples 1e6", "target { samples: 1000000 }"},
+      {"--collisions 5", "target { collisions: 5 }"},
+      {"--tolerance -1e-3", "target { tolerance: -1e-3 }"},
+      {"--budget 90.5", "target { budget { seconds: 90 nanos: 500000000 } }"},
+      {"--budget -0.25", "target { budget { nanos: -250000000 } }"},
+      {"--budget 1e300", "target { budget { seconds: 315576000000 } }"},
+      {"--budget 10 --tolerance 1e-3", "target { tolerance: 1e-3 budget { seconds: 10 } }"},
+      {"--seed 18446744073709551615", "seed: 18446744073709551615"},
+      {"--model billiard_reference", "model: BILLIARD_REFERENCE"},
+      {"--model closed-form", "model: CLOSED_FORM"},
+      {"--precision single --verify", "precision: SINGLE verify: true"}};
+  for (const auto& [words, text] : table) {
+    ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec("first-hit " + words));
+    EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(
+        spec, FromText<v1::EnsembleSpec>("experiment: FIRST_HIT " + text)))
+        << words << "\n"
+        << spec.DebugString();
+  }
+}
+
+TEST_F(QuestionTest, ExperimentsAreReadInBothSpellings) {
+  for (const auto& [word, experiment] :
+       {std::pair{"conditional_mean_free_time", v1::EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME},
+        {"energy-relaxation", v1::EnsembleSpec::ENERGY_RELAXATION},
+        {"equilibrium", v1::EnsembleSpec::EQUILIBRIUM}}) {
+    ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec(word));
+    EXPECT_EQ(spec.experiment(), experiment);
+  }
+}
+
+TEST_F(QuestionTest, TheFirstMistakeIsNamed) {
+  const std::pair<std::string, std::string> table[] = {
+      {"", "name an EXPERIMENT (equilibrium, "},
+      {"brownian", "EXPERIMENT: 'brownian' is not one of equilibrium, "},
+      {"experiment-unspecified", "is not one of equilibrium, "},
+      {"first-hit --delta 0.1,nan", "--delta: 'nan' is not a decimal number"},
+      {"first-hit --budget soon", "--budget: 'soon' is not a decimal number"},
+      {"first-hit --samples many", "--samples: 'many' is not a whole number"},
+      {"first-hit --seed -1", "--seed: '-1' is not a whole number"},
+      {"first-hit --model guess", "--model: 'guess' is not one of auto, closed-form, "},
+      {"first-hit --precision half", "--precision: 'half' is not one of double, single"}};
+  for (const auto& [words, text] : table) {
+    EXPECT_THAT(Spec(words), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text)));
+  }
+}
+
+TEST_F(QuestionTest, TargetsExcludeEachOther) {
+  const std::pair<std::string, std::string> table[] = {
+      {"--samples 10 --tolerance 0.1",
+       "--samples and --tolerance exclude each other: give at most"},
+      {"--budget 1 --samples 10 --tolerance 1", "--samples and --tolerance and --budget exclude"},
+      {"--samples 10 --budget 1", "--samples and --budget exclude each other"},
+      {"--collisions 10 --budget 1", "--collisions and --budget exclude each other"}};
+  for (const auto& [words, text] : table) {
+    EXPECT_THAT(Spec("first-hit " + words),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text)));
+  }
+}
+
+TEST_F(QuestionTest, AFileExcludesExperimentGridTargetAndMethod) {
+  const std::string file = home_.File("question.json");
+  WriteFile(file, R"({"experiment": "FIRST_HIT", "seed": 7})");
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec("--spec " + file + " --priority 3"));
+  EXPECT_EQ(spec.seed(), 7u);
+  for (const char* word : {" first-hit", " --rho 0.53", " --samples 9", " --seed 1", " --verify"}) {
+    EXPECT_THAT(Spec("--spec " + file + word),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr("--spec holds the whole specification")));
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::client

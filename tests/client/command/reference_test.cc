@@ -1,0 +1,93 @@
+#include "client/command/reference.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_split.h"
+#include "tests/client/program.h"
+#include "tests/support/paths.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAreArray;
+
+class ReferenceTest : public ::testing::Test {
+ protected:
+  const EmptyHome home_;
+};
+
+// To write it again: ballpiston help --format markdown >docs/command-line.md
+TEST_F(ReferenceTest, TheMarkdownReferenceIsThatOfTheDocumentation) {
+  const bool is_same = Ballpiston({"help", "--format", "markdown"}).out ==
+                       Contents(SourcePath("docs/command-line.md"));
+  EXPECT_TRUE(is_same) << "differs; write it again";
+}
+
+TEST_F(ReferenceTest, EachVerbHasAManPage) {
+  const std::string folder = home_.File("man/man1");
+  const Outcome outcome = Ballpiston({"help", "--format", "man", "--out", folder});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  std::vector<std::string> pages = {"ballpiston.1"};
+  for (const Verb& verb : Verbs()) {
+    pages.push_back(PageName(&verb) + ".1");
+    EXPECT_EQ(Contents(folder + "/" + pages.back()), ManPage(&verb));
+  }
+  EXPECT_THAT(NamesIn(folder), UnorderedElementsAreArray(pages));
+}
+
+TEST_F(ReferenceTest, AFolderThatCannotBeWrittenExitsWithTwo) {
+  WriteFile(home_.File("file"), "");
+  const Outcome outcome = Ballpiston({"help", "--format", "man", "--out", home_.File("file")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, StartsWith("ballpiston: --out: cannot write " + home_.File("file/")));
+}
+
+// roff takes a line that begins with . or ' as a command, and - for a hyphen.
+TEST_F(ReferenceTest, ManPagesHaveOnlyKnownCommands) {
+  for (const Verb& verb : Verbs()) {
+    for (const absl::string_view line : absl::StrSplit(ManPage(&verb), '\n')) {
+      EXPECT_NE(line.substr(0, 1), "'") << line;
+      if (line.substr(0, 1) != ".") continue;
+      const std::string command(line.substr(0, line.find(' ')));
+      EXPECT_THAT(command, testing::AnyOf(".TH", ".SH", ".TP", ".B", ".PP")) << line;
+    }
+  }
+  EXPECT_THAT(Ballpiston({"help", "--format", "man", "run"}).out, HasSubstr(".B \\-\\-rho LIST\n"));
+}
+
+// But the title and the examples.
+TEST_F(ReferenceTest, LinesHaveAtMost80Columns) {
+  for (const Verb& verb : Verbs()) {
+    std::string page = TextPage(&verb);
+    page.erase(0, page.find('\n'));
+    for (const absl::string_view line :
+         absl::StrSplit(page.substr(0, page.find("\nExamples:\n")), '\n')) {
+      EXPECT_LE(line.size(), 80u) << line;
+    }
+  }
+}
+
+TEST_F(ReferenceTest, APageShowsEveryFlagAndArgument) {
+  for (const Verb& verb : Verbs()) {
+    const std::string page = TextPage(&verb);
+    for (const Flag* flag : FlagsOf(verb)) {
+      EXPECT_THAT(page, HasSubstr(flag->name.empty() ? flag->variable : LongName(*flag)));
+    }
+    for (const Argument& argument : verb.arguments) {
+      EXPECT_THAT(page, HasSubstr("\n  " + argument.value.name));
+    }
+    for (const std::string& example : verb.examples) {
+      EXPECT_THAT(page, HasSubstr("\n  ballpiston " + example + "\n"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,74 @@
+#include "client/command/spec_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
+                       ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
+                              "target": {"samples": "100"}, "seed": 7})"));
+  EXPECT_EQ(spec.target().samples(), 100);
+  EXPECT_EQ(spec.seed(), 7u);
+}
+
+TEST(SpecFile, ZeroHasNoSignInAnyNotation) {
+  for (const char* zero : {"-0", "-0.0", "-.0", "-0e5", "0"}) {
+    ASSERT_OK_AND_ASSIGN(
+        const v1::EnsembleSpec spec,
+        ParseSpec("s.json", absl::StrCat(R"({"grid": {"epsilon": [0.1, )", zero,
+                                         R"(]}, "target": {"tolerance": )", zero, "}}")));
+    EXPECT_EQ(spec.grid().epsilon(0), 0.1);
+    for (const double number : {spec.grid().epsilon(1), spec.target().tolerance()}) {
+      EXPECT_EQ(number, 0);
+      EXPECT_FALSE(std::signbit(number)) << zero;
+    }
+  }
+  EXPECT_FALSE(ParseSpec("s.json", "{}")->has_grid());
+}
+
+TEST(SpecFile, RejectsWhatIsNotASpecification) {
+  for (const char* text :
+       {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",
+        "{\"grid\": {\"rho\": [\"x\"]}}", "{\"experiment\": \"NO_SUCH\"}",
+        "{\"target\": {\"samples\": 1, \"tolerance\": 0.1}}", "{\"seed\": -1}", "{} {}"}) {
+    EXPECT_THAT(ParseSpec("s.json", text),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--spec s.json: ")))
+        << text;
+  }
+}
+
+TEST(SpecFile, NamesTheUnknownField) {
+  EXPECT_THAT(ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "sed": 1})"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("sed")));
+}
+
+// The message of the JSON parser repeats the whole value.
+TEST(SpecFile, ErrorShortensALongValue) {
+  const std::string name = "HEAD" + std::string(300'000, 'X') + "TAIL";
+  const auto spec = ParseSpec("s.json", R"({"experiment": ")" + name + "\"}");
+  const std::string message(spec.status().message());
+  EXPECT_LT(message.size(), 1'100u);
+  EXPECT_THAT(message, HasSubstr("HEAD"));
+  EXPECT_THAT(message, HasSubstr("XTAIL"));
+}
+
+TEST(SpecFile, ErrorNamesAFileThatCannotBeRead) {
+  EXPECT_THAT(
+      ReadSpecFile("/no/such/file.json"),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("/no/such/file.json: No such")));
+  EXPECT_THAT(ReadSpecFile("/"), StatusIs(absl::StatusCode::kInvalidArgument));
+}
+
+}  // namespace
+}  // namespace ballpiston::client

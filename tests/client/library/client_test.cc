@@ -1,0 +1,154 @@
+#include "client/library/client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "client/library/error_text.h"
+#include "tests/client/fake_server.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::client {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class ClientTest : public ::testing::Test {
+ protected:
+  ClientTest() { server_.ensemble.jobs = {JobIn(v1::EnsembleJob::QUEUED)}; }
+
+  Client StartServer() {
+    server_.Start();
+    return Client(server_.Channel());
+  }
+
+  FakeServer server_;
+};
+
+// The channel repeats the call. The server recognises the repetition by the request id.
+TEST_F(ClientTest, CreateIsRepeatedWithTheSameRequestId) {
+  server_.ensemble.unavailable_attempts = 2;
+  v1::EnsembleSpec spec;
+  spec.set_seed(7);
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Create(spec));
+  EXPECT_EQ(job.name(), kJobName);
+  const auto requests = server_.ensemble.Asked().create;
+  ASSERT_EQ(requests.size(), 3u);
+  EXPECT_EQ(requests[0].request_id(), requests[2].request_id());
+  EXPECT_EQ(requests[2].spec().seed(), 7u);
+}
+
+TEST_F(ClientTest, EachCreateHasANewRequestId) {
+  const Client client = StartServer();
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  EXPECT_NE(server_.ensemble.Asked().create[0].request_id(),
+            server_.ensemble.Asked().create[1].request_id());
+}
+
+TEST_F(ClientTest, CreateSendsItsOptions) {
+  const Client client = StartServer();
+  ASSERT_OK(client.Create(v1::EnsembleSpec()));
+  ASSERT_OK(client.Create(v1::EnsembleSpec(), {.request_id = "id", .fresh = true, .priority = -7}));
+  const auto asked = server_.ensemble.Asked().create;
+  EXPECT_FALSE(asked[0].fresh());
+  EXPECT_EQ(asked[0].priority(), 0);
+  EXPECT_EQ(asked[1].request_id(), "id");
+  EXPECT_TRUE(asked[1].fresh());
+  EXPECT_EQ(asked[1].priority(), -7);
+}
+
+TEST_F(ClientTest, ListGathersAllPages) {
+  for (int i = 1; i < 5; ++i) server_.ensemble.jobs.push_back(JobIn(v1::EnsembleJob::QUEUED));
+  for (size_t i = 0; i < 5; ++i) server_.ensemble.jobs[i].set_name(std::to_string(i));
+  ASSERT_OK_AND_ASSIGN(const auto jobs, StartServer().List());
+  ASSERT_EQ(jobs.size(), 5u);
+  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(jobs[i].name(), std::to_string(i));
+}
+
+TEST_F(ClientTest, ResultsGathersAllPagesInTheRequestedView) {
+  for (int i = 0; i < 5; ++i) server_.ensemble.points.emplace_back().set_index(i);
+  ASSERT_OK_AND_ASSIGN(const auto points,
+                       StartServer().Results("ensembleJobs/a", v1::ListResultsRequest::BASIC));
+  ASSERT_EQ(points.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(points[static_cast<size_t>(i)].index(), i);
+  const auto asked = server_.ensemble.Asked().results;
+  ASSERT_EQ(asked.size(), 3u);
+  for (const auto& request : asked) {
+    EXPECT_EQ(request.parent(), "ensembleJobs/a");
+    EXPECT_EQ(request.view(), v1::ListResultsRequest::BASIC);
+  }
+}
+
+TEST_F(ClientTest, ErrorsKeepCodeAndReason) {
+  const auto job = StartServer().Get("ensembleJobs/none");
+  EXPECT_THAT(
+      job, StatusIs(absl::StatusCode::kNotFound, "no such job: ensembleJobs/none (JOB_NOT_FOUND)"));
+  EXPECT_EQ(ErrorReason(job.status()), "JOB_NOT_FOUND");
+}
+
+TEST_F(ClientTest, WithoutAServerIsUnavailable) {
+  const Client client(server_.Channel());  // the server is not started
+  EXPECT_THAT(client.List(), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_THAT(client.Delete("ensembleJobs/a"), StatusIs(absl::StatusCode::kUnavailable));
+}
+
+TEST_F(ClientTest, CancelSendsARequestId) {
+  ASSERT_OK(StartServer().Cancel("ensembleJobs/a"));
+  const auto asked = server_.ensemble.Asked().cancel;
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].name(), "ensembleJobs/a");
+  EXPECT_NE(asked[0].request_id(), "");
+}
+
+TEST_F(ClientTest, ARepeatedCancelSendsTheSameRequestId) {
+  const Client client = StartServer();
+  const std::string id = "123e4567-e89b-12d3-a456-426614174000";
+  ASSERT_OK(client.Cancel("ensembleJobs/a", id));
+  client.Cancel("ensembleJobs/a", id).status().IgnoreError();
+  const auto asked = server_.ensemble.Asked().cancel;
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_EQ(asked[0].request_id(), id);
+  EXPECT_EQ(asked[1].request_id(), id);
+}
+
+// By default a gRPC server accepts messages of up to 4 MiB; the client sends larger ones.
+TEST_F(ClientTest, ErrorOfATooLargeSpecificationHasPlainWords) {
+  v1::EnsembleSpec spec;
+  spec.mutable_grid()->mutable_rho()->Resize(1'000'000, 0.53);
+  EXPECT_THAT(StartServer().Create(spec),
+              StatusIs(absl::StatusCode::kResourceExhausted,
+                       AllOf(StartsWith("the request or its answer is too large to be sent: 80000"),
+                             HasSubstr(" bytes; at most 4194304 are permitted"))));
+}
+
+TEST_F(ClientTest, LargeAnswersAreReceived) {
+  server_.server.status.set_version(std::string(5 << 20, 'v'));
+  ASSERT_OK_AND_ASSIGN(const v1::ServerStatus status, StartServer().Status());
+  EXPECT_EQ(status.version().size(), size_t{5 << 20});
+}
+
+TEST_F(ClientTest, ListStopsAtItsLimit) {
+  server_.ensemble.jobs.assign(5, JobIn(v1::EnsembleJob::QUEUED));
+  const Client client = StartServer();
+  v1::ListEnsembleJobsRequest request;
+  request.set_page_token("4");  // has no effect
+  ASSERT_OK_AND_ASSIGN(const auto jobs, client.List(request, 3));
+  EXPECT_EQ(jobs.size(), 3u);
+  const auto asked = server_.ensemble.Asked().list;
+  ASSERT_EQ(asked.size(), 2u);  // pages of two
+  EXPECT_EQ(asked[1].page_size(), 1);
+}
+
+// The second of two would find no job.
+TEST_F(ClientTest, ADeleteIsSentOnce) {
+  server_.ensemble.unavailable_attempts = 1;
+  EXPECT_THAT(StartServer().Delete(kJobName), StatusIs(absl::StatusCode::kUnavailable));
+  EXPECT_EQ(server_.ensemble.Asked().remove.size(), 1u);
+}
+
+}  // namespace
+}  // namespace ballpiston::client

@@ -1,0 +1,93 @@
+// The whole program but its main function, in a home without files.
+#ifndef BALLPISTON_TESTS_CLIENT_PROGRAM_H_
+#define BALLPISTON_TESTS_CLIENT_PROGRAM_H_
+
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "client/command/command_line.h"
+#include "gtest/gtest.h"
+#include "tests/client/fake_server.h"
+#include "tests/support/files.h"
+#include "tests/support/scoped_variable.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::client {
+
+struct Outcome {
+  int code;
+  std::string out;
+  std::string err;
+};
+
+inline Outcome Ballpiston(const std::vector<std::string>& words) {
+  std::ostringstream out, err;
+  Terminal terminal{out, err};
+  const ExitCode code = RunCommandLine(words, terminal);
+  return {static_cast<int>(code), out.str(), err.str()};
+}
+
+// A home of its own, and no variable of the program: the user's files and settings have no effect.
+// The program of the private server is /bin/false.
+class EmptyHome {
+ public:
+  EmptyHome() {
+    for (const Verb& verb : Verbs()) {
+      for (const Flag* flag : FlagsOf(verb)) {
+        if (flag->variable.empty()) continue;
+        variables_.push_back(std::make_unique<ScopedVariable>(flag->variable));
+      }
+    }
+    std::filesystem::create_directory(File("ballpiston"));
+  }
+
+  // XDG_CONFIG_HOME and XDG_STATE_HOME are the home too.
+  std::string File(const std::string& name) const { return folder_.File(name); }
+  void WriteConfig(const std::string& text) const {
+    WriteFile(File("ballpiston/config.toml"), text);
+  }
+  // The private server is the one at this address.
+  void UseAsPrivateServer(const std::string& address) const {
+    std::filesystem::create_symlink(address.substr(std::string("unix:").size()),
+                                    File("ballpiston/server.socket"));
+  }
+
+ private:
+  const TemporaryFolder folder_;
+  const ScopedVariable home_{"HOME", folder_.path()};
+  const ScopedVariable config_home_{"XDG_CONFIG_HOME", folder_.path()};
+  const ScopedVariable state_home_{"XDG_STATE_HOME", folder_.path()};
+  const ScopedVariable server_program_{"BALLPISTON_SERVER_PROGRAM", "/bin/false"};
+  std::vector<std::unique_ptr<ScopedVariable>> variables_;
+};
+
+// With a server that has one job, which succeeded, with one point. A test starts it.
+class ProgramTest : public ::testing::Test {
+ protected:
+  ProgramTest() {
+    v1::EnsembleJob job = JobIn(v1::EnsembleJob::SUCCEEDED);
+    job.mutable_progress()->set_points(1);
+    job.mutable_progress()->set_points_done(1);
+    server_.ensemble.jobs = {job};
+    server_.ensemble.watches = {{{JobMessage(job, "t")}, grpc::Status::OK}};
+    v1::Estimate* estimate = server_.ensemble.points.emplace_back().add_estimates();
+    estimate->set_name("mean_hit_time");
+    estimate->set_value(1.5);
+  }
+
+  Outcome WithServer(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--server", server_.Address()});
+    return Ballpiston(words);
+  }
+  v1::EnsembleJob& job() { return server_.ensemble.jobs[0]; }
+
+  const EmptyHome home_;
+  FakeServer server_;
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_TESTS_CLIENT_PROGRAM_H_
