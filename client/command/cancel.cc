@@ -16,8 +16,8 @@ VerbResult Cancel(const Options& options, Terminal& terminal) {
       first_error.Update(job.status());
       if (!job.ok()) continue;
       terminal.out << job->name() << ' ' << Spelling(job->state()) << std::endl;
-      terminal.Note(absl::StrCat(job->progress().points_done(), " of ", job->progress().points(),
-                                 " points are finished and stay"));
+      terminal.Note(absl::StrCat(name, ": ", job->progress().points_done(), " of ",
+                                 job->progress().points(), " points are finished and stay"));
     }
     if (!first_error.ok()) return first_error;
     return ExitCode::kDone;

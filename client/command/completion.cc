@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "absl/time/time.h"
 #include "client/command/connection.h"
 #include "client/command/verb_table.h"
 
@@ -111,10 +112,11 @@ Strings VerbOffers(Strings so_far) {
 // The names of the newest jobs. Empty if no server runs: completion starts no server.
 Strings JobNames(const Options& options, const Terminal& terminal) {
   constexpr int kMost = 50;
+  constexpr absl::Duration kTimeout = absl::Seconds(1);  // the user waits for the shell
   Strings names;
   const VerbResult ignored =
       WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-        const auto jobs = connection.client.List({}, kMost);
+        const auto jobs = Client(connection.channel, kTimeout).List({}, kMost);
         if (!jobs.ok()) return jobs.status();
         for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
         return ExitCode::kDone;
@@ -175,8 +177,10 @@ Strings Offers(Strings words, const Options& options, const Terminal& terminal) 
   if (!prefix.empty()) return {};
   const Argument* const argument = ArgumentAt(*verb, words, length);
   if (absl::StartsWith(words.back(), "-") || argument == nullptr) return FlagOffers(*verb);
-  if (verb->act == &Help)
-    return VerbOffers({words.begin() + static_cast<long>(length), words.end()});
+  if (verb->act == &Help) {
+    words.erase(words.begin());
+    return VerbOffers(words);
+  }
   const Strings values = ValueOffers(argument->value, options, terminal);
   return values.empty() ? FlagOffers(*verb) : values;
 }

@@ -3,7 +3,7 @@
 #define BALLPISTON_TESTS_CLIENT_PROGRAM_H_
 
 #include <filesystem>
-#include <memory>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -37,8 +37,7 @@ class EmptyHome {
   EmptyHome() {
     for (const Verb& verb : Verbs()) {
       for (const Flag* flag : FlagsOf(verb)) {
-        if (flag->variable.empty()) continue;
-        variables_.push_back(std::make_unique<ScopedVariable>(flag->variable));
+        if (!flag->variable.empty()) variables_.try_emplace(flag->variable, flag->variable);
       }
     }
     std::filesystem::create_directory(File("ballpiston"));
@@ -61,7 +60,7 @@ class EmptyHome {
   const ScopedVariable config_home_{"XDG_CONFIG_HOME", folder_.path()};
   const ScopedVariable state_home_{"XDG_STATE_HOME", folder_.path()};
   const ScopedVariable server_program_{"BALLPISTON_SERVER_PROGRAM", "/bin/false"};
-  std::vector<std::unique_ptr<ScopedVariable>> variables_;
+  std::map<std::string, ScopedVariable> variables_;
 };
 
 // With a server that has one job, which succeeded, with one point. A test starts it.

@@ -285,7 +285,8 @@ TEST_F(CommandLineTest, CancelPrintsTheStateOfEachJob) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "ensembleJobs/abc cancelled\nensembleJobs/d cancelled\n");
   EXPECT_EQ(outcome.err,
-            "0 of 0 points are finished and stay\n0 of 0 points are finished and stay\n");
+            "ensembleJobs/abc: 0 of 0 points are finished and stay\n"
+            "ensembleJobs/d: 0 of 0 points are finished and stay\n");
 }
 
 TEST_F(CommandLineTest, CancelOfAnEndedJobExitsWithFourAfterAllJobs) {
