@@ -76,6 +76,7 @@ class WordParser {
 
   absl::StatusOr<CommandLine> Parse(const std::vector<std::string>& words) {
     if (absl::Status bad = CheckValuesAreThere(words); !bad.ok()) return bad;
+    if (!words.empty()) first_word_ = words.front();
     try {
       program_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::CallForHelp&) {
@@ -251,8 +252,12 @@ class WordParser {
 
   std::string Unexpected(const CLI::App& app, const Verb* verb, const std::string& word) const {
     if (absl::StartsWith(word, "-")) return NoSuchFlag(verb, word.substr(0, word.find('=')));
-    if (verb != nullptr) return absl::StrCat("not expected: ", Quoted(word));
-    const std::vector<std::string> names = Names(app);
+    // CLI11 takes a verb that follows an unknown word for the verb.
+    const std::vector<std::string> verbs = Names(program_);
+    const bool is_first =
+        word == first_word_ && std::find(verbs.begin(), verbs.end(), word) == verbs.end();
+    if (verb != nullptr && !is_first) return absl::StrCat("not expected: ", Quoted(word));
+    const std::vector<std::string> names = is_first ? verbs : Names(app);
     return absl::StrCat(Quoted(word), " is not a verb; verbs are ", absl::StrJoin(names, ", "),
                         DidYouMean(word, names));
   }
@@ -291,6 +296,7 @@ class WordParser {
   }
 
   CLI::App program_;
+  std::string first_word_;
   std::map<const Verb*, ParsedVerb> parsed_;
 };
 

@@ -163,12 +163,15 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
   if (options.list) return ListFigures(terminal);
   if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
   const fs::path folder = options.out;
+  const std::string script = options.figure + kScript;
+  std::error_code error;
+  const bool is_there = fs::exists(folder / script, error);
+  const auto names = VariablesOf(Contents((is_there ? folder : InstalledFolder()) / script));
+  if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
   for (const char* suffix : {kScript, kPicture}) {
     absl::Status status = Provide(folder, options.figure + suffix, terminal);
     if (!status.ok()) return status;
   }
-  const auto names = VariablesOf(Contents(folder / (options.figure + kScript)));
-  if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
   if (!options.edit) {
     SetEnvironment(options, names);
     const absl::StatusOr<int> status = RunScript(options, terminal);
@@ -176,7 +179,6 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
     if (*status != 0) return ExitCodeOf(*status);
   }
   std::set<fs::path> files;
-  std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (absl::StartsWith(entry.path().filename().string(), options.figure)) files.insert(entry);
   }

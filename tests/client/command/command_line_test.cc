@@ -103,6 +103,7 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
 TEST_F(CommandLineTest, AMistakeIsNamed) {
   const std::pair<Words, std::string> mistakes[] = {
       {{"run", "first-hit", "--rho"}, "--rho needs a value (ballpiston help run shows its usage)"},
+      {{"srver", "status"}, "'srver' is not a verb; verbs are "},
       {{"watch"}, "watch needs JOB: ensembleJobs/ID, or the ID alone (ballpiston help watch"},
       {{"run", "first-hit", "again"}, "not expected: 'again' (ballpiston help run"},
       {{"run", "first-hit", "--rho", "1", "--rho", "2"}, "--rho is given more than once"},
