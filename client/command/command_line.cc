@@ -80,7 +80,8 @@ class WordParser {
     try {
       program_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::CallForHelp&) {
-      return CommandLine{.page = TextPage(Chosen())};
+      const bool is_group = Chosen() == nullptr && &Innermost() != &program_;
+      return CommandLine{.page = is_group ? GroupPage(Innermost().get_name()) : TextPage(Chosen())};
     } catch (const CLI::CallForVersion& version) {
       return CommandLine{.page = absl::StrCat(version.what(), "\n")};
     } catch (const CLI::ParseError& error) {

@@ -49,7 +49,12 @@ absl::Status WriteManPages(const std::string& folder) {
 
 VerbResult Help(const Options& options, Terminal& terminal) {
   const absl::StatusOr<const Verb*> verb = VerbNamed(options.words);
-  if (!verb.ok()) return verb.status();
+  if (!verb.ok()) {
+    const std::string page = options.words.size() == 1 ? GroupPage(options.words[0]) : "";
+    if (page.empty()) return verb.status();
+    terminal.out << page;
+    return ExitCode::kDone;
+  }
   if (!options.out.empty()) {
     if (absl::Status written = WriteManPages(options.out); !written.ok()) return written;
   } else if (options.page == PageFormat::kMarkdown) {

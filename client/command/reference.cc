@@ -164,6 +164,20 @@ std::string RoffSection(const Section& section) {
 
 std::string TextPage(const Verb* verb) { return Text(PageOf(verb)); }
 
+std::string GroupPage(const std::string& word) {
+  const std::string start = word + " ";
+  Page page = ProgramPage();
+  page.name += " " + word;
+  page.summary = "the verbs of this group";
+  page.synopsis = absl::StrCat(page.name, " VERB [ARGUMENT...] [FLAG...]");
+  page.sections.resize(1);
+  std::erase_if(page.sections[0].entries,
+                [&start](const Remark& verb) { return !absl::StartsWith(verb.name, start); });
+  if (page.sections[0].entries.empty()) return "";
+  page.examples = {absl::StrCat(kProgram, " help ", page.sections[0].entries[0].name)};
+  return Text(page);
+}
+
 std::string ManPage(const Verb* verb) {
   const Page page = PageOf(verb);
   std::string out =

@@ -10,6 +10,8 @@ namespace ballpiston::client {
 
 // The page of a verb; of the program for null.
 std::string TextPage(const Verb* verb);
+// The verbs that begin with this word, as server; empty if there are none.
+std::string GroupPage(const std::string& word);
 std::string ManPage(const Verb* verb);
 
 // All pages as one document.

@@ -16,6 +16,7 @@
 namespace ballpiston::client {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -404,6 +405,13 @@ TEST_F(CommandLineTest, StatusPrintsTheServersAnswer) {
 }
 
 // ---- figures ----
+
+TEST_F(CommandLineTest, HelpOfAGroupNamesItsVerbs) {
+  const Outcome outcome = Ballpiston({"help", "server"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("  server start "), Not(HasSubstr("analytic"))));
+  EXPECT_EQ(Ballpiston({"server", "--help"}).out, outcome.out);
+}
 
 TEST_F(CommandLineTest, FigureListsItsNames) {
   EXPECT_THAT(Ballpiston({"figure", "--list"}).out, HasSubstr("mean-free-time: "));
