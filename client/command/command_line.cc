@@ -140,8 +140,8 @@ class WordParser {
     }
   }
 
-  // What neither the command line nor the environment says. One target on the command line takes
-  // the place of all of the config file's.
+  // The config file sets flags that the command line and the environment leave open. A target on
+  // the command line replaces all targets of the config file.
   absl::Status AddConfig(const Verb& verb, const std::set<std::string>& given) {
     const ParsedVerb& parsed = parsed_.at(&verb);
     const CLI::Option* const named = parsed.app->get_option("--config");
@@ -229,7 +229,7 @@ class WordParser {
     return names;
   }
 
-  // The verb that the words before the mistake name; null (the program) if they name none.
+  // CLI11's parser of the verb before the mistake, or of the program if no verb was named.
   const CLI::App& Innermost() const {
     const CLI::App* app = &program_;
     while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
@@ -253,7 +253,7 @@ class WordParser {
 
   std::string Unexpected(const CLI::App& app, const Verb* verb, const std::string& word) const {
     if (absl::StartsWith(word, "-")) return NoSuchFlag(verb, word.substr(0, word.find('=')));
-    // CLI11 takes a verb that follows an unknown word for the verb.
+    // After an unknown first word CLI11 still finds a verb among the later words.
     const std::vector<std::string> verbs = Names(program_);
     const bool is_first =
         word == first_word_ && std::find(verbs.begin(), verbs.end(), word) == verbs.end();

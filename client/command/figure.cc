@@ -95,6 +95,12 @@ absl::Status Provide(const fs::path& folder, const std::string& name, const Term
   return absl::OkStatus();
 }
 
+// The script in the folder, else the installed one.
+std::string ScriptFor(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  return Contents((fs::exists(folder / name, error) ? folder : InstalledFolder()) / name);
+}
+
 // The names in ${NAME:=...}.
 std::set<std::string> VariablesOf(const std::string& script) {
   std::set<std::string> names;
@@ -148,6 +154,16 @@ absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) 
   return WaitForChild(*pid);
 }
 
+// The paths of the files whose names begin with the figure's name, in order.
+void PrintFiles(const fs::path& folder, const std::string& figure, const Terminal& terminal) {
+  std::set<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (absl::StartsWith(entry.path().filename().string(), figure)) files.insert(entry);
+  }
+  for (const fs::path& file : files) terminal.out << file.string() << '\n';
+}
+
 }  // namespace
 
 std::vector<std::string> FigureNames() {
@@ -163,10 +179,7 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
   if (options.list) return ListFigures(terminal);
   if (absl::Status bad = CheckName(options); !bad.ok()) return bad;
   const fs::path folder = options.out;
-  const std::string script = options.figure + kScript;
-  std::error_code error;
-  const bool is_there = fs::exists(folder / script, error);
-  const auto names = VariablesOf(Contents((is_there ? folder : InstalledFolder()) / script));
+  const std::set<std::string> names = VariablesOf(ScriptFor(folder, options.figure + kScript));
   if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
   for (const char* suffix : {kScript, kPicture}) {
     absl::Status status = Provide(folder, options.figure + suffix, terminal);
@@ -178,11 +191,7 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
     if (!status.ok()) return status.status();
     if (*status != 0) return ExitCodeOf(*status);
   }
-  std::set<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (absl::StartsWith(entry.path().filename().string(), options.figure)) files.insert(entry);
-  }
-  for (const fs::path& file : files) terminal.out << file.string() << '\n';
+  PrintFiles(folder, options.figure, terminal);
   return ExitCode::kDone;
 }
 

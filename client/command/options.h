@@ -1,5 +1,5 @@
-// What a command line asks for. A verb has some of these (verb_table.h); the others keep their
-// defaults.
+// The values of all flags and arguments. Each verb sets some of them (verb_table.h); the others
+// keep their defaults.
 #ifndef BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
 #define BALLPISTON_CLIENT_COMMAND_OPTIONS_H_
 

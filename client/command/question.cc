@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/command/spec_file.h"
+#include "client/command/verb_table.h"
 #include "client/output/spelling.h"
 
 namespace ballpiston::client {
@@ -14,8 +15,8 @@ namespace {
 
 absl::Status CheckOneTarget(const std::set<std::string>& flags) {
   std::vector<std::string> given;
-  for (const char* flag : {"--samples", "--collisions", "--tolerance", "--budget"}) {
-    if (flags.contains(flag)) given.push_back(flag);
+  for (const Flag& flag : TargetFlags().flags) {
+    if (flags.contains(flag.name)) given.push_back(flag.name);
   }
   const bool is_pair = given == std::vector<std::string>{"--tolerance", "--budget"};
   if (given.size() <= 1 || is_pair) return absl::OkStatus();
@@ -27,10 +28,10 @@ absl::Status CheckOneTarget(const std::set<std::string>& flags) {
 
 // Looks at flags on the command line only: with --spec, those of the config file are ignored.
 bool HasQuestionFlags(const Options& options) {
-  for (const char* flag :
-       {"--rho", "--delta", "--epsilon", "--exponent", "--samples", "--collisions", "--tolerance",
-        "--budget", "--seed", "--model", "--precision", "--verify"}) {
-    if (options.given.contains(flag)) return true;
+  for (const FlagGroup* group : QuestionFlags()) {
+    for (const Flag& flag : group->flags) {
+      if (flag.name != "--spec" && options.given.contains(flag.name)) return true;
+    }
   }
   return options.spec.experiment() != v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
 }

@@ -43,6 +43,29 @@ absl::Status CheckStart(const Options& options) {
       "give it its own folder with --data-dir");
 }
 
+// FAILED_PRECONDITION if flags were given: they have no effect on a server that runs.
+VerbResult ReportRunning(const std::string& folder, const RunningServer& running,
+                         const Options& options, const Terminal& terminal) {
+  if (!options.server_flags.empty()) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "a server runs in ", folder,
+        " already, so these flags have no effect: stop it first (ballpiston server stop)"));
+  }
+  terminal.Note(
+      "a server runs there already; if a client started that server, it stops when it is idle");
+  terminal.out << running.address << '\n';
+  return ExitCode::kDone;
+}
+
+// For the log, before the server runs.
+absl::Status MakeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return absl::OkStatus();
+  return absl::PermissionDeniedError(
+      absl::StrCat("--data-dir: cannot make the folder ", folder, ": ", error.message()));
+}
+
 // Runs ballpistond with these flags and waits for its end. Its output is this program's output.
 VerbResult RunProgram(std::vector<std::string> flags, const Terminal& terminal) {
   flags.insert(flags.begin(), UsualServerProgram());
@@ -69,25 +92,14 @@ VerbResult ServerStart(const Options& options, Terminal& terminal) {
   if (absl::Status bad = CheckStart(options); !bad.ok()) return bad;
   absl::StatusOr<ServerProgram> program = ProgramOf(options);
   if (!program.ok()) return program.status();
-  if (const auto running = FindServer(program->folder); running && !running->address.empty()) {
-    if (!options.server_flags.empty()) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          "a server runs in ", program->folder,
-          " already, so these flags have no effect: stop it first (ballpiston server stop)"));
-    }
-    terminal.Note(
-        "a server runs there already; if a client started that server, it stops when it is idle");
-    terminal.out << running->address << '\n';
-    return ExitCode::kDone;
+  const auto running = FindServer(program->folder);
+  if (running && !running->address.empty()) {
+    return ReportRunning(program->folder, *running, options, terminal);
   }
-  std::error_code error;
-  std::filesystem::create_directories(program->folder, error);  // for the log
-  if (error) {
-    return absl::PermissionDeniedError(absl::StrCat("--data-dir: cannot make the folder ",
-                                                    program->folder, ": ", error.message()));
-  }
+  if (absl::Status made = MakeFolder(program->folder); !made.ok()) return made;
   program->run_in = "";  // so that relative paths in its flags are correct
-  for (const std::string& flag : options.server_flags) program->flags.push_back(flag);
+  program->flags.insert(program->flags.end(), options.server_flags.begin(),
+                        options.server_flags.end());
   const absl::StatusOr<std::string> address = StartServer(*program);
   if (!address.ok()) return address.status();
   terminal.Detail(absl::StrCat("log ", program->Log()));

@@ -20,7 +20,7 @@
 
 namespace ballpiston::client {
 
-// What shell completion offers for such a value.
+// The words that shell completion offers for a value.
 enum class Offer { kNothing, kChoices, kFile, kJob, kFigure };
 
 struct Value {

@@ -452,6 +452,7 @@ const std::vector<Verb>& Verbs() {
 
 const FlagGroup& ServerFlags() { return kServer; }
 const FlagGroup& TargetFlags() { return kTarget; }
+const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
 
 const std::vector<Remark>& ExitCodes() {
   static const auto* const codes = new std::vector<Remark>{

@@ -49,6 +49,8 @@ const std::vector<Verb>& Verbs();
 // The flags that choose the server, and the flags that say how much is computed.
 const FlagGroup& ServerFlags();
 const FlagGroup& TargetFlags();
+// The groups that make a specification.
+const std::vector<const FlagGroup*>& QuestionFlags();
 
 // The exit codes, and the files and variables that the program reads: (name, text).
 struct Remark {

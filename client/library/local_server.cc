@@ -15,6 +15,7 @@
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "client/library/channel.h"
+#include "client/library/fnv1a.h"
 #include "client/library/server_address.h"
 #include "client/library/server_process.h"
 
@@ -54,13 +55,6 @@ std::string StateFolder() {
   return HomeFolder() + "/.local/state/ballpiston";
 }
 
-// FNV-1a: names the socket's folder after the data folder, the same in every version.
-uint64_t Hash(const std::string& text) {
-  uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return hash;
-}
-
 // Anybody may have made a folder of that name below /tmp: use it only if it is the user's own.
 absl::Status CheckPrivate(const std::string& folder) {
   struct stat status;
@@ -91,7 +85,7 @@ absl::StatusOr<std::string> SocketIn(const std::string& folder) {
   const std::string usual = folder + "/server.socket";
   if (usual.size() <= kMaxSocketPath) return usual;
   std::string root = PathVariable("TMPDIR");
-  const std::string name = absl::StrFormat("/ballpiston-%d-%016x", getuid(), Hash(folder));
+  const std::string name = absl::StrFormat("/ballpiston-%d-%016x", getuid(), Fnv1a(folder));
   constexpr char kSocket[] = "/server.socket";
   if (root.empty() || root.size() + name.size() + sizeof(kSocket) > kMaxSocketPath) root = "/tmp";
   if (absl::Status made = MakeFolder(root + name); !made.ok()) return made;

@@ -54,8 +54,8 @@ bool HasOpen(pid_t pid, const std::string& path) {
   return false;
 }
 
-// Waits until the condition is true or the time is over; returns whether it is true. A check of a
-// folder takes its lock for a moment if nobody has it, hence the pauses.
+// Waits until the condition is true or the time is over; returns whether it is true. It pauses
+// between two checks, because a check holds the folder's lock for a moment if the lock is free.
 template <typename Condition>
 bool Await(absl::Duration timeout, Condition condition) {
   const absl::Time deadline = absl::Now() + timeout;

@@ -22,14 +22,14 @@ inline constexpr std::array<std::string_view, 21> kFailpoints = {
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
     "store.before_commit",      // a group of writes is in the transaction
-    "store.after_commit",       // it is on disk; nobody was told
+    "store.after_commit",       // the group is on disk; no client has an answer
     "block.merged",             // into its point; not recorded
     "checkpoint.before_write",  // in a transaction that has begun
     "point.before_record",      // all its blocks are merged
     "point.recorded",           // its result waits to be written
     "job.before_end",           // all its points are finished; its end is not recorded
     "job.end_recorded",         // its end waits to be written
-    "job.ended",                // its end is on disk; nobody was told
+    "job.ended",                // its end is on disk; no watch has it
     "cancel.in_transaction",    // CANCELLING is written, not committed
     "cancel.committed",         // and committed; the workers do not know
     "delete.in_transaction",    // the rows are gone, not committed

@@ -104,7 +104,7 @@ EnsembleSpec Question(const ExperimentKind* experiment, double delta, Model mode
   return spec;
 }
 
-// Of some 50 ms in lanes, and of as many samples as take that long by the reference.
+// A block takes about 50 ms: it has fewer samples for the reference than for the lanes.
 Block BlockOfATurn(const PointExperiment& point, uint64_t turn) {
   const double events = point.answer().model == Model::kBilliardReference ? 0x1p20 : 0x1p24;
   const uint64_t samples =

@@ -1,5 +1,5 @@
-// What a choice between runs costs under the worker pool's lock, for each turn of 0.05 s: with many
-// runs, with many principals, and where those whose turn it is have nothing to hand out.
+// The cost of choosing the next run, which the worker pool does under its lock for each turn of
+// 0.05 s: with many runs, with many principals, and with runs that have no block to compute.
 #include <string>
 
 #include "benchmark/benchmark.h"

@@ -8,7 +8,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/predicted_hits.h"
-#include "tools/method_comparison/processor_time.h"
+#include "server/execution/processor_time.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -40,10 +40,10 @@ double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
 
 RelaxationTime EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
   const auto experiment = PointExperiment::Create(SpecOf(geometry_, seed_, method), 0);
-  const double begin = ProcessorSeconds();
+  const double begin = server::ThreadSeconds();
   const BlockResult merged =
       *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
-  const double seconds = ProcessorSeconds() - begin;
+  const double seconds = server::ThreadSeconds() - begin;
   const Estimate estimate = experiment->FirstEstimate(merged);
   return {.value = estimate.value,
           .error = estimate.standard_error.value_or(0),
@@ -54,7 +54,7 @@ RelaxationTime EnergyRelaxationRuns::Run(Method method, const SampleRange& sampl
 RelaxationTime EnergyRelaxationRuns::BySpectrum() const {
   RelaxationSpectrum::Get();
   Estimate time;
-  const double seconds = SecondsOf(
+  const double seconds = server::SecondsOf(
       [&] { time = EnergyRelaxation(geometry_, PointOf(geometry_)).EstimatesOfLimit().front(); });
   return {.value = time.value, .error = time.standard_error.value_or(0), .seconds = seconds};
 }

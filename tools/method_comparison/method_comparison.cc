@@ -21,10 +21,10 @@
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/told_error.h"
+#include "server/execution/processor_time.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
 #include "tools/method_comparison/ingoing_divergence.h"
 #include "tools/method_comparison/limit_floor.h"
-#include "tools/method_comparison/processor_time.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
 #include "tools/method_comparison/twin_orbits.h"
@@ -174,7 +174,7 @@ class Comparison {
     return {.method = Method::kClosedForm,
             .quantity = Quantity::kMeanFreeTime,
             .delta = spec_.delta,
-            .work = SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
+            .work = server::SecondsOf([&] { ConditionalMeanFreeTime(geometry_, spec_.epsilon); }),
             .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
   }
 
@@ -183,7 +183,7 @@ class Comparison {
     return {.method = Method::kClosedForm,
             .quantity = Quantity::kIngoingLaw,
             .delta = spec_.delta,
-            .work = SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
+            .work = server::SecondsOf([&] { IngoingProbabilities(spec_.epsilon); }),
             .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
   }
 
@@ -193,10 +193,10 @@ class Comparison {
     std::vector<TwinOrbits> rungs;
     double expected = 0;
     for (size_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
-      const double begin = ProcessorSeconds();
+      const double begin = server::ThreadSeconds();
       rungs.emplace_back(geometry_, Stream(Quantity::kTrajectory, rungs.size()), orbits);
       rungs.back().FlyAhead(kTwinHits);
-      expected = (ProcessorSeconds() - begin) * kRungFactor;
+      expected = (server::ThreadSeconds() - begin) * kRungFactor;
     }
     for (const MethodVariant& variant : SampledVariants()) ClimbTrajectories(variant, rungs);
   }

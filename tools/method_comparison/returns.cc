@@ -5,8 +5,8 @@
 #include "core/closed_form/conditional_rate.h"
 #include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
+#include "server/execution/processor_time.h"
 #include "tools/method_comparison/method_orbits.h"
-#include "tools/method_comparison/processor_time.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -71,7 +71,7 @@ double PredictedSecondsPerEvent(Method method) {
 ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
                             double epsilon, const RandomStream& random, uint64_t samples) {
   ReturnStatistics statistics = {.times = {}, .ingoing = IngoingCounts(epsilon)};
-  const double begin = ProcessorSeconds();
+  const double begin = server::ThreadSeconds();
   const uint64_t batch = BatchSize(variant.method);
   for (uint64_t first = 0; first < samples; first += batch) {
     const uint64_t count = std::min(batch, samples - first);
@@ -80,7 +80,7 @@ ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& ge
     RunMethodOrbits(variant, geometry, count, orbits);
     orbits.AddTo(statistics);
   }
-  statistics.seconds = ProcessorSeconds() - begin;
+  statistics.seconds = server::ThreadSeconds() - begin;
   return statistics;
 }
 

@@ -6,8 +6,8 @@
 
 #include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
+#include "server/execution/processor_time.h"
 #include "tools/flows/fixed_step_flow.h"
-#include "tools/method_comparison/processor_time.h"
 
 namespace ballpiston::method_comparison {
 namespace {
@@ -24,7 +24,7 @@ Itineraries FlyEach(const std::vector<Start>& starts, uint64_t hits, const Fly& 
   Itineraries result;
   result.orbits.resize(starts.size());
   for (std::vector<BallAt>& places : result.orbits) places.reserve(hits);
-  result.seconds = SecondsOf([&] {
+  result.seconds = server::SecondsOf([&] {
     for (size_t i = 0; i < starts.size(); ++i) {
       result.orbits[i].clear();
       fly(starts[i], result.orbits[i]);
@@ -95,7 +95,7 @@ Itineraries FlyLanes(LaneFlights& fly, const PairGeometry& geometry, const TwinO
       places.push_back({time += hit.length, PositionInCell(hit.frame)});
     }
   }
-  result.seconds = SecondsOf([&] { fly(geometry, frames, hits, {}); });
+  result.seconds = server::SecondsOf([&] { fly(geometry, frames, hits, {}); });
   return result;
 }
 

@@ -1,4 +1,4 @@
-// What shells offer: the words that the program prints, and the scripts that ask for them.
+// Shell completion: the words that the program prints, and the scripts of the three shells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -20,8 +20,9 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
-// What a server does with its data folder ($2), in shell: it takes the lock, writes its process id
-// into it, and tells its address. It ends when it is told to, or when the test's folder is gone.
+// A fake server as a shell script; $2 is its data folder. The server takes the lock, writes its
+// process id into the lock file and writes its address. It ends at SIGTERM, or when the test's
+// folder is removed.
 constexpr char kLock[] =
     "exec 9>>$2/lock; flock -n 9 || { echo another server holds it; exit 1; }; echo $$ >$2/lock\n";
 constexpr char kListen[] = "echo unix:$2/socket >$2/server.address\n";
