@@ -18,11 +18,13 @@
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/services.h"
-#include "server/execution/model_ladder.h"
+#include "server/execution/thread_executor.h"
 #include "server/listen_address.h"
 #include "server/observability/call_observer.h"
 #include "server/observability/health.h"
 #include "server/observability/metrics_endpoint.h"
+#include "server/scheduling/model_ladder.h"
+#include "server/scheduling/scheduler.h"
 #include "server/security/peer_user.h"
 #include "server/security/server_security.h"
 #include "server/security/socket_listener.h"
@@ -106,7 +108,10 @@ class BallpistonServer {
   WatchRegistry watches_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_;
+  std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
+  Scheduler scheduler_;
   JobBook book_;
+  ThreadExecutor threads_;  // after the book, which its threads use
   RpcExecutor executor_;
   ServiceContext context_;
   EnsembleService ensemble_;

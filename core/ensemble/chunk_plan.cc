@@ -7,14 +7,14 @@
 namespace ballpiston {
 namespace {
 
-// At nominal speeds of 2.5 ns an event in lanes, and 40 ns by the reference.
 struct NominalEvents {
+  double seconds;     // of one event
   double block;       // 0.05 s or so
   double base;        // 3 ms
   double last_chunk;  // 43 s
 };
-constexpr NominalEvents kInLanes = {0x1p24, 0x1p20, 0x1p34};
-constexpr NominalEvents kByReference = {0x1p20, 0x1p16, 0x1p30};
+constexpr NominalEvents kInLanes = {2.5e-9, 0x1p24, 0x1p20, 0x1p34};
+constexpr NominalEvents kByReference = {40e-9, 0x1p20, 0x1p16, 0x1p30};
 
 // With fewer samples no error can be estimated (statistics/told_error.h).
 constexpr uint64_t kLeastInAChunk = 64;
@@ -31,6 +31,7 @@ uint64_t SamplesOf(double events, double events_per_sample, double most) {
 ChunkPlan::ChunkPlan(uint64_t samples, Engine engine, double events_per_sample, uint64_t together)
     : samples_(samples), events_per_sample_(events_per_sample), smallest_block_(together) {
   const NominalEvents& nominal = engine == Engine::kReference ? kByReference : kInLanes;
+  seconds_per_event_ = nominal.seconds;
   constexpr double kMostInAChunk = 0x1p40;
   base_ = std::max(SamplesOf(nominal.base, events_per_sample, kMostInAChunk), kLeastInAChunk);
   const uint64_t last =
@@ -76,14 +77,18 @@ Block ChunkPlan::BlockAt(uint64_t chunk, uint64_t index) const {
           .samples = std::min(size, SamplesIn(chunk) - before)};
 }
 
-uint64_t ChunkPlan::WholeChunks(double samples) const {
-  if (!(samples < static_cast<double>(samples_))) return samples_;
+uint64_t ChunkPlan::ChunksFor(double samples) const {
+  if (!(samples < static_cast<double>(samples_))) return chunks();
   uint64_t chunk = 1;
   if (const double past = samples - static_cast<double>(FirstSample(doublings_)); past > 0) {
     chunk = doublings_ +
             static_cast<uint64_t>(std::ceil(past / static_cast<double>(FullSize(doublings_))));
   }
   while (static_cast<double>(FirstSample(chunk)) < samples) ++chunk;
+  return chunk;
+}
+
+uint64_t ChunkPlan::SamplesBefore(uint64_t chunk) const {
   return std::min(FirstSample(chunk), samples_);
 }
 

@@ -45,8 +45,14 @@ class ChunkPlan {
   uint64_t BlocksIn(uint64_t chunk) const;
   Block BlockAt(uint64_t chunk, uint64_t index) const;
 
-  // The samples of the fewest whole chunks that have at least `samples` samples.
-  uint64_t WholeChunks(double samples) const;
+  // Of one core at nominal speed.
+  double SecondsFor(double samples) const {
+    return samples * events_per_sample_ * seconds_per_event_;
+  }
+
+  // The fewest chunks that together have at least `samples` samples; all if there are fewer samples.
+  uint64_t ChunksFor(double samples) const;
+  uint64_t SamplesBefore(uint64_t chunk) const;  // chunk <= chunks()
 
  private:
   uint64_t FullSize(uint64_t chunk) const;
@@ -54,6 +60,7 @@ class ChunkPlan {
 
   uint64_t samples_ = 0;
   double events_per_sample_ = 1;
+  double seconds_per_event_ = 0;
   uint64_t base_ = 1;  // samples of chunk 0
   uint64_t doublings_ = 0;
   uint64_t smallest_block_ = 1;

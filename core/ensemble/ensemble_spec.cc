@@ -1,5 +1,7 @@
 #include "core/ensemble/ensemble_spec.h"
 
+#include "core/ensemble/experiment_kind.h"
+
 namespace ballpiston {
 
 size_t PointCount(const EnsembleSpec& spec) { return static_cast<size_t>(spec.grid.PointCount()); }
@@ -19,6 +21,15 @@ EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point
   }
   if (one.target.budget_seconds) *one.target.budget_seconds /= spec.grid.PointCount();
   return one;
+}
+
+bool IsAnsweredByClosedForm(const EnsembleSpec& spec) {
+  return spec.model == Model::kClosedForm ||
+         (spec.model == Model::kAuto && !spec.verify && spec.experiment->HasClosedForm());
+}
+
+bool NeedsNoSamples(const EnsembleSpec& spec) {
+  return spec.model == Model::kSpectrum || IsAnsweredByClosedForm(spec);
 }
 
 Engine EngineFor(const EnsembleSpec& spec) {

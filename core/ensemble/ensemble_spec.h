@@ -64,6 +64,10 @@ PointParameters PointAt(const EnsembleSpec& spec, size_t index);  // index < Poi
 // The same spec for one of its points, by `model`, with that point's share of a budget.
 EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);
 
+bool IsAnsweredByClosedForm(const EnsembleSpec& spec);
+// Whether no point takes samples, by the spec alone. AUTO may still choose the spectrum.
+bool NeedsNoSamples(const EnsembleSpec& spec);
+
 // The engine that runs the orbits. In double precision the lanes are as exact as the reference, so
 // AUTO uses the lanes, which are faster.
 Engine EngineFor(const EnsembleSpec& spec);

@@ -17,7 +17,18 @@ ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
                    spec.experiment->samples_together);
 }
 
+uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
+                        const ChunkPlan& plan) {
+  if (!spec.target.tolerance || plan.samples() == 0) return plan.chunks();
+  return plan.ChunksFor(SamplesFor(*spec.target.tolerance, spec, point));
+}
+
 }  // namespace
+
+double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point) {
+  const double ratio = spec.experiment->error(point) / tolerance;
+  return ratio * ratio;
+}
 
 uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point) {
   const Target& target = spec.target;
@@ -36,6 +47,7 @@ PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters
       answer_{.model = Sampled(spec.model)},
       engine_(EngineFor(spec)),
       plan_(plan),
+      expected_chunks_(ExpectedChunks(spec, parameters, plan)),
       tolerance_(spec.target.tolerance),
       random_{spec.seed, PointStream(spec, parameters)} {}
 

@@ -49,6 +49,8 @@ class PointExperiment {
 
   // If the plan has no samples, the answer needs no block, and `merged` is empty.
   const ChunkPlan& plan() const { return plan_; }
+  // The chunks that the target is expected to take: with a tolerance fewer than the plan has.
+  uint64_t expected_chunks() const { return expected_chunks_; }
   const PointParameters& parameters() const { return parameters_; }
   const Answer& answer() const { return answer_; }
 
@@ -83,12 +85,16 @@ class PointExperiment {
   Answer answer_;
   Engine engine_;
   ChunkPlan plan_;
+  uint64_t expected_chunks_;
   std::optional<double> tolerance_;
   RandomStream random_;
 };
 
 // The largest number of samples that the target requests at a point.
 uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point);
+
+// The expected number of samples that reach the relative standard error `tolerance`.
+double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point);
 
 }  // namespace ballpiston
 

@@ -1,49 +1,41 @@
 #include "core/ensemble/point_fold.h"
 
 #include <memory>
+#include <utility>
 
 namespace ballpiston {
 
 PointFold::PointFold(const PointExperiment& experiment)
     : experiment_(experiment), chunks_(experiment.plan().chunks()), finished_(chunks_ == 0) {}
 
-bool PointFold::HasNextBlock() const {
-  return !finished_ && next_.first < chunks_ && handed_out_ < kWindow;
+bool PointFold::Needs(uint64_t chunk) const {
+  return !finished_ && chunk >= state_.chunk && chunk < chunks_ && !early_.contains(chunk);
 }
 
-std::optional<Block> PointFold::NextBlock() {
-  if (!HasNextBlock()) return std::nullopt;
-  const ChunkPlan& plan = experiment_.plan();
-  const Block block = plan.BlockAt(next_.first, next_.second);
-  ++handed_out_;
-  if (++next_.second == plan.BlocksIn(next_.first)) next_ = {next_.first + 1, 0};
-  return block;
-}
-
-uint64_t PointFold::Add(const Block& block, BlockResult result) {
-  const Place place = {block.chunk, block.index};
-  if (finished_ || place < NextPlace()) return 0;
-  early_.emplace(place, std::move(result));
+uint64_t PointFold::Add(ChunkResult chunk) {
+  if (!Needs(chunk.chunk)) return 0;
+  early_.emplace(chunk.chunk, std::move(chunk.result));
   uint64_t samples = 0;
-  while (!finished_ && !early_.empty() && early_.begin()->first == NextPlace()) {
-    samples += MergeNext(early_.extract(early_.begin()).mapped());
+  while (!finished_ && !early_.empty() && early_.begin()->first == state_.chunk) {
+    samples += MergeNext(std::move(early_.extract(early_.begin()).mapped()));
   }
   return samples;
 }
 
-uint64_t PointFold::MergeNext(const BlockResult& result) {
-  state_.partial.Merge(result);
-  ++state_.blocks;
-  if (handed_out_ > 0) --handed_out_;
-  if (state_.blocks == experiment_.plan().BlocksIn(state_.chunk)) CompleteChunk();
-  return result.samples;
-}
-
-void PointFold::CompleteChunk() {
-  state_.complete.Merge(std::exchange(state_.partial, {}));
+uint64_t PointFold::MergeNext(BlockResult chunk) {
+  const uint64_t known = std::exchange(state_.partial, {}).samples;
+  state_.complete.Merge(chunk);
   state_.blocks = 0;
   ++state_.chunk;
   if (state_.chunk == chunks_ || experiment_.ReachesTolerance(state_.complete)) Finish();
+  return chunk.samples - known;
+}
+
+uint64_t PointFold::AddPartial(const PartialChunk& partial) {
+  if (finished_ || partial.chunk != state_.chunk || partial.blocks <= state_.blocks) return 0;
+  state_.blocks = partial.blocks;
+  const uint64_t known = std::exchange(state_.partial, partial.merged).samples;
+  return state_.partial.samples - known;
 }
 
 void PointFold::Finish() {
@@ -53,7 +45,6 @@ void PointFold::Finish() {
 
 void PointFold::Resume(FoldState state) {
   state_ = std::move(state);
-  next_ = NextPlace();
   const bool at_end_of_chunk = state_.blocks == 0 && state_.chunk > 0;
   if (state_.chunk == chunks_ ||
       (at_end_of_chunk && experiment_.ReachesTolerance(state_.complete))) {
@@ -73,21 +64,42 @@ uint64_t PointFold::PlannedSamples() const {
   return plan.BlockAt(state_.chunk, state_.blocks).first;
 }
 
+LocalPoint::LocalPoint(const PointExperiment& experiment)
+    : fold_(experiment), chunks_(experiment.plan(), {}, experiment.plan().chunks()) {}
+
+std::optional<Block> LocalPoint::NextBlock() {
+  return finished() ? std::nullopt : chunks_.NextBlock();
+}
+
+void LocalPoint::Add(const Block& block, BlockResult result) {
+  for (ChunkResult& chunk : chunks_.Add(block, std::move(result))) fold_.Add(std::move(chunk));
+}
+
+PointFold LocalPoint::Now() const {
+  PointFold now = fold_;
+  now.AddPartial(chunks_.partial());
+  return now;
+}
+
+FoldState LocalPoint::State() const { return Now().state(); }
+
+BlockResult LocalPoint::Merged() const { return Now().Merged(); }
+
 namespace {
 
 class LocalQueue : public BlockQueue {
  public:
-  LocalQueue(PointFold& fold, const std::stop_token& stop) : fold_(fold), stop_(stop) {}
+  LocalQueue(LocalPoint& point, const std::stop_token& stop) : point_(point), stop_(stop) {}
 
-  std::optional<Block> Next() override { return fold_.NextBlock(); }
+  std::optional<Block> Next() override { return point_.NextBlock(); }
   void Done(const Block& block, BlockResult result) override {
-    fold_.Add(block, std::move(result));
+    point_.Add(block, std::move(result));
   }
-  bool Pause() override { return fold_.finished() || stop_.stop_requested(); }
+  bool Pause() override { return point_.finished() || stop_.stop_requested(); }
   std::stop_token stop() const override { return stop_; }
 
  private:
-  PointFold& fold_;
+  LocalPoint& point_;
   const std::stop_token& stop_;
 };
 
@@ -111,12 +123,12 @@ class QueueOfOne : public BlockQueue {
 
 std::optional<BlockResult> FoldPoint(const PointExperiment& experiment,
                                      const std::stop_token& stop) {
-  PointFold fold(experiment);
-  LocalQueue queue(fold, stop);
+  LocalPoint point(experiment);
+  LocalQueue queue(point, stop);
   const std::unique_ptr<BlockRun> run = experiment.StartRun(queue);
-  while (!fold.finished() && !stop.stop_requested()) run->Advance();
-  if (!fold.finished()) return std::nullopt;
-  return fold.Merged();
+  while (!point.finished() && !stop.stop_requested()) run->Advance();
+  if (!point.finished()) return std::nullopt;
+  return point.Merged();
 }
 
 std::optional<BlockResult> RunBlock(const PointExperiment& experiment, const Block& block,

@@ -1,11 +1,9 @@
-// The state of one point during its computation: the next block, and the merged result.
+// The state of one point during its computation: the merged result of its chunks.
 //
-// The fold merges blocks into their chunk in the order of their indices, and chunks into the point
-// in the order of theirs. Blocks may arrive in any order, from any number of threads. A block that
-// arrives early waits until all blocks before it are merged. So the merged result has the same bits
-// for every order of arrival. The fold judges a tolerance when a chunk is complete. When the target
-// is reached, the point is finished, and the fold drops every later block. Properties, each with a
-// test of its name:
+// The fold merges chunks into the point in order. A chunk that arrives early waits until all chunks
+// before it are merged. So the merged result has the same bits for every order of arrival. The fold
+// judges a tolerance when it merges a chunk. When the target is reached, the point is finished, and
+// the fold drops every later chunk. Properties, each with a test of its name:
 //   1. ResultIsIndependentOfArrivalOrder.  2. ResumedFoldGivesTheSameBits.
 // Not thread-safe.
 #ifndef BALLPISTON_CORE_ENSEMBLE_POINT_FOLD_H_
@@ -16,15 +14,14 @@
 #include <map>
 #include <optional>
 #include <stop_token>
-#include <utility>
 
 #include "core/ensemble/block_result.h"
-#include "core/ensemble/chunk_plan.h"
+#include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/point_experiment.h"
 
 namespace ballpiston {
 
-// The merged result, from which a fold can be resumed.
+// The merged result, from which a point can be resumed.
 struct FoldState {
   uint64_t chunk = 0;         // the first chunk that is not complete
   uint64_t blocks = 0;        // the number of merged blocks of that chunk
@@ -37,45 +34,62 @@ class PointFold {
   // The experiment must outlive the fold.
   explicit PointFold(const PointExperiment& experiment);
 
-  // The maximum number of blocks that are handed out but not merged. It bounds the memory of blocks
-  // that wait for a slow one. A smaller window would leave lanes empty.
-  static constexpr uint64_t kWindow = 1024;
+  // Takes a chunk. Drops a chunk that is not needed (Needs). Returns the number of samples that are
+  // new in Merged().
+  uint64_t Add(ChunkResult chunk);
 
-  // Returns each block once; empty if no block may be handed out now.
-  std::optional<Block> NextBlock();
-  bool HasNextBlock() const;
+  // Takes the first blocks of the first chunk that is not complete, for the result of an unfinished
+  // point and for its checkpoint. Drops blocks of another chunk, and fewer blocks than it has.
+  // Returns the number of samples that are new in Merged().
+  uint64_t AddPartial(const PartialChunk& partial);
 
-  // Takes a block's result. Drops a block that it already has (the two results are equal) and a
-  // block beyond the end. Returns the number of samples of all blocks that this call merged.
-  uint64_t Add(const Block& block, BlockResult result);
+  // False if the chunk is merged or waits, or if the point is finished.
+  bool Needs(uint64_t chunk) const;
 
-  // Ends the point with the merged result and drops waiting blocks.
+  // Ends the point with the merged result and drops waiting chunks.
   void Finish();
 
-  // Continues from a state of the same experiment. Must be called before any block is handed out.
+  // Continues from a state of the same experiment. Must be called before any chunk is added.
   void Resume(FoldState state);
 
   bool finished() const { return finished_; }
   const FoldState& state() const { return state_; }
   bool HasBlocks() const { return state_.chunk > 0 || state_.blocks > 0; }
-  BlockResult Merged() const;       // the result of all merged blocks
-  uint64_t PlannedSamples() const;  // of all merged blocks; escaped orbits count
+  BlockResult Merged() const;       // the result of all merged chunks and blocks
+  uint64_t PlannedSamples() const;  // of these; escaped orbits count
   size_t waiting() const { return early_.size(); }
 
  private:
-  using Place = std::pair<uint64_t, uint64_t>;  // chunk, index
-
-  Place NextPlace() const { return {state_.chunk, state_.blocks}; }
-  uint64_t MergeNext(const BlockResult& result);
-  void CompleteChunk();
+  uint64_t MergeNext(BlockResult chunk);
 
   const PointExperiment& experiment_;
   const uint64_t chunks_;
   FoldState state_;
   bool finished_;
-  Place next_ = {0, 0};      // of the next block to hand out
-  uint64_t handed_out_ = 0;  // blocks that are handed out but not merged
-  std::map<Place, BlockResult> early_;
+  std::map<uint64_t, BlockResult> early_;  // by chunk
+};
+
+// A whole point computed in one place: all its chunks, and their fold.
+class LocalPoint {
+ public:
+  // The experiment must outlive this.
+  explicit LocalPoint(const PointExperiment& experiment);
+
+  // As in ChunkFold. Empty also if the point is finished.
+  std::optional<Block> NextBlock();
+  void Add(const Block& block, BlockResult result);
+
+  bool finished() const { return fold_.finished(); }
+  // With the merged blocks of the first chunk that is not complete.
+  FoldState State() const;
+  BlockResult Merged() const;
+
+ private:
+  // With these blocks.
+  PointFold Now() const;
+
+  PointFold fold_;
+  ChunkFold chunks_;
 };
 
 // Computes a whole point on the calling thread. Empty if `stop` was requested before the end.

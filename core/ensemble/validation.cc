@@ -85,19 +85,13 @@ void CheckUnit(const EnsembleSpec& spec, Found& found) {
   }
 }
 
-// Whether the point is answered without sampling.
-bool NeedsNoSamples(const EnsembleSpec& spec) {
-  return spec.model == Model::kClosedForm ||
-         (spec.model == Model::kAuto && !spec.verify && spec.experiment->HasClosedForm());
-}
-
 void CheckTolerance(const EnsembleSpec& spec, Found& found) {
   if (!spec.target.tolerance) return;
   if (!(*spec.target.tolerance > 0 && *spec.target.tolerance < 1)) {
     found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
                                                       "; permitted: 0 < tolerance < 1")});
   }
-  const bool can_be_missed = spec.experiment->check_tolerance != nullptr && !NeedsNoSamples(spec);
+  const bool can_be_missed = spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
   if (can_be_missed && !HasTooManyPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
 }
 

@@ -57,8 +57,9 @@ class Question {
 
   // The number of samples that the target requires from a model that samples.
   double SamplesBy(Model model) const {
-    double samples = static_cast<double>(SamplesAskedFor(spec_, point_));
-    if (target().tolerance) samples = std::min(samples, SamplesForTolerance(model));
+    const auto experiment = PointExperiment::Create(By(model), 0);
+    double samples =
+        static_cast<double>(experiment->plan().SamplesBefore(experiment->expected_chunks()));
     if (target().budget_seconds) samples = std::min(samples, SamplesInBudget(model));
     return samples;
   }
@@ -67,15 +68,8 @@ class Question {
     return std::max(std::floor(BudgetOfAPoint(spec_, machine_.workers) / SecondsBy(model)), 1.0);
   }
 
-  // A tolerance is judged at the ends of chunks.
-  double SamplesForTolerance(Model model) const {
-    const auto experiment = PointExperiment::Create(By(model), 0);
-    return static_cast<double>(experiment->plan().WholeChunks(SamplesFor(*target().tolerance)));
-  }
-
   double SamplesFor(double tolerance) const {
-    const double ratio = ErrorOf(1) / tolerance;
-    return ratio * ratio;
+    return ballpiston::SamplesFor(tolerance, spec_, point_);
   }
 
   double ErrorOf(double samples) const { return experiment().error(point_) / std::sqrt(samples); }
@@ -305,9 +299,7 @@ namespace {
 // The model error of the answering model at the worst point. For a model that samples also at least
 // its statistical error with the largest permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec) {
-  const bool closed =
-      spec.model == Model::kAuto && spec.experiment->HasClosedForm() && !spec.verify;
-  if (closed || spec.model == Model::kClosedForm) return kClosedFormError;
+  if (IsAnsweredByClosedForm(spec)) return kClosedFormError;
   double least = 0;
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);

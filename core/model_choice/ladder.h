@@ -24,12 +24,12 @@ struct Machine {
   int workers = 1;
 };
 
-// Runs a pilot or returns a known one; empty if stop was requested.
+// Returns a known pilot; empty if the pilot has not run.
 using PilotSource = std::function<std::optional<Pilot>(const PilotPlace&)>;
 
 // The model that answers at a point; for AUTO the service's choice. Without a budget the choice
-// depends on the spec alone, not on the machine. Empty only if a pilot was needed and stop was
-// requested. The spec must have no violations.
+// depends on the spec alone, not on the machine. Empty only if the choice needs a pilot that has not
+// run. The spec must have no violations.
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots);
 

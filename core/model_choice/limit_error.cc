@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/ensemble/point_experiment.h"
-#include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/expected_limit_error.h"
 #include "core/geometry/pair_geometry.h"
@@ -20,16 +18,6 @@ constexpr double kPilotsShareOfTheBound = 0.3;
 // relative error at a pilot's place is up to 2.5, but it falls with delta.
 constexpr double kWhereItScales = 4;
 
-EnsembleSpec SpecOfPilot(const PilotPlace& place) {
-  EnsembleSpec spec = {.experiment = &kEnergyRelaxation,
-                       .grid = {{kRho, {place.rho}}, {kDelta, {place.delta}}},
-                       .target = {.samples = kPilotOrbits},
-                       .model = Model::kBilliard,
-                       .purpose = Purpose::kPilot};
-  if (place.epsilon) spec.grid[kEpsilon] = {*place.epsilon};
-  return spec;
-}
-
 }  // namespace
 
 PointParameters PointOf(const PilotPlace& place) {
@@ -43,18 +31,29 @@ PilotPlace PilotPlaceFor(const PointParameters& point) {
   return ExpectedLimitError(PointOf(cheap)) < kWhereItScales ? cheap : place;
 }
 
-std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop) {
-  const auto experiment = PointExperiment::Create(SpecOfPilot(place), 0);
-  const std::optional<BlockResult> merged = FoldPoint(*experiment, stop);
-  if (!merged) return std::nullopt;
-  const Estimate time = experiment->FirstEstimate(*merged);
-  return Pilot{.difference = time.value / *time.limit - 1,
-               .standard_error = *time.standard_error / std::fabs(*time.limit)};
+EnsembleSpec PilotSpec(const PilotPlace& place) {
+  EnsembleSpec spec = {.experiment = &kEnergyRelaxation,
+                       .grid = {{kRho, {place.rho}}, {kDelta, {place.delta}}},
+                       .target = {.samples = kPilotOrbits},
+                       .model = Model::kBilliard,
+                       .purpose = Purpose::kPilot};
+  if (place.epsilon) spec.grid[kEpsilon] = {*place.epsilon};
+  return spec;
+}
+
+std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place) {
+  return PointExperiment::Create(PilotSpec(place), 0);
+}
+
+Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged) {
+  const Estimate time = experiment.FirstEstimate(merged);
+  return {.difference = time.value / *time.limit - 1,
+          .standard_error = *time.standard_error / std::fabs(*time.limit)};
 }
 
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
   return static_cast<double>(kPilotOrbits) *
-         SecondsPerSample(SpecOfPilot(place), PointOf(place), rates);
+         SecondsPerSample(PilotSpec(place), PointOf(place), rates);
 }
 
 Pilot PredictedPilot(const PilotPlace& place) {

@@ -13,10 +13,11 @@
 #define BALLPISTON_CORE_MODEL_CHOICE_LIMIT_ERROR_H_
 
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <stop_token>
 
 #include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_experiment.h"
 #include "core/model_choice/machine_rates.h"
 
 namespace ballpiston {
@@ -44,8 +45,10 @@ struct Pilot {
   bool predicted = false;  // the pilot has not run; the values are predictions
 };
 
-// Takes a few seconds of one core. Empty only if `stop` was requested.
-std::optional<Pilot> RunPilot(const PilotPlace& place, std::stop_token stop);
+// The billiard run of a pilot, a few seconds of one core, and its result when it is merged.
+std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place);
+EnsembleSpec PilotSpec(const PilotPlace& place);
+Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged);
 
 // Predicted processor time of a pilot.
 double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates);

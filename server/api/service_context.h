@@ -9,11 +9,13 @@
 #include "absl/time/time.h"
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
-#include "server/execution/model_ladder.h"
+#include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
 #include "server/limits.h"
 #include "server/observability/activity.h"
 #include "server/observability/call_observer.h"
+#include "server/scheduling/model_ladder.h"
+#include "server/scheduling/scheduler.h"
 #include "server/security/authenticator.h"
 #include "server/store/store.h"
 
@@ -28,6 +30,8 @@ struct ServiceContext {
   const Authenticator& authenticator;
   const Limits& limits;
   JobBook& book;
+  const Scheduler& scheduler;
+  const ThreadExecutor& threads;
   ModelLadder& ladder;
   RpcExecutor& executor;
   WatchRegistry& watches;

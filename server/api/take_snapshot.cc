@@ -27,10 +27,12 @@ void AddJobs(const JobBook& book, ServerSnapshot& snapshot) {
   snapshot.jobs_cancelled = ended.cancelled;
 }
 
-void AddWork(const PoolCounts& work, ServerSnapshot& snapshot) {
-  snapshot.workers = work.workers;
-  snapshot.busy_workers = work.busy;
-  snapshot.blocks_computed = work.blocks;
+void AddWork(const ServiceContext& service, ServerSnapshot& snapshot) {
+  const ThreadCounts threads = service.threads.Counts();
+  const WorkCounts work = service.scheduler.Counts();
+  snapshot.workers = threads.workers;
+  snapshot.busy_workers = threads.busy;
+  snapshot.blocks_computed = threads.blocks;
   snapshot.samples_computed = work.samples;
   snapshot.processor_seconds = work.processor_seconds;
 }
@@ -53,7 +55,7 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   snapshot.start_time = service.start_time;
   snapshot.draining = service.draining;
   AddJobs(service.book, snapshot);
-  AddWork(service.book.pool_counts(), snapshot);
+  AddWork(service, snapshot);
   AddStore(service, snapshot);
   snapshot.streams = static_cast<int64_t>(service.watches.size());
   snapshot.failed_authentications = service.calls.not_let_in();

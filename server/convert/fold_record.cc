@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "absl/status/status.h"
-#include "ballpiston/v1/storage.pb.h"
+#include "ballpiston/storage/records.pb.h"
 #include "server/convert/deterministic_bytes.h"
 
 namespace ballpiston::server {
 namespace {
 
-void Fill(const Moments& moments, v1::MomentsRecord& record) {
+void Fill(const Moments& moments, storage::Moments& record) {
   record.set_count(moments.count);
   record.set_mean(moments.mean);
   record.set_m2(moments.m2);
@@ -17,7 +17,7 @@ void Fill(const Moments& moments, v1::MomentsRecord& record) {
   record.set_m4(moments.m4);
 }
 
-void Fill(const BatchMeans& means, v1::BatchMeansRecord& record) {
+void Fill(const BatchMeans& means, storage::BatchMeans& record) {
   record.set_batches(means.batches);
   record.set_mean_numerator(means.mean_numerator);
   record.set_mean_denominator(means.mean_denominator);
@@ -26,22 +26,22 @@ void Fill(const BatchMeans& means, v1::BatchMeansRecord& record) {
   record.set_c_dd(means.c_dd);
 }
 
-void Fill(const Histogram& histogram, v1::HistogramRecord& record) {
+void Fill(const Histogram& histogram, storage::Counts& record) {
   record.set_lower(histogram.lower);
   record.set_upper(histogram.upper);
   record.mutable_counts()->Assign(histogram.counts.begin(), histogram.counts.end());
 }
 
-Moments MomentsOf(const v1::MomentsRecord& record) {
+Moments MomentsOf(const storage::Moments& record) {
   return {record.count(), record.mean(), record.m2(), record.m3(), record.m4()};
 }
 
-BatchMeans BatchMeansOf(const v1::BatchMeansRecord& record) {
+BatchMeans BatchMeansOf(const storage::BatchMeans& record) {
   return {record.batches(), record.mean_numerator(), record.mean_denominator(),
           record.c_nn(),    record.c_nd(),           record.c_dd()};
 }
 
-Histogram HistogramOf(const v1::HistogramRecord& record) {
+Histogram HistogramOf(const storage::Counts& record) {
   return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
 }
 
@@ -59,7 +59,7 @@ bool CountsNoSampleTwice(const BlockResult& result) {
                      [&](const Histogram& h) { return HoldsAtMost(result.samples, h); });
 }
 
-void Fill(const BlockResult& result, v1::BlockRecord& record) {
+void Fill(const BlockResult& result, storage::Accumulators& record) {
   record.set_samples(result.samples);
   for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
   for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
@@ -68,7 +68,7 @@ void Fill(const BlockResult& result, v1::BlockRecord& record) {
   record.set_max_energy_error(result.health.max_energy_error);
 }
 
-BlockResult ResultOf(const v1::BlockRecord& record) {
+BlockResult ResultOf(const storage::Accumulators& record) {
   BlockResult result;
   result.samples = record.samples();
   for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
@@ -103,8 +103,14 @@ bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
 
 }  // namespace
 
+void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
+  Fill(result, record);
+}
+
+BlockResult ResultOfAccumulators(const storage::Accumulators& record) { return ResultOf(record); }
+
 std::string FoldRecordBytes(const FoldState& state) {
-  v1::FoldRecord record;
+  storage::Checkpoint record;
   record.set_chunk(state.chunk);
   record.set_blocks(state.blocks);
   Fill(state.complete, *record.mutable_complete());
@@ -113,7 +119,7 @@ std::string FoldRecordBytes(const FoldState& state) {
 }
 
 absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
-  v1::FoldRecord record;
+  storage::Checkpoint record;
   if (!record.ParseFromString(bytes)) {
     return absl::DataLossError("a stored checkpoint cannot be read");
   }
@@ -123,9 +129,30 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
                    .partial = ResultOf(record.partial())};
 }
 
+std::string ChunkRecordBytes(const ChunkResult& chunk) {
+  storage::Chunk record;
+  record.set_chunk(chunk.chunk);
+  Fill(chunk.result, *record.mutable_result());
+  return DeterministicBytes(record);
+}
+
+absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
+  storage::Chunk record;
+  if (!record.ParseFromString(bytes)) return absl::DataLossError("a stored chunk cannot be read");
+  return ChunkResult{.chunk = record.chunk(), .result = ResultOf(record.result())};
+}
+
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {
   if (IsPossible(experiment, state)) return absl::OkStatus();
   return absl::DataLossError("a stored checkpoint is not one of its experiment");
+}
+
+absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk) {
+  const ChunkPlan& plan = experiment.plan();
+  const bool is_possible = chunk.chunk < plan.chunks() &&
+                           IsPossible(experiment, chunk.result, plan.SamplesIn(chunk.chunk));
+  if (is_possible) return absl::OkStatus();
+  return absl::DataLossError("a chunk is not one of its experiment");
 }
 
 }  // namespace ballpiston::server

@@ -1,4 +1,5 @@
-// Exact conversion between the core's FoldState and its record in the store. Pure functions.
+// Exact conversion between the core's accumulators and their records: a point's checkpoint, a chunk.
+// Pure functions.
 //
 // A record that can be parsed may still be damaged. So before a point is resumed, CheckFoldState
 // checks that the point's experiment can have written the record.
@@ -9,18 +10,27 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 
 namespace ballpiston::server {
 
+void FillAccumulators(const BlockResult& result, storage::Accumulators& record);
+BlockResult ResultOfAccumulators(const storage::Accumulators& record);
+
 std::string FoldRecordBytes(const FoldState& state);
 absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes);  // DATA_LOSS
+
+std::string ChunkRecordBytes(const ChunkResult& chunk);
+absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes);  // DATA_LOSS
 
 // DATA_LOSS unless all of this holds: the state lies within the plan, it has at most the planned
 // samples, its energy error is valid, it has the accumulators that merging needs, and no histogram
 // counts a sample twice.
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state);
+// The same for a whole chunk.
+absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk);
 
 }  // namespace ballpiston::server
 

@@ -8,6 +8,7 @@
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_message.h"
@@ -128,7 +129,7 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
                            std::optional<Shortfall>& shortfall, absl::Status& damage) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
   return ReadResults(database, record.sequence, 0, [&](PointRow row) {
-    const absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    const absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
     damage = result.status();
     if (!damage.ok()) return false;
     const Estimate reached = FirstEstimateOf(*result);
@@ -157,12 +158,12 @@ absl::Status ReadRestored(Database& database, const JobRecord& record, const Ens
 
 }  // namespace
 
-JobBook::JobBook(Store& store, const Limits& limits, int workers, ExperimentFactory factory,
+JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
                  std::function<void()> on_state_change)
     : store_(store),
       limits_(limits),
-      on_state_change_(std::move(on_state_change)),
-      pool_(workers, std::move(factory)) {}
+      scheduler_(scheduler),
+      on_state_change_(std::move(on_state_change)) {}
 
 JobBook::~JobBook() {
   Shutdown();
@@ -171,7 +172,7 @@ JobBook::~JobBook() {
 
 void JobBook::Shutdown() {
   store_.StopWaiting();
-  pool_.Shutdown();
+  scheduler_.Shutdown();
 }
 
 // ---- what an earlier process left ----
@@ -276,7 +277,7 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.priority = job->Record().priority;
   request.journal = std::make_shared<JobJournal>(std::move(job), store_,
                                                  [this](const Job& ended) { Forget(ended); });
-  pool_.Add(std::move(request));
+  scheduler_.Add(std::move(request));
 }
 
 void JobBook::Forget(const Job& ended) {
@@ -435,7 +436,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
   if (!committed.ok()) return StoreFailure(committed);
   if (!record) return JobNotFound(JobName(id));
   Failpoint("cancel.committed");
-  if (begun) pool_.Cancel(record->sequence);
+  if (begun) scheduler_.Cancel(record->sequence);
   const bool replay = !request_id.empty() && record->cancel_request_id == request_id;
   if (begun || replay || record->state == v1::EnsembleJob::CANCELLING) return Get(caller, id);
   return JobAlreadyEnded(JobName(id), StateName(record->state));
@@ -468,15 +469,16 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   size_t bytes = 0;
   absl::Status parsed;
   const auto take = [&](PointRow row) {
-    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
     if (!query.histograms) ClearDetails(*result);
-    bytes += result->ByteSizeLong();
+    v1::PointResult message = PointResultMessage(*result);
+    bytes += message.ByteSizeLong();
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
     const bool ends = full || (!page.points.empty() && bytes > query.max_bytes);
     if (ends) page.next_point = row.point;
-    if (!ends) page.points.push_back(*std::move(result));
+    if (!ends) page.points.push_back(std::move(message));
     return !ends;
   };
   const absl::Status read = store_.Read([&](Database& database) {
@@ -527,9 +529,10 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
     JobSnapshot snapshot;
     snapshot.change = job.last_change();  // before the points: they may be newer
     snapshot.finished = job.last_finished();
-    for (const LivePoint& point : pool_.ChangedSince(job.sequence(), 0, limit)) {
-      snapshot.points.push_back({point.version, PointResultOf(point.index, *point.experiment,
-                                                              point.merged, Details::kLeftOut)});
+    for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
+      const storage::Result now =
+          ResultRecordOf(point.index, *point.experiment, point.merged, Details::kLeftOut);
+      snapshot.points.push_back({point.version, PointResultMessage(now)});
     }
     return snapshot;
   });
@@ -547,12 +550,12 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
   const auto take = [&](int64_t number, const PointRow& row) {
     // One that the job does not know of yet would make a token that it does not know either.
     if (active != nullptr && number > active->last_finished()) return false;
-    absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.result);
+    absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
     ClearDetails(*result);
     bytes += result->ByteSizeLong();
-    points.push_back({number, std::make_shared<const v1::PointResult>(*std::move(result))});
+    points.push_back({number, std::make_shared<const v1::PointResult>(PointResultMessage(*result))});
     return points.size() < limit && bytes < kMaxBytesOfPoints;
   };
   const absl::Status read = store_.Read(

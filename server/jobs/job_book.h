@@ -1,6 +1,6 @@
 // The book of jobs: what the API's methods do, without the API.
 //
-// Active jobs live here and in the worker pool; ended ones only in the store. Every change of a
+// Active jobs live here and in the scheduler; ended ones only in the store. Every change of a
 // job's state is on disk before anybody is told of it (except that a job runs, which a restart
 // finds out by itself). Methods that write wait for the disk: not to be called from gRPC's own
 // threads. Errors carry their reasons (server/convert/errors.h). Thread-safe.
@@ -23,7 +23,7 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/convert/spec.h"
-#include "server/execution/worker_pool.h"
+#include "server/scheduling/scheduler.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
@@ -92,8 +92,9 @@ struct EndedJobs {
 
 class JobBook {
  public:
-  // The store has to outlive this. `on_state_change` is called after each change of state.
-  JobBook(Store& store, const Limits& limits, int workers, ExperimentFactory factory,
+  // Store and scheduler have to outlive this. `on_state_change` is called after each change of
+  // state.
+  JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
           std::function<void()> on_state_change);
   ~JobBook();  // shuts down
 
@@ -137,7 +138,6 @@ class JobBook {
   size_t active_jobs() const;
   std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
   EndedJobs ended_jobs() const;
-  PoolCounts pool_counts() const { return pool_.Counts(); }
 
  private:
   JobRecord NewRecord(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
@@ -161,6 +161,7 @@ class JobBook {
 
   Store& store_;
   const Limits limits_;
+  Scheduler& scheduler_;
   const std::function<void()> on_state_change_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
@@ -168,7 +169,6 @@ class JobBook {
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;
-  WorkerPool pool_;  // last: its threads use what is above
 };
 
 }  // namespace ballpiston::server

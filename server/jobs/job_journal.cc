@@ -2,12 +2,14 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
@@ -70,17 +72,31 @@ void JobJournal::Began() {
   });
 }
 
-absl::StatusOr<std::optional<FoldState>> JobJournal::ReadCheckpoint(size_t point) {
-  std::optional<std::string> record;
+absl::StatusOr<StoredPoint> JobJournal::ReadPoint(size_t point) {
+  std::optional<std::string> checkpoint;
+  std::vector<std::string> chunks;
   const absl::Status read = store_.Read([&](Database& database) {
-    auto found =
-        ballpiston::server::ReadCheckpoint(database, job_->sequence(), static_cast<int64_t>(point));
-    if (found.ok()) record = *std::move(found);
-    return found.status();
+    const auto index = static_cast<int64_t>(point);
+    auto found = ReadCheckpoint(database, job_->sequence(), index);
+    if (!found.ok()) return found.status();
+    checkpoint = *std::move(found);
+    auto early = ReadChunks(database, job_->sequence(), index);
+    if (early.ok()) chunks = *std::move(early);
+    return early.status();
   });
   if (!read.ok()) return read;
-  if (!record) return std::nullopt;
-  return FoldStateFromBytes(*record);
+  StoredPoint stored;
+  if (checkpoint) {
+    absl::StatusOr<FoldState> state = FoldStateFromBytes(*checkpoint);
+    if (!state.ok()) return state.status();
+    stored.state = *std::move(state);
+  }
+  for (const std::string& bytes : chunks) {
+    absl::StatusOr<ChunkResult> chunk = ChunkFromBytes(bytes);
+    if (!chunk.ok()) return chunk.status();
+    stored.chunks.push_back(*std::move(chunk));
+  }
+  return stored;
 }
 
 uint64_t JobJournal::Merged(const MergedSamples& merged) {
@@ -95,8 +111,13 @@ void JobJournal::Checkpoint(size_t point, const FoldState& state) {
   auto copy = std::make_shared<const FoldState>(state);
   const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial);
   store_.RecordCheckpoint(
-      job_->sequence(), static_cast<int64_t>(point),
+      job_->sequence(), static_cast<int64_t>(point), state.chunk,
       [copy = std::move(copy)] { return FoldRecordBytes(*copy); }, bytes);
+}
+
+void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
+  store_.RecordChunk(job_->sequence(), static_cast<int64_t>(point), chunk.chunk,
+                     ChunkRecordBytes(chunk));
 }
 
 void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
@@ -104,10 +125,11 @@ void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
-  v1::PointResult result = PointResultOf(point, experiment, merged, Details::kIncluded);
-  PointRow row = {static_cast<int64_t>(point), result.samples(), PointResultBytes(result)};
+  storage::Result result = ResultRecordOf(point, experiment, merged, Details::kIncluded);
+  PointRow row = {static_cast<int64_t>(point), static_cast<double>(result.samples()),
+                  ResultRecordBytes(result)};
   ClearDetails(result);
-  const auto told = std::make_shared<const v1::PointResult>(std::move(result));
+  const auto told = std::make_shared<const v1::PointResult>(PointResultMessage(result));
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
     job->AddFinishedPoint({number, told});

@@ -1,7 +1,7 @@
 // Writes what a job's run reports into the store and into the job.
 //
-// Order in the store: a checkpoint after the point's earlier ones, a point's result after its
-// checkpoints, the end of the job after all of it. Clients see that the job has begun,
+// Order in the store: a checkpoint after the point's earlier ones and its chunks, a point's result
+// after its checkpoints, the end of the job after all of it. Clients see that the job has begun,
 // that a point is finished and that the job has ended in this order, and only after the change is
 // on disk. So a restart never takes back a state that a client has seen. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_JOURNAL_H_
@@ -10,7 +10,7 @@
 #include <functional>
 #include <memory>
 
-#include "server/execution/run_journal.h"
+#include "server/scheduling/run_journal.h"
 #include "server/jobs/job.h"
 #include "server/store/store.h"
 
@@ -23,9 +23,10 @@ class JobJournal : public RunJournal {
   JobJournal(std::shared_ptr<Job> job, Store& store, std::function<void(const Job&)> on_ended);
 
   void Began() override;
-  absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) override;
+  absl::StatusOr<StoredPoint> ReadPoint(size_t point) override;
   uint64_t Merged(const MergedSamples& merged) override;
   void Checkpoint(size_t point, const FoldState& state) override;
+  void ChunkIsEarly(size_t point, const ChunkResult& chunk) override;
   void Worked(double seconds) override;
   void PointFinished(size_t point, const PointExperiment& experiment,
                      const BlockResult& merged) override;

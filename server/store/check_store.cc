@@ -10,7 +10,7 @@
 #include "ballpiston/v1/ensemble.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "server/store/schema.h"
 #include "server/store/sqlite.h"
@@ -166,7 +166,7 @@ class StoreCheck {
 
   absl::Status CheckResults() {
     return ForEach("SELECT job, point, result FROM results", [this](const Query& row) {
-      const absl::StatusOr<v1::PointResult> result = PointResultFromBytes(row.Bytes(2));
+      const absl::StatusOr<storage::Result> result = ResultFromBytes(row.Bytes(2));
       if (result.ok() && result->index() == row.Integer(1)) return;
       Found(absl::StrCat("the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
                          result.ok() ? absl::StrCat("is of point ", result->index())

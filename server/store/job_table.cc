@@ -77,6 +77,10 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
+// Of its unfinished points.
+constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = ?",
+                                           "DELETE FROM chunks WHERE job = ?"};
+
 }  // namespace
 
 absl::Status InsertJob(Database& database, JobRecord& record) {
@@ -187,15 +191,17 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
   const auto state = static_cast<JobState>(query.Integer(0));
   const absl::StatusOr<bool> last = query.Step();
   if (!last.ok()) return last.status();
-  const absl::Status dropped = RunFor(database, sequence, "DELETE FROM checkpoints WHERE job = ?");
-  if (!dropped.ok()) return dropped;
+  for (const char* sql : kDropUnfinished) {
+    const absl::Status dropped = RunFor(database, sequence, sql);
+    if (!dropped.ok()) return dropped;
+  }
   return state;
 }
 
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question) {
   for (const char* sql :
-       {"DELETE FROM checkpoints WHERE job = ?", "DELETE FROM results WHERE job = ?"}) {
+       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }
@@ -211,7 +217,7 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
   for (const char* sql :
-       {"DELETE FROM checkpoints WHERE job = ?", "DELETE FROM results WHERE job = ?",
+       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?",
         "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;

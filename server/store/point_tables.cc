@@ -4,14 +4,56 @@
 
 namespace ballpiston::server {
 
-absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point,
+namespace {
+
+absl::Status DropOfPoint(Database& database, const char* sql, int64_t job, int64_t point) {
+  return database.Prepare(sql).Bind(job).Bind(point).Run();
+}
+
+}  // namespace
+
+absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point, int64_t chunk,
                              const std::string& record) {
+  const absl::Status dropped =
+      database.Prepare("DELETE FROM chunks WHERE job = ? AND point = ? AND chunk < ?")
+          .Bind(job)
+          .Bind(point)
+          .Bind(chunk)
+          .Run();
+  if (!dropped.ok()) return dropped;
   return database
       .Prepare("INSERT OR REPLACE INTO checkpoints (job, point, record) VALUES (?, ?, ?)")
       .Bind(job)
       .Bind(point)
       .BindBlob(record)
       .Run();
+}
+
+absl::Status InsertChunk(Database& database, int64_t job, int64_t point, int64_t chunk,
+                         const std::string& record) {
+  return database
+      .Prepare(
+          "INSERT INTO chunks (job, point, chunk, record) VALUES (?, ?, ?, ?)"
+          " ON CONFLICT DO NOTHING")
+      .Bind(job)
+      .Bind(point)
+      .Bind(chunk)
+      .BindBlob(record)
+      .Run();
+}
+
+absl::StatusOr<std::vector<std::string>> ReadChunks(Database& database, int64_t job,
+                                                    int64_t point) {
+  Query query =
+      database.Prepare("SELECT record FROM chunks WHERE job = ? AND point = ? ORDER BY chunk");
+  query.Bind(job).Bind(point);
+  std::vector<std::string> records;
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return records;
+    records.push_back(query.Bytes(0));
+  }
 }
 
 absl::StatusOr<std::optional<std::string>> ReadCheckpoint(Database& database, int64_t job,
@@ -40,12 +82,11 @@ absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const Poin
           .Run();
   if (!inserted.ok()) return inserted;
   const bool is_new = database.RowsChanged() == 1;
-  const absl::Status dropped =
-      database.Prepare("DELETE FROM checkpoints WHERE job = ? AND point = ?")
-          .Bind(job)
-          .Bind(row.point)
-          .Run();
-  if (!dropped.ok()) return dropped;
+  for (const char* sql : {"DELETE FROM checkpoints WHERE job = ? AND point = ?",
+                          "DELETE FROM chunks WHERE job = ? AND point = ?"}) {
+    const absl::Status dropped = DropOfPoint(database, sql, job, row.point);
+    if (!dropped.ok()) return dropped;
+  }
   return is_new ? number : 0;
 }
 

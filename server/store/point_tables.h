@@ -1,4 +1,5 @@
-// The SQL about what was computed: checkpoints of unfinished points, results of finished ones. Each
+// The SQL about what was computed: checkpoints and chunks of unfinished points, results of finished
+// ones. Each
 // function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 #define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
@@ -15,21 +16,29 @@
 
 namespace ballpiston::server {
 
-// Stores the checkpoint of an unfinished point and replaces the previous one.
-absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point,
+// Stores the checkpoint of an unfinished point and replaces the previous one. Drops the chunks
+// before `chunk`, which are part of the checkpoint.
+absl::Status WriteCheckpoint(Database& database, int64_t job, int64_t point, int64_t chunk,
                              const std::string& record);
 
 // Empty if the point has no checkpoint.
 absl::StatusOr<std::optional<std::string>> ReadCheckpoint(Database& database, int64_t job,
                                                           int64_t point);
 
+// Stores a chunk that waits for an earlier one. The first writer wins.
+absl::Status InsertChunk(Database& database, int64_t job, int64_t point, int64_t chunk,
+                         const std::string& record);
+
+// The records of the point's waiting chunks, in order.
+absl::StatusOr<std::vector<std::string>> ReadChunks(Database& database, int64_t job, int64_t point);
+
 struct PointRow {
   int64_t point = 0;
   double samples = 0;
-  std::string result;  // serialized v1::PointResult
+  std::string result;  // serialized storage::Result
 };
 
-// Drops the point's checkpoint, which is no longer needed. The first writer wins. The
+// Drops the point's checkpoint and chunks, which are no longer needed. The first writer wins. The
 // result's number among the job's, greater than those before: 1, 2, 3, ... in the order in which
 // they were stored; 0 if the point had a result.
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row);

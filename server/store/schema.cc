@@ -55,6 +55,13 @@ CREATE TABLE checkpoints (
   record BLOB NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
+CREATE TABLE chunks (
+  job INTEGER NOT NULL,
+  point INTEGER NOT NULL,
+  chunk INTEGER NOT NULL,
+  record BLOB NOT NULL,
+  PRIMARY KEY (job, point, chunk)
+) STRICT;
 CREATE TABLE results (
   job INTEGER NOT NULL,
   point INTEGER NOT NULL,

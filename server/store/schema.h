@@ -2,7 +2,8 @@
 //
 //   jobs      one row a job; `sequence` is its age and the key of the next three
 //   requests  (principal, request id) -> the job that was its answer
-//   checkpoints (job, point) -> storage FoldRecord, of unfinished points of active jobs
+//   checkpoints (job, point) -> storage Checkpoint, of unfinished points of active jobs
+//   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> PointResult, of finished points
 //   pilots    what pilot runs found of the limit's error, by place and engine
 //

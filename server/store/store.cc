@@ -94,15 +94,24 @@ void Store::RecordSoon(Change change, Done done) {
   Post(std::move(write));
 }
 
-void Store::RecordCheckpoint(int64_t job, int64_t point, std::function<std::string()> serialize,
-                             size_t bytes) {
+void Store::RecordCheckpoint(int64_t job, int64_t point, uint64_t chunk,
+                             std::function<std::string()> serialize, size_t bytes) {
   Write write;
   write.job = job;
   write.point = point;
   write.bytes = bytes;
   write.change = [=, serialize = std::move(serialize)](Database& database) {
     Failpoint("checkpoint.before_write");
-    return WriteCheckpoint(database, job, point, serialize());
+    return WriteCheckpoint(database, job, point, static_cast<int64_t>(chunk), serialize());
+  };
+  Post(std::move(write));
+}
+
+void Store::RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string record) {
+  Write write;
+  write.bytes = record.size();
+  write.change = [=, record = std::move(record)](Database& database) {
+    return InsertChunk(database, job, point, static_cast<int64_t>(chunk), record);
   };
   Post(std::move(write));
 }

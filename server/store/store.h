@@ -81,9 +81,11 @@ class Store {
   void RecordSoon(Change change, Done done = nullptr);
 
   // `serialize` returns the checkpoint's record; the store calls it just before the write. `bytes`
-  // is the approximate memory that `serialize` holds until then.
-  void RecordCheckpoint(int64_t job, int64_t point, std::function<std::string()> serialize,
-                        size_t bytes = 0);
+  // is the approximate memory that `serialize` holds until then. The checkpoint contains all chunks
+  // before `chunk`.
+  void RecordCheckpoint(int64_t job, int64_t point, uint64_t chunk,
+                        std::function<std::string()> serialize, size_t bytes = 0);
+  void RecordChunk(int64_t job, int64_t point, uint64_t chunk, std::string record);
   // Calls `stored` like a Done when the result is on disk, with the result's number in the store.
   // Does not call it if the point already had a result.
   void RecordResult(int64_t job, PointRow row,

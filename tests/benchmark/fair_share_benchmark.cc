@@ -3,7 +3,7 @@
 #include <string>
 
 #include "benchmark/benchmark.h"
-#include "server/execution/fair_share.h"
+#include "server/scheduling/fair_share.h"
 
 namespace ballpiston::server {
 namespace {

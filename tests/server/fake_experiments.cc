@@ -178,13 +178,7 @@ EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {
 }
 
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks) {
-  const auto experiment = FakeExperiments()(spec, point, std::stop_token());
-  PointFold fold(*experiment);
-  for (uint64_t i = 0; i < blocks; ++i) {
-    const std::optional<Block> block = fold.NextBlock();
-    fold.Add(*block, *RunBlock(*experiment, *block));
-  }
-  return fold.Merged();
+  return FakeState(spec, point, blocks).second;
 }
 
 }  // namespace ballpiston::server

@@ -10,7 +10,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "server/execution/run.h"
+#include "server/scheduling/run.h"
 
 namespace ballpiston::server {
 

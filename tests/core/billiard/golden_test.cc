@@ -158,39 +158,39 @@ std::vector<EnsembleSpec> SpecsOfJumpProcess() {
 // One of several threads that compute a point's blocks.
 class SharedQueue : public BlockQueue {
  public:
-  SharedQueue(PointFold& fold, std::mutex& mutex) : fold_(fold), mutex_(mutex) {}
+  SharedQueue(LocalPoint& point, std::mutex& mutex) : point_(point), mutex_(mutex) {}
 
   std::optional<Block> Next() override {
     std::lock_guard lock(mutex_);
-    return fold_.NextBlock();
+    return point_.NextBlock();
   }
   void Done(const Block& block, BlockResult result) override {
     std::lock_guard lock(mutex_);
-    fold_.Add(block, std::move(result));
+    point_.Add(block, std::move(result));
   }
   // At every opportunity.
   bool Pause() override { return true; }
   std::stop_token stop() const override { return {}; }
 
  private:
-  PointFold& fold_;
+  LocalPoint& point_;
   std::mutex& mutex_;
 };
 
-BlockResult RunInThreads(const PointExperiment& point, size_t threads) {
-  PointFold fold(point);
+BlockResult RunInThreads(const PointExperiment& experiment, size_t threads) {
+  LocalPoint point(experiment);
   std::mutex mutex;
   const auto work = [&] {
-    SharedQueue queue(fold, mutex);
-    const auto run = point.StartRun(queue);
+    SharedQueue queue(point, mutex);
+    const auto run = experiment.StartRun(queue);
     while (!run->Advance()) continue;
   };
   {
     std::vector<std::jthread> workers;
     for (size_t i = 0; i < threads; ++i) workers.emplace_back(work);
   }
-  EXPECT_TRUE(fold.finished());
-  return fold.Merged();
+  EXPECT_TRUE(point.finished());
+  return point.Merged();
 }
 
 bool IsComparedWithTheLimit(const ExperimentKind* experiment) {

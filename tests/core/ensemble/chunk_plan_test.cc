@@ -76,7 +76,7 @@ TEST(ChunkPlan, WholeChunksHoldAsManySamplesOrMore) {
     for (uint64_t chunk = 0; chunk < plan.chunks() && static_cast<double>(expected) < samples;) {
       expected += plan.SamplesIn(chunk++);
     }
-    EXPECT_EQ(plan.WholeChunks(samples), expected) << samples;
+    EXPECT_EQ(plan.SamplesBefore(plan.ChunksFor(samples)), expected) << samples;
   }
 }
 

@@ -11,27 +11,27 @@
 namespace ballpiston::torture {
 namespace {
 
-// Blocks of a fold that several threads share, until the window ends.
+// Blocks of a point that several threads share, until the window ends.
 class SharedBlocks : public BlockQueue {
  public:
-  SharedBlocks(PointFold& fold, std::mutex& mutex, Window& window,
+  SharedBlocks(LocalPoint& point, std::mutex& mutex, Window& window,
                const std::atomic<BareEngine::Clock::time_point>& end)
-      : fold_(fold), mutex_(mutex), window_(window), end_(end) {}
+      : point_(point), mutex_(mutex), window_(window), end_(end) {}
 
   std::optional<Block> Next() override {
     const std::lock_guard lock(mutex_);
-    return fold_.NextBlock();
+    return point_.NextBlock();
   }
   void Done(const Block& block, BlockResult result) override {
     const std::lock_guard lock(mutex_);
     window_.samples += static_cast<double>(result.samples);
-    fold_.Add(block, std::move(result));
+    point_.Add(block, std::move(result));
   }
   bool Pause() override { return BareEngine::Clock::now() >= end_.load(); }
   std::stop_token stop() const override { return {}; }
 
  private:
-  PointFold& fold_;
+  LocalPoint& point_;
   std::mutex& mutex_;
   Window& window_;
   const std::atomic<BareEngine::Clock::time_point>& end_;
@@ -41,10 +41,10 @@ class SharedBlocks : public BlockQueue {
 
 BareEngine::BareEngine(const v1::EnsembleSpec& question, int workers)
     : experiment_(PointExperiment::Create(server::CheckSpec(question).spec, 0)),
-      fold_(*experiment_) {
+      point_(*experiment_) {
   for (int i = 0; i < workers; ++i) {
     Worker& worker = workers_.emplace_back();
-    worker.queue = std::make_unique<SharedBlocks>(fold_, mutex_, window_, end_);
+    worker.queue = std::make_unique<SharedBlocks>(point_, mutex_, window_, end_);
     worker.run = experiment_->StartRun(*worker.queue);
   }
 }

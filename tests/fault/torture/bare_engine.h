@@ -39,8 +39,8 @@ class BareEngine {
   void Work(Worker& worker);
 
   const std::unique_ptr<const PointExperiment> experiment_;
-  PointFold fold_;
-  std::mutex mutex_;  // guards the fold and the window
+  LocalPoint point_;
+  std::mutex mutex_;  // guards the point and the window
   Window window_;
   std::atomic<Clock::time_point> end_;  // of the window
   std::vector<Worker> workers_;

@@ -1,4 +1,4 @@
-#include "server/execution/fair_share.h"
+#include "server/scheduling/fair_share.h"
 
 #include <map>
 #include <set>

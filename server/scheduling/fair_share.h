@@ -24,8 +24,8 @@
 //   7. TimeThatCouldNotBeUsedIsNotOwed.
 //   8. APrincipalThatComesBackIsAsFarAhead.
 // Not thread-safe.
-#ifndef BALLPISTON_SERVER_EXECUTION_FAIR_SHARE_H_
-#define BALLPISTON_SERVER_EXECUTION_FAIR_SHARE_H_
+#ifndef BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
+#define BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -122,4 +122,4 @@ std::optional<int64_t> FairShare::First(HasTask has_task) const {
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_SERVER_EXECUTION_FAIR_SHARE_H_
+#endif  // BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_

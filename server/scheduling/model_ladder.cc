@@ -1,4 +1,4 @@
-#include "server/execution/model_ladder.h"
+#include "server/scheduling/model_ladder.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "core/experiment/all_experiments.h"
 #include "core/markov/relaxation_spectrum.h"
-#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "server/execution/machine_rates.h"
 #include "server/execution/processor_time.h"
@@ -40,14 +40,7 @@ double SecondsOfAFirst(const Run& run) {
 
 }  // namespace
 
-ModelLadder::ModelLadder(Store& store, int workers, PilotRunner run_pilot)
-    : store_(store), workers_(workers), run_pilot_(std::move(run_pilot)) {}
-
-ExperimentFactory ModelLadder::ChosenExperiments() {
-  return [this](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
-    return Create(spec, index, stop);
-  };
-}
+ModelLadder::ModelLadder(Store& store, int workers) : store_(store), workers_(workers) {}
 
 const Machine& ModelLadder::machine() {
   std::call_once(measured_, [this] { Measure(); });
@@ -70,19 +63,24 @@ void ModelLadder::Measure() {
 
 void ModelLadder::Serve(const EnsembleSpec& spec) {
   ThreadSeconds();  // a worker looks at the clock twice
-  const auto experiment = Create(spec, 0, std::stop_token());
-  PointResultBytes(PointResultOf(0, *experiment, BlockResult(), Details::kIncluded));
+  const OpenedPoint opened = Open(spec, 0);
+  const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
+  ResultRecordBytes(ResultRecordOf(0, experiment, BlockResult(), Details::kIncluded));
   ThreadSeconds();
 }
 
-std::unique_ptr<const PointExperiment> ModelLadder::Create(const EnsembleSpec& spec, size_t index,
-                                                           const std::stop_token& stop) {
-  const PilotSource pilots = [&](const PilotPlace& place) { return Get(place, stop); };
+OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
+  std::optional<PilotPlace> needed;
+  const PilotSource pilots = [&](const PilotPlace& place) {
+    const std::optional<Pilot> known = Known(place);
+    if (!known) needed = place;
+    return known;
+  };
   // Only a budget is weighed with the machine's own rates.
   const Machine unmeasured = {MachineRates(), workers_};
   const Machine& rates = spec.target.budget_seconds ? machine() : unmeasured;
   std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);
-  if (!answer) return nullptr;
+  if (!answer) return *needed;
   return PointExperiment::Create(spec, index, *std::move(answer));
 }
 
@@ -109,28 +107,7 @@ std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
   return pilots_.emplace(place, *stored).first->second;
 }
 
-std::optional<Pilot> ModelLadder::Get(const PilotPlace& place, const std::stop_token& stop) {
-  {
-    std::unique_lock lock(mutex_);
-    if (!changed_.wait(lock, stop, [&] { return !running_.contains(place); })) return std::nullopt;
-    running_.insert(place);
-  }
-  const absl::Cleanup let_others_in = [&] {
-    std::lock_guard lock(mutex_);
-    running_.erase(place);
-    changed_.notify_all();
-  };
-  const std::optional<Pilot> known = Known(place);
-  return known ? known : Run(place, stop);
-}
-
-std::optional<Pilot> ModelLadder::Run(const PilotPlace& place, const std::stop_token& stop) {
-  const std::optional<Pilot> pilot = run_pilot_(place, stop);
-  if (pilot) Keep(place, *pilot);
-  return pilot;
-}
-
-void ModelLadder::Keep(const PilotPlace& place, const Pilot& pilot) {
+void ModelLadder::KeepPilot(const PilotPlace& place, const Pilot& pilot) {
   store_.Record([place, pilot](Database& database) {
     return InsertPilot(database, EngineVersion(), place, pilot);
   });

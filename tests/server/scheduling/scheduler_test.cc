@@ -17,7 +17,7 @@
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/execution/recording_journal.h"
+#include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/fake_experiments.h"
 #include "tests/support/status_matchers.h"
 

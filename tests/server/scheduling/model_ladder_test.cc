@@ -1,4 +1,4 @@
-#include "server/execution/model_ladder.h"
+#include "server/scheduling/model_ladder.h"
 
 #include <atomic>
 #include <latch>

@@ -1,15 +1,16 @@
 // The interface through which a run reports its progress (merged blocks, finished points, the end)
 // and reads the checkpoints of an earlier process.
 //
-// One journal belongs to one run. The pool's threads call it, so an implementation must be
+// One journal belongs to one run. Threads of executors call it, so an implementation must be
 // thread-safe. Calls about one point come in order. PointFinished comes after the point's last
-// Merged. Ended is the last call and comes once, or never if the pool shuts down first.
-#ifndef BALLPISTON_SERVER_EXECUTION_RUN_JOURNAL_H_
-#define BALLPISTON_SERVER_EXECUTION_RUN_JOURNAL_H_
+// Merged. Ended is the last call and comes once, or never if the scheduler shuts down first.
+#ifndef BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_
+#define BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -17,6 +18,11 @@
 #include "core/ensemble/point_fold.h"
 
 namespace ballpiston::server {
+
+struct StoredPoint {
+  std::optional<FoldState> state;         // empty: there is no checkpoint
+  std::vector<ChunkResult> chunks = {};  // that arrived early
+};
 
 class RunJournal {
  public:
@@ -29,20 +35,25 @@ class RunJournal {
 
   virtual ~RunJournal() = default;
 
-  // A worker is about to begin the run's first task.
+  // The run's first turn begins.
   virtual void Began() = 0;
 
-  // The checkpoint of an unfinished point from an earlier process; empty if there is none.
-  virtual absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) = 0;
+  // What an earlier process stored of an unfinished point.
+  virtual absl::StatusOr<StoredPoint> ReadPoint(size_t point) = 0;
 
-  // Returns the number of this change in the run's history. The pool holds its lock during this and
-  // the next call, so both must be quick, must not wait and must not call the pool.
+  // The scheduler holds its lock during this call and the next three, so they must be quick, must
+  // not wait and must not call the scheduler. Returns the number of this change in the run's
+  // history.
   virtual uint64_t Merged(const MergedSamples& merged) = 0;
 
-  // Called from time to time with the state of an unfinished point.
+  // Called from time to time with the state of an unfinished point. Chunks before state.chunk that
+  // arrived early are part of the state.
   virtual void Checkpoint(size_t point, const FoldState& state) = 0;
 
-  // Seconds of processor time that a worker has just spent on the run.
+  // A chunk that waits for an earlier one.
+  virtual void ChunkIsEarly(size_t point, const ChunkResult& chunk) = 0;
+
+  // Seconds of processor time that an executor has just spent on the run.
   virtual void Worked(double seconds) = 0;
 
   // May be slow.
@@ -52,10 +63,10 @@ class RunJournal {
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;
 
-  // A worker calls this between two turns. It returns when the journal has room for more reports.
+  // Called between two turns. Returns when the journal has room for more reports.
   virtual void AwaitRoom() = 0;
 };
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_SERVER_EXECUTION_RUN_JOURNAL_H_
+#endif  // BALLPISTON_SERVER_SCHEDULING_RUN_JOURNAL_H_

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <optional>
 
-#include "server/execution/run_journal.h"
+#include "server/scheduling/run_journal.h"
 
 namespace ballpiston::server {
 

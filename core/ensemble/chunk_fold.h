@@ -1,0 +1,72 @@
+// Computes a range of chunks of one point: hands out their blocks and merges each chunk's blocks.
+//
+// Blocks may arrive in any order, from any number of threads. A block that arrives early waits until
+// all blocks before it are merged. So a chunk's result has the same bits for every order of arrival.
+// Properties, each with a test of its name:
+//   1. ChunksAreIndependentOfTheOrderOfBlocks.  2. AResumedChunkHasTheSameBits.
+// Not thread-safe.
+#ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_
+#define BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/ensemble/block_result.h"
+#include "core/ensemble/chunk_plan.h"
+
+namespace ballpiston {
+
+// The first `blocks` blocks of a chunk, merged.
+struct PartialChunk {
+  uint64_t chunk = 0;
+  uint64_t blocks = 0;
+  BlockResult merged = {};
+};
+
+struct ChunkResult {
+  uint64_t chunk = 0;
+  BlockResult result = {};
+};
+
+class ChunkFold {
+ public:
+  // Chunks start.chunk ... end - 1 of the plan, without the first start.blocks blocks.
+  ChunkFold(const ChunkPlan& plan, PartialChunk start, uint64_t end);
+
+  // The maximum number of blocks that are handed out but not merged. It bounds the memory of blocks
+  // that wait for a slow one. A smaller window would leave lanes empty.
+  static constexpr uint64_t kWindow = 1024;
+
+  // Returns each block once; empty if no block may be handed out now.
+  std::optional<Block> NextBlock();
+  bool HasNextBlock() const;
+
+  // Takes a block's result, and returns the chunks that it completes, in order. Drops a block that
+  // it already has.
+  std::vector<ChunkResult> Add(const Block& block, BlockResult result);
+
+  // What is merged of the first chunk that is not complete.
+  const PartialChunk& partial() const { return partial_; }
+  bool finished() const { return partial_.chunk == end_; }
+  size_t waiting() const { return early_.size(); }
+
+ private:
+  using Place = std::pair<uint64_t, uint64_t>;  // chunk, index
+
+  Place NextPlace() const { return {partial_.chunk, partial_.blocks}; }
+
+  ChunkPlan plan_;
+  uint64_t end_;
+  PartialChunk partial_;
+  Place next_;               // of the next block to hand out
+  uint64_t handed_out_ = 0;  // blocks that are handed out but not merged
+  std::map<Place, BlockResult> early_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_

@@ -1,0 +1,145 @@
+#include "server/convert/result_record.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/convert/deterministic_bytes.h"
+
+namespace ballpiston::server {
+namespace {
+
+bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
+
+// Relative to the first estimate; of the others nothing is known but where it is 0.
+void SetModelError(const Answer& answer, bool first, storage::Estimate& record) {
+  if (!answer.model_error || (!first && *answer.model_error != 0)) return;
+  record.set_model_error(*answer.model_error * std::fabs(record.value()));
+}
+
+void AddEstimate(const Estimate& estimate, const Answer& answer, bool first,
+                 storage::Result& result) {
+  if (!std::isfinite(estimate.value)) return;
+  storage::Estimate* record = result.add_estimates();
+  record->set_name(estimate.name);
+  record->set_value(estimate.value);
+  if (Exists(estimate.standard_error)) record->set_standard_error(*estimate.standard_error);
+  if (Exists(estimate.exact)) record->set_exact(*estimate.exact);
+  if (const auto z = estimate.ZScore(); Exists(z)) record->set_z_score(*z);
+  if (Exists(estimate.noise_floor)) record->set_noise_floor(*estimate.noise_floor);
+  if (Exists(estimate.limit)) record->set_limit(*estimate.limit);
+  SetModelError(answer, first, *record);
+}
+
+void SetDivergence(const KlDivergence& divergence, storage::Result& result) {
+  if (!std::isfinite(divergence.value)) return;
+  storage::Divergence* record = result.mutable_divergence();
+  record->set_value(divergence.value);
+  record->set_noise_floor(divergence.noise_floor);
+  record->set_cells(divergence.cells);
+  record->set_noise_error(divergence.noise_error);
+  record->set_standard_error(divergence.standard_error);
+}
+
+void AddHistogram(const SignedHistogram& histogram, storage::Result& result) {
+  storage::Histogram* record = result.add_histograms();
+  record->set_name(histogram.name);
+  record->set_sigma(histogram.sigma);
+  record->set_lower(histogram.histogram.lower);
+  record->set_upper(histogram.histogram.upper);
+  const std::vector<uint64_t>& counts = histogram.histogram.counts;
+  record->mutable_counts()->Assign(counts.begin(), counts.end());
+  record->mutable_expected_probabilities()->Assign(histogram.expected_probabilities.begin(),
+                                                    histogram.expected_probabilities.end());
+}
+
+void AddCurve(const Curve& curve, storage::Result& result) {
+  storage::Curve* record = result.add_curves();
+  record->set_name(curve.name);
+  for (const CurvePoint& point : curve.points) {
+    storage::Curve::Point* added = record->add_points();
+    added->set_time(point.time);
+    added->set_value(point.value);
+    if (Exists(point.standard_error)) added->set_standard_error(*point.standard_error);
+    if (Exists(point.limit)) added->set_limit(*point.limit);
+  }
+}
+
+void SetHealth(const Health& health, storage::Result& result) {
+  result.set_escapes(health.escapes);
+  if (!std::isfinite(health.max_energy_error)) return;
+  result.set_max_energy_error(health.max_energy_error);
+}
+
+storage::Result::Model RecordOf(Model model) {
+  switch (model) {
+    case Model::kAuto:
+      return storage::Result::MODEL_UNSPECIFIED;
+    case Model::kClosedForm:
+      return storage::Result::CLOSED_FORM;
+    case Model::kSpectrum:
+      return storage::Result::SPECTRUM;
+    case Model::kMarkov:
+      return storage::Result::MARKOV;
+    case Model::kBilliard:
+      return storage::Result::BILLIARD;
+    case Model::kBilliardReference:
+      return storage::Result::BILLIARD_REFERENCE;
+  }
+  return storage::Result::MODEL_UNSPECIFIED;
+}
+
+}  // namespace
+
+storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
+                               const BlockResult& merged, Details details) {
+  const PointSummary summary = experiment.Summarize(merged);
+  storage::Result result;
+  result.set_index(static_cast<int64_t>(index));
+  for (const Parameter* parameter : kParameters) {
+    const std::optional<double>& value = experiment.parameters().Find(*parameter);
+    if (!value) continue;
+    storage::Value* added = result.add_point();
+    added->set_parameter(static_cast<uint32_t>(parameter->index));
+    added->set_value(*value);
+  }
+  const Answer& answer = experiment.answer();
+  result.set_model(RecordOf(answer.model));
+  result.set_reason(answer.reason);
+  result.set_samples(summary.samples);
+  for (const Estimate& estimate : summary.estimates) {
+    AddEstimate(estimate, answer, &estimate == &summary.estimates.front(), result);
+  }
+  if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
+  if (details == Details::kIncluded) {
+    for (const SignedHistogram& histogram : summary.histograms) AddHistogram(histogram, result);
+    for (const Curve& curve : summary.curves) AddCurve(curve, result);
+  }
+  SetHealth(summary.health, result);
+  return result;
+}
+
+Estimate FirstEstimateOf(const storage::Result& result) {
+  Estimate first;
+  if (result.estimates().empty()) return first;
+  const storage::Estimate& record = result.estimates(0);
+  first.value = record.value();
+  if (record.has_standard_error()) first.standard_error = record.standard_error();
+  return first;
+}
+
+void ClearDetails(storage::Result& result) {
+  result.clear_histograms();
+  result.clear_curves();
+}
+
+std::string ResultRecordBytes(const storage::Result& result) { return DeterministicBytes(result); }
+
+absl::StatusOr<storage::Result> ResultFromBytes(const std::string& bytes) {
+  storage::Result result;
+  if (result.ParseFromString(bytes)) return result;
+  return absl::DataLossError("a stored result cannot be read");
+}
+
+}  // namespace ballpiston::server

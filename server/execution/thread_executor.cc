@@ -1,0 +1,184 @@
+#include "server/execution/thread_executor.h"
+
+#include <deque>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "core/ensemble/chunk_fold.h"
+#include "server/execution/block_session.h"
+#include "server/execution/processor_time.h"
+#include "server/scheduling/guarded.h"
+
+namespace ballpiston::server {
+
+// A lease at which several threads take turns.
+class ThreadExecutor::SharedLease : private BlockExchange {
+ public:
+  SharedLease(ThreadExecutor& executor, Lease lease)
+      : executor_(executor),
+        lease_(std::move(lease)),
+        fold_(lease_.experiment->plan(), lease_.start, lease_.end) {}
+
+  bool IsStopped() const { return lease_.stop.stop_requested(); }
+
+  bool HasTurn() const {
+    std::lock_guard lock(mutex_);
+    return !resting_.empty() || fold_.HasNextBlock();
+  }
+
+  // One turn, in the session that has rested longest, or in a new one.
+  void Advance() {
+    std::unique_ptr<BlockSession> session = TakeSession();
+    if (!session->Advance()) return;
+    std::lock_guard lock(mutex_);
+    resting_.push_back(std::move(session));
+  }
+
+ private:
+  std::unique_ptr<BlockSession> TakeSession() {
+    std::lock_guard lock(mutex_);
+    if (resting_.empty()) {
+      BlockExchange& blocks = *this;
+      return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop);
+    }
+    std::unique_ptr<BlockSession> session = std::move(resting_.front());
+    resting_.pop_front();
+    return session;
+  }
+
+  std::optional<Block> NextBlock() override {
+    std::lock_guard lock(mutex_);
+    return IsStopped() ? std::nullopt : fold_.NextBlock();
+  }
+
+  void BlockDone(const Block& block, BlockResult result, double seconds) override {
+    executor_.blocks_.fetch_add(1, std::memory_order_relaxed);
+    LeaseReport report;
+    bool has_room = false;
+    {
+      std::lock_guard lock(mutex_);
+      const bool was_full = !fold_.HasNextBlock();
+      report = {fold_.Add(block, std::move(result)), fold_.partial(), seconds};
+      has_room = was_full && fold_.HasNextBlock();
+    }
+    executor_.scheduler_.Report(lease_, std::move(report));
+    if (has_room) executor_.Wake();
+  }
+
+  void TurnEnds(double seconds) override {
+    LeaseReport report = {.seconds = seconds};
+    {
+      std::lock_guard lock(mutex_);
+      report.partial = fold_.partial();
+    }
+    executor_.scheduler_.Report(lease_, std::move(report));
+  }
+
+  ThreadExecutor& executor_;
+  const Lease lease_;
+  mutable std::mutex mutex_;
+  ChunkFold fold_;
+  std::deque<std::unique_ptr<BlockSession>> resting_;
+};
+
+ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds)
+    : scheduler_(scheduler), workers_(threads) {
+  capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+ThreadExecutor::~ThreadExecutor() { Shutdown(); }
+
+void ThreadExecutor::Wake() {
+  {
+    std::lock_guard lock(mutex_);
+    ++wakes_;
+  }
+  woken_.notify_all();
+}
+
+bool ThreadExecutor::HasTurn(int64_t lease) const {
+  std::lock_guard lock(mutex_);
+  const auto found = leases_.find(lease);
+  return found != leases_.end() && found->second->HasTurn();
+}
+
+void ThreadExecutor::Shutdown() {
+  std::vector<std::thread> threads;
+  {
+    std::lock_guard lock(mutex_);
+    shutting_down_ = true;
+    threads.swap(threads_);
+  }
+  woken_.notify_all();
+  for (std::thread& thread : threads) thread.join();
+}
+
+ThreadCounts ThreadExecutor::Counts() const {
+  return {.workers = workers_,
+          .busy = busy_.load(std::memory_order_relaxed),
+          .blocks = static_cast<double>(blocks_.load(std::memory_order_relaxed))};
+}
+
+void ThreadExecutor::Work() {
+  while (const std::optional<Lease> lease = AwaitLease()) TakeTurn(*lease);
+}
+
+std::optional<Lease> ThreadExecutor::AwaitLease() {
+  while (true) {
+    uint64_t seen = 0;
+    {
+      std::lock_guard lock(mutex_);
+      if (shutting_down_) return std::nullopt;
+      seen = wakes_;
+    }
+    DropStopped();
+    if (std::optional<Lease> lease = scheduler_.Next(capacity_)) return lease;
+    std::unique_lock lock(mutex_);
+    woken_.wait(lock, [&] { return shutting_down_ || wakes_ != seen; });
+  }
+}
+
+void ThreadExecutor::TakeTurn(const Lease& lease) {
+  busy_.fetch_add(1, std::memory_order_relaxed);
+  const double start = ThreadSeconds();
+  if (lease.OpensPoints()) {
+    scheduler_.Open(lease);
+  } else {
+    const absl::Status advanced = Guarded(lease.point, [&] {
+      Find(lease)->Advance();
+      return absl::OkStatus();
+    });
+    if (!advanced.ok()) scheduler_.Fail(lease, advanced);
+  }
+  const double seconds = ThreadSeconds() - start;
+  busy_.fetch_sub(1, std::memory_order_relaxed);
+  if (scheduler_.EndTurn(lease, seconds)) return;
+  std::lock_guard lock(mutex_);
+  leases_.erase(lease.number);
+}
+
+ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {
+  SharedPointer found;
+  {
+    std::lock_guard lock(mutex_);
+    SharedPointer& shared = leases_[lease.number];
+    if (shared != nullptr) return shared;
+    found = shared = std::make_shared<SharedLease>(*this, lease);
+  }
+  Wake();  // the others can take turns at it
+  return found;
+}
+
+// Destroys their sessions without the lock.
+void ThreadExecutor::DropStopped() {
+  std::vector<SharedPointer> stopped;
+  std::lock_guard lock(mutex_);
+  for (auto lease = leases_.begin(); lease != leases_.end();) {
+    const bool is_stopped = lease->second->IsStopped();
+    if (is_stopped) stopped.push_back(std::move(lease->second));
+    lease = is_stopped ? leases_.erase(lease) : std::next(lease);
+  }
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,73 @@
+// The threads of this process that compute leases.
+//
+// The threads share a lease: each computes blocks of its chunks in a session of its own
+// (block_session.h). Before every turn a thread asks the scheduler for the lease whose turn it is.
+// An exception from a block ends only the block's run, with a failure. Thread-safe.
+#ifndef BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
+#define BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "server/scheduling/scheduler.h"
+
+namespace ballpiston::server {
+
+// The first two are of now, the third since the executor was made.
+struct ThreadCounts {
+  int workers = 0;
+  int busy = 0;
+  double blocks = 0;
+};
+
+class ThreadExecutor : public Executor {
+ public:
+  // The scheduler must outlive this. `seconds` bounds a lease (Capacity), so that something is left
+  // for other executors.
+  ThreadExecutor(Scheduler& scheduler, int threads,
+                 double seconds = std::numeric_limits<double>::infinity());
+  ~ThreadExecutor() override;  // shuts down
+
+  ExecutorTraits traits() const override { return {.local = true}; }
+  void Wake() override;
+  bool HasTurn(int64_t lease) const override;
+  void Shutdown() override;
+
+  ThreadCounts Counts() const;  // takes no lock
+
+ private:
+  class SharedLease;
+  using SharedPointer = std::shared_ptr<SharedLease>;
+
+  void Work();
+  std::optional<Lease> AwaitLease();
+  void TakeTurn(const Lease& lease);
+  SharedPointer Find(const Lease& lease);
+  void DropStopped();
+
+  Scheduler& scheduler_;
+  const int workers_;
+  Capacity capacity_;
+  std::atomic<int> busy_ = 0;
+  std::atomic<uint64_t> blocks_ = 0;
+
+  mutable std::mutex mutex_;
+  std::condition_variable woken_;
+  uint64_t wakes_ = 0;
+  bool shutting_down_ = false;
+  std::map<int64_t, SharedPointer> leases_;  // by number
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_

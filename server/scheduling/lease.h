@@ -1,0 +1,61 @@
+// The unit of work that an executor takes from the scheduler: chunks of one point.
+//
+// A lease says all that is needed to compute its chunks: a machine elsewhere gets it as a message
+// (convert/lease_record.h). The results depend on the specification alone, so a chunk that was
+// computed twice, or late, has the same bits.
+//
+// A lease may instead ask for points to be opened (Scheduler::Open). A point that needs no samples
+// is finished when it is opened, so many cheap points are one lease.
+#ifndef BALLPISTON_SERVER_SCHEDULING_LEASE_H_
+#define BALLPISTON_SERVER_SCHEDULING_LEASE_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "core/ensemble/chunk_fold.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/model_choice/limit_error.h"
+
+namespace ballpiston::server {
+
+struct Lease {
+  int64_t number = 0;  // greater than those before, in the scheduler's life
+  int64_t run = 0;     // RunRequest::key
+  size_t executor = 0;
+  int attempt = 1;     // greater than 1 if an executor returned some of the chunks
+
+  std::shared_ptr<const EnsembleSpec> spec;  // of the run
+  std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks
+
+  size_t point = 0;                      // of the run's grid
+  std::optional<PilotPlace> pilot = {};  // the chunks are of this pilot, not of a point
+  std::shared_ptr<const PointExperiment> experiment = {};
+
+  PartialChunk start = {};  // the first chunk, and what is merged of it already
+  uint64_t end = 0;         // the chunk after the last
+  double seconds = 0;       // predicted, of one core at nominal speed
+
+  // Stop is requested when the chunks are no longer needed.
+  std::stop_token stop = {};
+
+  bool OpensPoints() const { return !opens.empty(); }
+};
+
+// The work that an executor can take now, in seconds of one core at nominal speed.
+struct Capacity {
+  size_t executor = 0;  // its number, as the scheduler gave it
+  // A lease has the fewest chunks that take as long as this.
+  double seconds = std::numeric_limits<double>::infinity();
+  // A lease has no chunk that takes longer, unless the executor is local.
+  double longest_chunk = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_LEASE_H_

@@ -1,0 +1,54 @@
+// Chooses the model that answers a point, with the rates of this server and the pilots that it has
+// run.
+//
+// The server measures rates when they are first needed (about 0.3 s) and keeps them until it stops.
+// The rates of points without samples include all work to serve them. The store keeps pilots. If a
+// pilot cannot be read, it is run again; if it cannot be stored, its result is still used.
+// Thread-safe.
+#ifndef BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_
+#define BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "core/model_choice/ladder.h"
+#include "server/scheduling/point_opener.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+class ModelLadder : public PointOpener {
+ public:
+  // The store must outlive the ladder.
+  ModelLadder(Store& store, int workers);
+
+  // The core's experiment, by the model that was asked for or chosen.
+  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override;
+  void KeepPilot(const PilotPlace& place, const Pilot& pilot) override;
+
+  // Runs nothing but the measurement of the rates.
+  Ladder LadderOf(const EnsembleSpec& spec, const PointParameters& point);
+
+  const Machine& machine();
+
+ private:
+  void Measure();
+  // Does all the work that serves a point without samples.
+  void Serve(const EnsembleSpec& spec);
+  std::optional<Pilot> Known(const PilotPlace& place);
+
+  Store& store_;
+  const int workers_;
+  std::once_flag measured_;
+  Machine machine_;
+
+  std::mutex mutex_;
+  std::map<PilotPlace, Pilot> pilots_;  // a cache of the store
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_MODEL_LADDER_H_

@@ -1,0 +1,56 @@
+// Opens the points of a run: chooses the model that answers, and makes the point's experiment.
+#ifndef BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_
+#define BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <variant>
+
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/model_choice/limit_error.h"
+
+namespace ballpiston::server {
+
+// Makes a point's experiment. May throw.
+using ExperimentFactory =
+    std::function<std::unique_ptr<const PointExperiment>(const EnsembleSpec&, size_t index)>;
+
+// The experiment, or the pilot without which the model cannot be chosen.
+using OpenedPoint = std::variant<std::unique_ptr<const PointExperiment>, PilotPlace>;
+
+// Thread-safe. Must not wait for another point or pilot.
+class PointOpener {
+ public:
+  virtual ~PointOpener() = default;
+
+  // May throw.
+  virtual OpenedPoint Open(const EnsembleSpec& spec, size_t index) = 0;
+
+  // The billiard run of a pilot that Open named. May throw.
+  virtual std::unique_ptr<const PointExperiment> OpenPilot(const PilotPlace& place) {
+    return PilotExperiment(place);
+  }
+
+  // A pilot that Open named has this result. From now on Open knows it.
+  virtual void KeepPilot(const PilotPlace& place, const Pilot& pilot) = 0;
+};
+
+// Opens points without a choice and without pilots.
+class FactoryOpener : public PointOpener {
+ public:
+  explicit FactoryOpener(ExperimentFactory factory) : factory_(std::move(factory)) {}
+
+  OpenedPoint Open(const EnsembleSpec& spec, size_t index) override {
+    return factory_(spec, index);
+  }
+  void KeepPilot(const PilotPlace&, const Pilot&) override {}
+
+ private:
+  const ExperimentFactory factory_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_POINT_OPENER_H_

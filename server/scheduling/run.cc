@@ -1,0 +1,184 @@
+#include "server/scheduling/run.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ballpiston::server {
+namespace {
+
+// A run that is expected to take less is computed here: to send it elsewhere would take longer.
+constexpr double kLeastSecondsElsewhere = 60;
+// An attempt ends without a result if the machine is lost or the time limit is too short. After so
+// many a chunk is computed here.
+constexpr int kMostAttemptsElsewhere = 5;
+// Open points of a run that wait for executors elsewhere; each takes some 50 kB.
+constexpr size_t kMostOpenPoints = 2000;
+
+// Points that one lease opens: those that are finished by that, some 3 to 100 us each; and those
+// that may have to wait for executors elsewhere.
+constexpr size_t kCheapPoints = 128;
+constexpr size_t kPointsForElsewhere = 32;
+
+}  // namespace
+
+Run::Run(RunRequest request)
+    : key_(request.key),
+      principal_(std::move(request.principal)),
+      priority_(request.priority),
+      spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
+      finished_(std::move(request.finished)),
+      has_checkpoints_(request.has_checkpoints),
+      journal_(std::move(request.journal)),
+      shortfall_(std::move(request.shortfall)) {
+  SkipFinishedPoints();
+}
+
+void Run::SkipFinishedPoints() {
+  while (next_point_ < finished_.size() && finished_[next_point_]) ++next_point_;
+}
+
+// ---- leases ----
+
+std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTraits& executor) {
+  if (stopped_) return std::nullopt;
+  if (!executor.local) {
+    std::optional<Lease> lease = IsLarge() ? NextChunks(capacity, executor) : std::nullopt;
+    hungry_elsewhere_ = !lease.has_value();
+    return lease;
+  }
+  if (IsWantedElsewhere()) return NextOpening();
+  std::optional<Lease> lease = NextChunks(capacity, executor);
+  return lease ? std::move(lease) : NextOpening();
+}
+
+std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTraits& executor) {
+  const ChunkLimits limits =
+      executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
+  if (executor.local) {
+    for (const auto& [place, pilot] : pilots_) {
+      auto lease = pilot->NextChunks(capacity, limits);
+      if (!lease) continue;
+      lease->pilot = place;
+      return Completed(*std::move(lease));
+    }
+  }
+  for (auto next = leasable_.begin(); next != leasable_.end();) {
+    auto lease = open_.at(*next)->NextChunks(capacity, limits);
+    if (lease) {
+      lease->point = *next;
+      return Completed(*std::move(lease));
+    }
+    // For an executor elsewhere there may be none although a local one has some.
+    next = executor.local ? leasable_.erase(next) : std::next(next);
+  }
+  return std::nullopt;
+}
+
+Lease Run::Completed(Lease lease) const {
+  lease.run = key_;
+  lease.spec = spec_;
+  return lease;
+}
+
+bool Run::IsLarge() const {
+  if (sampled_points_ == 0 || spec_->target.budget_seconds) return false;
+  const auto unopened = static_cast<double>(finished_.size() - next_point_ + reopen_.size());
+  double seconds = unopened * sampled_seconds_ / sampled_points_;
+  for (const auto& [index, point] : open_) {
+    if (seconds >= kLeastSecondsElsewhere) break;
+    seconds += point->ExpectedSeconds();
+  }
+  return seconds >= kLeastSecondsElsewhere;
+}
+
+bool Run::IsWantedElsewhere() const {
+  return hungry_elsewhere_ && HasPointsToOpen() && open_.size() < kMostOpenPoints && IsLarge();
+}
+
+std::optional<Lease> Run::NextOpening() {
+  if (!HasPointsToOpen()) return std::nullopt;
+  const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
+                      : IsWantedElsewhere() ? kPointsForElsewhere
+                                            : 1;
+  Lease lease;
+  while (lease.opens.size() < most && !reopen_.empty()) {
+    lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
+  }
+  while (lease.opens.size() < most && next_point_ < finished_.size()) {
+    lease.opens.push_back(next_point_++);
+    SkipFinishedPoints();
+  }
+  lease.stop = stop_opening_.get_token();
+  ++opening_;
+  return Completed(std::move(lease));
+}
+
+// ---- points ----
+
+void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
+  if (stopped_) open->RequestStop();
+  sampled_points_ += 1;
+  sampled_seconds_ += open->ExpectedSeconds();
+  open_.emplace(point, std::move(open));
+  leasable_.insert(point);
+}
+
+void Run::PointAwaits(size_t point, const PilotPlace& place) { waiting_[place].push_back(point); }
+
+void Run::PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open) {
+  if (stopped_) open->RequestStop();
+  pilots_.emplace(place, std::move(open));
+}
+
+void Run::PilotIsKnown(const PilotPlace& place) {
+  const auto found = waiting_.find(place);
+  if (found == waiting_.end()) return;
+  reopen_.insert(found->second.begin(), found->second.end());
+  waiting_.erase(found);
+}
+
+OpenPoint* Run::Find(const Lease& lease) const {
+  if (lease.pilot) {
+    const auto pilot = pilots_.find(*lease.pilot);
+    return pilot == pilots_.end() ? nullptr : pilot->second.get();
+  }
+  const auto open = open_.find(lease.point);
+  return open == open_.end() ? nullptr : open->second.get();
+}
+
+void Run::Close(const Lease& lease) {
+  if (lease.pilot) {
+    pilots_.erase(*lease.pilot);
+  } else {
+    leasable_.erase(lease.point);
+    open_.erase(lease.point);
+  }
+}
+
+void Run::HasChunks(const Lease& lease) {
+  if (!lease.pilot && open_.contains(lease.point)) leasable_.insert(lease.point);
+}
+
+// ---- the end ----
+
+void Run::Stop(absl::Status reason) {
+  if (std::exchange(stopped_, true)) return;
+  outcome_ = std::move(reason);
+  stop_opening_.request_stop();
+  for (const auto& [index, point] : open_) point->RequestStop();
+  for (const auto& [place, pilot] : pilots_) pilot->RequestStop();
+}
+
+void Run::NoteShortfall(Shortfall shortfall) {
+  if (shortfall_ && shortfall_->point < shortfall.point) return;
+  shortfall_ = std::move(shortfall);
+}
+
+bool Run::over() const {
+  if (turns_ > 0) return false;
+  const bool nothing_left =
+      open_.empty() && pilots_.empty() && waiting_.empty() && opening_ == 0 && !HasPointsToOpen();
+  return stopped_ || nothing_left;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,135 @@
+// The state of one job during its computation: its open points, its pilots, and its next lease.
+//
+// Points are opened in grid order, when no open point has a chunk left to lease. So a grid of
+// 100,000 points takes only the memory of its open points. A point that waits for a pilot takes a
+// few bytes. Not thread-safe: the scheduler's lock guards it.
+#ifndef BALLPISTON_SERVER_SCHEDULING_RUN_H_
+#define BALLPISTON_SERVER_SCHEDULING_RUN_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "server/scheduling/executor.h"
+#include "server/scheduling/open_point.h"
+#include "server/scheduling/run_journal.h"
+
+namespace ballpiston::server {
+
+// A point that ended without reaching its tolerance, and the status that reports it.
+struct Shortfall {
+  size_t point = 0;
+  absl::Status status;
+};
+
+struct RunRequest {
+  int64_t key = 0;        // greater for a newer job
+  std::string principal;  // the job's owner, for fair shares
+  int32_t priority = 0;   // among the principal's; higher first
+  EnsembleSpec spec;
+  std::vector<bool> finished;               // by point of the grid: nothing left to compute
+  bool has_checkpoints = false;             // ask the journal for them
+  std::optional<Shortfall> shortfall = {};  // of a finished point
+  std::shared_ptr<RunJournal> journal;
+};
+
+class Run {
+ public:
+  explicit Run(RunRequest request);
+
+  int64_t key() const { return key_; }
+  const std::string& principal() const { return principal_; }
+  int32_t priority() const { return priority_; }
+  const EnsembleSpec& spec() const { return *spec_; }
+  bool has_checkpoints() const { return has_checkpoints_; }
+  RunJournal& journal() const { return *journal_; }
+
+  // A new lease for an executor of this kind; empty if there is none now.
+  std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
+
+  // The leases of local executors, and their turns in progress: a run ends when there are none.
+  void TurnBegins() { ++turns_; }
+  void TurnEnds() { --turns_; }
+
+  // Points of a lease that opens points: each is opened, finished, or waits for a pilot. Then the
+  // lease ends.
+  void PointOpened(size_t point, std::unique_ptr<OpenPoint> open);
+  void PointAwaits(size_t point, const PilotPlace& place);
+  void OpeningEnded() { --opening_; }
+  void PilotOpened(const PilotPlace& place, std::unique_ptr<OpenPoint> open);
+  // The points that wait for this pilot are to be opened again.
+  void PilotIsKnown(const PilotPlace& place);
+
+  // Null if the lease's point or pilot is not open (any more).
+  OpenPoint* Find(const Lease& lease) const;
+  void Close(const Lease& lease);
+  // The point may have chunks to lease again.
+  void HasChunks(const Lease& lease);
+  const std::map<size_t, std::unique_ptr<OpenPoint>>& open_points() const { return open_; }
+
+  // Ends the run: it gives no more leases and requests the stop of those in progress. The first
+  // reason is kept.
+  void Stop(absl::Status reason);
+  bool stopped() const { return stopped_; }
+
+  // The run continues, and ends with this status unless it is stopped. The shortfall of the first
+  // point is kept.
+  void NoteShortfall(Shortfall shortfall);
+
+  // No turn is in progress, and no work is left.
+  bool over() const;
+  // Requires over().
+  absl::Status outcome() const { return stopped_ || !shortfall_ ? outcome_ : shortfall_->status; }
+
+  bool began() const { return began_; }
+  void set_began() { began_ = true; }
+
+ private:
+  std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor);
+  std::optional<Lease> NextOpening();
+  bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
+  // Whether executors that are not local wait for points that nobody has opened.
+  bool IsWantedElsewhere() const;
+  // What is left takes long enough for executors that are not local.
+  bool IsLarge() const;
+  void SkipFinishedPoints();
+  Lease Completed(Lease lease) const;
+
+  const int64_t key_;
+  const std::string principal_;
+  const int32_t priority_;
+  const std::shared_ptr<const EnsembleSpec> spec_;
+  const std::vector<bool> finished_;
+  const bool has_checkpoints_;
+  const std::shared_ptr<RunJournal> journal_;
+
+  std::map<size_t, std::unique_ptr<OpenPoint>> open_;
+  std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
+  std::set<size_t> leasable_;  // open points that may have chunks to lease
+  std::map<PilotPlace, std::vector<size_t>> waiting_;
+  std::set<size_t> reopen_;  // points whose pilot is known now
+  size_t next_point_ = 0;
+  size_t opening_ = 0;  // leases that open points
+  size_t turns_ = 0;
+  bool hungry_elsewhere_ = false;  // an executor that is not local found nothing
+  double sampled_points_ = 0;      // opened ones
+  double sampled_seconds_ = 0;     // expected, of these
+  bool began_ = false;
+  bool stopped_ = false;
+  absl::Status outcome_;
+  std::optional<Shortfall> shortfall_;
+  std::stop_source stop_opening_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_RUN_H_

@@ -1,0 +1,417 @@
+#include "server/scheduling/scheduler.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/cleanup/cleanup.h"
+#include "core/model_choice/ladder.h"
+#include "server/convert/errors.h"
+#include "server/convert/fold_record.h"
+#include "server/scheduling/guarded.h"
+
+namespace ballpiston::server {
+namespace {
+
+// Seconds of work on a point between two checkpoints, for each local worker.
+constexpr double kBetweenCheckpoints = 0.1;
+
+double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
+  return static_cast<double>(samples) / static_cast<double>(open.experiment()->plan().samples());
+}
+
+}  // namespace
+
+Scheduler::Scheduler(PointOpener& opener, int workers) : opener_(opener), workers_(workers) {}
+
+size_t Scheduler::AddExecutor(Executor& executor) {
+  std::lock_guard lock(mutex_);
+  executors_.push_back({&executor, executor.traits(), {}});
+  return executors_.size() - 1;
+}
+
+// ---- runs ----
+
+void Scheduler::Add(RunRequest request) {
+  const auto run = std::make_shared<Run>(std::move(request));
+  {
+    std::lock_guard lock(mutex_);
+    runs_.emplace(run->key(), run);
+    for (Member& member : executors_) {
+      member.shares.Add(run->key(), run->principal(), run->priority());
+    }
+  }
+  WakeExecutors();
+  Conclude(run);  // it may have nothing left to compute
+}
+
+void Scheduler::Cancel(int64_t key) {
+  RunPointer run;
+  {
+    std::lock_guard lock(mutex_);
+    run = FindRun(key);
+    if (run == nullptr) return;
+    StopRun(*run, absl::CancelledError("the job was cancelled"));
+  }
+  WakeExecutors();
+  Conclude(run);
+}
+
+void Scheduler::Shutdown() {
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(shutting_down_, true)) return;
+    for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
+  }
+  for (const Member& member : executors_) member.executor->Shutdown();
+  std::lock_guard lock(mutex_);
+  for (const auto& [key, run] : runs_) WriteCheckpoints(*run);
+}
+
+Scheduler::RunPointer Scheduler::FindRun(int64_t key) const {
+  const auto found = runs_.find(key);
+  return found == runs_.end() ? nullptr : found->second;
+}
+
+void Scheduler::StopRun(Run& run, absl::Status why) {
+  run.Stop(std::move(why));
+  DropStoppedLeases(run);
+  std::vector<PilotPlace> left;
+  for (const auto& [place, owner] : pilots_) {
+    if (owner == run.key()) left.push_back(place);
+  }
+  for (const PilotPlace& place : left) EndPilot(place);
+}
+
+// Runs that wait for the pilot open their points again; the first of them may begin it anew.
+void Scheduler::EndPilot(const PilotPlace& place) {
+  pilots_.erase(place);
+  for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
+}
+
+void Scheduler::DropStoppedLeases(const Run& run) {
+  std::erase_if(held_, [&](const auto& entry) {
+    const auto& [lease, turns] = entry.second;
+    if (lease.run != run.key() || !lease.stop.stop_requested()) return false;
+    Member& member = executors_[lease.executor];
+    if (member.traits.local) return turns == 0;
+    member.shares.TurnEnds(run.key(), 0);
+    return true;
+  });
+}
+
+void Scheduler::Conclude(const RunPointer& run) {
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = runs_.find(run->key());
+    if (shutting_down_ || found == runs_.end() || !run->over()) return;
+    for (Member& member : executors_) member.shares.Remove(run->key());
+    runs_.erase(found);
+  }
+  run->journal().Ended(run->outcome());
+}
+
+void Scheduler::WakeExecutors() {
+  for (const Member& member : executors_) member.executor->Wake();
+}
+
+// ---- leases ----
+
+std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
+  std::optional<Lease> lease;
+  RunPointer run;
+  bool begins = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (shutting_down_) return std::nullopt;
+    Member& member = executors_[capacity.executor];
+    const auto key = member.shares.First([&](int64_t candidate) {
+      lease = NextOf(*runs_.at(candidate), capacity);
+      return lease.has_value();
+    });
+    if (!key) return std::nullopt;
+    member.shares.TurnBegins(*key);
+    run = runs_.at(*key);
+    if (member.traits.local) run->TurnBegins();
+    begins = !run->began();
+    run->set_began();
+  }
+  if (begins) run->journal().Began();
+  return lease;
+}
+
+std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
+  const Member& member = executors_[capacity.executor];
+  std::optional<Lease> lease;
+  if (member.traits.local && !run.stopped()) lease = HeldWithTurn(run, capacity.executor);
+  if (!lease) {
+    lease = run.NextLease(capacity, member.traits);
+    if (!lease) return std::nullopt;
+    lease->number = ++last_number_;
+    lease->executor = capacity.executor;
+    if (!lease->OpensPoints()) held_.emplace(KeyOf(*lease), Held{*lease});
+  }
+  if (!lease->OpensPoints()) ++held_.at(KeyOf(*lease)).turns;
+  return lease;
+}
+
+std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
+  for (auto held = held_.lower_bound({executor, run.key(), 0}); held != held_.end(); ++held) {
+    const Lease& lease = held->second.lease;
+    if (lease.executor != executor || lease.run != run.key()) break;
+    if (lease.stop.stop_requested()) continue;
+    if (executors_[executor].executor->HasTurn(lease.number)) return lease;
+  }
+  return std::nullopt;
+}
+
+bool Scheduler::EndTurn(const Lease& lease, double seconds) {
+  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
+  RunPointer run;
+  bool continues = false;
+  {
+    std::lock_guard lock(mutex_);
+    run = FindRun(lease.run);
+    run->journal().Worked(seconds);
+    run->TurnEnds();
+    executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
+    if (lease.OpensPoints()) {
+      run->OpeningEnded();
+    } else if (const auto held = held_.find(KeyOf(lease)); held != held_.end()) {
+      const bool stopped = lease.stop.stop_requested();
+      continues = !stopped && executors_[lease.executor].executor->HasTurn(lease.number);
+      if (--held->second.turns == 0 && !continues) held_.erase(held);
+      continues = !stopped && held_.contains(KeyOf(lease));
+    }
+  }
+  WakeExecutors();
+  Conclude(run);
+  run->journal().AwaitRoom();
+  return continues;
+}
+
+void Scheduler::Return(const Lease& lease, double seconds) {
+  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
+  RunPointer run;
+  {
+    std::lock_guard lock(mutex_);
+    run = FindRun(lease.run);
+    if (run == nullptr) return;
+    run->journal().Worked(seconds);
+    if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
+    executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
+    if (OpenPoint* open = run->Find(lease)) {
+      open->Return(lease.start.chunk, lease.end, lease.attempt);
+      run->HasChunks(lease);
+    }
+  }
+  WakeExecutors();
+  run->journal().AwaitRoom();
+}
+
+void Scheduler::Fail(const Lease& lease, absl::Status why) {
+  std::lock_guard lock(mutex_);
+  if (const RunPointer run = FindRun(lease.run)) StopRun(*run, std::move(why));
+}
+
+// ---- opening points ----
+
+void Scheduler::Open(const Lease& lease) {
+  RunPointer run;
+  {
+    std::lock_guard lock(mutex_);
+    run = FindRun(lease.run);
+  }
+  for (const size_t index : lease.opens) {
+    if (lease.stop.stop_requested()) return;
+    absl::Status opened = Guarded(index, [&] { return OpenOne(*run, index); });
+    if (!opened.ok()) return Fail(lease, std::move(opened));
+  }
+}
+
+absl::Status Scheduler::OpenOne(Run& run, size_t index) {
+  OpenedPoint opened = opener_.Open(run.spec(), index);
+  if (const auto* place = std::get_if<PilotPlace>(&opened)) return AwaitPilot(run, index, *place);
+  auto open = std::make_unique<OpenPoint>(
+      std::get<std::unique_ptr<const PointExperiment>>(std::move(opened)));
+  if (run.has_checkpoints()) {
+    absl::Status resumed = Resume(run, index, *open);
+    if (!resumed.ok()) return resumed;
+  }
+  if (open->fold().finished()) {
+    run.journal().PointFinished(index, *open->experiment(), open->fold().Merged());
+    return absl::OkStatus();
+  }
+  std::lock_guard lock(mutex_);
+  run.PointOpened(index, std::move(open));
+  return absl::OkStatus();
+}
+
+absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
+  {
+    std::lock_guard lock(mutex_);
+    if (run.stopped()) return absl::OkStatus();
+    run.PointAwaits(index, place);
+    if (!pilots_.emplace(place, run.key()).second) return absl::OkStatus();
+  }
+  absl::Cleanup give_up = [&] {
+    std::lock_guard lock(mutex_);
+    EndPilot(place);
+  };
+  // It may have become known before this run took it on.
+  if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
+  auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
+  std::move(give_up).Cancel();
+  std::lock_guard lock(mutex_);
+  if (!run.stopped()) run.PilotOpened(place, std::move(pilot));
+  return absl::OkStatus();
+}
+
+absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
+  absl::StatusOr<StoredPoint> stored = run.journal().ReadPoint(index);
+  if (!stored.ok()) return stored.status();
+  // With a budget the earlier process may have chosen a model that samples, and this one a model
+  // that does not.
+  if (open.fold().finished()) return absl::OkStatus();
+  if (stored->state) {
+    absl::Status checked = CheckFoldState(*open.experiment(), *stored->state);
+    if (!checked.ok()) return checked;
+    open.Resume(*std::move(stored->state));
+  }
+  for (ChunkResult& chunk : stored->chunks) {
+    absl::Status checked = CheckChunk(*open.experiment(), chunk);
+    if (!checked.ok()) return checked;
+    open.fold().Add(std::move(chunk));
+  }
+  if (!open.fold().HasBlocks()) return absl::OkStatus();
+  const uint64_t samples = open.fold().PlannedSamples();
+  open.version = run.journal().Merged({.point = index,
+                                       .samples = samples,
+                                       .share_of_point = ShareOfPoint(open, samples),
+                                       .restored = true});
+  return absl::OkStatus();
+}
+
+// ---- reports ----
+
+void Scheduler::Report(const Lease& lease, LeaseReport report) {
+  RunPointer run;
+  {
+    std::lock_guard lock(mutex_);
+    run = FindRun(lease.run);
+    OpenPoint* open = run ? run->Find(lease) : nullptr;
+    if (open == nullptr || open->fold().finished()) return;
+    Merge(*run, lease, *open, std::move(report));
+    if (!open->fold().finished()) return;
+    open->RequestStop();
+    DropStoppedLeases(*run);
+    run->TurnBegins();  // so that the run does not end before its point
+  }
+  FinishPoint(run, lease);
+}
+
+void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report) {
+  PointFold& fold = open.fold();
+  open.work += report.seconds;
+  uint64_t samples = 0;
+  for (ChunkResult& chunk : report.chunks) {
+    const bool is_early = fold.Needs(chunk.chunk) && chunk.chunk > fold.state().chunk;
+    if (is_early && !lease.pilot) run.journal().ChunkIsEarly(lease.point, chunk);
+    samples += fold.Add(std::move(chunk));
+  }
+  samples += fold.AddPartial(report.partial);
+  samples_.fetch_add(static_cast<double>(samples), std::memory_order_relaxed);
+  if (lease.pilot) return;
+  run.HasChunks(lease);
+  if (samples > 0) {
+    open.version = run.journal().Merged({.point = lease.point,
+                                         .samples = samples,
+                                         .share_of_point = ShareOfPoint(open, samples)});
+  }
+  if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
+  if (!fold.finished()) CheckpointIfDue(run, lease, open);
+}
+
+void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open) {
+  const EnsembleSpec& spec = run.spec();
+  if (!spec.target.budget_seconds || !open.fold().HasBlocks()) return;
+  if (open.work < BudgetOfAPoint(spec, workers_)) return;
+  open.fold().Finish();
+  if (!spec.target.tolerance) return;
+  const Estimate reached = open.experiment()->FirstEstimate(open.fold().Merged());
+  if (MeetsTolerance(reached, *spec.target.tolerance)) return;
+  run.NoteShortfall({lease.point, ToleranceNotReached(spec, lease.point, reached)});
+}
+
+// The files of an executor elsewhere may go when the lease ends, so its chunks are written now.
+void Scheduler::CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open) {
+  const bool elsewhere = !executors_[lease.executor].traits.local;
+  const double between = elsewhere ? 0 : kBetweenCheckpoints * workers_;
+  if (!open.fold().HasBlocks() || open.work < open.work_at_checkpoint + between) return;
+  open.work_at_checkpoint = open.work;
+  run.journal().Checkpoint(lease.point, open.fold().state());
+}
+
+void Scheduler::WriteCheckpoints(Run& run) {
+  for (const auto& [index, point] : run.open_points()) {
+    const bool has_news = point->work > point->work_at_checkpoint;
+    if (!point->fold().HasBlocks() || point->fold().finished() || !has_news) continue;
+    point->work_at_checkpoint = point->work;
+    run.journal().Checkpoint(index, point->fold().state());
+  }
+}
+
+void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
+  const OpenPoint* open = nullptr;
+  {
+    std::lock_guard lock(mutex_);
+    open = run->Find(lease);
+  }
+  // A finished merge changes no more, and only this thread closes the point.
+  absl::Status told = Guarded(lease.point, [&] {
+    const BlockResult merged = open->fold().Merged();
+    if (lease.pilot) {
+      opener_.KeepPilot(*lease.pilot, PilotOf(*open->experiment(), merged));
+    } else {
+      run->journal().PointFinished(lease.point, *open->experiment(), merged);
+    }
+    return absl::OkStatus();
+  });
+  {
+    std::lock_guard lock(mutex_);
+    run->Close(lease);
+    if (lease.pilot) EndPilot(*lease.pilot);
+    if (!told.ok()) StopRun(*run, std::move(told));
+    run->TurnEnds();
+  }
+  WakeExecutors();
+  Conclude(run);
+}
+
+// ---- for those who watch ----
+
+std::vector<LivePoint> Scheduler::ChangedSince(int64_t key, uint64_t version, size_t limit) const {
+  std::vector<LivePoint> changed;
+  std::lock_guard lock(mutex_);
+  const RunPointer run = FindRun(key);
+  if (run == nullptr) return changed;
+  std::vector<std::pair<uint64_t, size_t>> newest;
+  for (const auto& [index, point] : run->open_points()) {
+    const bool finished = point->fold().finished();  // will be reported as finished
+    if (point->version > version && point->fold().HasBlocks() && !finished)
+      newest.emplace_back(point->version, index);
+  }
+  std::sort(newest.rbegin(), newest.rend());
+  if (newest.size() > limit) newest.resize(limit);
+  for (const auto& [number, index] : newest) {
+    const OpenPoint& point = *run->open_points().at(index);
+    changed.push_back({index, number, point.experiment(), point.fold().Merged()});
+  }
+  return changed;
+}
+
+WorkCounts Scheduler::Counts() const {
+  return {.samples = samples_.load(std::memory_order_relaxed),
+          .processor_seconds = processor_seconds_.load(std::memory_order_relaxed)};
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,161 @@
+// Decides which lease an executor gets next, and merges what executors report.
+//
+// The scheduler is passive: it has no threads and no clock. Executors (executor.h) call it. A lease
+// goes to the run whose turn it is (fair_share.h; each executor has its own shares), or to the next
+// run if that run has no lease for this executor now. The scheduler merges chunks in order under its
+// lock, so results depend neither on executors nor on the order of reports. Properties, each with a
+// test of its name:
+//   1. TheSameBitsForEveryOrderOfReports.
+//   2. AChunkCountsOnceHoweverOftenItIsReported.
+//   3. ReturnedChunksGoOutAgain.
+//   4. APilotIsComputedOnceForAllRuns.
+//   5. AStoppedRunEndsWhenItsTurnsHaveEnded.
+// Thread-safe.
+#ifndef BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
+#define BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/scheduling/executor.h"
+#include "server/scheduling/fair_share.h"
+#include "server/scheduling/lease.h"
+#include "server/scheduling/point_opener.h"
+#include "server/scheduling/run.h"
+
+namespace ballpiston::server {
+
+// An open point as it was at one moment.
+struct LivePoint {
+  size_t index = 0;
+  uint64_t version = 0;
+  std::shared_ptr<const PointExperiment> experiment;
+  BlockResult merged;
+};
+
+// What an executor computed of a lease.
+struct LeaseReport {
+  std::vector<ChunkResult> chunks = {};  // complete ones, in any order
+  PartialChunk partial = {};             // of the first chunk that is not complete; or no blocks
+  double seconds = 0;  // of processor time since the previous report about this point
+};
+
+// Totals since the scheduler was made.
+struct WorkCounts {
+  double samples = 0;
+  double processor_seconds = 0;
+};
+
+class Scheduler {
+ public:
+  // The opener must outlive this. `workers`: the threads of local executors, for budgets and
+  // checkpoints.
+  Scheduler(PointOpener& opener, int workers);
+
+  // Before the first lease. The executor must shut down before this is destroyed. Returns its
+  // number.
+  size_t AddExecutor(Executor& executor);
+
+  void Add(RunRequest request);
+
+  // The run's journal then receives Ended(CANCELLED), unless the run is over already.
+  void Cancel(int64_t run);
+
+  // Gives no more leases, requests the stop of all, shuts the executors down, and writes the
+  // checkpoints of unfinished points, so that a later process can resume them. May be called more
+  // than once.
+  void Shutdown();
+
+  // ---- for executors ----
+
+  // The lease to work on now; empty if there is none. For a local executor it may be a lease that
+  // the executor has already (Executor::HasTurn). A turn at the lease begins. May wait for the disk.
+  std::optional<Lease> Next(const Capacity& capacity);
+
+  // Opens the points of a lease that asks for it. May take long.
+  void Open(const Lease& lease);
+
+  // Chunks that nobody needs are dropped.
+  void Report(const Lease& lease, LeaseReport report);
+
+  // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor time
+  // of the whole turn. False if the executor needs the lease no more. May wait for the disk.
+  bool EndTurn(const Lease& lease, double seconds);
+
+  // For an executor that is not local: it ends with the lease. Chunks that were not reported go out
+  // again. `seconds`: processor time of the lease. May wait for the disk.
+  void Return(const Lease& lease, double seconds);
+
+  // The run ends with this status.
+  void Fail(const Lease& lease, absl::Status why);
+
+  // ---- for those who watch ----
+
+  // Copies of the run's unfinished points that changed after `version`, newest first, at most
+  // `limit`.
+  std::vector<LivePoint> ChangedSince(int64_t run, uint64_t version, size_t limit) const;
+
+  WorkCounts Counts() const;  // takes no lock
+
+ private:
+  struct Member {  // an executor
+    Executor* executor;
+    ExecutorTraits traits;
+    FairShare shares;
+  };
+
+  // A lease that an executor has, by executor, run, and the lease's number.
+  using HeldKey = std::tuple<size_t, int64_t, int64_t>;
+  struct Held {
+    Lease lease;
+    int turns = 0;  // of a local executor
+  };
+  using RunPointer = std::shared_ptr<Run>;
+
+  static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
+
+  // These require the lock.
+  RunPointer FindRun(int64_t key) const;
+  std::optional<Lease> NextOf(Run& run, const Capacity& capacity);
+  std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const;
+  void Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report);
+  void EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open);
+  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open);
+  void WriteCheckpoints(Run& run);
+  void StopRun(Run& run, absl::Status why);
+  void EndPilot(const PilotPlace& place);
+  // Leases whose stop was requested and at which no local turn is in progress.
+  void DropStoppedLeases(const Run& run);
+
+  absl::Status OpenOne(Run& run, size_t index);
+  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
+  absl::Status Resume(Run& run, size_t index, OpenPoint& open);
+  void FinishPoint(const RunPointer& run, const Lease& lease);
+  void Conclude(const RunPointer& run);
+  void WakeExecutors();
+
+  PointOpener& opener_;
+  const int workers_;
+  std::atomic<double> samples_ = 0;
+  std::atomic<double> processor_seconds_ = 0;
+
+  mutable std::mutex mutex_;
+  bool shutting_down_ = false;
+  std::vector<Member> executors_;
+  std::map<int64_t, RunPointer> runs_;
+  std::map<HeldKey, Held> held_;
+  int64_t last_number_ = 0;
+  std::map<PilotPlace, int64_t> pilots_;  // in progress, and by which run
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_SCHEDULING_SCHEDULER_H_
