@@ -168,7 +168,7 @@ absl::StatusOr<Lease> ChunksOf(const storage::Lease& record, EnsembleSpec spec) 
 
 absl::Status CheckIdentity(const storage::Lease& record) {
   if (record.engine_version() != kEngineVersion) {
-    return absl::FailedPreconditionError(
+    return absl::UnimplementedError(
         absl::StrCat("a lease is for engine version ", record.engine_version(),
                      "; this program has engine version ", kEngineVersion));
   }

@@ -46,7 +46,7 @@ absl::StatusOr<EnsembleSpec> SpecOfQuestion(const storage::Question& question);
 // The lease has chunks of a point, not of a pilot, and its spec has no budget.
 storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job);
 
-// FAILED_PRECONDITION with both versions if the lease is of another engine version. DATA_LOSS with
+// UNIMPLEMENTED with both versions if the lease is of another engine version. DATA_LOSS with
 // the name of the field if the question, the chunks or the merged blocks are not possible.
 absl::StatusOr<IdentifiedLease> LeaseOfRecord(const storage::Lease& record);
 

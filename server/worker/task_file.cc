@@ -10,7 +10,7 @@
 namespace ballpiston::server {
 namespace {
 
-absl::Status About(const std::string& path, const absl::Status& status) {
+absl::Status InFile(const std::string& path, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat("file ", path, ": ", status.message()));
 }
 
@@ -19,7 +19,7 @@ absl::StatusOr<storage::TaskFile> ReadRecord(const std::string& path) {
   if (!payload.ok()) return payload.status();
   storage::TaskFile record;
   if (record.ParseFromString(*payload)) return record;
-  return About(path, absl::DataLossError("its message cannot be read"));
+  return InFile(path, absl::DataLossError("its message cannot be read"));
 }
 
 absl::StatusOr<ArrayTask> TaskOf(const storage::TaskFile& file, size_t index) {
@@ -53,7 +53,7 @@ absl::StatusOr<ArrayTask> ReadTask(const std::string& path, size_t task) {
   const absl::StatusOr<storage::TaskFile> file = ReadRecord(path);
   if (!file.ok()) return file.status();
   absl::StatusOr<ArrayTask> found = TaskOf(*file, task);
-  if (!found.ok()) return About(path, found.status());
+  if (!found.ok()) return InFile(path, found.status());
   return found;
 }
 

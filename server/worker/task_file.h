@@ -24,7 +24,7 @@ absl::Status WriteTaskFile(const std::string& path, const std::string& array,
                            const std::vector<std::vector<IdentifiedLease>>& tasks);
 
 // Errors, besides those of ReadCheckedFile: INVALID_ARGUMENT if the file has no such task;
-// FAILED_PRECONDITION if a lease is of another engine version; DATA_LOSS if a lease is damaged.
+// UNIMPLEMENTED if a lease is of another engine version; DATA_LOSS if a lease is damaged.
 absl::StatusOr<ArrayTask> ReadTask(const std::string& path, size_t task);
 
 }  // namespace ballpiston::server
