@@ -19,6 +19,7 @@ readonly PACKAGES=(
   libabsl-dev libeigen3-dev libhwy-dev librandom123-dev        # the core
   libboost-dev                                                 # its numbers of more than 64 bits
   libsqlite3-dev libssl-dev                                    # the store, the door
+  libxxhash-dev                                                # files of the server and its workers
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
   gnuplot-nox)                                                 # the client's figures
