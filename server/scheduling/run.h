@@ -33,6 +33,7 @@ struct Shortfall {
 
 struct RunRequest {
   int64_t key = 0;        // greater for a newer job
+  int64_t restarts = 0;   // how often a newer engine began the job anew
   std::string principal;  // the job's owner, for fair shares
   int32_t priority = 0;   // among the principal's; higher first
   EnsembleSpec spec;
@@ -72,6 +73,7 @@ class Run {
   // A lease of an earlier process; false if its point is finished.
   bool Adopt(const Lease& lease);
   void ForgetAdopted(size_t point) { adopted_.erase(point); }
+  void ReturnAdopted(const Lease& lease);
   // Its leases were adopted, and it is not open yet.
   bool IsUnopened(size_t point) const { return adopted_.contains(point); }
 
@@ -111,6 +113,7 @@ class Run {
   Lease Completed(Lease lease) const;
 
   const int64_t key_;
+  const int64_t restarts_;
   const std::string principal_;
   const int32_t priority_;
   const std::shared_ptr<const EnsembleSpec> spec_;
