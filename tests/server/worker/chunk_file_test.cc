@@ -70,8 +70,8 @@ TEST(ChunkFile, ImpossibleNumbersAreDataLossWithTheirField) {
   LeaseChunks chunks = {.attempt = 0};
   EXPECT_THAT(ChunkFileFromPayload(ChunkFilePayload(FileOf(chunks))),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("attempt")));
-  for (const double seconds : {-1.0, std::numeric_limits<double>::infinity(),
-                               std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double seconds :
+       {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     chunks = {.processor_seconds = seconds};
     EXPECT_THAT(ChunkFileFromPayload(ChunkFilePayload(FileOf(chunks))),
                 StatusIs(absl::StatusCode::kDataLoss, HasSubstr("processor_seconds")));

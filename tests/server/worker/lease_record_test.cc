@@ -52,8 +52,9 @@ void ExpectSameExperiment(const Lease& original, const Lease& back) {
   const PointExperiment &a = *original.experiment, &b = *back.experiment;
   EXPECT_EQ(a.parameters(), b.parameters());
   EXPECT_EQ(a.answer().model, b.answer().model);
-  EXPECT_EQ(PointStream(OnePointSpec(*original.spec, a.parameters(), a.answer().model), a.parameters()),
-            PointStream(*back.spec, b.parameters()));
+  EXPECT_EQ(
+      PointStream(OnePointSpec(*original.spec, a.parameters(), a.answer().model), a.parameters()),
+      PointStream(*back.spec, b.parameters()));
   EXPECT_EQ(back.spec->seed, original.spec->seed);
   EXPECT_EQ(a.expected_chunks(), b.expected_chunks());
   ExpectSamePlan(a.plan(), b.plan());
@@ -100,7 +101,8 @@ TEST(LeaseRecord, BothPrecisionsComeBack) {
   ExpectComesBack(LeaseOf(spec));
 }
 
-// Of a spec in single precision AUTO may choose the jump process. The plan depends on the precision.
+// Of a spec in single precision AUTO may choose the jump process. The plan depends on the
+// precision.
 TEST(LeaseRecord, TheJumpProcessInSinglePrecisionComesBack) {
   EnsembleSpec spec = SpecOf(kEnergyRelaxation, Model::kAuto);
   spec.precision = Precision::kSingle;
@@ -155,7 +157,8 @@ TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
            {"question.experiment", [](Record& r) { r.clear_question(); }},
            {"question.experiment", [](Record& r) { r.mutable_question()->set_experiment(999); }},
            {"question.model", [](Record& r) { r.mutable_question()->clear_model(); }},
-           {"question.model", [](Record& r) {
+           {"question.model",
+            [](Record& r) {
               r.mutable_question()->set_model(static_cast<storage::Question::Model>(77));
             }},
            {"question.model",
@@ -178,8 +181,10 @@ TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
             [](Record& r) { r.mutable_question()->add_point()->set_parameter(kCells.index); }},
            {"question.target.samples", [](Record& r) { r.mutable_question()->set_samples(0); }},
            {"question.target.samples", [](Record& r) { r.mutable_question()->set_samples(-7); }},
-           {"question.target.collisions", [](Record& r) { r.mutable_question()->set_collisions(9); }},
-           {"question.target.tolerance", [](Record& r) { r.mutable_question()->set_tolerance(kNan); }},
+           {"question.target.collisions",
+            [](Record& r) { r.mutable_question()->set_collisions(9); }},
+           {"question.target.tolerance",
+            [](Record& r) { r.mutable_question()->set_tolerance(kNan); }},
        }) {
     SCOPED_TRACE(damage.field);
     ExpectRefused(damage);
@@ -188,21 +193,21 @@ TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
 
 TEST(LeaseRecord, DamagedChunksAreDataLossWithTheirField) {
   using Record = storage::Lease;
-  for (const Damage& damage : std::vector<Damage>{
-           {"point", [](Record& r) { r.set_point(-1); }},
-           {"point", [](Record& r) { r.set_point(kMaxPoints); }},
-           {"attempt", [](Record& r) { r.set_attempt(0); }},
-           {"first_chunk", [](Record& r) { r.set_first_chunk(~uint64_t{0}); }},
-           {"first_chunk", [](Record& r) { r.set_first_chunk(r.end_chunk()); }},
-           {"end_chunk", [](Record& r) { r.set_end_chunk(0); }},
-           {"end_chunk", [](Record& r) { r.set_end_chunk(r.end_chunk() + 1); }},
-           {"blocks", [](Record& r) { r.set_blocks(~uint64_t{0}); }},
-           {"partial", [](Record& r) { r.set_blocks(1); }},
-           {"partial", [](Record& r) { r.mutable_partial()->set_samples(1); }},
-           {"partial", [](Record& r) {
-              r.set_blocks(1);
-              r.mutable_partial()->set_samples(~uint64_t{0});
-            }}}) {
+  for (const Damage& damage :
+       std::vector<Damage>{{"point", [](Record& r) { r.set_point(-1); }},
+                           {"point", [](Record& r) { r.set_point(kMaxPoints); }},
+                           {"attempt", [](Record& r) { r.set_attempt(0); }},
+                           {"first_chunk", [](Record& r) { r.set_first_chunk(~uint64_t{0}); }},
+                           {"first_chunk", [](Record& r) { r.set_first_chunk(r.end_chunk()); }},
+                           {"end_chunk", [](Record& r) { r.set_end_chunk(0); }},
+                           {"end_chunk", [](Record& r) { r.set_end_chunk(r.end_chunk() + 1); }},
+                           {"blocks", [](Record& r) { r.set_blocks(~uint64_t{0}); }},
+                           {"partial", [](Record& r) { r.set_blocks(1); }},
+                           {"partial", [](Record& r) { r.mutable_partial()->set_samples(1); }},
+                           {"partial", [](Record& r) {
+                              r.set_blocks(1);
+                              r.mutable_partial()->set_samples(~uint64_t{0});
+                            }}}) {
     SCOPED_TRACE(damage.field);
     ExpectRefused(damage);
   }
@@ -212,8 +217,9 @@ TEST(LeaseRecord, AnotherEngineVersionIsRefusedWithBothVersions) {
   storage::Lease record = GoodRecord();
   record.set_engine_version("0.0.1");
   record.clear_question();  // the other engine may have other questions
-  EXPECT_THAT(LeaseOfRecord(record), StatusIs(absl::StatusCode::kUnimplemented,
-                                              AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion))));
+  EXPECT_THAT(LeaseOfRecord(record),
+              StatusIs(absl::StatusCode::kUnimplemented,
+                       AllOf(HasSubstr("0.0.1"), HasSubstr(kEngineVersion))));
 }
 
 }  // namespace

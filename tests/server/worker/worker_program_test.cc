@@ -126,7 +126,7 @@ TEST_F(WorkerProgramTest, EndsWhenTheToleranceIsReached) {
 
 // The second run computes the rest of the chunks, and the third run nothing.
 TEST_F(WorkerProgramTest, ASignalledTaskContinuesWhereItStopped) {
-  const IdentifiedLease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 300'000));
+  const IdentifiedLease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 150'000));
   WriteTasks({{lease}});
   for (const int signal : {SIGUSR1, SIGTERM}) {
     Process first(Command({"--flush-seconds", "0"}));
@@ -242,8 +242,8 @@ TEST(WorkerProgram, PrintsItsEngineVersion) {
 TEST(WorkerProgram, RunsInAnEmptyFolderSystem) {
   const TemporaryFolder root;
   std::filesystem::copy_file(WorkerProgram(), root.File("ballpiston-worker"));
-  const ProcessResult result = RunProgram(
-      {.command = {"/usr/sbin/chroot", root.path(), "/ballpiston-worker", "--version"}});
+  const ProcessResult result =
+      RunProgram({.command = {"/usr/sbin/chroot", root.path(), "/ballpiston-worker", "--version"}});
   if (result.exit_code == 125) GTEST_SKIP() << "chroot is not permitted";
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(result.out, absl::StrCat(kEngineVersion, "\n"));
