@@ -11,6 +11,9 @@
 #include <cstdlib>
 
 #if HWY_ARCH_X86
+#ifdef __clang__
+#define _Bool bool  // the header is for C; GCC knows this name in C++, too
+#endif
 #include <sys/platform/x86.h>
 #endif
 
