@@ -61,7 +61,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
       report = {fold_.Add(block, std::move(result)), fold_.partial(), seconds};
       has_room = was_full && fold_.HasNextBlock();
     }
-    executor_.scheduler_.Report(lease_, std::move(report));
+    executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
     if (has_room) executor_.Wake();
   }
 
@@ -71,7 +71,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
       std::lock_guard lock(mutex_);
       report.partial = fold_.partial();
     }
-    executor_.scheduler_.Report(lease_, std::move(report));
+    executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
   }
 
   ThreadExecutor& executor_;

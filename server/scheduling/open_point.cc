@@ -51,8 +51,11 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   const auto first = NextChunk(capacity, limits);
   if (!first) return std::nullopt;
   const ChunkPlan& plan = experiment_->plan();
-  Lease lease{.attempt = first->second, .experiment = experiment_, .stop = stop()};
-  lease.start = {.chunk = first->first};
+  Lease lease;
+  lease.attempt = first->second;
+  lease.experiment = experiment_;
+  lease.stop = stop();
+  lease.start.chunk = first->first;
   lease.end = first->first;
   const FoldState& state = fold_.state();
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
@@ -73,8 +76,19 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
 
 void OpenPoint::Return(uint64_t first, uint64_t end, int attempt) {
   for (uint64_t chunk = first; chunk < std::min(end, next_chunk_); ++chunk) {
-    if (fold_.Needs(chunk)) returned_[chunk] = attempt + 1;
+    if (fold_.Needs(chunk)) returned_[chunk] = attempt;
   }
+}
+
+// Chunks between those that were leased before and `first` are to be leased now.
+void OpenPoint::Adopt(uint64_t first, uint64_t end) {
+  SkipUnneeded();
+  const uint64_t before = next_chunk_;
+  next_chunk_ = std::max(next_chunk_, std::min(end, chunks()));
+  Return(before, std::min(first, next_chunk_), 1);
+  std::erase_if(returned_, [&](const auto& chunk) {
+    return chunk.first >= first && chunk.first < end;
+  });
 }
 
 double OpenPoint::ExpectedSeconds() const {

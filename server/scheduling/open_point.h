@@ -37,8 +37,11 @@ class OpenPoint {
   // none for this capacity now.
   std::optional<Lease> NextChunks(const Capacity& capacity, const ChunkLimits& limits);
 
-  // Chunks that were leased and are still needed go out again, in an attempt after `attempt`.
+  // Chunks that were leased and are still needed go out again, as this attempt.
   void Return(uint64_t first, uint64_t end, int attempt);
+
+  // These chunks are leased already.
+  void Adopt(uint64_t first, uint64_t end);
 
   // That the chunks that are not merged are expected to take, of one core at nominal speed.
   double ExpectedSeconds() const;

@@ -34,7 +34,10 @@ Run::Run(RunRequest request)
 }
 
 void Run::SkipFinishedPoints() {
-  while (next_point_ < finished_.size() && finished_[next_point_]) ++next_point_;
+  while (next_point_ < finished_.size() &&
+         (finished_[next_point_] || opened_early_.contains(next_point_))) {
+    ++next_point_;
+  }
 }
 
 // ---- leases ----
@@ -119,6 +122,9 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->RequestStop();
   sampled_points_ += 1;
   sampled_seconds_ += open->ExpectedSeconds();
+  if (const auto adopted = adopted_.extract(point)) {
+    for (const Lease& lease : adopted.mapped()) open->Adopt(lease.start.chunk, lease.end);
+  }
   open_.emplace(point, std::move(open));
   leasable_.insert(point);
 }
@@ -135,6 +141,14 @@ void Run::PilotIsKnown(const PilotPlace& place) {
   if (found == waiting_.end()) return;
   reopen_.insert(found->second.begin(), found->second.end());
   waiting_.erase(found);
+}
+
+bool Run::Adopt(const Lease& lease) {
+  if (lease.point >= finished_.size() || finished_[lease.point]) return false;
+  adopted_[lease.point].push_back(lease);
+  if (opened_early_.insert(lease.point).second) reopen_.insert(lease.point);
+  SkipFinishedPoints();
+  return true;
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {

@@ -69,6 +69,12 @@ class Run {
   // The points that wait for this pilot are to be opened again.
   void PilotIsKnown(const PilotPlace& place);
 
+  // A lease of an earlier process; false if its point is finished.
+  bool Adopt(const Lease& lease);
+  void ForgetAdopted(size_t point) { adopted_.erase(point); }
+  // Its leases were adopted, and it is not open yet.
+  bool IsUnopened(size_t point) const { return adopted_.contains(point); }
+
   // Null if the lease's point or pilot is not open (any more).
   OpenPoint* Find(const Lease& lease) const;
   void Close(const Lease& lease);
@@ -116,7 +122,9 @@ class Run {
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;
   std::set<size_t> leasable_;  // open points that may have chunks to lease
   std::map<PilotPlace, std::vector<size_t>> waiting_;
-  std::set<size_t> reopen_;  // points whose pilot is known now
+  std::set<size_t> reopen_;  // points whose pilot is known now, or that have adopted leases
+  std::map<size_t, std::vector<Lease>> adopted_;  // by point, until it is open
+  std::set<size_t> opened_early_;                 // points not to be opened in grid order
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;

@@ -15,6 +15,24 @@ namespace {
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
 
+// Removes chunks that the experiment cannot have computed. DATA_LOSS if there are any.
+absl::Status DropImpossible(const PointExperiment& experiment, std::vector<ChunkResult>& chunks) {
+  absl::Status found;
+  std::erase_if(chunks, [&](const ChunkResult& chunk) {
+    const absl::Status checked = CheckChunk(experiment, chunk);
+    if (!checked.ok()) found = checked;
+    return !checked.ok();
+  });
+  return found;
+}
+
+// An adopted lease has no stop token.
+bool IsStopped(const Run& run, const Lease& lease) {
+  if (run.stopped() || lease.stop.stop_requested()) return true;
+  const OpenPoint* open = run.Find(lease);
+  return open != nullptr && open->fold().finished();
+}
+
 double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
   return static_cast<double>(samples) / static_cast<double>(open.experiment()->plan().samples());
 }
@@ -91,7 +109,7 @@ void Scheduler::EndPilot(const PilotPlace& place) {
 void Scheduler::DropStoppedLeases(const Run& run) {
   std::erase_if(held_, [&](const auto& entry) {
     const auto& [lease, turns] = entry.second;
-    if (lease.run != run.key() || !lease.stop.stop_requested()) return false;
+    if (lease.run != run.key() || !IsStopped(run, lease)) return false;
     Member& member = executors_[lease.executor];
     if (member.traits.local) return turns == 0;
     member.shares.TurnEnds(run.key(), 0);
@@ -189,7 +207,7 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
   return continues;
 }
 
-void Scheduler::Return(const Lease& lease, double seconds) {
+void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
   processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
   RunPointer run;
   {
@@ -200,12 +218,27 @@ void Scheduler::Return(const Lease& lease, double seconds) {
     if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
     executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
     if (OpenPoint* open = run->Find(lease)) {
-      open->Return(lease.start.chunk, lease.end, lease.attempt);
+      open->Return(lease.start.chunk, lease.end, tried ? lease.attempt + 1 : lease.attempt);
       run->HasChunks(lease);
     }
   }
   WakeExecutors();
   run->journal().AwaitRoom();
+}
+
+std::optional<Lease> Scheduler::Adopt(Lease lease) {
+  std::lock_guard lock(mutex_);
+  const RunPointer run = FindRun(lease.run);
+  if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
+  lease.number = ++last_number_;
+  held_.emplace(KeyOf(lease), Held{lease, 1});
+  executors_[lease.executor].shares.TurnBegins(lease.run);
+  return lease;
+}
+
+bool Scheduler::Needs(const Lease& lease) const {
+  std::lock_guard lock(mutex_);
+  return held_.contains(KeyOf(lease));
 }
 
 void Scheduler::Fail(const Lease& lease, absl::Status why) {
@@ -239,11 +272,23 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
   }
   if (open->fold().finished()) {
     run.journal().PointFinished(index, *open->experiment(), open->fold().Merged());
+    DropAdopted(run, index);
     return absl::OkStatus();
   }
   std::lock_guard lock(mutex_);
   run.PointOpened(index, std::move(open));
   return absl::OkStatus();
+}
+
+void Scheduler::DropAdopted(Run& run, size_t index) {
+  std::lock_guard lock(mutex_);
+  run.ForgetAdopted(index);
+  std::erase_if(held_, [&](const auto& entry) {
+    const Lease& lease = entry.second.lease;
+    if (lease.run != run.key() || lease.point != index || lease.pilot) return false;
+    executors_[lease.executor].shares.TurnEnds(run.key(), 0);
+    return true;
+  });
 }
 
 absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
@@ -293,20 +338,28 @@ absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
 
 // ---- reports ----
 
-void Scheduler::Report(const Lease& lease, LeaseReport report) {
+absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   RunPointer run;
+  absl::Status checked;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(lease.run);
+    if (run != nullptr && run->IsUnopened(lease.point)) {
+      return absl::UnavailableError("the point is not open yet");
+    }
     OpenPoint* open = run ? run->Find(lease) : nullptr;
-    if (open == nullptr || open->fold().finished()) return;
+    if (open == nullptr || open->fold().finished()) return absl::OkStatus();
+    if (!executors_[lease.executor].traits.local) {
+      checked = DropImpossible(*open->experiment(), report.chunks);
+    }
     Merge(*run, lease, *open, std::move(report));
-    if (!open->fold().finished()) return;
+    if (!open->fold().finished()) return checked;
     open->RequestStop();
     DropStoppedLeases(*run);
     run->TurnBegins();  // so that the run does not end before its point
   }
   FinishPoint(run, lease);
+  return checked;
 }
 
 void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report) {

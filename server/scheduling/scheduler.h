@@ -83,16 +83,29 @@ class Scheduler {
   // Opens the points of a lease that asks for it. May take long.
   void Open(const Lease& lease);
 
-  // Chunks that nobody needs are dropped.
-  void Report(const Lease& lease, LeaseReport report);
+  // Chunks that nobody needs are dropped. Errors, of executors that are not local:
+  //   DATA_LOSS    a chunk is not one of its point; the others are taken
+  //   UNAVAILABLE  the point is not open yet: report again later
+  absl::Status Report(const Lease& lease, LeaseReport report);
 
   // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor time
   // of the whole turn. False if the executor needs the lease no more. May wait for the disk.
   bool EndTurn(const Lease& lease, double seconds);
 
-  // For an executor that is not local: it ends with the lease. Chunks that were not reported go out
-  // again. `seconds`: processor time of the lease. May wait for the disk.
-  void Return(const Lease& lease, double seconds);
+  // These three are for executors that are not local.
+
+  // The executor ends with the lease. Chunks that were not reported go out again, as another attempt
+  // if the executor `tried` to compute them. `seconds`: processor time of the lease. May wait for
+  // the disk.
+  void Return(const Lease& lease, double seconds, bool tried = true);
+
+  // A lease that an earlier process of this server gave to the executor: run, point, chunks and
+  // attempt of it. Its chunks are not leased again until it is returned. Before the first lease, and
+  // after the run was added. Returns the lease with its number; empty if it is not needed.
+  std::optional<Lease> Adopt(Lease lease);
+
+  // Whether chunks of the lease may still be needed.
+  bool Needs(const Lease& lease) const;
 
   // The run ends with this status.
   void Fail(const Lease& lease, absl::Status why);
@@ -136,6 +149,8 @@ class Scheduler {
   void DropStoppedLeases(const Run& run);
 
   absl::Status OpenOne(Run& run, size_t index);
+  // The adopted leases of a point that is finished.
+  void DropAdopted(Run& run, size_t index);
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease);

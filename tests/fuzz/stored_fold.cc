@@ -2,12 +2,12 @@
 // fits.
 #include <memory>
 
-#include "ballpiston/v1/storage.pb.h"
+#include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {
@@ -51,10 +51,10 @@ void RequireResumed(const PointExperiment& experiment, const FoldState& state) {
   const BlockResult merged = fold.Merged();
   Require(merged.samples == state.complete.samples + state.partial.samples, "no sample is lost");
   Require(merged.HasShapeOf(experiment.EmptyResult()), "merging keeps the shape");
-  const v1::PointResult result =
-      server::PointResultOf(3, experiment, merged, server::Details::kIncluded);
-  Require(server::PointResultFromBytes(server::PointResultBytes(result)).ok(),
-          "what was merged can be told");
+  const storage::Result result =
+      server::ResultRecordOf(3, experiment, merged, server::Details::kIncluded);
+  Require(server::ResultFromBytes(server::ResultRecordBytes(result)).ok(),
+          "what was merged can be stored");
 }
 
 void RequireStored(const FoldState& state) {
@@ -84,7 +84,7 @@ std::vector<std::string> FoldsOfEach() {
 
 const Registration kStoredFold({.name = "stored_fold",
                                 .check = CheckStoredFold,
-                                .message = &v1::FoldRecord::default_instance(),
+                                .message = &storage::Checkpoint::default_instance(),
                                 .made_seeds = FoldsOfEach});
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/ensemble/point_experiment.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"
 
@@ -9,7 +10,7 @@ namespace ballpiston::fuzz {
 namespace {
 
 // As ReadShortfall does.
-void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
+void CheckShortfall(const storage::Result& result, const std::string& bytes) {
   constexpr double kTolerance = 0.01;
   const EnsembleSpec spec = {.target = {.tolerance = kTolerance, .budget_seconds = 1.0}};
   const Estimate reached = server::FirstEstimateOf(result);
@@ -18,20 +19,22 @@ void CheckShortfall(const v1::PointResult& result, const std::string& bytes) {
 }
 
 void CheckStoredResult(const std::string& bytes) {
-  absl::StatusOr<v1::PointResult> result = server::PointResultFromBytes(bytes);
+  absl::StatusOr<storage::Result> result = server::ResultFromBytes(bytes);
   if (!result.ok()) return Require(absl::IsDataLoss(result.status()), "damage is DATA_LOSS");
-  const std::string stored = server::PointResultBytes(*result);
-  const absl::StatusOr<v1::PointResult> again = server::PointResultFromBytes(stored);
-  Require(again.ok() && server::PointResultBytes(*again) == stored, "stored bytes come back");
+  const std::string stored = server::ResultRecordBytes(*result);
+  const absl::StatusOr<storage::Result> again = server::ResultFromBytes(stored);
+  Require(again.ok() && server::ResultRecordBytes(*again) == stored, "stored bytes come back");
   CheckShortfall(*result, bytes);
+  Require(server::PointResultMessage(*result).index() == static_cast<int32_t>(result->index()),
+          "it can be told");
   server::ClearDetails(*result);
   Require(result->histograms().empty() && result->curves().empty(), "details are left out");
-  Require(server::PointResultBytes(*result).size() <= stored.size(), "nothing is added");
+  Require(server::ResultRecordBytes(*result).size() <= stored.size(), "nothing is added");
 }
 
 const Registration kStoredResult({.name = "stored_result",
                                   .check = CheckStoredResult,
-                                  .message = &v1::PointResult::default_instance()});
+                                  .message = &storage::Result::default_instance()});
 
 }  // namespace
 }  // namespace ballpiston::fuzz

@@ -110,6 +110,15 @@ class HeldUpExperiment : public PointExperiment {
   const BeforeSample before_sample_;
 };
 
+LocalPoint AfterBlocks(const PointExperiment& experiment, uint64_t blocks) {
+  LocalPoint point(experiment);
+  for (uint64_t i = 0; i < blocks; ++i) {
+    const std::optional<Block> block = point.NextBlock();
+    point.Add(*block, *RunBlock(experiment, *block));
+  }
+  return point;
+}
+
 }  // namespace
 
 void Gate::Open() {
@@ -137,15 +146,13 @@ int Gate::waiting() {
 }
 
 ExperimentFactory FakeExperiments(BeforeBlock before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
-                                                  const std::stop_token&) {
+  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
     return std::make_unique<const FakeExperiment>(spec, index, before_block);
   };
 }
 
 ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block) {
-  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index,
-                                                  const std::stop_token&) {
+  return [before_block = std::move(before_block)](const EnsembleSpec& spec, size_t index) {
     return std::make_unique<const FakeExperiment>(
         spec, index,
         [before_block, seed = spec.seed](size_t point, uint64_t block, std::stop_token stop) {
@@ -161,8 +168,7 @@ ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block) {
 }
 
 ExperimentFactory HeldUpExperiments(BeforeSample before_sample) {
-  return [before_sample = std::move(before_sample)](const EnsembleSpec& spec, size_t index,
-                                                    const std::stop_token&) {
+  return [before_sample = std::move(before_sample)](const EnsembleSpec& spec, size_t index) {
     return std::make_unique<const HeldUpExperiment>(spec, index, before_sample);
   };
 }
@@ -177,8 +183,12 @@ EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed) {
   return spec;
 }
 
+FoldState FakeState(const EnsembleSpec& spec, size_t point, uint64_t blocks) {
+  return AfterBlocks(*FakeExperiments()(spec, point), blocks).State();
+}
+
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks) {
-  return FakeState(spec, point, blocks).second;
+  return AfterBlocks(*FakeExperiments()(spec, point), blocks).Merged();
 }
 
 }  // namespace ballpiston::server

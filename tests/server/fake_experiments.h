@@ -10,7 +10,8 @@
 #include <optional>
 #include <stop_token>
 
-#include "server/scheduling/run.h"
+#include "core/ensemble/point_fold.h"
+#include "server/scheduling/point_opener.h"
 
 namespace ballpiston::server {
 
@@ -55,7 +56,8 @@ ExperimentFactory HeldUpExperiments(BeforeSample before_sample);
 // One rho, so many deltas, so many blocks each.
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed = 1);
 
-// What the fake experiment gives for these blocks of a point, merged in order.
+// The state of a fake point after its first blocks, and what they give, merged in order.
+FoldState FakeState(const EnsembleSpec& spec, size_t point, uint64_t blocks);
 BlockResult FakeMerged(const EnsembleSpec& spec, size_t point, uint64_t blocks);
 
 }  // namespace ballpiston::server

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "tests/core/one_point_spec.h"
@@ -13,36 +12,131 @@
 namespace ballpiston {
 namespace {
 
-class PointFoldTest : public testing::Test {
- protected:
-  static std::unique_ptr<const PointExperiment> Point(const Target& target) {
-    return PointExperiment::Create(
-        SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.02, 0.125), target), 0);
-  }
+std::unique_ptr<const PointExperiment> Point(const Target& target) {
+  return PointExperiment::Create(SpecOf(&kConditionalMeanFreeTime, PaperPoint(0.02, 0.125), target),
+                                 0);
+}
 
-  // All blocks of a plan, by the order in which they are handed out.
-  static std::vector<std::pair<Block, BlockResult>> AllBlocks(const PointExperiment& point) {
-    std::vector<std::pair<Block, BlockResult>> blocks;
-    PointFold fold(point);
-    while (const auto block = fold.NextBlock()) {
-      blocks.emplace_back(*block, *RunBlock(point, *block));
+// All blocks of a point's chunks, in order.
+struct ComputedBlock {
+  Block block;
+  BlockResult result;
+};
+
+std::vector<ComputedBlock> BlocksOf(const PointExperiment& point) {
+  std::vector<ComputedBlock> blocks;
+  ChunkFold fold(point.plan(), {}, point.plan().chunks());
+  while (const auto block = fold.NextBlock()) blocks.push_back({*block, *RunBlock(point, *block)});
+  return blocks;
+}
+
+std::vector<ChunkResult> Fold(ChunkFold& fold, const std::vector<ComputedBlock>& blocks) {
+  std::vector<ChunkResult> chunks;
+  for (const ComputedBlock& computed : blocks) {
+    for (ChunkResult& chunk : fold.Add(computed.block, computed.result)) {
+      chunks.push_back(std::move(chunk));
     }
-    return blocks;
+  }
+  return chunks;
+}
+
+void ExpectEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].chunk, b[i].chunk);
+    EXPECT_EQ(a[i].result, b[i].result) << "chunk " << a[i].chunk;
+  }
+}
+
+class FoldTest : public testing::Test {
+ protected:
+  ChunkFold WholeRange() const {
+    return {point_->plan(), PartialChunk(), point_->plan().chunks()};
   }
 
   const std::unique_ptr<const PointExperiment> point_ = Point({.samples = 1000});
-  const std::vector<std::pair<Block, BlockResult>> blocks_ = AllBlocks(*point_);
+  const std::vector<ComputedBlock> blocks_ = BlocksOf(*point_);
+  ChunkFold in_order_ = WholeRange();
+  const std::vector<ChunkResult> chunks_ = Fold(in_order_, blocks_);
 };
 
-TEST_F(PointFoldTest, ResultIsIndependentOfArrivalOrder) {
-  ASSERT_GT(point_->plan().chunks(), 2u);
-  const BlockResult expected = *FoldPoint(*point_);
+using ChunkFoldTest = FoldTest;
+using PointFoldTest = FoldTest;
+
+TEST_F(ChunkFoldTest, ChunksAreIndependentOfTheOrderOfBlocks) {
+  ASSERT_GT(chunks_.size(), 2u);
+  EXPECT_TRUE(in_order_.finished());
   auto shuffled = blocks_;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(seed));
+    ChunkFold fold = WholeRange();
+    while (fold.NextBlock()) continue;
+    ExpectEqual(Fold(fold, shuffled), chunks_);
+    EXPECT_TRUE(fold.finished());
+  }
+}
+
+TEST_F(ChunkFoldTest, AResumedChunkHasTheSameBits) {
+  for (size_t n = 0; n < blocks_.size(); n += 7) {
+    ChunkFold before = WholeRange();
+    const auto cut = blocks_.begin() + static_cast<ptrdiff_t>(n);
+    std::vector<ChunkResult> chunks = Fold(before, {blocks_.begin(), cut});
+    ChunkFold after(point_->plan(), before.partial(), point_->plan().chunks());
+    for (auto computed = cut; computed != blocks_.end(); ++computed) {
+      ASSERT_EQ(after.NextBlock(), computed->block);
+      for (ChunkResult& chunk : after.Add(computed->block, computed->result)) {
+        chunks.push_back(std::move(chunk));
+      }
+    }
+    EXPECT_FALSE(after.NextBlock());
+    ExpectEqual(chunks, chunks_);
+  }
+}
+
+TEST_F(ChunkFoldTest, ARangeHasItsChunksAlone) {
+  ChunkFold fold(point_->plan(), {.chunk = 1}, 3);
+  std::vector<ChunkResult> chunks;
+  while (const auto block = fold.NextBlock()) {
+    for (ChunkResult& chunk : fold.Add(*block, *RunBlock(*point_, *block))) {
+      chunks.push_back(std::move(chunk));
+    }
+  }
+  ExpectEqual(chunks, {chunks_[1], chunks_[2]});
+}
+
+TEST_F(ChunkFoldTest, ABlockCountsOnce) {
+  ChunkFold fold = WholeRange();
+  while (fold.NextBlock()) continue;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    fold.Add(blocks_[0].block, blocks_[0].result);
+    fold.Add(blocks_[2].block, blocks_[2].result);
+  }
+  EXPECT_EQ(fold.partial().merged, blocks_[0].result);
+  EXPECT_EQ(fold.waiting(), 1u);
+}
+
+TEST_F(ChunkFoldTest, NoMoreBlocksAreHandedOutThanTheWindowHolds) {
+  const auto endless = Point({.tolerance = 1e-5});
+  ChunkFold fold(endless->plan(), {}, endless->plan().chunks());
+  std::vector<Block> blocks;
+  while (const auto block = fold.NextBlock()) blocks.push_back(*block);
+  EXPECT_EQ(blocks.size(), ChunkFold::kWindow);
+  fold.Add(blocks[1], blocks_[1].result);
+  EXPECT_FALSE(fold.NextBlock());  // the first one is still out
+  fold.Add(blocks[0], blocks_[0].result);
+  EXPECT_TRUE(fold.NextBlock());
+  EXPECT_TRUE(fold.NextBlock());
+  EXPECT_FALSE(fold.NextBlock());
+}
+
+TEST_F(PointFoldTest, ResultIsIndependentOfArrivalOrder) {
+  const BlockResult expected = *FoldPoint(*point_);
+  auto shuffled = chunks_;
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(seed));
     PointFold fold(*point_);
     uint64_t samples = 0;
-    for (const auto& [block, result] : shuffled) samples += fold.Add(block, result);
+    for (const ChunkResult& chunk : shuffled) samples += fold.Add(chunk);
     EXPECT_TRUE(fold.finished());
     EXPECT_EQ(fold.Merged(), expected);
     EXPECT_EQ(samples, 1000u);
@@ -52,72 +146,83 @@ TEST_F(PointFoldTest, ResultIsIndependentOfArrivalOrder) {
 
 TEST_F(PointFoldTest, MergingInAnotherOrderGivesOtherBits) {  // or the test above proves nothing
   BlockResult backwards;
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
-    backwards.Merge(block->second);
+  for (auto chunk = chunks_.rbegin(); chunk != chunks_.rend(); ++chunk) {
+    backwards.Merge(chunk->result);
   }
   EXPECT_NE(backwards, *FoldPoint(*point_));
 }
 
 TEST_F(PointFoldTest, ResumedFoldGivesTheSameBits) {
-  const BlockResult expected = *FoldPoint(*point_);
-  for (size_t n = 0; n <= blocks_.size(); n += 7) {
+  for (size_t n = 0; n <= chunks_.size(); ++n) {
     PointFold before(*point_);
-    for (size_t i = 0; i < n; ++i) before.Add(blocks_[i].first, blocks_[i].second);
+    for (size_t i = 0; i < n; ++i) before.Add(chunks_[i]);
     PointFold after(*point_);
     after.Resume(before.state());
     EXPECT_EQ(after.PlannedSamples(), before.PlannedSamples());
-    size_t i = n;
-    while (const auto block = after.NextBlock()) {
-      ASSERT_EQ(*block, blocks_[i].first);
-      after.Add(*block, blocks_[i++].second);
-    }
+    for (size_t i = n; i < chunks_.size(); ++i) after.Add(chunks_[i]);
     EXPECT_TRUE(after.finished());
-    EXPECT_EQ(after.Merged(), expected) << n;
+    EXPECT_EQ(after.Merged(), *FoldPoint(*point_)) << n;
   }
 }
 
-TEST_F(PointFoldTest, EarlyBlocksWait) {
+TEST_F(PointFoldTest, EarlyChunksWait) {
   PointFold fold(*point_);
-  EXPECT_EQ(fold.Add(blocks_[1].first, blocks_[1].second), 0u);
+  EXPECT_TRUE(fold.Needs(1));
+  EXPECT_EQ(fold.Add(chunks_[1]), 0u);
+  EXPECT_FALSE(fold.Needs(1));
   EXPECT_EQ(fold.waiting(), 1u);
   EXPECT_FALSE(fold.HasBlocks());
-  EXPECT_EQ(fold.Add(blocks_[0].first, blocks_[0].second),
-            blocks_[0].first.samples + blocks_[1].first.samples);
+  EXPECT_EQ(fold.Add(chunks_[0]), chunks_[0].result.samples + chunks_[1].result.samples);
   EXPECT_EQ(fold.waiting(), 0u);
 }
 
-TEST_F(PointFoldTest, ABlockCountsOnce) {
+TEST_F(PointFoldTest, AChunkCountsOnce) {
   PointFold fold(*point_);
   for (int repeat = 0; repeat < 3; ++repeat) {
-    fold.Add(blocks_[0].first, blocks_[0].second);
-    fold.Add(blocks_[2].first, blocks_[2].second);
+    fold.Add(chunks_[0]);
+    fold.Add(chunks_[2]);
   }
-  EXPECT_EQ(fold.Merged(), blocks_[0].second);
+  EXPECT_EQ(fold.Merged(), chunks_[0].result);
+}
+
+TEST_F(PointFoldTest, TheFirstBlocksOfAChunkCountOnce) {
+  PointFold fold(*point_);
+  ChunkFold blocks = WholeRange();
+  while (blocks.NextBlock()) continue;
+  uint64_t samples = 0;
+  for (size_t i = 0; i < 5; ++i) {
+    for (ChunkResult& chunk : blocks.Add(blocks_[i].block, blocks_[i].result)) {
+      samples += fold.Add(std::move(chunk));
+    }
+    for (int repeat = 0; repeat < 2; ++repeat) samples += fold.AddPartial(blocks.partial());
+    EXPECT_EQ(samples, fold.Merged().samples);
+  }
+  EXPECT_EQ(fold.AddPartial({.chunk = 1, .blocks = 1, .merged = blocks_[0].result}), 0u);
+  samples += fold.Add(chunks_[0]);
+  EXPECT_EQ(samples, chunks_[0].result.samples);
+  EXPECT_EQ(fold.Merged(), chunks_[0].result);
 }
 
 TEST_F(PointFoldTest, FinishKeepsWhatIsMergedAndDropsWhatWaits) {
   PointFold fold(*point_);
-  fold.Add(blocks_[0].first, blocks_[0].second);
-  fold.Add(blocks_[2].first, blocks_[2].second);
+  fold.Add(chunks_[0]);
+  fold.Add(chunks_[2]);
   fold.Finish();
-  fold.Add(blocks_[1].first, blocks_[1].second);
-  EXPECT_EQ(fold.Merged(), blocks_[0].second);
+  fold.Add(chunks_[1]);
+  EXPECT_EQ(fold.Merged(), chunks_[0].result);
   EXPECT_EQ(fold.waiting(), 0u);
-  EXPECT_FALSE(fold.NextBlock());
+  EXPECT_FALSE(fold.Needs(3));
 }
 
-TEST_F(PointFoldTest, NoMoreBlocksAreHandedOutThanTheWindowHolds) {
-  const auto endless = Point({.tolerance = 1e-5});
-  PointFold fold(*endless);
-  std::vector<Block> blocks;
-  while (const auto block = fold.NextBlock()) blocks.push_back(*block);
-  EXPECT_EQ(blocks.size(), PointFold::kWindow);
-  fold.Add(blocks[1], blocks_[1].second);
-  EXPECT_FALSE(fold.NextBlock());  // the first one is still out
-  fold.Add(blocks[0], blocks_[0].second);
-  EXPECT_TRUE(fold.NextBlock());
-  EXPECT_TRUE(fold.NextBlock());
-  EXPECT_FALSE(fold.NextBlock());
+TEST_F(PointFoldTest, ALocalPointIsTheSame) {
+  LocalPoint local(*point_);
+  for (const ComputedBlock& computed : blocks_) {
+    ASSERT_EQ(local.NextBlock(), computed.block);
+    local.Add(computed.block, computed.result);
+    EXPECT_EQ(local.Merged().samples, computed.block.first + computed.block.samples);
+  }
+  EXPECT_FALSE(local.NextBlock());
+  EXPECT_EQ(local.Merged(), *FoldPoint(*point_));
 }
 
 // It is reached within a chunk; the fold goes on to the chunk's end.

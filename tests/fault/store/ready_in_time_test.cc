@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_book.h"
 #include "server/store/job_table.h"
@@ -17,6 +17,7 @@
 #include "server/store/store.h"
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
 #include "tests/server/requests.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -33,10 +34,10 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 }
 
 std::string ResultWithHistogram() {
-  v1::PointResult result;
+  storage::Result result;
   auto* histogram = result.add_histograms();
-  for (int i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
-  return PointResultBytes(result);
+  for (uint64_t i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
+  return ResultRecordBytes(result);
 }
 
 JobRecord NewJob(int number) {
@@ -82,10 +83,10 @@ double SecondsUntilReady(const std::string& path) {
   const double opened = SecondsSince(start);
   EXPECT_OK(store);
   // Held up, so that what is measured is not what the jobs cost.
-  JobBook book(**store, Limits(), 2,
-               FakeExperiments(
-                   [](size_t, uint64_t, const std::stop_token& stop) { Turnstile().Pass(stop); }),
-               nullptr);
+  ThreadPool pool(2, FakeExperiments([](size_t, uint64_t, const std::stop_token& stop) {
+                    Turnstile().Pass(stop);
+                  }));
+  JobBook book(**store, Limits(), pool.scheduler(), nullptr);
   EXPECT_OK(book.Resume());
   const double resumed = SecondsSince(start);
   EXPECT_OK(book.List(LocalPrincipal(), {.before = std::numeric_limits<int64_t>::max(),

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/convert/point_result.h"
+#include "server/convert/deterministic_bytes.h"
 #include "server/convert/spec.h"
 #include "server/jobs/job_state.h"
 #include "tests/server/fake_experiments.h"
@@ -76,7 +76,8 @@ ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
   status_ = store.status();
   if (!status_.ok()) return;
   store_ = *std::move(store);
-  book_ = std::make_unique<JobBook>(*store_, Limits(), 1, Factory(turnstile),
+  pool_ = std::make_unique<ThreadPool>(1, Factory(turnstile));
+  book_ = std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler(),
                                     [this] { OnStateChange(); });
   status_ = book_->Resume();
 }
@@ -140,7 +141,7 @@ std::vector<std::string> ServiceOnDisk::Results(const std::string& id) {
   query.max_bytes = std::numeric_limits<size_t>::max();
   const auto page = book_->Results(LocalPrincipal(), id, query);
   if (!page.ok()) return results;
-  for (const v1::PointResult& point : page->points) results.push_back(PointResultBytes(point));
+  for (const v1::PointResult& point : page->points) results.push_back(DeterministicBytes(point));
   return results;
 }
 

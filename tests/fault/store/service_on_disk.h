@@ -18,6 +18,7 @@
 #include "server/jobs/job_book.h"
 #include "server/store/store.h"
 #include "tests/fault/store/fault_disk.h"
+#include "tests/server/thread_pool.h"
 
 namespace ballpiston::server {
 
@@ -78,6 +79,7 @@ class ServiceOnDisk {
   uint64_t changes_ = 0;
   absl::Status status_;
   std::unique_ptr<Store> store_;
+  std::unique_ptr<ThreadPool> pool_;
   std::unique_ptr<JobBook> book_;
 };
 

@@ -17,6 +17,7 @@
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
 #include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
@@ -56,10 +57,9 @@ class ServerStatusTest : public testing::Test {
   Authenticator authenticator_;
   std::unique_ptr<Store> store_;
   ModelLadder ladder_{*store_, 2};
-  JobBook book_{
-      *store_, limits_, 2,
-      FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); }),
-      nullptr};
+  ThreadPool pool_{
+      2, FakeExperiments([this](size_t, uint64_t, std::stop_token stop) { gate_.Pass(stop); })};
+  JobBook book_{*store_, limits_, pool_.scheduler(), nullptr};
   RpcExecutor executor_{1};
   WatchRegistry watches_{std::chrono::milliseconds(1)};
   Activity activity_;
@@ -68,6 +68,8 @@ class ServerStatusTest : public testing::Test {
   ServiceContext context_{.authenticator = authenticator_,
                           .limits = limits_,
                           .book = book_,
+                          .scheduler = pool_.scheduler(),
+                          .threads = pool_.threads(),
                           .ladder = ladder_,
                           .executor = executor_,
                           .watches = watches_,

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "absl/strings/ascii.h"
-#include "ballpiston/v1/storage.pb.h"
 #include "core/experiment/all_experiments.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
@@ -16,6 +15,7 @@
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
@@ -283,9 +283,14 @@ TEST(Spec, NotANumberAndInfinityAreViolations) {
                              "spec.grid.exponent[1]", "spec.target.tolerance"}));
 }
 
+v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
+                              const BlockResult& merged, Details details) {
+  return PointResultMessage(ResultRecordOf(index, experiment, merged, details));
+}
+
 TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   const EnsembleSpec spec = FakeSpec(1, 1);
-  const auto experiment = FakeExperiments()(spec, 0, std::stop_token());
+  const auto experiment = FakeExperiments()(spec, 0);
   BlockResult merged;
   merged.samples = 1;
   merged.moments.resize(1);
@@ -352,9 +357,9 @@ TEST(PointResult, DetailsCanBeLeftOutOrCleared) {
   const v1::PointResult without = PointResultOf(0, told, BlockResult(), Details::kLeftOut);
   EXPECT_EQ(without.curves_size(), 0);
   EXPECT_EQ(without.estimates_size(), 3);
-  v1::PointResult cleared = PointResultOf(0, told, BlockResult(), Details::kIncluded);
+  storage::Result cleared = ResultRecordOf(0, told, BlockResult(), Details::kIncluded);
   ClearDetails(cleared);
-  EXPECT_EQ(cleared.SerializeAsString(), without.SerializeAsString());
+  EXPECT_EQ(PointResultMessage(cleared).SerializeAsString(), without.SerializeAsString());
 }
 
 // Relative in an answer, absolute in a result; of the first estimate alone, unless it is 0.

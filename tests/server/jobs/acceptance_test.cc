@@ -24,6 +24,7 @@
 #include "server/store/job_table.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/store_access.h"
@@ -54,7 +55,8 @@ class AcceptanceTest : public testing::Test {
   void Start() {
     ASSERT_OK_AND_ASSIGN(
         store_, Store::Open(folder_.File("store"), {.delay = std::chrono::milliseconds(1)}));
-    book_ = std::make_unique<JobBook>(*store_, limits_, 2, Experiments(), [this] {
+    pool_ = std::make_unique<ThreadPool>(2, Experiments());
+    book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler(), [this] {
       std::lock_guard lock(mutex_);
       changed_.notify_all();
     });
@@ -63,6 +65,7 @@ class AcceptanceTest : public testing::Test {
 
   void Stop() {
     book_.reset();
+    pool_.reset();
     store_.reset();
   }
 
@@ -135,6 +138,7 @@ class AcceptanceTest : public testing::Test {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::unique_ptr<Store> store_;
+  std::unique_ptr<ThreadPool> pool_;
   std::unique_ptr<JobBook> book_;
 };
 

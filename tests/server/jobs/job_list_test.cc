@@ -12,6 +12,7 @@
 #include "server/jobs/job_name.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
 #include "tests/server/requests.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -79,8 +80,9 @@ class JobList : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_ = *Store::Open(folder_.File("store"), {});
+  ThreadPool pool_{1, FakeExperiments()};
   std::unique_ptr<JobBook> book_ =
-      std::make_unique<JobBook>(*store_, Limits(), 1, FakeExperiments(), [] {});
+      std::make_unique<JobBook>(*store_, Limits(), pool_.scheduler(), [] {});
 };
 
 TEST_F(JobList, AJobMatchesAllPartsOfTheFilter) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "server/scheduling/run_journal.h"
 
@@ -16,10 +17,13 @@ class RecordingJournal : public RunJournal {
  public:
   void Began() override { ++begun; }
 
-  absl::StatusOr<std::optional<FoldState>> ReadCheckpoint(size_t point) override {
-    const auto found = stored.find(point);
-    if (found == stored.end()) return std::nullopt;
-    return found->second;
+  absl::StatusOr<StoredPoint> ReadPoint(size_t point) override {
+    StoredPoint found;
+    if (const auto state = stored.find(point); state != stored.end()) found.state = state->second;
+    if (const auto early = stored_chunks.find(point); early != stored_chunks.end()) {
+      found.chunks = early->second;
+    }
+    return found;
   }
 
   uint64_t Merged(const MergedSamples& news) override {
@@ -31,6 +35,11 @@ class RecordingJournal : public RunJournal {
   void Checkpoint(size_t point, const FoldState& state) override {
     std::lock_guard lock(mutex);
     checkpoints[point] = state;
+  }
+
+  void ChunkIsEarly(size_t point, const ChunkResult& chunk) override {
+    std::lock_guard lock(mutex);
+    early[point].push_back(chunk);
   }
 
   void Worked(double seconds) override {
@@ -58,7 +67,8 @@ class RecordingJournal : public RunJournal {
     return *outcome;
   }
 
-  std::map<size_t, FoldState> stored;  // set before the run
+  std::map<size_t, FoldState> stored;                         // these two are set before the run
+  std::map<size_t, std::vector<ChunkResult>> stored_chunks;
   std::mutex mutex;
   std::condition_variable changed;
   std::atomic<int> begun = 0;
@@ -68,6 +78,7 @@ class RecordingJournal : public RunJournal {
   std::map<size_t, uint64_t> merged;    // samples
   std::map<size_t, uint64_t> restored;  // likewise
   std::map<size_t, FoldState> checkpoints;
+  std::map<size_t, std::vector<ChunkResult>> early;
   std::map<size_t, BlockResult> finished;
   std::optional<absl::Status> outcome;
 };

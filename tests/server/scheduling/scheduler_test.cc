@@ -1,4 +1,4 @@
-#include "server/execution/worker_pool.h"
+#include "server/scheduling/scheduler.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -19,6 +18,7 @@
 #include "gtest/gtest.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::server {
@@ -38,7 +38,7 @@ RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& jo
   return request;
 }
 
-JournalPointer AddRun(WorkerPool& pool, int64_t key, const EnsembleSpec& spec,
+JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
                       const std::string& principal = "", int32_t priority = 0) {
   auto journal = std::make_shared<RecordingJournal>();
   RunRequest request = RunOf(key, spec, journal);
@@ -56,10 +56,10 @@ void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJournal& jour
   }
 }
 
-TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
+TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
   const EnsembleSpec spec = FakeSpec(20, 40);
   for (const int workers : {1, 2, 8}) {
-    WorkerPool pool(workers, FakeExperiments());
+    ThreadPool pool(workers, FakeExperiments());
     const auto journal = AddRun(pool, 1, spec);
     EXPECT_OK(journal->AwaitEnd());
     ExpectAllPointsRight(spec, *journal);
@@ -67,9 +67,9 @@ TEST(WorkerPool, TheSameBitsWithAnyNumberOfWorkers) {
   }
 }
 
-TEST(WorkerPool, EveryBlockOfAPointIsMergedOnce) {
+TEST(Scheduler, EveryBlockOfAPointIsMergedOnce) {
   const EnsembleSpec spec = FakeSpec(5, 100);
-  WorkerPool pool(8, FakeExperiments());
+  ThreadPool pool(8, FakeExperiments());
   const auto journal = AddRun(pool, 1, spec);
   ASSERT_OK(journal->AwaitEnd());
   for (const auto& [point, samples] : journal->merged) {
@@ -77,24 +77,13 @@ TEST(WorkerPool, EveryBlockOfAPointIsMergedOnce) {
   }
 }
 
-// A fold of the fake experiment with so many blocks.
-FoldState StateWith(uint64_t blocks, const EnsembleSpec& spec, size_t point) {
-  const auto experiment = FakeExperiments()(spec, point, std::stop_token());
-  PointFold fold(*experiment);
-  for (uint64_t i = 0; i < blocks; ++i) {
-    const std::optional<Block> block = fold.NextBlock();
-    fold.Add(*block, *RunBlock(*experiment, *block));
-  }
-  return fold.state();
-}
-
-TEST(WorkerPool, APointGoesOnFromItsCheckpoint) {
+TEST(Scheduler, APointGoesOnFromItsCheckpoint) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[1] = StateWith(45, spec, 1);
+  journal->stored[1] = FakeState(spec, 1, 45);
   std::mutex mutex;
   std::set<uint64_t> computed;
-  WorkerPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
+  ThreadPool pool(3, FakeExperiments([&](size_t point, uint64_t block, std::stop_token) {
                     std::lock_guard lock(mutex);
                     if (point == 1) computed.insert(block);
                   }));
@@ -106,50 +95,50 @@ TEST(WorkerPool, APointGoesOnFromItsCheckpoint) {
   EXPECT_EQ(journal->restored[1], 45 * kFakeSamplesPerBlock);
 }
 
-TEST(WorkerPool, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
+TEST(Scheduler, APointWhoseCheckpointIsCompleteFinishesAtOnce) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[0] = StateWith(3, spec, 0);
+  journal->stored[0] = FakeState(spec, 0, 3);
   std::atomic<int> computed = 0;
-  WorkerPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
+  ThreadPool pool(2, FakeExperiments([&](size_t, uint64_t, std::stop_token) { ++computed; }));
   pool.Add(RunOf(1, spec, journal));
   ASSERT_OK(journal->AwaitEnd());
   ExpectAllPointsRight(spec, *journal);
   EXPECT_EQ(computed, 0);
 }
 
-TEST(WorkerPool, ACheckpointOfAnotherShapeEndsTheRun) {
+TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
   const EnsembleSpec spec = FakeSpec(1, 3);
   auto journal = std::make_shared<RecordingJournal>();
-  journal->stored[0] = StateWith(2, spec, 0);
+  journal->stored[0] = FakeState(spec, 0, 2);
   journal->stored[0].partial.moments.resize(1000);
-  WorkerPool pool(2, FakeExperiments());
+  ThreadPool pool(2, FakeExperiments());
   pool.Add(RunOf(1, spec, journal));
   EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kDataLoss));
   EXPECT_TRUE(journal->finished.empty());
 }
 
 // How far the pool is when it is shut down, a later one goes on from.
-TEST(WorkerPool, AShutdownWritesACheckpoint) {
+TEST(Scheduler, AShutdownWritesACheckpoint) {
   const EnsembleSpec spec = FakeSpec(1, 80);
   Gate gate;
-  WorkerPool pool(1, GatedExperiments(gate, 50));
+  ThreadPool pool(1, GatedExperiments(gate, 50));
   const auto journal = AddRun(pool, 1, spec);
   gate.AwaitWaiting(1);
   pool.Shutdown();
   const auto later = std::make_shared<RecordingJournal>();
   later->stored = journal->checkpoints;
-  WorkerPool next(2, FakeExperiments());
+  ThreadPool next(2, FakeExperiments());
   next.Add(RunOf(1, spec, later));
   ASSERT_OK(later->AwaitEnd());
   ExpectAllPointsRight(spec, *later);
   EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
 }
 
-TEST(WorkerPool, FinishedPointsAreNotComputedAgain) {
+TEST(Scheduler, FinishedPointsAreNotComputedAgain) {
   const EnsembleSpec spec = FakeSpec(4, 5);
   auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(2, FakeExperiments());
+  ThreadPool pool(2, FakeExperiments());
   RunRequest request = RunOf(1, spec, journal);
   request.finished = {true, false, true, false};
   pool.Add(std::move(request));
@@ -159,9 +148,9 @@ TEST(WorkerPool, FinishedPointsAreNotComputedAgain) {
   EXPECT_TRUE(journal->finished.contains(3));
 }
 
-TEST(WorkerPool, ARunWithNothingToComputeEnds) {
+TEST(Scheduler, ARunWithNothingToComputeEnds) {
   auto journal = std::make_shared<RecordingJournal>();
-  WorkerPool pool(1, FakeExperiments());
+  ThreadPool pool(1, FakeExperiments());
   RunRequest request = RunOf(1, FakeSpec(1, 5), journal);
   request.finished = {true};
   pool.Add(std::move(request));
@@ -169,17 +158,17 @@ TEST(WorkerPool, ARunWithNothingToComputeEnds) {
   EXPECT_EQ(journal->begun, 0);
 }
 
-TEST(WorkerPool, APointDoesNotRunFarAheadOfASlowBlock) {
+TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
   Gate gate;
   std::atomic<uint64_t> furthest = 0;
-  const EnsembleSpec spec = FakeSpec(1, 2 * PointFold::kWindow);
-  WorkerPool pool(4, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
+  const EnsembleSpec spec = FakeSpec(1, 2 * ChunkFold::kWindow);
+  ThreadPool pool(4, FakeExperiments([&](size_t, uint64_t block, std::stop_token stop) {
                     uint64_t seen = furthest;
                     while (block > seen && !furthest.compare_exchange_weak(seen, block)) {
                     }
                     if (block == 0) gate.Pass(stop);
                     // The last block of the window: no more can be handed out before the first.
-                    if (block == PointFold::kWindow - 1) {
+                    if (block == ChunkFold::kWindow - 1) {
                       EXPECT_EQ(gate.waiting(), 1);
                       gate.Open();
                     }
@@ -200,10 +189,10 @@ EnsembleSpec FakeBudget(int points) {
   return spec;
 }
 
-TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
+TEST(Scheduler, ASpentBudgetEndsAPointAtABlocksEnd) {
   const EnsembleSpec spec = FakeBudget(5);
   for (const int workers : {1, 4}) {
-    WorkerPool pool(workers, FakeExperiments());
+    ThreadPool pool(workers, FakeExperiments());
     const auto journal = AddRun(pool, 1, spec);
     EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 5u);
@@ -217,10 +206,10 @@ TEST(WorkerPool, ASpentBudgetEndsAPointAtABlocksEnd) {
   }
 }
 
-TEST(WorkerPool, AnAmpleBudgetHasNoEffect) {
+TEST(Scheduler, AnAmpleBudgetHasNoEffect) {
   EnsembleSpec spec = FakeSpec(2, 0);
   spec.target = {.budget_seconds = 1e6};
-  WorkerPool pool(2, FakeExperiments());
+  ThreadPool pool(2, FakeExperiments());
   const auto journal = AddRun(pool, 1, spec);
   EXPECT_OK(journal->AwaitEnd());
   for (const auto& [point, merged] : journal->finished) {
@@ -229,10 +218,10 @@ TEST(WorkerPool, AnAmpleBudgetHasNoEffect) {
 }
 
 // With one worker one block is merged at a time, so nothing but the first.
-TEST(WorkerPool, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
+TEST(Scheduler, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
   EnsembleSpec spec = FakeBudget(5);
   spec.target.tolerance = 0.001;
-  WorkerPool pool(1, FakeExperiments());
+  ThreadPool pool(1, FakeExperiments());
   const auto journal = AddRun(pool, 1, spec);
   const absl::Status outcome = journal->AwaitEnd();
   EXPECT_THAT(outcome, StatusIs(absl::StatusCode::kDeadlineExceeded));
@@ -249,13 +238,13 @@ TEST(WorkerPool, AMissedToleranceIsReportedAfterAllPointsAreFinished) {
                             reached));
 }
 
-TEST(WorkerPool, AReachedToleranceEndsBeforeTheBudget) {
+TEST(Scheduler, AReachedToleranceEndsBeforeTheBudget) {
   EnsembleSpec spec = FakeSpec(3, 0);
   spec.target = {.tolerance = 0.05};
   EnsembleSpec with_budget = spec;
   with_budget.target.budget_seconds = 1e6;
   for (const EnsembleSpec& asked : {spec, with_budget}) {
-    WorkerPool pool(1, FakeExperiments());
+    ThreadPool pool(1, FakeExperiments());
     const auto journal = AddRun(pool, 1, asked);
     EXPECT_OK(journal->AwaitEnd());
     ASSERT_EQ(journal->finished.size(), 3u);
@@ -267,12 +256,12 @@ TEST(WorkerPool, AReachedToleranceEndsBeforeTheBudget) {
   }
 }
 
-TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
+TEST(Scheduler, APointWithoutBlocksFinishesAtOnceBesideOthers) {
   EnsembleSpec spec = FakeSpec(4, 5);
-  WorkerPool pool(2, [](const EnsembleSpec& whole, size_t index, const std::stop_token& stop) {
+  ThreadPool pool(2, [](const EnsembleSpec& whole, size_t index) {
     EnsembleSpec of_point = whole;
     if (index % 2 == 0) of_point.target.samples = 0;  // the even ones need none
-    return FakeExperiments()(of_point, index, stop);
+    return FakeExperiments()(of_point, index);
   });
   const auto journal = AddRun(pool, 1, spec);
   EXPECT_OK(journal->AwaitEnd());
@@ -283,25 +272,7 @@ TEST(WorkerPool, APointWithoutBlocksFinishesAtOnceBesideOthers) {
   EXPECT_EQ(journal->merged.size(), 2u);
 }
 
-// As a pilot run that is told to stop does.
-TEST(WorkerPool, AFactoryIsToldToStopAndItsRunEndsAsCancelled) {
-  Gate gate;
-  WorkerPool pool(1,
-                  [&](const EnsembleSpec& spec, size_t index,
-                      const std::stop_token& stop) -> std::unique_ptr<const PointExperiment> {
-                    gate.Pass(stop);
-                    if (stop.stop_requested()) return nullptr;
-                    return FakeExperiments()(spec, index, stop);
-                  });
-  const auto journal = AddRun(pool, 1, FakeSpec(3, 5));
-  gate.AwaitWaiting(1);
-  pool.Cancel(1);
-  EXPECT_THAT(journal->AwaitEnd(), StatusIs(absl::StatusCode::kCancelled));
-  EXPECT_TRUE(journal->finished.empty());
-  EXPECT_EQ(journal->ends, 1);
-}
-
-TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
+TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   // Some of the thread's own time, whoever else computes.
   const auto compute = [] {
     timespec begin{}, now{};
@@ -310,11 +281,11 @@ TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
       clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     } while (now.tv_sec == begin.tv_sec && now.tv_nsec - begin.tv_nsec < 2'000'000);
   };
-  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
+  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
     if (spec.seed == 2) compute();
     return FakeExperiments([&, seed = spec.seed](size_t, uint64_t, std::stop_token) {
       if (seed == 2) compute();
-    })(spec, index, stop);
+    })(spec, index);
   });
   const auto idle = AddRun(pool, 1, FakeSpec(1, 4, 1));
   ASSERT_OK(idle->AwaitEnd());
@@ -325,9 +296,9 @@ TEST(WorkerPool, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
   EXPECT_GE(busy->work, 4 * 0.002);
 }
 
-TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
+TEST(Scheduler, ACancelledRunStopsAndEndsOnce) {
   Gate gate;
-  WorkerPool pool(2, GatedExperiments(gate, 3));
+  ThreadPool pool(2, GatedExperiments(gate, 3));
   const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
   gate.AwaitWaiting(2);
   pool.Cancel(1);
@@ -338,8 +309,8 @@ TEST(WorkerPool, ACancelledRunStopsAndEndsOnce) {
   EXPECT_TRUE(journal->finished.empty());
 }
 
-TEST(WorkerPool, AnExceptionFailsItsRunOnly) {
-  WorkerPool pool(2,
+TEST(Scheduler, AnExceptionFailsItsRunOnly) {
+  ThreadPool pool(2,
                   FakeExperimentsBySeed([](uint64_t seed, size_t, uint64_t block, std::stop_token) {
                     if (seed == 13 && block == 5)
                       throw std::runtime_error("the ball left the cell");
@@ -354,10 +325,9 @@ TEST(WorkerPool, AnExceptionFailsItsRunOnly) {
   ExpectAllPointsRight(FakeSpec(3, 20, 15), *good);
 }
 
-TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
-  WorkerPool pool(2,
-                  [](const EnsembleSpec&, size_t,
-                     const std::stop_token&) -> std::unique_ptr<const PointExperiment> {
+TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
+  ThreadPool pool(2,
+                  [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
                     throw std::runtime_error("no such experiment");
                   });
   const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
@@ -365,9 +335,9 @@ TEST(WorkerPool, AFactoryThatThrowsFailsItsRun) {
 }
 
 // A short run beside a long one that came first: it has ended when the long one has not.
-TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
+TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
   Gate gate;
-  WorkerPool pool(
+  ThreadPool pool(
       1, FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t block, std::stop_token stop) {
         if (seed == 1 && block == 10) gate.Pass(stop);  // until the short run has been added
       }));
@@ -379,45 +349,12 @@ TEST(WorkerPool, AShortRunDoesNotWaitForALongOne) {
   EXPECT_EQ(long_run->ends, 0);
 }
 
-// What a worker does with a task, but for one block a turn.
-void DoTask(const RunTask& task, const EnsembleSpec& spec, Run& run) {
-  if (const auto* opening = std::get_if<OpenPointTask>(&task)) {
-    run.PointOpened(opening->point,
-                    std::make_unique<OpenPoint>(FakeExperiments()(spec, opening->point, {})));
-  } else if (OpenPoint* open = run.FindOpen(std::get<SessionTask>(task).point)) {
-    const std::optional<Block> block = open->fold.NextBlock();
-    if (block) open->fold.Add(*block, *RunBlock(*open->experiment, *block));
-    if (open->fold.finished()) run.PointClosed(std::get<SessionTask>(task).point);
-  }
-  run.TaskDone(task);
-}
-
-// So that of 10,000 runs no more are asked in vain than there are workers.
-TEST(Run, HasATaskUnlessItWaitsForOthersOrIsOver) {
-  const EnsembleSpec spec = FakeSpec(4, 10);
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    std::minstd_rand random(seed);
-    server::Run run(RunOf(1, spec, nullptr));
-    std::vector<RunTask> out;
-    while (!run.over()) {
-      std::optional<RunTask> task = run.NextTask();
-      if (task) out.push_back(*std::move(task));
-      ASSERT_FALSE(out.empty());
-      if (task && random() % 2 == 0) continue;
-      std::swap(out[random() % out.size()], out.back());
-      DoTask(out.back(), spec, run);
-      out.pop_back();
-    }
-    EXPECT_TRUE(out.empty());
-  }
-}
-
 // Added while the only worker is held up by a first run, so that all of them are there when it goes
 // on.
-TEST(WorkerPool, AHigherPriorityIsServedFirst) {
+TEST(Scheduler, AHigherPriorityIsServedFirst) {
   Gate gate;
   std::vector<uint64_t> begun;  // the seed of the run, for each block
-  WorkerPool pool(1,
+  ThreadPool pool(1,
                   FakeExperimentsBySeed([&](uint64_t seed, size_t, uint64_t, std::stop_token stop) {
                     begun.push_back(seed);
                     if (seed == 1) gate.Pass(stop);
@@ -441,11 +378,11 @@ TEST(WorkerPool, AHigherPriorityIsServedFirst) {
 }
 
 // The first has a point that takes long to be opened; nothing but that keeps it from working.
-TEST(WorkerPool, ARunWithoutTasksLetsTheNextGoOn) {
+TEST(Scheduler, ARunWithoutTasksLetsTheNextGoOn) {
   Gate gate;
-  WorkerPool pool(2, [&](const EnsembleSpec& spec, size_t index, const std::stop_token& stop) {
-    if (spec.seed == 1) gate.Pass(stop);
-    return FakeExperiments()(spec, index, stop);
+  ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
+    if (spec.seed == 1) gate.Pass({});
+    return FakeExperiments()(spec, index);
   });
   const auto first = AddRun(pool, 1, FakeSpec(1, 5, 1), "a", 100);
   gate.AwaitWaiting(1);
@@ -456,7 +393,7 @@ TEST(WorkerPool, ARunWithoutTasksLetsTheNextGoOn) {
   EXPECT_OK(first->AwaitEnd());
 }
 
-TEST(WorkerPool, TheSameBitsInAnyOrderOfTurns) {
+TEST(Scheduler, TheSameBitsInAnyOrderOfTurns) {
   struct Owner {
     const char* principal;
     int32_t priority;
@@ -464,7 +401,7 @@ TEST(WorkerPool, TheSameBitsInAnyOrderOfTurns) {
   for (const auto& owners : {std::vector<Owner>{{"a", 0}, {"a", 0}, {"a", 0}},
                              std::vector<Owner>{{"a", -1}, {"a", 5}, {"a", 100}},
                              std::vector<Owner>{{"c", 1}, {"b", 1}, {"a", -100}}}) {
-    WorkerPool pool(3, FakeExperiments());
+    ThreadPool pool(3, FakeExperiments());
     std::vector<JournalPointer> journals;
     for (size_t i = 0; i < owners.size(); ++i) {
       journals.push_back(AddRun(pool, static_cast<int64_t>(i) + 1, FakeSpec(5, 40, i),
@@ -477,18 +414,18 @@ TEST(WorkerPool, TheSameBitsInAnyOrderOfTurns) {
   }
 }
 
-TEST(WorkerPool, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
+TEST(Scheduler, ShutdownLeavesUnfinishedRunsWithoutAnEnd) {
   Gate gate;
-  WorkerPool pool(2, GatedExperiments(gate));
+  ThreadPool pool(2, GatedExperiments(gate));
   const auto journal = AddRun(pool, 1, FakeSpec(10, 100));
   gate.AwaitWaiting(2);
   pool.Shutdown();
   EXPECT_EQ(journal->ends, 0);
 }
 
-TEST(WorkerPool, ChangedSinceReturnsThePointsThatChanged) {
+TEST(Scheduler, ChangedSinceReturnsThePointsThatChanged) {
   Gate gate;
-  WorkerPool pool(1, GatedExperiments(gate, 6));
+  ThreadPool pool(1, GatedExperiments(gate, 6));
   const EnsembleSpec spec = FakeSpec(1, 100);
   const auto journal = AddRun(pool, 1, spec);
   gate.AwaitWaiting(1);

@@ -302,9 +302,9 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
         "INSERT INTO results (job, point, samples, result, finish) VALUES (1, 1, NULL, x'00', 1)");
   };
   absl::Status told;
-  store->RecordCheckpoint(1, 0, [] { return "before"; });
+  store->RecordCheckpoint(1, 0, 0, [] { return "before"; });
   store->Record(broken, [&](const absl::Status& status) { told = status; });
-  store->RecordCheckpoint(1, 1, [] { return "after"; });
+  store->RecordCheckpoint(1, 1, 0, [] { return "after"; });
   const absl::Status commit = store->Commit(broken);
   EXPECT_THAT(commit, StatusIs(absl::StatusCode::kInvalidArgument));
   EXPECT_THAT(told, StatusIs(absl::StatusCode::kInvalidArgument));
@@ -316,7 +316,7 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
 
 TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
   const auto store = Open({.delay = std::chrono::hours(1)});
-  store->RecordCheckpoint(1, 0, [] { return "kept"; });
+  store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
   absl::Status full = absl::ResourceExhaustedError("too many jobs");
   full.SetPayload("reason", absl::Cord("TOO_MANY_JOBS"));
   const absl::Status refused = store->Commit([&](Database& database) {
@@ -334,7 +334,7 @@ TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
-  store->RecordCheckpoint(1, 0, [&]() -> std::string {
+  store->RecordCheckpoint(1, 0, 0, [&]() -> std::string {
     if (++attempts < 3) throw std::bad_alloc();
     return "kept";
   });
@@ -354,9 +354,9 @@ TEST_F(StoreTest, AnotherProgramsDatabaseIsRefused) {
 
 TEST_F(StoreTest, TheLastCheckpointCounts) {
   const auto store = Open();
-  store->RecordCheckpoint(1, 2, [] { return "first"; });
+  store->RecordCheckpoint(1, 2, 0, [] { return "first"; });
   ASSERT_OK(store->Flush());
-  store->RecordCheckpoint(1, 2, [] { return "second"; });
+  store->RecordCheckpoint(1, 2, 0, [] { return "second"; });
   ASSERT_OK(store->Flush());
   EXPECT_EQ(Checkpoint(*store, 1, 2), "second");
 }
@@ -373,7 +373,7 @@ TEST_F(StoreTest, TheFirstWriterOfAResultWins) {
 TEST_F(StoreTest, WritesAreCommittedInGroups) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   for (int point = 0; point < 1000; ++point) {
-    store->RecordCheckpoint(1, point, [] { return "r"; });
+    store->RecordCheckpoint(1, point, 0, [] { return "r"; });
   }
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->commits(), 1);
@@ -383,7 +383,7 @@ TEST_F(StoreTest, WritesAreCommittedInGroups) {
 TEST_F(StoreTest, OnlyTheLastCheckpointOfAGroupIsWritten) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   for (int i = 0; i < 10; ++i) {
-    store->RecordCheckpoint(1, 0, [i] { return std::to_string(i); });
+    store->RecordCheckpoint(1, 0, 0, [i] { return std::to_string(i); });
   }
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->checkpoints_written(), 1);
@@ -403,11 +403,11 @@ TEST_F(StoreTest, ConcurrentCommitsShareTheDisksTime) {
 
 TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
   const auto store = Open({.delay = std::chrono::hours(1)});
-  store->RecordCheckpoint(1, 0, [] { return "r"; });
+  store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->checkpoints_written(), 1);
-  store->RecordCheckpoint(1, 0, [] { return "r"; });
-  store->RecordCheckpoint(1, 5, [] { return "other"; });
+  store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
+  store->RecordCheckpoint(1, 5, 0, [] { return "other"; });
   store->RecordResult(1, {0, 8, "result"});
   ASSERT_OK(store->Flush());
   EXPECT_EQ(store->checkpoints_written(), 2);
@@ -418,7 +418,7 @@ TEST_F(StoreTest, CheckpointsOfAFinishedPointAreNeitherWrittenNorKept) {
 TEST_F(StoreTest, ClosingWritesWhatIsPending) {
   {
     const auto store = Open({.delay = std::chrono::hours(1)});
-    store->RecordCheckpoint(1, 0, [] { return "r"; });
+    store->RecordCheckpoint(1, 0, 0, [] { return "r"; });
   }
   EXPECT_EQ(Checkpoint(*Open(), 1, 0), "r");
 }
@@ -452,7 +452,7 @@ TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
-  store->RecordCheckpoint(1, 0, [] { return "kept"; });
+  store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
   store->Record([&](Database&) {
     return ++attempts < 4 ? absl::UnavailableError("disk full") : absl::OkStatus();
   });
@@ -544,7 +544,7 @@ TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
 TEST_F(StoreTest, AnEndedJobKeepsItsProgressAndNoBlocks) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
-  store->RecordCheckpoint(job, 0, [] { return "r"; });
+  store->RecordCheckpoint(job, 0, 0, [] { return "r"; });
   End(*store, job, v1::EnsembleJob::FAILED);
   const auto found = Find(*store, "a");
   EXPECT_EQ(found->points_done, 2);
@@ -569,7 +569,7 @@ TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   store->RecordResult(job, {0, 1, "r"});
-  store->RecordCheckpoint(job, 1, [] { return "r"; });
+  store->RecordCheckpoint(job, 1, 0, [] { return "r"; });
   ASSERT_OK(store->Commit([&](Database& database) { return RestartJob(database, job, "2", "q"); }));
   EXPECT_TRUE(Results(*store, job).empty());
   EXPECT_FALSE(Checkpoint(*store, job, 1));

@@ -1,0 +1,44 @@
+// A scheduler with threads that compute, as a server has them.
+#ifndef BALLPISTON_TESTS_SERVER_THREAD_POOL_H_
+#define BALLPISTON_TESTS_SERVER_THREAD_POOL_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "server/execution/thread_executor.h"
+#include "server/scheduling/point_opener.h"
+#include "server/scheduling/scheduler.h"
+
+namespace ballpiston::server {
+
+class ThreadPool {
+ public:
+  ThreadPool(int workers, ExperimentFactory factory)
+      : ThreadPool(workers, std::make_unique<FactoryOpener>(std::move(factory))) {}
+  ThreadPool(int workers, std::unique_ptr<PointOpener> opener)
+      : opener_(std::move(opener)), scheduler_(*opener_, workers), threads_(scheduler_, workers) {}
+
+  ~ThreadPool() { Shutdown(); }
+
+  Scheduler& scheduler() { return scheduler_; }
+  const ThreadExecutor& threads() const { return threads_; }
+
+  void Add(RunRequest request) { scheduler_.Add(std::move(request)); }
+  void Cancel(int64_t run) { scheduler_.Cancel(run); }
+  void Shutdown() { scheduler_.Shutdown(); }
+  std::vector<LivePoint> ChangedSince(int64_t run, uint64_t version, size_t limit) const {
+    return scheduler_.ChangedSince(run, version, limit);
+  }
+
+ private:
+  const std::unique_ptr<PointOpener> opener_;
+  Scheduler scheduler_;
+  ThreadExecutor threads_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_THREAD_POOL_H_
