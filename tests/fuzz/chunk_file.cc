@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ballpiston/storage/records.pb.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
@@ -26,7 +27,7 @@ server::IdentifiedLease LeaseOf(const EnsembleSpec& spec) {
 }
 
 // One with moments and histograms, one with batch means, and one with a tolerance.
-const Leases& Known() {
+const Leases& KnownLeases() {
   const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
   Grid hit = pair;
   hit[kEpsilon] = {0.125};
@@ -46,7 +47,7 @@ void RequireMerged(const PointExperiment& experiment, const server::LeaseChunks&
 
 void CheckLeases(const server::ChunkFile& file) {
   for (const server::LeaseChunks& chunks : file.leases) {
-    for (const server::IdentifiedLease& lease : Known()) {
+    for (const server::IdentifiedLease& lease : KnownLeases()) {
       const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
       Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
       if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
@@ -74,7 +75,7 @@ void CheckChunkFile(const std::string& input) {
 
 std::vector<std::string> FilesOfEach() {
   server::ChunkFile file = {.array = "array", .task = 3, .sequence = 2, .is_final = true};
-  for (const server::IdentifiedLease& lease : Known()) {
+  for (const server::IdentifiedLease& lease : KnownLeases()) {
     file.leases.push_back({.lease = file.leases.size(),
                            .chunks = {{0, lease.lease.experiment->EmptyResult()}},
                            .processor_seconds = 0.5});
@@ -85,6 +86,7 @@ std::vector<std::string> FilesOfEach() {
 
 const Registration kChunkFile({.name = "chunk_file",
                                .check = CheckChunkFile,
+                               .message = &storage::ChunkFile::default_instance(),
                                .made_seeds = FilesOfEach});
 
 }  // namespace
