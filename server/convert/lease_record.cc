@@ -96,8 +96,8 @@ absl::StatusOr<Grid> PointOf(const storage::Question& record) {
   return grid;
 }
 
-// AUTO may choose the jump process for a spec in single precision, which a user may not. So the rest
-// of the spec is checked with model AUTO, and with `verify`, because the answer is sampled.
+// AUTO may choose the jump process for a spec in single precision, which a user may not. So the
+// rest of the spec is checked with model AUTO, and with `verify`, because the answer is sampled.
 absl::Status CheckRest(EnsembleSpec spec) {
   spec.model = Model::kAuto;
   spec.verify = true;
@@ -138,8 +138,8 @@ absl::Status CheckChunks(const storage::Lease& record, const ChunkPlan& plan) {
 absl::Status CheckPartial(const PointExperiment& experiment, const PartialChunk& start) {
   FoldState state = {.chunk = start.chunk, .blocks = start.blocks, .partial = start.merged};
   if (start.chunk > 0) state.complete = experiment.EmptyResult();
-  const bool is_possible = start.blocks == 0 ? start.merged == BlockResult()
-                                             : CheckFoldState(experiment, state).ok();
+  const bool is_possible =
+      start.blocks == 0 ? start.merged == BlockResult() : CheckFoldState(experiment, state).ok();
   if (is_possible) return absl::OkStatus();
   return Damaged("partial", "is not a result of the lease's experiment");
 }
@@ -173,7 +173,8 @@ absl::Status CheckIdentity(const storage::Lease& record) {
                      "; this program has engine version ", kEngineVersion));
   }
   if (record.point() < 0 || record.point() >= kMaxPoints) {
-    return Damaged("point", absl::StrCat("is ", record.point(), "; permitted: 0 to ", kMaxPoints - 1));
+    return Damaged("point",
+                   absl::StrCat("is ", record.point(), "; permitted: 0 to ", kMaxPoints - 1));
   }
   if (record.attempt() >= 1) return absl::OkStatus();
   return Damaged("attempt", absl::StrCat("is ", record.attempt(), "; permitted: 1 or greater"));
@@ -194,10 +195,11 @@ storage::Question QuestionRecord(const EnsembleSpec& one_point) {
 }
 
 absl::StatusOr<EnsembleSpec> SpecOfQuestion(const storage::Question& question) {
-  EnsembleSpec spec = {.experiment = FindExperiment(question.experiment()),
-                       .target = TargetOf(question),
-                       .seed = question.seed(),
-                       .precision = question.single_precision() ? Precision::kSingle : Precision::kDouble};
+  EnsembleSpec spec = {
+      .experiment = FindExperiment(question.experiment()),
+      .target = TargetOf(question),
+      .seed = question.seed(),
+      .precision = question.single_precision() ? Precision::kSingle : Precision::kDouble};
   if (spec.experiment == nullptr) {
     return Damaged("question.experiment",
                    absl::StrCat("is ", question.experiment(), ", an unknown experiment"));
@@ -226,8 +228,8 @@ storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job) {
   record.set_point(static_cast<int64_t>(lease.point));
   record.set_attempt(lease.attempt);
   const PointExperiment& experiment = *lease.experiment;
-  *record.mutable_question() = QuestionRecord(
-      OnePointSpec(*lease.spec, experiment.parameters(), experiment.answer().model));
+  *record.mutable_question() =
+      QuestionRecord(OnePointSpec(*lease.spec, experiment.parameters(), experiment.answer().model));
   record.set_first_chunk(lease.start.chunk);
   record.set_end_chunk(lease.end);
   record.set_blocks(lease.start.blocks);

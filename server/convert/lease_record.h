@@ -1,8 +1,8 @@
 // Exact conversion between a lease of chunks and its record, which a worker elsewhere gets.
 //
-// The record has the lease's point as a question: one point, by a sampling model. An experiment that
-// is created from the record has the same plan, random numbers and bits as the lease's experiment.
-// Pure functions.
+// The record has the lease's point as a question: one point, by a sampling model. An experiment
+// that is created from the record has the same plan, random numbers and bits as the lease's
+// experiment. Pure functions.
 //
 // A record that can be parsed may still be damaged, or be written by a foreign program. So reading
 // checks everything that creating the experiment and merging the blocks require.

@@ -22,7 +22,7 @@ namespace ballpiston::server {
 namespace {
 
 // The first byte is not text, and the line ends show a transfer that changed them.
-constexpr absl::string_view kMagic("\x89" "BPW\r\n\x1a\n", 8);
+constexpr absl::string_view kMagic("\211BPW\r\n\032\n", 8);
 constexpr size_t kVersionAt = 8, kKindAt = 12, kLengthAt = 16, kHeader = 24, kChecksum = 16;
 static_assert(kHeader + kChecksum == kFrameBytes);
 
@@ -63,8 +63,8 @@ absl::Status CheckBeginning(FileKind kind, absl::string_view file) {
                                                  "; this program knows version ", kFormatVersion));
   }
   if (found == static_cast<uint64_t>(kind)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("is a file of kind ", found, "; expected: kind ",
-                                                 static_cast<uint32_t>(kind)));
+  return absl::InvalidArgumentError(
+      absl::StrCat("is a file of kind ", found, "; expected: kind ", static_cast<uint32_t>(kind)));
 }
 
 // ---- files ----
@@ -136,7 +136,8 @@ bool WriteAll(int descriptor, absl::string_view text) {
 
 // Close can report that a network disk is full.
 absl::Status WriteNewFile(const std::string& path, absl::string_view text) {
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  const int descriptor =
+      open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
   if (descriptor < 0) return CannotBeWritten(errno);
   const bool is_written = WriteAll(descriptor, text) && fsync(descriptor) == 0;
   const int error = errno;
@@ -169,7 +170,8 @@ absl::Status Rename(const std::string& from, const std::string& to, absl::string
     return absl::OkStatus();
   }
   int error = errno;
-  if ((error == EINVAL || error == ENOSYS) && faccessat(AT_FDCWD, to.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) != 0) {
+  if ((error == EINVAL || error == ENOSYS) &&
+      faccessat(AT_FDCWD, to.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) != 0) {
     if (rename(from.c_str(), to.c_str()) == 0) return absl::OkStatus();
     error = errno;
   }
@@ -212,8 +214,10 @@ absl::StatusOr<absl::string_view> PayloadOf(FileKind kind, absl::string_view fil
         absl::StrCat("is truncated: it has ", has, " of ", length, " bytes of payload"));
   }
   const absl::string_view hashed = file.substr(0, file.size() - kChecksum);
-  if (length == has && ChecksumOf(hashed) == file.substr(hashed.size())) return hashed.substr(kHeader);
-  return absl::DataLossError("is corrupted: its checksum is wrong");
+  if (length != has || ChecksumOf(hashed) != file.substr(hashed.size())) {
+    return absl::DataLossError("is corrupted: its checksum or its length is wrong");
+  }
+  return hashed.substr(kHeader);
 }
 
 absl::Status WriteCheckedFile(const std::string& path, FileKind kind, absl::string_view payload) {

@@ -2,7 +2,7 @@
 // is complete.
 //
 // The format, with little-endian numbers:
-//   bytes  0 to  7   the magic "\x89" "BPW\r\n\x1a\n"
+//   bytes  0 to  7   the magic "\211BPW\r\n\032\n"
 //   bytes  8 to 11   the format version, kFormatVersion
 //   bytes 12 to 15   the kind of the file, FileKind
 //   bytes 16 to 23   the length of the payload in bytes

@@ -1,8 +1,9 @@
 // The results of a task: files with complete chunks, in the array's folder.
 //
-// A task writes files with the sequence numbers 0, 1, 2, ...; the last one is final. A task that was
-// interrupted and starts again reads its files, continues after the greatest number, and computes
-// the missing chunks. A checksummed file proves its chunks whatever the job scheduler says.
+// A task writes files with the sequence numbers 0, 1, 2, ...; the last one is final. A task that
+// was interrupted and starts again reads its files, continues after the greatest number, and
+// computes the missing chunks. A checksummed file proves its chunks whatever the job scheduler
+// says.
 #ifndef BALLPISTON_SERVER_WORKER_CHUNK_FILE_H_
 #define BALLPISTON_SERVER_WORKER_CHUNK_FILE_H_
 
@@ -55,8 +56,8 @@ absl::StatusOr<std::vector<ChunkFileName>> ListChunkFiles(const std::string& fol
 // The name follows from task and sequence. Errors are those of WriteCheckedFile.
 absl::Status WriteChunkFile(const std::string& folder, const ChunkFile& file);
 
-// Besides the errors of ReadCheckedFile: DATA_LOSS if the message is damaged, or has another task or
-// sequence than the name.
+// Besides the errors of ReadCheckedFile: DATA_LOSS if the message is damaged, or has another task
+// or sequence than the name.
 absl::StatusOr<ChunkFile> ReadChunkFile(const std::string& folder, const ChunkFileName& name);
 
 std::string ChunkFilePayload(const ChunkFile& file);

@@ -16,7 +16,7 @@
 namespace ballpiston::server {
 
 struct LeaseWork {
-  Lease lease;                           // of chunks; its stop token is not used
+  Lease lease;                          // of chunks; its stop token is not used
   std::vector<ChunkResult> known = {};  // chunks of it that are not to be computed again
 };
 
@@ -32,7 +32,8 @@ class ChunkReceiver {
 };
 
 // Computes the missing chunks of each lease. A lease that begins with chunk 0 ends early when its
-// complete chunks reach the tolerance of its experiment. False if stop was requested before the end.
+// complete chunks reach the tolerance of its experiment. False if stop was requested before the
+// end.
 bool RunLeases(const std::vector<LeaseWork>& work, const std::stop_token& stop,
                ChunkReceiver& receiver);
 

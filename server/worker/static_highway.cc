@@ -11,6 +11,9 @@
 #include <cstdlib>
 
 #if HWY_ARCH_X86
+#ifdef __clang__
+#define _Bool bool  // the header is for C; GCC knows this name in C++, too
+#endif
 #include <sys/platform/x86.h>
 #endif
 
@@ -40,9 +43,9 @@ bool HasAvx3() {
 
 bool HasAvx3Dl() {
   return HasAvx3() && CPU_FEATURE_ACTIVE(AVX512_VNNI) && CPU_FEATURE_ACTIVE(VPCLMULQDQ) &&
-         CPU_FEATURE_ACTIVE(VAES) && CPU_FEATURE_ACTIVE(GFNI) &&
-         CPU_FEATURE_ACTIVE(AVX512_VBMI) && CPU_FEATURE_ACTIVE(AVX512_VBMI2) &&
-         CPU_FEATURE_ACTIVE(AVX512_VPOPCNTDQ) && CPU_FEATURE_ACTIVE(AVX512_BITALG);
+         CPU_FEATURE_ACTIVE(VAES) && CPU_FEATURE_ACTIVE(AVX512_VBMI) &&
+         CPU_FEATURE_ACTIVE(AVX512_VBMI2) && CPU_FEATURE_ACTIVE(AVX512_VPOPCNTDQ) &&
+         CPU_FEATURE_ACTIVE(AVX512_BITALG);
 }
 
 int64_t Detected() {
@@ -75,6 +78,8 @@ void* AllocateAlignedBytes(size_t bytes, AllocPtr, void*) {
   return std::aligned_alloc(HWY_ALIGNMENT, rounded);
 }
 
-void FreeAlignedBytes(const void* pointer, FreePtr, void*) { std::free(const_cast<void*>(pointer)); }
+void FreeAlignedBytes(const void* pointer, FreePtr, void*) {
+  std::free(const_cast<void*>(pointer));
+}
 
 }  // namespace hwy

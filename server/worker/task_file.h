@@ -19,7 +19,8 @@ struct ArrayTask {
   std::vector<IdentifiedLease> leases = {};
 };
 
-// Writes the tasks of an array, in the order of their indices. Errors are those of WriteCheckedFile.
+// Writes the tasks of an array, in the order of their indices. Errors are those of
+// WriteCheckedFile.
 absl::Status WriteTaskFile(const std::string& path, const std::string& array,
                            const std::vector<std::vector<IdentifiedLease>>& tasks);
 

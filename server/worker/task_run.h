@@ -14,18 +14,18 @@
 namespace ballpiston::server {
 
 struct TaskRunOptions {
-  std::string folder = {};      // for the chunk files
-  double flush_seconds = 30;    // processor time between two files, if a chunk is complete
-  double retry_seconds = 5;     // between two attempts to use a folder that is full or not there
+  std::string folder = {};       // for the chunk files
+  double flush_seconds = 30;     // processor time between two files, if a chunk is complete
+  double retry_seconds = 5;      // between two attempts to use a folder that is full or not there
   double give_up_seconds = 120;  // sum of these waits
 };
 
 // One line for people, without the line end.
 using Report = std::function<void(absl::string_view line)>;
 
-// Writes a final file when the task has nothing left to compute. Also OK if stop was requested: then
-// the complete chunks are in files. The stop source gets a request when the folder cannot be used;
-// the error is that of ListChunkFiles or WriteChunkFile.
+// Writes a final file when the task has nothing left to compute. Also OK if stop was requested:
+// then the complete chunks are in files. The stop source gets a request when the folder cannot be
+// used; the error is that of ListChunkFiles or WriteChunkFile.
 absl::Status RunTask(const ArrayTask& task, const TaskRunOptions& options, std::stop_source stop,
                      const Report& report);
 

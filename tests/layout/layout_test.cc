@@ -91,6 +91,15 @@ TEST(Layout, TheServerIsLinkedWithTheCore) {
   EXPECT_THAT(LinkedInto("ballpistond"), Contains("gRPC::grpc++"));
 }
 
+TEST(Layout, TheWorkersFilesAreLinkedWithNoService) {
+  const std::set<std::string> linked = LinkedInto("ballpiston_worker_files");
+  EXPECT_THAT(linked, Contains("ballpiston_storage"));
+  for (const char* library : {"ballpiston_proto", "ballpiston_server", "gRPC::grpc++",
+                              "SQLite::SQLite3", "OpenSSL::SSL"}) {
+    EXPECT_THAT(linked, Not(Contains(library)));
+  }
+}
+
 TEST(IncludeRules, IncludesAreFoundInOrder) {
   EXPECT_THAT(IncludesOf("#include <vector>\n\n  #  include \"core/a.h\"\n// #include <thread>\n"),
               ElementsAre("vector", "core/a.h"));
@@ -189,6 +198,19 @@ TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
   ExpectWrong("server/command_line/x.cc", "\"core/ensemble/chunk_plan.h\"");
   for (const char* path : {"server/api/x.cc", "server/main.cc"}) {
     ExpectWrong(path, "<CLI/CLI.hpp>");
+  }
+}
+
+TEST(IncludeRules, TheWorkerKnowsFilesAndNoService) {
+  EXPECT_THAT(WrongIncludes("server/worker/x.cc",
+                            "#include <fcntl.h>\n#include \"core/ensemble/chunk_fold.h\"\n"
+                            "#include \"server/convert/lease_record.h\"\n"
+                            "#include \"ballpiston/storage/records.pb.h\"\n"),
+              IsEmpty());
+  for (const char* include : {"\"ballpiston/v1/spec.pb.h\"", "\"server/convert/spec.h\"",
+                              "\"server/store/store.h\"", "\"server/scheduling/scheduler.h\"",
+                              "<grpcpp/grpcpp.h>", "<sqlite3.h>", "<openssl/sha.h>"}) {
+    ExpectWrong("server/worker/x.cc", include);
   }
 }
 

@@ -1,0 +1,93 @@
+// A file with chunks that a worker left: as a whole file, and as the payload of a file whose
+// checksum is right. Chunks that fit a lease are merged.
+#include "server/worker/chunk_file.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ballpiston/storage/records.pb.h"
+#include "core/ensemble/point_experiment.h"
+#include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "server/worker/checked_file.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace ballpiston::fuzz {
+namespace {
+
+using Leases = std::vector<server::IdentifiedLease>;
+
+server::IdentifiedLease LeaseOf(const EnsembleSpec& spec) {
+  server::Lease lease;
+  lease.experiment = PointExperiment::Create(spec, 0);
+  lease.end = lease.experiment->plan().chunks();
+  return {{}, std::move(lease)};
+}
+
+// One with moments and histograms, one with batch means, and one with a tolerance.
+const Leases& KnownLeases() {
+  const Grid pair = {{kRho, {0.53}}, {kDelta, {0.1}}};
+  Grid hit = pair;
+  hit[kEpsilon] = {0.125};
+  hit[kExponent] = {1};
+  static const auto* const leases = new Leases{
+      LeaseOf({.experiment = &kMarkovProperty, .grid = pair, .target = {.collisions = 1000}}),
+      LeaseOf({.experiment = &kEquilibrium, .grid = pair, .target = {.collisions = 1000}}),
+      LeaseOf({.experiment = &kFirstHit, .grid = hit, .target = {.tolerance = 0.1}})};
+  return *leases;
+}
+
+void RequireMerged(const PointExperiment& experiment, const server::LeaseChunks& chunks) {
+  PointFold fold(experiment);
+  for (const ChunkResult& chunk : chunks.chunks) fold.Add(chunk);
+  Require(fold.PlannedSamples() <= experiment.plan().samples(), "not more than was planned");
+}
+
+void CheckLeases(const server::ChunkFile& file) {
+  for (const server::LeaseChunks& chunks : file.leases) {
+    for (const server::IdentifiedLease& lease : KnownLeases()) {
+      const absl::Status fits = server::CheckLeaseChunks(lease, chunks);
+      Require(fits.ok() || absl::IsDataLoss(fits), "damage is DATA_LOSS");
+      if (fits.ok()) RequireMerged(*lease.lease.experiment, chunks);
+    }
+  }
+}
+
+void CheckPayload(absl::string_view payload) {
+  const absl::StatusOr<server::ChunkFile> file = server::ChunkFileFromPayload(payload);
+  if (!file.ok()) return Require(absl::IsDataLoss(file.status()), "damage is DATA_LOSS");
+  const std::string written = server::ChunkFilePayload(*file);
+  const absl::StatusOr<server::ChunkFile> again = server::ChunkFileFromPayload(written);
+  Require(again.ok() && server::ChunkFilePayload(*again) == written, "written bytes come back");
+  CheckLeases(*file);
+}
+
+void CheckChunkFile(const std::string& input) {
+  const auto payload = server::PayloadOf(server::FileKind::kChunks, input);
+  if (payload.ok()) CheckPayload(*payload);
+  const std::string frame = server::FrameOf(server::FileKind::kChunks, input);
+  const auto framed = server::PayloadOf(server::FileKind::kChunks, frame);
+  Require(framed.ok() && *framed == input, "a payload comes back");
+  CheckPayload(input);
+}
+
+std::vector<std::string> FilesOfEach() {
+  server::ChunkFile file = {.array = "array", .task = 3, .sequence = 2, .is_final = true};
+  for (const server::IdentifiedLease& lease : KnownLeases()) {
+    file.leases.push_back({.lease = file.leases.size(),
+                           .chunks = {{0, lease.lease.experiment->EmptyResult()}},
+                           .processor_seconds = 0.5});
+  }
+  const std::string payload = server::ChunkFilePayload(file);
+  return {payload, server::FrameOf(server::FileKind::kChunks, payload)};
+}
+
+const Registration kChunkFile({.name = "chunk_file",
+                               .check = CheckChunkFile,
+                               .message = &storage::ChunkFile::default_instance(),
+                               .made_seeds = FilesOfEach});
+
+}  // namespace
+}  // namespace ballpiston::fuzz

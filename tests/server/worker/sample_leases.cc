@@ -1,0 +1,83 @@
+#include "tests/server/worker/sample_leases.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/engine_version.h"
+#include "core/ensemble/experiment_kind.h"
+#include "core/ensemble/point_fold.h"
+#include "server/convert/fold_record.h"
+
+namespace ballpiston::server {
+namespace {
+
+double SomeValueOf(const Parameter& parameter) {
+  if (&parameter == &kRho) return 0.53;
+  if (&parameter == &kDelta) return 0.1;
+  if (&parameter == &kEpsilon) return 0.25;
+  return &parameter == &kExponent ? 1 : 8;
+}
+
+bool Samples(Model model) { return model != Model::kClosedForm && model != Model::kSpectrum; }
+
+}  // namespace
+
+EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples) {
+  EnsembleSpec spec = {.experiment = &kind, .seed = ~uint64_t{0}, .model = model};
+  for (const ParameterUse& use : kind.parameters) {
+    spec.grid[*use.parameter] = {SomeValueOf(*use.parameter)};
+  }
+  (kind.unit == TargetUnit::kCollisions ? spec.target.collisions : spec.target.samples) = samples;
+  return spec;
+}
+
+std::vector<EnsembleSpec> EverySampledSpec() {
+  std::vector<EnsembleSpec> specs;
+  for (const ExperimentKind* kind : AllExperiments()) {
+    for (const Model model : kind->models) {
+      if (Samples(model)) specs.push_back(SpecOf(*kind, model));
+    }
+  }
+  return specs;
+}
+
+std::string NameOf(const EnsembleSpec& spec) {
+  return absl::StrCat(spec.experiment->name, " by ", Name(spec.model));
+}
+
+JobIdentity SomeJob() {
+  return {.server = "a server", .job = 12, .restarts = 3, .engine_version = kEngineVersion};
+}
+
+IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
+  Lease lease;
+  lease.spec = std::make_shared<const EnsembleSpec>(spec);
+  lease.experiment = PointExperiment::Create(spec, 0);
+  lease.point = 5;
+  lease.attempt = 2;
+  lease.start.chunk = first;
+  lease.end = end == 0 ? lease.experiment->plan().chunks() : end;
+  return {SomeJob(), std::move(lease)};
+}
+
+std::vector<ChunkResult> AllChunks(const PointExperiment& experiment) {
+  ChunkFold fold(experiment.plan(), {}, experiment.plan().chunks());
+  std::vector<ChunkResult> chunks;
+  while (const auto block = fold.NextBlock()) {
+    for (ChunkResult& chunk : fold.Add(*block, RunBlock(experiment, *block).value())) {
+      chunks.push_back(std::move(chunk));
+    }
+  }
+  return chunks;
+}
+
+// As records, because -0 == 0.
+bool AreEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const ChunkResult& x, const ChunkResult& y) {
+                      return ChunkRecordBytes(x) == ChunkRecordBytes(y);
+                    });
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,39 @@
+// Leases for tests of the worker: of every experiment, by every model that samples.
+#ifndef BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
+#define BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/ensemble/chunk_fold.h"
+#include "core/ensemble/ensemble_spec.h"
+#include "core/ensemble/point_experiment.h"
+#include "server/convert/lease_record.h"
+
+namespace ballpiston::server {
+
+// One point of the experiment, with some thousand samples as its target.
+EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = 3000);
+
+// One of each experiment and sampling model.
+std::vector<EnsembleSpec> EverySampledSpec();
+
+std::string NameOf(const EnsembleSpec& spec);  // for messages
+
+// This program's engine.
+JobIdentity SomeJob();
+
+// Chunks first ... end - 1 of the spec's point; end 0 means all.
+IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first = 0, uint64_t end = 0);
+
+// All chunks of the plan, computed block by block.
+std::vector<ChunkResult> AllChunks(const PointExperiment& experiment);
+
+// Whether these are the same chunks, bit for bit.
+bool AreEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResult>& b);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_WORKER_SAMPLE_LEASES_H_
