@@ -1,8 +1,10 @@
 #include "server/execution/slurm_executor.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <random>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -28,8 +30,18 @@ constexpr double kShareOfTheLimit = 0.5;
 
 double Seconds(std::chrono::duration<double> duration) { return duration.count(); }
 
+// Beside this program, as in a build folder, or in libexec, as installed.
+std::string InstalledWorker() {
+  std::error_code error;
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path beside = folder / "ballpiston-worker";
+  if (std::filesystem::exists(beside, error)) return beside;
+  return folder.parent_path() / "libexec/ballpiston/ballpiston-worker";
+}
+
 Capacity CapacityOf(const SlurmOptions& options) {
-  const double limit = Seconds(options.time_limit);
+  const double limit = 60 * static_cast<double>(options.time_limit_minutes);
   return {.seconds = std::min(Seconds(options.task_length), kShareOfTheLimit * limit),
           .longest_chunk = kShareOfTheLimit * limit};
 }
@@ -443,7 +455,7 @@ void SlurmExecutor::SubmitNew() {
 absl::StatusOr<std::string> SlurmExecutor::PreparedWorker() const {
   const absl::Status prepared = folder_.Prepare();
   if (!prepared.ok()) return prepared;
-  return folder_.CopyWorker(options_.worker);
+  return folder_.CopyWorker(options_.worker.empty() ? InstalledWorker() : options_.worker);
 }
 
 // True if there is work of so many seconds.

@@ -84,7 +84,7 @@ absl::Status SlurmTools::Submit(const ArraySubmission& array, const std::stop_to
   std::vector<std::string>& words = command.words;
   words.insert(words.end(), {"--parsable", absl::StrCat("--job-name=", array.name),
                              absl::StrCat("--array=0-", array.tasks - 1),
-                             absl::StrCat("--time=", options_.time_limit.count()),
+                             absl::StrCat("--time=", options_.time_limit_minutes),
                              absl::StrCat("--signal=B:USR1@", kSecondsToFinish), "--requeue",
                              "--open-mode=append",
                              absl::StrCat("--chdir=", array.folder),

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <stop_token>
@@ -25,12 +26,12 @@ struct SlurmOptions {
   std::string partition;            // these three are empty for the cluster's defaults
   std::string account;
   std::string cluster;
-  std::chrono::minutes time_limit{60};
+  int64_t time_limit_minutes = 60;
   std::vector<std::string> sbatch_options = {};  // further words for sbatch
-  std::string worker = {};          // the program; empty: beside ballpistond
+  std::string worker = {};          // the program; empty: InstalledWorker
   size_t max_tasks = 1000;          // submitted and not ended
   size_t max_array_size = 1000;     // Slurm's MaxArraySize, less one
-  std::chrono::seconds task_length{180};    // of computing, about
+  std::chrono::milliseconds task_length{180'000};  // of computing, about
   std::chrono::milliseconds query_interval{30'000};
   std::chrono::milliseconds collect_interval{1'000};  // between looks for files with chunks
 };
