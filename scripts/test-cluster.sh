@@ -71,7 +71,7 @@ wait_until() {
 mark_of() { echo "BALLPISTON_TEST_CLUSTER=$dir/$1"; }
 
 has_in_environment() {  # PID LINE
-  { tr '\0' '\n' <"/proc/$1/environ"; } 2>/dev/null | grep -aqxF -- "$2"
+  grep -aqszxF -- "$2" "/proc/$1/environ"
 }
 
 # Prints the process number of a daemon: munged, slurmctld or the name of a node. Fails if it does
@@ -118,13 +118,9 @@ end() {
 # The processes of a node's jobs have in their environment the configuration of this node's slurmd.
 # Their descendants count too.
 pids_of_jobs() {
-  local node=$1 file pid own=()
-  for file in /proc/[0-9]*/environ; do
-    pid=${file#/proc/}
-    pid=${pid%/environ}
-    ! has_in_environment "$pid" "SLURM_CONF=$(conf_of "$node")" || own+=("$pid")
-  done
-  ps -e -o pid= -o ppid= | awk -v own="${own[*]}" -v slurmd="$(pid_of "$node" || true)" '
+  local node=$1 own
+  own=$(grep -alszxF -- "SLURM_CONF=$(conf_of "$node")" /proc/[0-9]*/environ | tr -dc '0-9\n') || true
+  ps -e -o pid= -o ppid= | awk -v own="${own//$'\n'/ }" -v slurmd="$(pid_of "$node" || true)" '
     BEGIN { count = split(own, list, " "); for (i = 1; i <= count; ++i) counts[list[i]] = 1 }
     { parent[$1] = $2 }
     END {
