@@ -174,7 +174,6 @@ write_conf() {
     cat <<END
 AuthInfo=socket=$dir/munge.socket,cred_expire=5
 AuthType=auth/munge
-BatchStartTimeout=20
 ClusterName=test
 CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
 CredType=cred/munge
