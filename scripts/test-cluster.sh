@@ -1,7 +1,7 @@
 #!/bin/bash
 # A whole Slurm cluster on this machine, for tests: munged, one slurmctld, and two nodes (one slurmd
-# each). Needs no root, no systemd and no cgroups: everything runs as the current user, and only
-# this user can submit jobs. Everything is kept below DIR: configuration, state, spool, logs, keys.
+# each). Needs no root, no systemd and no cgroups: everything runs as the current user, for the jobs
+# of this user. Everything is kept below DIR: configuration, state, spool, logs, keys.
 # The daemons listen on 127.0.0.1 only, at free ports, so several clusters can run at the same time.
 #
 #   scripts/test-cluster.sh start DIR [--cpus N] [PARAMETER=VALUE...]
@@ -19,8 +19,11 @@
 #   pause-controller DIR     Stops slurmctld's process (SIGSTOP): connections open, no answer comes.
 #   resume-controller DIR
 #   lose-state DIR           Deletes the saved state. slurmctld must not run.
-#   kill-node DIR n1         Kills slurmd and all processes of its jobs, as a power cut does.
-#   kill-slurmd DIR n1       Kills slurmd alone. Its jobs run on.
+#   kill-node DIR n1         Kills slurmd and all processes of its jobs, as a power cut does. The node
+#                            is down, and its jobs are requeued, within about 30 s. If start-node comes
+#                            earlier, jobs younger than 20 s stay RUNNING for minutes.
+#   kill-slurmd DIR n1       Kills slurmd alone. Its jobs run on, also while slurmctld starts them again
+#                            elsewhere.
 #   start-node DIR n1        Starts slurmd again, and waits until slurmctld regards the node as up.
 #   kill-munge DIR, start-munge DIR
 #   logs DIR                 Prints the last lines of all logs.
