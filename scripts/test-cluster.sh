@@ -21,7 +21,7 @@
 #   lose-state DIR           Deletes the saved state. slurmctld must not run.
 #   kill-node DIR n1         Kills slurmd and all processes of its jobs, as a power cut does. The node
 #                            is down, and its jobs are requeued, within about 30 s. If start-node comes
-#                            earlier, jobs younger than 20 s stay RUNNING for minutes.
+#                            earlier, jobs younger than 20 s stay RUNNING for a while.
 #   kill-slurmd DIR n1       Kills slurmd alone. Its jobs run on, also while slurmctld starts them again
 #                            elsewhere.
 #   start-node DIR n1        Starts slurmd again, and waits until slurmctld regards the node as up.
