@@ -57,6 +57,10 @@ class Run {
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
 
+  // Whether executors that are not local wait for points that nobody has opened: the next lease of a
+  // local executor opens points.
+  bool IsWantedElsewhere() const;
+
   // The leases of local executors, and their turns in progress: a run ends when there are none.
   void TurnBegins() { ++turns_; }
   void TurnEnds() { --turns_; }
@@ -105,8 +109,6 @@ class Run {
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor);
   std::optional<Lease> NextOpening();
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
-  // Whether executors that are not local wait for points that nobody has opened.
-  bool IsWantedElsewhere() const;
   // What is left takes long enough for executors that are not local.
   bool IsLarge() const;
   void SkipFinishedPoints();

@@ -160,7 +160,8 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const Member& member = executors_[capacity.executor];
   std::optional<Lease> lease;
-  if (member.traits.local && !run.stopped()) lease = HeldWithTurn(run, capacity.executor);
+  const bool may_continue = member.traits.local && !run.stopped() && !run.IsWantedElsewhere();
+  if (may_continue) lease = HeldWithTurn(run, capacity.executor);
   if (!lease) {
     lease = run.NextLease(capacity, member.traits);
     if (!lease) return std::nullopt;
