@@ -16,6 +16,7 @@
 #ifndef BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
 #define BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -67,6 +68,7 @@ class SlurmExecutor : public Executor {
   SlurmStatus Status() const;
 
  private:
+  enum class Activity { kFiles, kQueue, kSubmission };
   enum class TaskState { kUnknown, kWaiting, kRunning, kOver };
 
   struct Task {
@@ -92,6 +94,7 @@ class SlurmExecutor : public Executor {
   // ---- files ----
   void CollectUntilStopped();
   std::vector<std::string> ArrayNames() const;
+  bool HasArray(const std::string& name) const;
   void CollectArray(const std::string& name);
   bool IsNew(const std::string& array, const ChunkFileName& file);
   void TakeFile(const std::string& array, const ChunkFileName& name);
@@ -117,7 +120,7 @@ class SlurmExecutor : public Executor {
   void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);
   void EndLostTasks(const std::string& name);
   void GiveUpWaiting(const std::string& name, const std::string& reason);
-  void BackOff(const std::string& problem);
+  void BackOff(const absl::Status& problem);
 
   // ---- submission ----
   void SubmitNew();
@@ -136,7 +139,7 @@ class SlurmExecutor : public Executor {
   size_t TasksInFlight() const;
 
   bool AwaitNextLook();  // false: stopped
-  void SetProblem(const std::string& problem);
+  void NoteOutcome(Activity activity, const absl::Status& outcome);
   std::string NewName();
   JobIdentity IdentityOf(const Lease& lease) const;
 
@@ -155,7 +158,7 @@ class SlurmExecutor : public Executor {
   std::stop_source stop_;
   std::map<std::string, Array> arrays_;  // by name
   SlurmStatus counts_;
-  std::string problem_;
+  std::array<std::string, 3> problems_;  // by activity; empty: its last attempt succeeded
   Clock::time_point last_query_;
   Clock::time_point next_submission_;
   std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
