@@ -8,11 +8,12 @@ STABILITY_OUT ?= stability.md
 
 TEST_PACKAGES := libgtest-dev libgmock-dev
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
+SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -45,6 +46,12 @@ torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/torture_test --gtest_brief=1
 
+test-slurm: ## Run jobs on a whole Slurm cluster that the tests start on this machine, and kill its parts
+	@scripts/setup.sh $(SLURM_PACKAGES)
+	@$(MAKE) build/release/.$(PRESETS_PREFIX)tests
+	@cmake --build build/release --target ballpiston ballpistond slurm_test
+	@build/release/bin/slurm_test --gtest_brief=1
+
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
@@ -62,8 +69,8 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, stability, and ten minutes of each fuzz target
-	@status=0; for task in tsan aarch64 tidy torture stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, stability, and ten minutes of each fuzz target
+	@status=0; for task in tsan aarch64 tidy torture test-slurm stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

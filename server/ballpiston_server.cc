@@ -1,6 +1,7 @@
 #include "server/ballpiston_server.h"
 
 #include <algorithm>
+#include <limits>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -28,6 +29,11 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 constexpr int kBlockingThreads = 32;
 // How long health may go on to say that a store takes jobs when it does not.
 constexpr std::chrono::milliseconds kHealthInterval(500);
+
+// Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
+// at once, which keeps their lanes full.
+constexpr double kWholePoint = std::numeric_limits<double>::infinity();
+constexpr double kLeaseBesideACluster = 60;
 
 Health::Services ServicesOfHealth() {
   const std::string ensemble = v1::EnsembleService::service_full_name();
@@ -92,6 +98,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
         new BallpistonServer(std::move(options), *std::move(directory), *address,
                              *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
+    server->StartExecutors();
     if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
@@ -115,13 +122,19 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
       scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers),
       book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }),
-      threads_(scheduler_, options_.workers),
+      threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint),
+      slurm_(options_.slurm ? std::make_unique<SlurmExecutor>(
+                                  scheduler_, *options_.slurm,
+                                  std::make_unique<SlurmTools>(*options_.slurm),
+                                  store_->identity(), [this] { return store_->Flush(); })
+                            : nullptr),
       executor_(kRpcThreads),
       context_{security_->authenticator(),
                options_.limits,
                book_,
                scheduler_,
                threads_,
+               slurm_.get(),
                ladder_,
                executor_,
                watches_,
@@ -136,6 +149,12 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       ensemble_(context_),
       analytic_(context_),
       server_(context_) {}
+
+// The cluster first: it adopts leases before a thread can take their chunks.
+void BallpistonServer::StartExecutors() {
+  if (slurm_ != nullptr) slurm_->Start();
+  threads_.Start();
+}
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
 

@@ -18,6 +18,7 @@
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
 #include "server/api/services.h"
+#include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/listen_address.h"
 #include "server/observability/call_observer.h"
@@ -53,6 +54,7 @@ struct ServerOptions {
   SecurityOptions security;
   std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
   int workers = 1;
+  std::optional<SlurmOptions> slurm = {};  // a cluster beside the threads
   ExperimentFactory factory;  // empty: the core's, by the chosen model
   WatchTiming watch;
   ConnectionTiming connections;
@@ -92,6 +94,7 @@ class BallpistonServer {
   BallpistonServer(ServerOptions options, DataDirectory directory, ListenAddress address,
                    std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
 
+  void StartExecutors();
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
   absl::Status StartMetrics();
@@ -111,7 +114,9 @@ class BallpistonServer {
   std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
   Scheduler scheduler_;
   JobBook book_;
-  ThreadExecutor threads_;  // after the book, which its threads use
+  // After the book, which the executors' threads use.
+  ThreadExecutor threads_;
+  std::unique_ptr<SlurmExecutor> slurm_;  // null without a cluster
   RpcExecutor executor_;
   ServiceContext context_;
   EnsembleService ensemble_;

@@ -57,6 +57,13 @@ std::string Speed(const v1::ComputingRates& rates) {
                       " jumps/s, a core");
 }
 
+std::string SlurmText(const v1::SlurmStatus& slurm) {
+  const std::string tasks = absl::StrCat(CountText(slurm.running_tasks()), " tasks run, ",
+                                         CountText(slurm.waiting_tasks()), " wait, ",
+                                         CountText(slurm.submitted_tasks()), " just submitted");
+  return slurm.problem().empty() ? tasks : absl::StrCat(tasks, "; ", slurm.problem());
+}
+
 void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& out) {
   TextTable table({{"server", kLeft}, {status.version(), kLeft}});
   table.AddRow({"engine", status.engine_version()});
@@ -67,6 +74,7 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
                                      CountText(status.running_jobs()), " running, ",
                                      CountText(status.stored_jobs()), " in the store")});
   table.AddRow({"workers", absl::StrCat(status.busy_workers(), " of ", status.workers(), " busy")});
+  if (status.has_slurm()) table.AddRow({"slurm", SlurmText(status.slurm())});
   table.AddRow({"computed", Computed(status)});
   if (status.has_rates()) table.AddRow({"speed", Speed(status.rates())});
   table.AddRow({"streams", CountText(status.streams())});

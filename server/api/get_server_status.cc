@@ -15,6 +15,19 @@ v1::ServerStatus::State StateOf(const ServerSnapshot& now) {
   return now.store_failing ? v1::ServerStatus::STORE_FAILING : v1::ServerStatus::SERVING;
 }
 
+v1::SlurmStatus SlurmMessage(const ServerSnapshot::Slurm& slurm) {
+  v1::SlurmStatus message;
+  message.set_problem(slurm.problem);
+  message.set_waiting_tasks(slurm.waiting_tasks);
+  message.set_running_tasks(slurm.running_tasks);
+  message.set_submitted_tasks(slurm.submitted_tasks);
+  message.set_chunks(slurm.chunks);
+  message.set_lost_tasks(slurm.lost_tasks);
+  message.set_refused_files(slurm.refused_files);
+  message.set_queries(slurm.queries);
+  return message;
+}
+
 v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
   v1::ServerStatus status;
   status.set_state(StateOf(now));
@@ -30,6 +43,7 @@ v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
   status.set_blocks_computed(now.blocks_computed);
   status.set_samples_computed(now.samples_computed);
   status.set_processor_seconds(now.processor_seconds);
+  if (now.slurm) *status.mutable_slurm() = SlurmMessage(*now.slurm);
   return status;
 }
 

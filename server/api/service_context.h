@@ -9,6 +9,7 @@
 #include "absl/time/time.h"
 #include "server/api/rpc_executor.h"
 #include "server/api/watch_registry.h"
+#include "server/execution/slurm_executor.h"
 #include "server/execution/thread_executor.h"
 #include "server/jobs/job_book.h"
 #include "server/limits.h"
@@ -32,6 +33,7 @@ struct ServiceContext {
   JobBook& book;
   const Scheduler& scheduler;
   const ThreadExecutor& threads;
+  const SlurmExecutor* slurm;  // null without a cluster
   ModelLadder& ladder;
   RpcExecutor& executor;
   WatchRegistry& watches;

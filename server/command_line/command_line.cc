@@ -27,6 +27,8 @@ constexpr int64_t kLeastMessage = 1024;
 constexpr int64_t kMostMessage = int64_t{256} << 20;
 constexpr int64_t kLeastTransferMib = 16;
 constexpr int64_t kMostTransferMib = int64_t{1} << 20;
+constexpr int64_t kMostSlurmMinutes = 60 * 24 * 365;
+constexpr int64_t kMostSlurmTasks = 1'000'000;
 
 // ---- the flags, by their groups in --help ----
 
@@ -71,6 +73,45 @@ void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
                  "who may call; needs TLS. A line for each credential: token sha256:HEX PRINCIPAL "
                  "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
                  "read, submit or admin")
+      ->type_name("FILE");
+}
+
+void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
+  BeginGroup(app, "Slurm, with --executor=slurm");
+  AddChoice(app, "executor", with_slurm, {{"threads", false}, {"slurm", true}},
+            "threads: this server's alone; slurm: work that is expected to take a minute or more "
+            "also goes to a Slurm cluster");
+  app.add_option("--slurm-shared-folder", slurm.shared_folder,
+                 "folder that the server and all nodes of the cluster see under this absolute "
+                 "path. It belongs to the server's user; other users cannot write it")
+      ->type_name("DIR");
+  app.add_option("--slurm-partition", slurm.partition, "partition; default: the cluster's default")
+      ->type_name("NAME");
+  app.add_option("--slurm-account", slurm.account, "account; default: the user's default")
+      ->type_name("NAME");
+  app.add_option("--slurm-cluster", slurm.cluster,
+                 "cluster, where a site has several; needs slurmdbd")
+      ->type_name("NAME");
+  AddInteger(app, "slurm-time-limit-minutes", slurm.time_limit_minutes,
+             Between(int64_t{2}, kMostSlurmMinutes), "time limit of a task");
+  app.add_option("--slurm-option", slurm.sbatch_options,
+                 "one further word for sbatch, such as --slurm-option=--mem-per-cpu=500M; may be "
+                 "given several times")
+      ->type_name("WORD")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->expected(1);
+  AddInteger(app, "slurm-max-tasks", slurm.max_tasks, Between(int64_t{1}, kMostSlurmTasks),
+             "tasks that wait or run at a time; a task uses one core");
+  AddInteger(app, "slurm-max-array-size", slurm.max_array_size,
+             Between(int64_t{1}, kMostSlurmTasks),
+             "tasks of one job array; less than the cluster's MaxArraySize");
+  AddSeconds(app, "slurm-task-seconds", slurm.task_length, Between(1.0, 86400.0),
+             "computing time of a task, about; at most half of the time limit is used");
+  AddSeconds(app, "slurm-query-seconds", slurm.query_interval, Between(1.0, 3600.0),
+             "time between two queries of Slurm's queue");
+  app.add_option("--slurm-worker", slurm.worker,
+                 "the program ballpiston-worker, which the server copies into the shared folder; "
+                 "default: the one installed with the server")
       ->type_name("FILE");
 }
 
@@ -237,6 +278,25 @@ absl::Status CheckTransfer(const Limits& limits) {
       kMostTransferMib, " with --max-message-bytes=", limits.max_message_bytes));
 }
 
+absl::Status CheckSlurm(const CLI::App& app, bool with_slurm, const SlurmOptions& slurm) {
+  if (with_slurm && slurm.shared_folder.empty()) {
+    return absl::InvalidArgumentError(
+        "--executor=slurm: --slurm-shared-folder is missing, the folder that the server and the "
+        "nodes of the cluster share");
+  }
+  if (with_slurm && !absl::StartsWith(slurm.shared_folder, "/")) {
+    return absl::InvalidArgumentError(absl::StrCat("--slurm-shared-folder=", slurm.shared_folder,
+                                                   " is not an absolute path"));
+  }
+  if (with_slurm) return absl::OkStatus();
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || !absl::StartsWith(option->get_name(), "--slurm-")) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(option->get_name(), " needs --executor=slurm"));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status CheckOneCommand(const CommandLine& line, const std::string& new_token) {
   std::vector<std::string> given;
   if (line.check) given.push_back("--check");
@@ -274,6 +334,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   SetHelpPage(app);
   AddServerFlags(app, line);
   AddSecurityFlags(app, line.server.security);
+  bool with_slurm = false;
+  SlurmOptions slurm;
+  AddSlurmFlags(app, with_slurm, slurm);
   AddLimitFlags(app, line.server.limits);
   AddLogFlags(app, line);
   AddCommands(app, line, new_token);
@@ -282,9 +345,10 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   if (!line.page.empty()) return line;
   for (const absl::Status& status :
        {CheckTransfer(line.server.limits), CheckOneCommand(line, new_token),
-        SetNewToken(new_token, line)}) {
+        SetNewToken(new_token, line), CheckSlurm(app, with_slurm, slurm)}) {
     if (!status.ok()) return status;
   }
+  if (with_slurm) line.server.slurm = std::move(slurm);
   return line;
 }
 

@@ -55,7 +55,7 @@ CLI::Option* AddNumber(CLI::App& app, const std::string& flag, Value& value,
   };
   return app.add_option_function<std::string>("--" + flag, set, description)
       ->type_name("N")
-      ->default_str(NumberText(Number{value}));
+      ->default_str(NumberText(static_cast<Number>(value)));
 }
 
 // Adds the range to the description.

@@ -84,7 +84,10 @@ class ThreadExecutor::SharedLease : private BlockExchange {
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds)
     : scheduler_(scheduler), workers_(threads) {
   capacity_ = {.executor = scheduler.AddExecutor(*this), .seconds = seconds};
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
+}
+
+void ThreadExecutor::Start() {
+  for (int i = 0; i < workers_; ++i) threads_.emplace_back([this] { Work(); });
 }
 
 ThreadExecutor::~ThreadExecutor() { Shutdown(); }

@@ -38,6 +38,7 @@ class ThreadExecutor : public Executor {
   ~ThreadExecutor() override;  // shuts down
 
   ExecutorTraits traits() const override { return {.local = true}; }
+  void Start() override;
   void Wake() override;
   bool HasTurn(int64_t lease) const override;
   void Shutdown() override;

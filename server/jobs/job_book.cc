@@ -273,6 +273,7 @@ std::shared_ptr<Job> JobBook::Register(JobRecord record) {
 
 void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
+  request.restarts = job->restarts();
   request.principal = job->principal();
   request.priority = job->Record().priority;
   request.journal = std::make_shared<JobJournal>(std::move(job), store_,

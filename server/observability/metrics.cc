@@ -102,6 +102,27 @@ void AddHistogram(MetricFamily& family, const MethodCounts::Totals& call) {
   family.metric.push_back(std::move(metric));
 }
 
+void AddSlurm(const ServerSnapshot::Slurm& slurm, std::vector<MetricFamily>& metrics) {
+  MetricFamily tasks{"ballpiston_slurm_tasks",
+                     "Tasks of job arrays, by state. submitted: since Slurm's last answer.",
+                     MetricType::Gauge,
+                     {}};
+  Add(tasks, {{"state", "waiting"}}, slurm.waiting_tasks);
+  Add(tasks, {{"state", "running"}}, slurm.running_tasks);
+  Add(tasks, {{"state", "submitted"}}, slurm.submitted_tasks);
+  metrics.push_back(std::move(tasks));
+  metrics.push_back(Gauge("ballpiston_slurm_failing", "1 while nothing can be submitted.",
+                          !slurm.problem.empty()));
+  metrics.push_back(Counter("ballpiston_slurm_chunks_total", "Chunks received.", slurm.chunks));
+  metrics.push_back(Counter("ballpiston_slurm_lost_tasks_total",
+                            "Tasks that ended without their last file.", slurm.lost_tasks));
+  metrics.push_back(Counter("ballpiston_slurm_refused_files_total",
+                            "Files with chunks that were damaged or of another job.",
+                            slurm.refused_files));
+  metrics.push_back(
+      Counter("ballpiston_slurm_queries_total", "Queries of Slurm's queue.", slurm.queries));
+}
+
 }  // namespace
 
 std::vector<MetricFamily> CallMetrics(const std::vector<MethodCounts::Totals>& calls) {
@@ -147,6 +168,7 @@ std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
       ByReason("ballpiston_limit_refusals_total", "Calls refused because a limit was reached.",
                server.limit_refusals),
   };
+  if (server.slurm) AddSlurm(*server.slurm, metrics);
   if (server.certificate_expiry) {
     metrics.push_back(Gauge("ballpiston_certificate_expiry_timestamp_seconds",
                             "Until when the server's certificate is valid, since 1970.",

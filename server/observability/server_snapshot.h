@@ -35,6 +35,20 @@ struct ServerSnapshot {
   double samples_computed = 0;
   double processor_seconds = 0;  // of the workers
 
+  // Of a Slurm cluster; none without one.
+  struct Slurm {
+    std::string problem;  // empty: none
+    double waiting_tasks = 0;
+    double running_tasks = 0;
+    double submitted_tasks = 0;
+    // Since the start.
+    double chunks = 0;
+    double lost_tasks = 0;
+    double refused_files = 0;
+    double queries = 0;
+  };
+  std::optional<Slurm> slurm;
+
   int64_t streams = 0;
 
   int64_t store_bytes = 0;  // on disk, the log included

@@ -26,7 +26,8 @@ namespace ballpiston::server {
 
 struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
-  int64_t run = 0;     // RunRequest::key
+  int64_t run = 0;     // these two are RunRequest's key and restarts
+  int64_t restarts = 0;
   size_t executor = 0;
   int attempt = 1;     // greater than 1 if an executor returned some of the chunks
 

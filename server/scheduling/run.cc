@@ -23,6 +23,7 @@ constexpr size_t kPointsForElsewhere = 32;
 
 Run::Run(RunRequest request)
     : key_(request.key),
+      restarts_(request.restarts),
       principal_(std::move(request.principal)),
       priority_(request.priority),
       spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
@@ -79,6 +80,7 @@ std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTra
 
 Lease Run::Completed(Lease lease) const {
   lease.run = key_;
+  lease.restarts = restarts_;
   lease.spec = spec_;
   return lease;
 }
@@ -144,11 +146,19 @@ void Run::PilotIsKnown(const PilotPlace& place) {
 }
 
 bool Run::Adopt(const Lease& lease) {
-  if (lease.point >= finished_.size() || finished_[lease.point]) return false;
+  if (lease.restarts != restarts_ || lease.point >= finished_.size()) return false;
+  if (finished_[lease.point] || open_.contains(lease.point)) return false;
   adopted_[lease.point].push_back(lease);
   if (opened_early_.insert(lease.point).second) reopen_.insert(lease.point);
   SkipFinishedPoints();
   return true;
+}
+
+void Run::ReturnAdopted(const Lease& lease) {
+  const auto found = adopted_.find(lease.point);
+  if (found == adopted_.end()) return;
+  std::erase_if(found->second, [&](const Lease& one) { return one.number == lease.number; });
+  if (found->second.empty()) adopted_.erase(found);
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {

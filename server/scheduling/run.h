@@ -33,6 +33,7 @@ struct Shortfall {
 
 struct RunRequest {
   int64_t key = 0;        // greater for a newer job
+  int64_t restarts = 0;   // how often a newer engine began the job anew
   std::string principal;  // the job's owner, for fair shares
   int32_t priority = 0;   // among the principal's; higher first
   EnsembleSpec spec;
@@ -56,6 +57,10 @@ class Run {
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
 
+  // Whether executors that are not local wait for points that nobody has opened: the next lease of a
+  // local executor opens points.
+  bool IsWantedElsewhere() const;
+
   // The leases of local executors, and their turns in progress: a run ends when there are none.
   void TurnBegins() { ++turns_; }
   void TurnEnds() { --turns_; }
@@ -72,6 +77,7 @@ class Run {
   // A lease of an earlier process; false if its point is finished.
   bool Adopt(const Lease& lease);
   void ForgetAdopted(size_t point) { adopted_.erase(point); }
+  void ReturnAdopted(const Lease& lease);
   // Its leases were adopted, and it is not open yet.
   bool IsUnopened(size_t point) const { return adopted_.contains(point); }
 
@@ -103,14 +109,13 @@ class Run {
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor);
   std::optional<Lease> NextOpening();
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
-  // Whether executors that are not local wait for points that nobody has opened.
-  bool IsWantedElsewhere() const;
   // What is left takes long enough for executors that are not local.
   bool IsLarge() const;
   void SkipFinishedPoints();
   Lease Completed(Lease lease) const;
 
   const int64_t key_;
+  const int64_t restarts_;
   const std::string principal_;
   const int32_t priority_;
   const std::shared_ptr<const EnsembleSpec> spec_;

@@ -160,7 +160,8 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const Member& member = executors_[capacity.executor];
   std::optional<Lease> lease;
-  if (member.traits.local && !run.stopped()) lease = HeldWithTurn(run, capacity.executor);
+  const bool may_continue = member.traits.local && !run.stopped() && !run.IsWantedElsewhere();
+  if (may_continue) lease = HeldWithTurn(run, capacity.executor);
   if (!lease) {
     lease = run.NextLease(capacity, member.traits);
     if (!lease) return std::nullopt;
@@ -217,6 +218,7 @@ void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
     run->journal().Worked(seconds);
     if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
     executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
+    run->ReturnAdopted(lease);
     if (OpenPoint* open = run->Find(lease)) {
       open->Return(lease.start.chunk, lease.end, tried ? lease.attempt + 1 : lease.attempt);
       run->HasChunks(lease);
@@ -229,8 +231,8 @@ void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
 std::optional<Lease> Scheduler::Adopt(Lease lease) {
   std::lock_guard lock(mutex_);
   const RunPointer run = FindRun(lease.run);
-  if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
   lease.number = ++last_number_;
+  if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
   held_.emplace(KeyOf(lease), Held{lease, 1});
   executors_[lease.executor].shares.TurnBegins(lease.run);
   return lease;

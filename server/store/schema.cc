@@ -71,6 +71,10 @@ CREATE TABLE results (
   PRIMARY KEY (job, point)
 ) STRICT;
 CREATE INDEX results_by_finish ON results (job, finish);
+CREATE TABLE server (
+  identity TEXT NOT NULL
+) STRICT;
+INSERT INTO server (identity) VALUES (lower(hex(randomblob(8))));
 CREATE TABLE pilots (
   engine_version TEXT NOT NULL,
   rho REAL NOT NULL,

@@ -5,6 +5,7 @@
 //   checkpoints (job, point) -> storage Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> PointResult, of finished points
+//   server    one row: a random name of this store, by which a cluster's jobs are told apart
 //   pilots    what pilot runs found of the limit's error, by place and engine
 //
 // `application_id` tells a store from another program's database, `user_version` is the version of

@@ -36,12 +36,16 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Opti
   if (!writer.ok()) return writer.status();
   auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
   if (!reader.ok()) return reader.status();
-  return std::unique_ptr<Store>(
-      new Store(*std::move(writer), *std::move(reader), std::move(options)));
+  auto identity = (*reader)->Text("SELECT identity FROM server");
+  if (!identity.ok()) return identity.status();
+  return std::unique_ptr<Store>(new Store(*std::move(writer), *std::move(reader),
+                                          std::move(options), *std::move(identity)));
 }
 
-Store::Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options)
-    : options_(options),
+Store::Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options,
+             std::string identity)
+    : options_(std::move(options)),
+      identity_(std::move(identity)),
       writer_(std::move(writer)),
       reader_(std::move(reader)),
       thread_([this] { WriteUntilClosed(); }) {}

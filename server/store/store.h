@@ -112,6 +112,9 @@ class Store {
   // Writes what is pending and ends the thread. Later writes fail.
   void Close();
 
+  // The random name that the store got when it was made.
+  const std::string& identity() const { return identity_; }
+
   int64_t commits() const;  // so far; for tests and metrics
   int64_t checkpoints_written() const;
   int64_t failures() const;        // groups of writes that failed because of the disk
@@ -144,7 +147,8 @@ class Store {
     bool whole = true;  // all pending writes, not only requests
   };
 
-  Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options);
+  Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options,
+        std::string identity);
 
   void Post(Write write);
   absl::Status Await(Change change, Done done, bool ordered);
@@ -169,6 +173,7 @@ class Store {
   void NoteHealth(const absl::Status& status);
 
   const Options options_;
+  const std::string identity_;
   std::unique_ptr<Database> writer_;  // only the store's thread uses it
 
   std::mutex reader_mutex_;

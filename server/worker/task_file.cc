@@ -57,4 +57,16 @@ absl::StatusOr<ArrayTask> ReadTask(const std::string& path, size_t task) {
   return found;
 }
 
+absl::StatusOr<std::vector<std::vector<IdentifiedLease>>> ReadTasks(const std::string& path) {
+  const absl::StatusOr<storage::TaskFile> file = ReadRecord(path);
+  if (!file.ok()) return file.status();
+  std::vector<std::vector<IdentifiedLease>> tasks;
+  for (size_t i = 0; i < static_cast<size_t>(file->tasks_size()); ++i) {
+    absl::StatusOr<ArrayTask> task = TaskOf(*file, i);
+    if (!task.ok()) return InFile(path, task.status());
+    tasks.push_back(std::move(task->leases));
+  }
+  return tasks;
+}
+
 }  // namespace ballpiston::server

@@ -28,6 +28,9 @@ absl::Status WriteTaskFile(const std::string& path, const std::string& array,
 // UNIMPLEMENTED if a lease is of another engine version; DATA_LOSS if a lease is damaged.
 absl::StatusOr<ArrayTask> ReadTask(const std::string& path, size_t task);
 
+// The leases of all tasks, by the task's index. Errors as ReadTask.
+absl::StatusOr<std::vector<std::vector<IdentifiedLease>>> ReadTasks(const std::string& path);
+
 }  // namespace ballpiston::server
 
 #endif  // BALLPISTON_SERVER_WORKER_TASK_FILE_H_

@@ -19,7 +19,9 @@ class ThreadPool {
   ThreadPool(int workers, ExperimentFactory factory)
       : ThreadPool(workers, std::make_unique<FactoryOpener>(std::move(factory))) {}
   ThreadPool(int workers, std::unique_ptr<PointOpener> opener)
-      : opener_(std::move(opener)), scheduler_(*opener_, workers), threads_(scheduler_, workers) {}
+      : opener_(std::move(opener)), scheduler_(*opener_, workers), threads_(scheduler_, workers) {
+    threads_.Start();
+  }
 
   ~ThreadPool() { Shutdown(); }
 

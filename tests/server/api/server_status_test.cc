@@ -70,6 +70,7 @@ class ServerStatusTest : public testing::Test {
                           .book = book_,
                           .scheduler = pool_.scheduler(),
                           .threads = pool_.threads(),
+                          .slurm = nullptr,
                           .ladder = ladder_,
                           .executor = executor_,
                           .watches = watches_,

@@ -1,0 +1,607 @@
+#include "server/execution/slurm_executor.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/engine_version.h"
+#include "server/observability/log.h"
+#include "server/worker/task_file.h"
+
+namespace ballpiston::server {
+namespace {
+
+// After so many queries in which a task was missing it has ended: a file may become visible on
+// another machine a minute after it was written.
+constexpr int kMissingQueries = 2;
+// While points are being opened, leases are gathered so that one array has many.
+constexpr int kGatherLooks = 2;
+constexpr std::chrono::seconds kFirstBackoff(30);
+constexpr std::chrono::seconds kLongestBackoff(600);
+
+// A longer chunk would end near the time limit on a slow machine.
+constexpr double kShareOfTheLimit = 0.5;
+
+double Seconds(std::chrono::duration<double> duration) { return duration.count(); }
+
+// Beside this program, as in a build folder, or in libexec, as installed.
+std::string InstalledWorker() {
+  std::error_code error;
+  const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path beside = folder / "ballpiston-worker";
+  if (std::filesystem::exists(beside, error)) return beside;
+  return folder.parent_path() / "libexec/ballpiston/ballpiston-worker";
+}
+
+Capacity CapacityOf(const SlurmOptions& options) {
+  const double limit = 60 * static_cast<double>(options.time_limit_minutes);
+  return {.seconds = std::min(Seconds(options.task_length), kShareOfTheLimit * limit),
+          .longest_chunk = kShareOfTheLimit * limit};
+}
+
+double SecondsOf(const std::vector<Lease>& leases) {
+  double seconds = 0;
+  for (const Lease& lease : leases) seconds += lease.seconds;
+  return seconds;
+}
+
+}  // namespace
+
+SlurmExecutor::SlurmExecutor(Scheduler& scheduler, SlurmOptions options,
+                             std::unique_ptr<SlurmTools> tools, std::string identity,
+                             std::function<absl::Status()> flush)
+    : scheduler_(scheduler),
+      options_(std::move(options)),
+      tools_(std::move(tools)),
+      identity_(std::move(identity)),
+      prefix_(absl::StrCat("bp-", identity_, "-")),
+      flush_(std::move(flush)),
+      folder_(options_.shared_folder, identity_),
+      capacity_(CapacityOf(options_)),
+      array_size_(options_.max_array_size) {
+  capacity_.executor = scheduler_.AddExecutor(*this);
+}
+
+SlurmExecutor::~SlurmExecutor() { Shutdown(); }
+
+void SlurmExecutor::Start() {
+  Recover();
+  collector_ = std::thread([this] { CollectUntilStopped(); });
+  steerer_ = std::thread([this] { SteerUntilStopped(); });
+}
+
+void SlurmExecutor::Wake() {}  // both threads look every second
+
+void SlurmExecutor::Shutdown() {
+  stop_.request_stop();
+  {
+    std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  }
+  if (collector_.joinable()) collector_.join();
+  if (steerer_.joinable()) steerer_.join();
+}
+
+bool SlurmExecutor::AwaitNextLook() {
+  std::unique_lock lock(mutex_);
+  return !changed_.wait_for(lock, options_.collect_interval,
+                            [this] { return stop_.stop_requested(); });
+}
+
+JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
+  return {.server = identity_,
+          .job = lease.run,
+          .restarts = lease.restarts,
+          .engine_version = std::string(kEngineVersion)};
+}
+
+void SlurmExecutor::SetProblem(const std::string& problem) {
+  std::lock_guard lock(mutex_);
+  if (std::exchange(problem_, problem) == problem) return;
+  if (problem.empty()) return LogInfo("slurm: works again");
+  LogError(absl::StrCat("slurm: ", problem));
+}
+
+// ---- files ----
+
+void SlurmExecutor::CollectUntilStopped() {
+  do {
+    for (const std::string& name : ArrayNames()) CollectArray(name);
+  } while (AwaitNextLook());
+}
+
+std::vector<std::string> SlurmExecutor::ArrayNames() const {
+  std::lock_guard lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [name, array] : arrays_) names.push_back(name);
+  return names;
+}
+
+void SlurmExecutor::CollectArray(const std::string& name) {
+  std::lock_guard one_at_a_time(collect_mutex_);
+  const absl::StatusOr<std::vector<ChunkFileName>> files = ListChunkFiles(folder_.PathOf(name));
+  if (!files.ok()) return SetProblem(std::string(files.status().message()));
+  for (const ChunkFileName& file : *files) {
+    if (stop_.stop_requested()) return;
+    if (IsNew(name, file)) TakeFile(name, file);
+  }
+}
+
+SlurmExecutor::Task* SlurmExecutor::FindTask(const std::string& array, size_t task) {
+  const auto found = arrays_.find(array);
+  if (found == arrays_.end() || task >= found->second.tasks.size()) return nullptr;
+  return &found->second.tasks[task];
+}
+
+bool SlurmExecutor::IsNew(const std::string& array, const ChunkFileName& file) {
+  std::lock_guard lock(mutex_);
+  const Task* task = FindTask(array, file.task);
+  return task != nullptr && task->state != TaskState::kOver &&
+         !task->read_files.contains(file.sequence);
+}
+
+void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name) {
+  const absl::StatusOr<ChunkFile> file = ReadChunkFile(folder_.PathOf(array), name);
+  if (absl::IsUnavailable(file.status()) || absl::IsNotFound(file.status())) return;
+  std::vector<Lease> leases;
+  {
+    std::lock_guard lock(mutex_);
+    if (const Task* task = FindTask(array, name.task)) leases = task->leases;
+  }
+  absl::Status taken = file.status();
+  if (taken.ok()) taken = CheckFile(array, *file, leases);
+  if (taken.ok()) taken = ReportFile(*file, leases);
+  if (absl::IsUnavailable(taken)) return NoteUnread(array, name);
+  if (!taken.ok()) LogError(absl::StrCat("slurm: a chunk file is refused: ", taken.message()));
+  NoteFile(array, name, file, taken);
+}
+
+// Of this array, and for the leases that its task has.
+absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile& file,
+                                      const std::vector<Lease>& leases) const {
+  const auto refuse = [&](absl::string_view why) {
+    return absl::DataLossError(absl::StrCat(
+        array, "/", ChunkFileName{file.task, file.sequence}.Text(), ": ", why));
+  };
+  if (file.array != array) return refuse(absl::StrCat("is of array ", file.array));
+  for (const LeaseChunks& of_lease : file.leases) {
+    if (of_lease.lease >= leases.size()) return refuse("has a lease that its task has not");
+    const Lease& lease = leases[of_lease.lease];
+    const bool is_its_job = of_lease.job == IdentityOf(lease) && of_lease.point == lease.point;
+    if (!is_its_job) return refuse("has chunks of another job, point or engine");
+    for (const ChunkResult& chunk : of_lease.chunks) {
+      const bool is_leased = chunk.chunk >= lease.start.chunk && chunk.chunk < lease.end;
+      if (!is_leased) return refuse("has a chunk that its lease has not");
+    }
+  }
+  return absl::OkStatus();
+}
+
+// UNAVAILABLE if a point is not open yet: then the whole file is reported again later.
+absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<Lease>& leases) {
+  absl::Status taken;
+  for (const LeaseChunks& of_lease : file.leases) {
+    const absl::Status reported =
+        scheduler_.Report(leases[of_lease.lease],
+                          {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
+    if (absl::IsUnavailable(reported)) return reported;
+    if (!reported.ok()) taken = reported;
+  }
+  return taken;
+}
+
+void SlurmExecutor::NoteUnread(const std::string& array, const ChunkFileName& name) {
+  std::lock_guard lock(mutex_);
+  if (Task* task = FindTask(array, name.task)) task->has_unread_file = true;
+}
+
+void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name,
+                             const absl::StatusOr<ChunkFile>& file, const absl::Status& taken) {
+  std::lock_guard lock(mutex_);
+  Task* task = FindTask(array, name.task);
+  if (task == nullptr) return;
+  task->read_files.insert(name.sequence);
+  task->has_unread_file = false;
+  if (!taken.ok()) ++counts_.files_refused;
+  if (!file.ok() || absl::IsDataLoss(taken)) return;
+  task->left_a_file = true;
+  backoff_ = std::chrono::milliseconds(0);
+  if (file->is_final) task->is_final = true;
+  for (const LeaseChunks& of_lease : file->leases) {
+    counts_.chunks += static_cast<double>(of_lease.chunks.size());
+    task->seconds[of_lease.lease] += of_lease.processor_seconds;
+  }
+}
+
+// ---- what an earlier process left ----
+
+void SlurmExecutor::Recover() {
+  absl::Status prepared = folder_.Prepare();
+  if (!prepared.ok()) return SetProblem(std::string(prepared.message()));
+  const auto names = folder_.ListArrays(prefix_);
+  if (!names.ok()) return SetProblem(std::string(names.status().message()));
+  for (const std::string& name : *names) RecoverArray(name);
+}
+
+void SlurmExecutor::RecoverArray(const std::string& name) {
+  Array array{.submitted = true, .submit_time = Clock::now()};
+  const auto tasks = ReadTasks(absl::StrCat(folder_.PathOf(name), "/", kTaskFile));
+  if (!tasks.ok()) LogError(absl::StrCat("slurm: ", tasks.status().message()));
+  if (tasks.ok()) {
+    for (const std::vector<IdentifiedLease>& of_task : *tasks) {
+      array.tasks.push_back(RecoveredTask(of_task));
+    }
+  }
+  std::lock_guard lock(mutex_);
+  arrays_.emplace(name, std::move(array));
+}
+
+SlurmExecutor::Task SlurmExecutor::RecoveredTask(const std::vector<IdentifiedLease>& leases) {
+  Task task;
+  for (const auto& [job, recorded] : leases) {
+    Lease lease = recorded;
+    lease.executor = capacity_.executor;
+    lease.run = job.job;
+    lease.restarts = job.restarts;
+    const bool is_ours = job == IdentityOf(lease);
+    const std::optional<Lease> adopted = is_ours ? scheduler_.Adopt(lease) : std::nullopt;
+    task.leases.push_back(adopted.value_or(lease));
+    task.seconds.push_back(0);
+  }
+  return task;
+}
+
+// ---- Slurm ----
+
+void SlurmExecutor::SteerUntilStopped() {
+  do {
+    EndFinalTasks();
+    DropUnneededTasks();
+    QueryIfDue();
+    SubmitNew();
+    RemoveEnded();
+  } while (AwaitNextLook());
+}
+
+// The tasks' leases go back to the scheduler without the lock.
+void SlurmExecutor::EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried) {
+  std::vector<std::pair<Lease, double>> returned;
+  {
+    std::lock_guard lock(mutex_);
+    for (auto& [name, array] : arrays_) {
+      for (Task& task : array.tasks) {
+        if (task.state == TaskState::kOver || !has_ended(task)) continue;
+        task.state = TaskState::kOver;
+        for (size_t i = 0; i < task.leases.size(); ++i) {
+          returned.emplace_back(task.leases[i], task.seconds[i]);
+        }
+      }
+    }
+  }
+  for (const auto& [lease, seconds] : returned) scheduler_.Return(lease, seconds, tried);
+}
+
+void SlurmExecutor::EndFinalTasks() {
+  EndTasks([](const Task& task) { return task.is_final; }, true);
+}
+
+void SlurmExecutor::DropUnneededTasks() {
+  std::map<std::string, std::set<size_t>> unneeded;
+  std::map<std::string, std::string> ids;  // empty: the whole array
+  {
+    std::lock_guard lock(mutex_);
+    for (auto& [name, array] : arrays_) {
+      bool all = true;
+      for (size_t i = 0; i < array.tasks.size(); ++i) {
+        Task& task = array.tasks[i];
+        if (task.state == TaskState::kOver) continue;
+        const bool is_needed = std::ranges::any_of(
+            task.leases, [&](const Lease& lease) { return scheduler_.Needs(lease); });
+        if (!is_needed) unneeded[name].insert(i);
+        all = all && !is_needed;
+      }
+      ids[name] = all ? "" : array.id;
+      if (!all && array.id.empty()) unneeded.erase(name);  // until the next query
+      if (array.tasks.empty() && array.submitted) unneeded[name] = {};
+    }
+  }
+  for (const auto& [name, tasks] : unneeded) {
+    const std::string& id = ids.at(name);
+    const absl::Status cancelled = id.empty()
+                                       ? tools_->Cancel(name, stop_.get_token())
+                                       : tools_->CancelTasks(name, id, tasks, stop_.get_token());
+    if (!cancelled.ok()) {
+      SetProblem(std::string(cancelled.message()));
+      continue;
+    }
+    std::lock_guard lock(mutex_);
+    Array& array = arrays_.at(name);
+    for (const size_t task : tasks) array.tasks[task].unneeded = true;
+    if (tasks.empty()) array.submitted = false;
+  }
+  EndTasks([](const Task& task) { return task.unneeded; }, false);
+}
+
+void SlurmExecutor::QueryIfDue() {
+  const Clock::time_point now = Clock::now();
+  {
+    std::lock_guard lock(mutex_);
+    if (TasksInFlight() == 0 || now < last_query_ + options_.query_interval) return;
+    last_query_ = now;
+    ++counts_.queries;
+  }
+  const auto queue = tools_->Query(prefix_, stop_.get_token());
+  if (stop_.stop_requested()) return;
+  if (!queue.ok()) return SetProblem(std::string(queue.status().message()));
+  NoteQueue(*queue, now);
+}
+
+void SlurmExecutor::NoteQueue(const std::map<std::string, QueuedArray>& queue,
+                              Clock::time_point asked) {
+  for (const std::string& name : ArrayNames()) {
+    const auto queued = queue.find(name);
+    NoteTasks(name, queued == queue.end() ? nullptr : &queued->second, asked);
+  }
+  for (const auto& [name, array] : queue) {
+    bool is_known = false;
+    {
+      std::lock_guard lock(mutex_);
+      is_known = arrays_.contains(name);
+    }
+    if (!is_known) tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
+  }
+}
+
+void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued,
+                              Clock::time_point asked) {
+  static const QueuedArray kNone;
+  const QueuedArray& now = queued != nullptr ? *queued : kNone;
+  bool some_are_missing = false;
+  {
+    std::lock_guard lock(mutex_);
+    Array& array = arrays_.at(name);
+    if (!array.submitted || array.submit_time >= asked) return;
+    array.id = now.id;
+    for (size_t i = 0; i < array.tasks.size(); ++i) {
+      Task& task = array.tasks[i];
+      if (task.state == TaskState::kOver) continue;
+      const bool waits = now.waiting.contains(i), runs = now.running.contains(i);
+      task.missing = waits || runs ? 0 : task.missing + 1;
+      if (waits) task.state = TaskState::kWaiting;
+      if (runs) task.state = TaskState::kRunning;
+      some_are_missing = some_are_missing || task.missing >= kMissingQueries;
+    }
+  }
+  if (some_are_missing) EndLostTasks(name);
+  const auto forever = std::ranges::find_if(now.reasons, WaitsForever);
+  if (now.running.empty() && forever != now.reasons.end()) GiveUpWaiting(name, *forever);
+}
+
+// A last look for their files comes first.
+void SlurmExecutor::EndLostTasks(const std::string& name) {
+  CollectArray(name);
+  EndFinalTasks();
+  size_t lost = 0, without_file = 0;
+  {
+    std::lock_guard lock(mutex_);
+    for (Task& task : arrays_.at(name).tasks) {
+      const bool is_lost = task.state != TaskState::kOver && !task.has_unread_file &&
+                           task.missing >= kMissingQueries;
+      if (!is_lost) continue;
+      task.is_lost = true;
+      ++lost;
+      without_file += task.left_a_file ? 0 : 1;
+    }
+    counts_.tasks_lost += static_cast<double>(lost);
+  }
+  if (lost == 0) return;
+  LogInfo(absl::StrCat("slurm: ", lost, " tasks of ", name,
+                       " ended without their last file; their chunks are computed again"));
+  if (without_file == lost) {
+    BackOff(absl::StrCat("tasks of ", name, " left no file in ", folder_.PathOf(name),
+                         ": see the logs there, and whether the nodes share this folder"));
+  }
+  EndTasks([](const Task& task) { return task.is_lost; }, true);
+}
+
+void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& reason) {
+  BackOff(absl::StrCat("tasks of ", name, " would wait for ever: ", reason));
+  if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // again after the next query
+  {
+    std::lock_guard lock(mutex_);
+    for (Task& task : arrays_.at(name).tasks) task.unneeded = true;
+  }
+  EndTasks([](const Task& task) { return task.unneeded; }, false);
+}
+
+void SlurmExecutor::BackOff(const std::string& problem) {
+  SetProblem(problem);
+  std::lock_guard lock(mutex_);
+  const auto first = std::min<std::chrono::milliseconds>(kFirstBackoff, options_.query_interval);
+  backoff_ = std::clamp<std::chrono::milliseconds>(2 * backoff_, first, kLongestBackoff);
+  next_submission_ = Clock::now() + backoff_;
+}
+
+// ---- submission ----
+
+void SlurmExecutor::SubmitNew() {
+  size_t room = 0;
+  {
+    std::lock_guard lock(mutex_);
+    if (Clock::now() < next_submission_) return;
+    const size_t in_flight = TasksInFlight();
+    room = options_.max_tasks - std::min(in_flight, options_.max_tasks);
+    if (backoff_.count() > 0) room = std::min<size_t>(room, in_flight == 0 ? 1 : 0);
+  }
+  if (room == 0 || stop_.stop_requested()) return;
+  const absl::StatusOr<std::string> worker = PreparedWorker();
+  if (!worker.ok()) return BackOff(std::string(worker.status().message()));
+  const bool is_full = Gather(static_cast<double>(room) * capacity_.seconds);
+  if (gathered_.empty()) return;
+  if (!is_full && ++looks_at_gathered_ < kGatherLooks) return;
+  looks_at_gathered_ = 0;
+  for (auto& [run, leases] : std::exchange(gathered_, {})) {
+    SubmitRun(*worker, std::move(leases));
+  }
+}
+
+absl::StatusOr<std::string> SlurmExecutor::PreparedWorker() const {
+  const absl::Status prepared = folder_.Prepare();
+  if (!prepared.ok()) return prepared;
+  return folder_.CopyWorker(options_.worker.empty() ? InstalledWorker() : options_.worker);
+}
+
+// True if there is work of so many seconds.
+bool SlurmExecutor::Gather(double seconds) {
+  double gathered = 0;
+  for (const auto& [run, leases] : gathered_) gathered += SecondsOf(leases);
+  while (gathered < seconds) {
+    std::optional<Lease> lease = scheduler_.Next(capacity_);
+    if (!lease) return false;
+    gathered += lease->seconds;
+    gathered_[lease->run].push_back(*std::move(lease));
+  }
+  return true;
+}
+
+void SlurmExecutor::SubmitRun(const std::string& worker, std::vector<Lease> leases) {
+  std::vector<std::vector<Lease>> tasks;
+  for (Lease& lease : leases) {
+    if (!scheduler_.Needs(lease)) continue;
+    if (tasks.empty() || SecondsOf(tasks.back()) + lease.seconds / 2 > capacity_.seconds) {
+      tasks.emplace_back();
+    }
+    tasks.back().push_back(std::move(lease));
+    if (tasks.size() == array_size_ && SecondsOf(tasks.back()) >= capacity_.seconds) {
+      SubmitArray(worker, std::exchange(tasks, {}));
+    }
+  }
+  if (!tasks.empty()) SubmitArray(worker, std::move(tasks));
+}
+
+void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vector<Lease>> tasks) {
+  const std::string name = NewName();
+  const absl::Status written = WriteArray(name, tasks);
+  if (!written.ok()) {
+    folder_.RemoveArray(name);
+    ReturnUntried(tasks);
+    return BackOff(std::string(written.message()));
+  }
+  Array array;
+  for (std::vector<Lease>& leases : tasks) {
+    const size_t n = leases.size();
+    array.tasks.push_back({.leases = std::move(leases), .seconds = std::vector<double>(n, 0)});
+  }
+  ArraySubmission submission = {.name = name,
+                                .tasks = array.tasks.size(),
+                                .folder = folder_.PathOf(name),
+                                .command = {worker, "--task-file",
+                                            absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
+                                            "--out", folder_.PathOf(name)}};
+  {
+    std::lock_guard lock(mutex_);
+    arrays_.emplace(name, std::move(array));
+  }
+  NoteSubmission(name, tools_->Submit(submission, stop_.get_token()));
+}
+
+absl::Status SlurmExecutor::WriteArray(const std::string& name,
+                                       const std::vector<std::vector<Lease>>& tasks) const {
+  const absl::Status made = folder_.MakeArray(name);
+  if (!made.ok()) return made;
+  std::vector<std::vector<IdentifiedLease>> identified;
+  for (const std::vector<Lease>& leases : tasks) {
+    std::vector<IdentifiedLease>& of_task = identified.emplace_back();
+    for (const Lease& lease : leases) of_task.push_back({IdentityOf(lease), lease});
+  }
+  return WriteTaskFile(absl::StrCat(folder_.PathOf(name), "/", kTaskFile), name, identified);
+}
+
+void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& submitted) {
+  if (submitted.ok() || absl::IsUnknown(submitted)) {
+    SetProblem(std::string(submitted.message()));
+    std::lock_guard lock(mutex_);
+    Array& array = arrays_.at(name);
+    array.submitted = true;
+    array.submit_time = Clock::now();
+    return;
+  }
+  if (absl::StrContains(submitted.message(), "Invalid job array specification")) {
+    array_size_ = std::max<size_t>(array_size_ / 2, 1);
+    SetProblem(absl::StrCat(submitted.message(), "; arrays now have ", array_size_,
+                            " tasks: set --slurm-max-array-size"));
+  } else {
+    BackOff(std::string(submitted.message()));
+  }
+  {
+    std::lock_guard lock(mutex_);
+    for (Task& task : arrays_.at(name).tasks) task.unneeded = true;
+  }
+  EndTasks([](const Task& task) { return task.unneeded; }, false);
+}
+
+void SlurmExecutor::ReturnUntried(const std::vector<std::vector<Lease>>& tasks) {
+  for (const std::vector<Lease>& leases : tasks) {
+    for (const Lease& lease : leases) scheduler_.Return(lease, 0, false);
+  }
+}
+
+std::string SlurmExecutor::NewName() {
+  std::random_device random;
+  return absl::StrFormat("%s%08x", prefix_, random());
+}
+
+// A folder goes when all that was read from it is on disk.
+void SlurmExecutor::RemoveEnded() {
+  std::vector<std::string> ended;
+  {
+    std::lock_guard lock(mutex_);
+    for (const auto& [name, array] : arrays_) {
+      const bool over = std::ranges::all_of(
+          array.tasks, [](const Task& task) { return task.state == TaskState::kOver; });
+      const bool to_be_cancelled = array.tasks.empty() && array.submitted;
+      if (over && !to_be_cancelled) ended.push_back(name);
+    }
+  }
+  if (ended.empty() || !flush_().ok()) return;
+  for (const std::string& name : ended) {
+    std::lock_guard one_at_a_time(collect_mutex_);
+    folder_.RemoveArray(name);
+    std::lock_guard lock(mutex_);
+    arrays_.erase(name);
+  }
+}
+
+// ---- status ----
+
+size_t SlurmExecutor::TasksInFlight() const {
+  size_t tasks = 0;
+  for (const auto& [name, array] : arrays_) {
+    tasks += static_cast<size_t>(std::ranges::count_if(
+        array.tasks, [](const Task& task) { return task.state != TaskState::kOver; }));
+  }
+  return tasks;
+}
+
+SlurmStatus SlurmExecutor::Status() const {
+  std::lock_guard lock(mutex_);
+  SlurmStatus status = counts_;
+  status.problem = problem_;
+  for (const auto& [name, array] : arrays_) {
+    for (const Task& task : array.tasks) {
+      status.tasks_waiting += task.state == TaskState::kWaiting;
+      status.tasks_running += task.state == TaskState::kRunning;
+      status.tasks_unknown += task.state == TaskState::kUnknown;
+    }
+  }
+  return status;
+}
+
+}  // namespace ballpiston::server

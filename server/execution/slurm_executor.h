@@ -1,0 +1,174 @@
+// Computes leases on a Slurm cluster: job arrays of ballpiston-worker, and files in a shared folder.
+//
+// An array has tasks of one run. A task has leases that take minutes together. The server writes the
+// leases into the array's task file and submits the array; a task leaves its chunks in files, which
+// the executor reads as they appear and reports. A file with a checksum proves its chunks. Slurm
+// says only which tasks wait and run: if a task is gone and has left no final file, the missing
+// chunks of its leases go back to the scheduler.
+//
+// What is computed for nothing is bounded, and nothing is lost, if slurmctld, a node, a worker or
+// this server is killed at any time: chunks are counted once because the scheduler takes each once,
+// and task files outlive the server (Scheduler::Adopt).
+//
+// If Slurm refuses, or the shared folder cannot be used, the leases go back to the scheduler, for
+// the server's threads, and the executor tries again later with one task. Status() has the reason.
+// Two threads: one reads files; one runs Slurm's tools, which may block for minutes. Thread-safe.
+#ifndef BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
+#define BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/execution/shared_folder.h"
+#include "server/execution/slurm_tools.h"
+#include "server/scheduling/scheduler.h"
+#include "server/worker/chunk_file.h"
+
+namespace ballpiston::server {
+
+struct SlurmStatus {
+  std::string problem;  // empty: none
+  size_t tasks_waiting = 0;
+  size_t tasks_running = 0;
+  size_t tasks_unknown = 0;  // submitted, and not seen in the queue yet
+  double chunks = 0;         // these four since the start
+  double files_refused = 0;
+  double tasks_lost = 0;
+  double queries = 0;
+};
+
+class SlurmExecutor : public Executor {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  // The scheduler must outlive this. `identity` names the server; `flush` returns OK when all that
+  // was reported is on disk. Begins with Start.
+  SlurmExecutor(Scheduler& scheduler, SlurmOptions options, std::unique_ptr<SlurmTools> tools,
+                std::string identity, std::function<absl::Status()> flush);
+  ~SlurmExecutor() override;  // shuts down
+
+  ExecutorTraits traits() const override { return {.local = false}; }
+  void Start() override;  // adopts the leases of the arrays of an earlier process
+  void Wake() override;
+  bool HasTurn(int64_t) const override { return false; }
+  void Shutdown() override;  // tasks run on
+
+  SlurmStatus Status() const;
+
+ private:
+  enum class TaskState { kUnknown, kWaiting, kRunning, kOver };
+
+  struct Task {
+    std::vector<Lease> leases = {};
+    std::vector<double> seconds = {};     // of processor time, by lease
+    std::set<uint32_t> read_files = {};   // sequence numbers
+    TaskState state = TaskState::kUnknown;
+    bool left_a_file = false;
+    bool has_unread_file = false;  // of a point that is not open yet
+    bool is_final = false;         // it has left its last file
+    bool is_lost = false;
+    bool unneeded = false;         // Slurm does not have it (any more)
+    int missing = 0;               // queries in a row in which it was not in the queue
+  };
+
+  struct Array {
+    std::vector<Task> tasks = {};
+    std::string id = {};  // Slurm's number in the last query
+    bool submitted = false;
+    Clock::time_point submit_time = {};
+  };
+
+  // ---- files ----
+  void CollectUntilStopped();
+  std::vector<std::string> ArrayNames() const;
+  void CollectArray(const std::string& name);
+  bool IsNew(const std::string& array, const ChunkFileName& file);
+  void TakeFile(const std::string& array, const ChunkFileName& name);
+  absl::Status CheckFile(const std::string& array, const ChunkFile& file,
+                         const std::vector<Lease>& leases) const;
+  absl::Status ReportFile(const ChunkFile& file, const std::vector<Lease>& leases);
+  void NoteUnread(const std::string& array, const ChunkFileName& name);
+  void NoteFile(const std::string& array, const ChunkFileName& name,
+                const absl::StatusOr<ChunkFile>& file, const absl::Status& taken);
+
+  // ---- what an earlier process left ----
+  void Recover();
+  void RecoverArray(const std::string& name);
+  Task RecoveredTask(const std::vector<IdentifiedLease>& leases);
+
+  // ---- Slurm ----
+  void SteerUntilStopped();
+  void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried);
+  void EndFinalTasks();
+  void DropUnneededTasks();
+  void QueryIfDue();
+  void NoteQueue(const std::map<std::string, QueuedArray>& queue, Clock::time_point asked);
+  void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);
+  void EndLostTasks(const std::string& name);
+  void GiveUpWaiting(const std::string& name, const std::string& reason);
+  void BackOff(const std::string& problem);
+
+  // ---- submission ----
+  void SubmitNew();
+  absl::StatusOr<std::string> PreparedWorker() const;
+  bool Gather(double seconds);
+  void SubmitRun(const std::string& worker, std::vector<Lease> leases);
+  void SubmitArray(const std::string& worker, std::vector<std::vector<Lease>> tasks);
+  absl::Status WriteArray(const std::string& name,
+                          const std::vector<std::vector<Lease>>& tasks) const;
+  void NoteSubmission(const std::string& name, const absl::Status& submitted);
+  void ReturnUntried(const std::vector<std::vector<Lease>>& tasks);
+  void RemoveEnded();
+
+  // These two require the lock.
+  Task* FindTask(const std::string& array, size_t task);
+  size_t TasksInFlight() const;
+
+  bool AwaitNextLook();  // false: stopped
+  void SetProblem(const std::string& problem);
+  std::string NewName();
+  JobIdentity IdentityOf(const Lease& lease) const;
+
+  Scheduler& scheduler_;
+  const SlurmOptions options_;
+  const std::unique_ptr<SlurmTools> tools_;
+  const std::string identity_;
+  const std::string prefix_;  // of the names of this server's arrays
+  const std::function<absl::Status()> flush_;
+  const SharedFolder folder_;
+  Capacity capacity_;
+
+  std::mutex collect_mutex_;   // for all of CollectArray; taken before the other
+  mutable std::mutex mutex_;   // never held while the scheduler is called, but for Needs
+  std::condition_variable changed_;
+  std::stop_source stop_;
+  std::map<std::string, Array> arrays_;  // by name
+  SlurmStatus counts_;
+  std::string problem_;
+  Clock::time_point last_query_;
+  Clock::time_point next_submission_;
+  std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
+
+  // Of the thread that runs Slurm's tools.
+  std::map<int64_t, std::vector<Lease>> gathered_;  // by run: not submitted yet
+  int looks_at_gathered_ = 0;
+  size_t array_size_;
+
+  std::thread collector_;
+  std::thread steerer_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
