@@ -176,19 +176,15 @@ void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name
 absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile& file,
                                       const std::vector<Lease>& leases) const {
   const auto refuse = [&](absl::string_view why) {
-    return absl::DataLossError(absl::StrCat(
-        array, "/", ChunkFileName{file.task, file.sequence}.Text(), ": ", why));
+    return absl::DataLossError(
+        absl::StrCat(array, "/", ChunkFileName{file.task, file.sequence}.Text(), ": ", why));
   };
   if (file.array != array) return refuse(absl::StrCat("is of array ", file.array));
   for (const LeaseChunks& of_lease : file.leases) {
     if (of_lease.lease >= leases.size()) return refuse("has a lease that its task has not");
     const Lease& lease = leases[of_lease.lease];
-    const bool is_its_job = of_lease.job == IdentityOf(lease) && of_lease.point == lease.point;
-    if (!is_its_job) return refuse("has chunks of another job, point or engine");
-    for (const ChunkResult& chunk : of_lease.chunks) {
-      const bool is_leased = chunk.chunk >= lease.start.chunk && chunk.chunk < lease.end;
-      if (!is_leased) return refuse("has a chunk that its lease has not");
-    }
+    const absl::Status checked = CheckLeaseChunks({IdentityOf(lease), lease}, of_lease);
+    if (!checked.ok()) return refuse(checked.message());
   }
   return absl::OkStatus();
 }
@@ -197,9 +193,8 @@ absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile&
 absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<Lease>& leases) {
   absl::Status taken;
   for (const LeaseChunks& of_lease : file.leases) {
-    const absl::Status reported =
-        scheduler_.Report(leases[of_lease.lease],
-                          {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
+    const absl::Status reported = scheduler_.Report(
+        leases[of_lease.lease], {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
     if (absl::IsUnavailable(reported)) return reported;
     if (!reported.ok()) taken = reported;
   }
@@ -359,7 +354,8 @@ void SlurmExecutor::NoteQueue(const std::map<std::string, QueuedArray>& queue,
     NoteTasks(name, queued == queue.end() ? nullptr : &queued->second, asked);
   }
   for (const auto& [name, array] : queue) {
-    if (!HasArray(name)) tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
+    if (!HasArray(name))
+      tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
   }
 }
 
@@ -417,8 +413,8 @@ void SlurmExecutor::EndLostTasks(const std::string& name) {
 }
 
 void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& reason) {
-  BackOff(absl::UnavailableError(
-      absl::StrCat("tasks of ", name, " would wait for ever: ", reason)));
+  BackOff(
+      absl::UnavailableError(absl::StrCat("tasks of ", name, " would wait for ever: ", reason)));
   if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // again after the next query
   {
     std::lock_guard lock(mutex_);
@@ -505,12 +501,12 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
     const size_t n = leases.size();
     array.tasks.push_back({.leases = std::move(leases), .seconds = std::vector<double>(n, 0)});
   }
-  ArraySubmission submission = {.name = name,
-                                .tasks = array.tasks.size(),
-                                .folder = folder_.PathOf(name),
-                                .command = {worker, "--task-file",
-                                            absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
-                                            "--out", folder_.PathOf(name)}};
+  ArraySubmission submission = {
+      .name = name,
+      .tasks = array.tasks.size(),
+      .folder = folder_.PathOf(name),
+      .command = {worker, "--task-file", absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
+                  "--out", folder_.PathOf(name)}};
   {
     std::lock_guard lock(mutex_);
     arrays_.emplace(name, std::move(array));
@@ -541,10 +537,9 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
   }
   if (absl::StrContains(submitted.message(), "Invalid job array specification")) {
     array_size_ = std::max<size_t>(array_size_ / 2, 1);
-    NoteOutcome(Activity::kSubmission,
-                absl::UnavailableError(absl::StrCat(submitted.message(), "; arrays now have ",
-                                                    array_size_,
-                                                    " tasks: set --slurm-max-array-size")));
+    NoteOutcome(Activity::kSubmission, absl::UnavailableError(absl::StrCat(
+                                           submitted.message(), "; arrays now have ", array_size_,
+                                           " tasks: set --slurm-max-array-size")));
   } else {
     BackOff(submitted);
   }

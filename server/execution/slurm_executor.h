@@ -1,10 +1,11 @@
-// Computes leases on a Slurm cluster: job arrays of ballpiston-worker, and files in a shared folder.
+// Computes leases on a Slurm cluster: job arrays of ballpiston-worker, and files in a shared
+// folder.
 //
-// An array has tasks of one run. A task has leases that take minutes together. The server writes the
-// leases into the array's task file and submits the array; a task leaves its chunks in files, which
-// the executor reads as they appear and reports. A file with a checksum proves its chunks. Slurm
-// says only which tasks wait and run: if a task is gone and has left no final file, the missing
-// chunks of its leases go back to the scheduler.
+// An array has tasks of one run. A task has leases that take minutes together. The server writes
+// the leases into the array's task file and submits the array; a task leaves its chunks in files,
+// which the executor reads as they appear and reports. A file with a checksum proves its chunks.
+// Slurm says only which tasks wait and run: if a task is gone and has left no final file, the
+// missing chunks of its leases go back to the scheduler.
 //
 // What is computed for nothing is bounded, and nothing is lost, if slurmctld, a node, a worker or
 // this server is killed at any time: chunks are counted once because the scheduler takes each once,
@@ -73,15 +74,15 @@ class SlurmExecutor : public Executor {
 
   struct Task {
     std::vector<Lease> leases = {};
-    std::vector<double> seconds = {};     // of processor time, by lease
-    std::set<uint32_t> read_files = {};   // sequence numbers
+    std::vector<double> seconds = {};    // of processor time, by lease
+    std::set<uint32_t> read_files = {};  // sequence numbers
     TaskState state = TaskState::kUnknown;
     bool left_a_file = false;
     bool has_unread_file = false;  // of a point that is not open yet
     bool is_final = false;         // it has left its last file
     bool is_lost = false;
-    bool unneeded = false;         // Slurm does not have it (any more)
-    int missing = 0;               // queries in a row in which it was not in the queue
+    bool unneeded = false;  // Slurm does not have it (any more)
+    int missing = 0;        // queries in a row in which it was not in the queue
   };
 
   struct Array {
@@ -152,8 +153,8 @@ class SlurmExecutor : public Executor {
   const SharedFolder folder_;
   Capacity capacity_;
 
-  std::mutex collect_mutex_;   // for all of CollectArray; taken before the other
-  mutable std::mutex mutex_;   // never held while the scheduler is called, but for Needs
+  std::mutex collect_mutex_;  // for all of CollectArray; taken before the other
+  mutable std::mutex mutex_;  // never held while the scheduler is called, but for Needs
   std::condition_variable changed_;
   std::stop_source stop_;
   std::map<std::string, Array> arrays_;  // by name

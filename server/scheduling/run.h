@@ -57,8 +57,8 @@ class Run {
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
 
-  // Whether executors that are not local wait for points that nobody has opened: the next lease of a
-  // local executor opens points.
+  // Whether executors that are not local wait for points that nobody has opened: the next lease of
+  // a local executor opens points.
   bool IsWantedElsewhere() const;
 
   // The leases of local executors, and their turns in progress: a run ends when there are none.

@@ -378,9 +378,8 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   if (lease.pilot) return;
   run.HasChunks(lease);
   if (samples > 0) {
-    open.version = run.journal().Merged({.point = lease.point,
-                                         .samples = samples,
-                                         .share_of_point = ShareOfPoint(open, samples)});
+    open.version = run.journal().Merged(
+        {.point = lease.point, .samples = samples, .share_of_point = ShareOfPoint(open, samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
   if (!fold.finished()) CheckpointIfDue(run, lease, open);

@@ -16,8 +16,8 @@
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 
@@ -326,10 +326,9 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
 }
 
 TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
-  ThreadPool pool(2,
-                  [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
-                    throw std::runtime_error("no such experiment");
-                  });
+  ThreadPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
+    throw std::runtime_error("no such experiment");
+  });
   const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }
