@@ -28,7 +28,7 @@ struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
   int64_t run = 0;     // RunRequest::key
   size_t executor = 0;
-  int attempt = 1;     // greater than 1 if an executor returned some of the chunks
+  int attempt = 1;  // greater than 1 if an executor returned some of the chunks
 
   std::shared_ptr<const EnsembleSpec> spec;  // of the run
   std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks

@@ -86,9 +86,8 @@ void OpenPoint::Adopt(uint64_t first, uint64_t end) {
   const uint64_t before = next_chunk_;
   next_chunk_ = std::max(next_chunk_, std::min(end, chunks()));
   Return(before, std::min(first, next_chunk_), 1);
-  std::erase_if(returned_, [&](const auto& chunk) {
-    return chunk.first >= first && chunk.first < end;
-  });
+  std::erase_if(returned_,
+                [&](const auto& chunk) { return chunk.first >= first && chunk.first < end; });
 }
 
 double OpenPoint::ExpectedSeconds() const {

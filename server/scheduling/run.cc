@@ -101,8 +101,8 @@ bool Run::IsWantedElsewhere() const {
 std::optional<Lease> Run::NextOpening() {
   if (!HasPointsToOpen()) return std::nullopt;
   const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
-                      : IsWantedElsewhere() ? kPointsForElsewhere
-                                            : 1;
+                      : IsWantedElsewhere()  ? kPointsForElsewhere
+                                             : 1;
   Lease lease;
   while (lease.opens.size() < most && !reopen_.empty()) {
     lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
