@@ -63,12 +63,16 @@ void Scheduler::Add(RunRequest request) {
 }
 
 void Scheduler::Cancel(int64_t key) {
+  StopAndConclude(key, absl::CancelledError("the job was cancelled"));
+}
+
+void Scheduler::StopAndConclude(int64_t key, absl::Status why) {
   RunPointer run;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(key);
     if (run == nullptr) return;
-    StopRun(*run, absl::CancelledError("the job was cancelled"));
+    StopRun(*run, std::move(why));
   }
   WakeExecutors();
   Conclude(run);
@@ -242,8 +246,7 @@ bool Scheduler::Needs(const Lease& lease) const {
 }
 
 void Scheduler::Fail(const Lease& lease, absl::Status why) {
-  std::lock_guard lock(mutex_);
-  if (const RunPointer run = FindRun(lease.run)) StopRun(*run, std::move(why));
+  StopAndConclude(lease.run, std::move(why));
 }
 
 // ---- opening points ----
@@ -376,9 +379,8 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   if (lease.pilot) return;
   run.HasChunks(lease);
   if (samples > 0) {
-    open.version = run.journal().Merged({.point = lease.point,
-                                         .samples = samples,
-                                         .share_of_point = ShareOfPoint(open, samples)});
+    open.version = run.journal().Merged(
+        {.point = lease.point, .samples = samples, .share_of_point = ShareOfPoint(open, samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
   if (!fold.finished()) CheckpointIfDue(run, lease, open);
