@@ -347,7 +347,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   {
     std::lock_guard lock(mutex_);
     run = FindRun(lease.run);
-    if (run != nullptr && run->IsUnopened(lease.point)) {
+    if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
     OpenPoint* open = run ? run->Find(lease) : nullptr;
