@@ -221,10 +221,7 @@ void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
     run->journal().Worked(seconds);
     if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
     executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
-    if (OpenPoint* open = run->Find(lease)) {
-      open->Return(lease.start.chunk, lease.end, tried ? lease.attempt + 1 : lease.attempt);
-      run->HasChunks(lease);
-    }
+    run->Return(lease, tried ? lease.attempt + 1 : lease.attempt);
   }
   WakeExecutors();
   run->journal().AwaitRoom();
