@@ -341,6 +341,8 @@ absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
 absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   RunPointer run;
   absl::Status checked;
+  bool is_finished = false;
+  const bool is_elsewhere = !executors_[lease.executor].traits.local;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(lease.run);
@@ -349,16 +351,21 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     }
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
-    if (!executors_[lease.executor].traits.local) {
-      checked = DropImpossible(*open->experiment(), report.chunks);
-    }
+    if (is_elsewhere) checked = DropImpossible(*open->experiment(), report.chunks);
     Merge(*run, lease, *open, std::move(report));
-    if (!open->fold().finished()) return checked;
-    open->RequestStop();
-    DropStoppedLeases(*run);
-    run->TurnBegins();  // so that the run does not end before its point
+    is_finished = open->fold().finished();
+    if (is_finished) {
+      open->RequestStop();
+      DropStoppedLeases(*run);
+      run->TurnBegins();  // so that the run does not end before its point
+    }
   }
-  FinishPoint(run, lease);
+  // A local executor wakes the others when its turn ends.
+  if (is_finished) {
+    FinishPoint(run, lease);
+  } else if (is_elsewhere) {
+    WakeExecutors();
+  }
   return checked;
 }
 
