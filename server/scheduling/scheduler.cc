@@ -15,11 +15,20 @@ namespace {
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
 
+// Also: a chunk has at least the samples of its merged blocks.
+absl::Status CheckChunkOf(const OpenPoint& open, const ChunkResult& chunk) {
+  const FoldState& state = open.fold().state();
+  if (chunk.chunk == state.chunk && chunk.result.samples < state.partial.samples) {
+    return absl::DataLossError("a chunk has fewer samples than its merged blocks");
+  }
+  return CheckChunk(*open.experiment(), chunk);
+}
+
 // Removes chunks that the experiment cannot have computed. DATA_LOSS if there are any.
-absl::Status DropImpossible(const PointExperiment& experiment, std::vector<ChunkResult>& chunks) {
+absl::Status DropImpossible(const OpenPoint& open, std::vector<ChunkResult>& chunks) {
   absl::Status found;
   std::erase_if(chunks, [&](const ChunkResult& chunk) {
-    const absl::Status checked = CheckChunk(experiment, chunk);
+    const absl::Status checked = CheckChunkOf(open, chunk);
     if (!checked.ok()) found = checked;
     return !checked.ok();
   });
@@ -351,7 +360,10 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     }
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
-    if (is_elsewhere) checked = DropImpossible(*open->experiment(), report.chunks);
+    if (is_elsewhere) {
+      checked = DropImpossible(*open, report.chunks);
+      report.partial = {};
+    }
     Merge(*run, lease, *open, std::move(report));
     is_finished = open->fold().finished();
     if (is_finished) {
