@@ -309,7 +309,8 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   }
   absl::Cleanup give_up = [&] {
     std::lock_guard lock(mutex_);
-    EndPilot(place);
+    const auto owned = pilots_.find(place);
+    if (owned != pilots_.end() && owned->second == run.key()) EndPilot(place);
   };
   // It may have become known before this run took it on.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
