@@ -59,7 +59,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   lease.end = first->first;
   const FoldState& state = fold_.state();
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
-  const bool takes_the_rest = std::isinf(capacity.seconds) && fold_.waiting() == 0;
+  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) && fold_.waiting() == 0;
   if (takes_the_rest && lease.end == next_chunk_) {
     lease.end = next_chunk_ = chunks();
     return lease;

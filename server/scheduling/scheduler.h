@@ -44,7 +44,8 @@ struct LivePoint {
 // What an executor computed of a lease.
 struct LeaseReport {
   std::vector<ChunkResult> chunks = {};  // complete ones, in any order
-  PartialChunk partial = {};             // of the first chunk that is not complete; or no blocks
+  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
+  PartialChunk partial = {};
   double seconds = 0;  // of processor time since the previous report about this point
 };
 
@@ -155,6 +156,7 @@ class Scheduler {
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease);
+  void StopAndConclude(int64_t run, absl::Status why);
   void Conclude(const RunPointer& run);
   void WakeExecutors();
 
