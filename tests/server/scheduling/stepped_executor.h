@@ -23,6 +23,7 @@ class SteppedExecutor : public Executor {
         capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
 
   ExecutorTraits traits() const override { return {.local = true}; }
+  void Start() override {}
   void Wake() override {}
   bool HasTurn(int64_t lease) const override {
     const auto found = folds_.find(lease);
