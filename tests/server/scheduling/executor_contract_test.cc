@@ -89,7 +89,7 @@ class ThreadDriver : public ExecutorDriver {
 class RemoteDriver : public ExecutorDriver {
  public:
   RemoteDriver(Scheduler& scheduler, Delivery delivery)
-      : delivery_(delivery), local_(scheduler), remote_(scheduler) {}
+      : delivery_(delivery), local_(scheduler, kShortLease), remote_(scheduler) {}
 
   absl::Status AwaitEnd(RecordingJournal& journal) override {
     while (!journal.outcome) {
@@ -100,7 +100,8 @@ class RemoteDriver : public ExecutorDriver {
   }
 
   void AwaitLease(Gate&) override {
-    ASSERT_TRUE(local_.TakeTurn());  // opens points
+    ASSERT_TRUE(local_.TakeTurn());   // opens points
+    ASSERT_TRUE(local_.TakeTurn(1));  // computes block 0
     kept_ = remote_.Take();
     ASSERT_TRUE(kept_);
   }
@@ -157,6 +158,8 @@ class RemoteDriver : public ExecutorDriver {
     }
     remote_.Return(lease);
   }
+
+  static constexpr double kShortLease = 0;  // of one chunk
 
   const Delivery delivery_;
   SteppedExecutor local_;
@@ -324,6 +327,7 @@ TEST_P(ExecutorContract, ALaterProcessGivesTheSameBytes) {
     world.driver().AwaitLease(gate);
     world.scheduler().Shutdown();
     EXPECT_TRUE(journal->finished.empty());
+    EXPECT_FALSE(journal->checkpoints.empty());
     checkpoints = journal->checkpoints;
   }
   World world(GetParam(), Delivery::kInOrder);

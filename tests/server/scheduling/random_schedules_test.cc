@@ -372,7 +372,7 @@ TEST(RandomSchedules, GiveTheBytesOfOnePlace) {
   EXPECT_GT(leases_elsewhere, 1000);  // the schedules are worth playing
 }
 
-// The same with threads, which no seed can repeat. Run under TSan in CI.
+// The same with threads, which no seed can repeat.
 TEST(RandomSchedules, GiveTheBytesOfOnePlaceBesideThreads) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(absl::StrCat("seed ", seed));

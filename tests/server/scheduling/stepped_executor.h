@@ -66,15 +66,19 @@ class SteppedExecutor : public Executor {
       while (blocks-- > 0 && !lease.stop.stop_requested()) {
         const std::optional<Block> block = fold.NextBlock();
         if (!block) break;
-        auto chunks = fold.Add(*block, *RunBlock(experiment, *block));
-        const absl::Status taken =
-            scheduler_.Report(lease, {.chunks = std::move(chunks), .partial = fold.partial()});
+        LeaseReport report = {.chunks = fold.Add(*block, *RunBlock(experiment, *block)),
+                              .partial = fold.partial(),
+                              .seconds = kSecondsOfABlock};
+        const absl::Status taken = scheduler_.Report(lease, std::move(report));
         if (!taken.ok()) return taken;
       }
       return absl::OkStatus();
     });
     if (!computed.ok()) scheduler_.Fail(lease, computed);
   }
+
+  // Without work there is nothing to write at a shutdown.
+  static constexpr double kSecondsOfABlock = 1e-3;
 
   Scheduler& scheduler_;
   const Capacity capacity_;
