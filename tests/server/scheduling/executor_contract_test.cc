@@ -71,7 +71,9 @@ class ThreadDriver : public ExecutorDriver {
   // Threads report out of order if several leases are in progress, so these are short then.
   ThreadDriver(Scheduler& scheduler, Delivery delivery)
       : threads_(scheduler, kThreads,
-                 delivery == Delivery::kOutOfOrder ? 1 : std::numeric_limits<double>::infinity()) {}
+                 delivery == Delivery::kOutOfOrder ? 1 : std::numeric_limits<double>::infinity()) {
+    threads_.Start();
+  }
 
   absl::Status AwaitEnd(RecordingJournal& journal) override { return journal.AwaitEnd(); }
   void AwaitLease(Gate& gate) override { gate.AwaitWaiting(kThreads); }

@@ -381,6 +381,7 @@ TEST(RandomSchedules, GiveTheBytesOfOnePlaceBesideThreads) {
     Scheduler scheduler(opener, 2);
     RemoteExecutor first(scheduler, 5), second(scheduler, 30);
     ThreadExecutor threads(scheduler, 2, random.Happens(2) ? kInfinity : 4);
+    threads.Start();
     std::vector<RandomRun> runs(3);
     for (size_t i = 0; i < runs.size(); ++i) {
       RandomRun& run = runs[i];
