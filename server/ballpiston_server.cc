@@ -130,11 +130,11 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                  OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }),
       threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint),
-      slurm_(options_.slurm ? std::make_unique<SlurmExecutor>(
-                                  scheduler_, *options_.slurm,
-                                  std::make_unique<SlurmTools>(*options_.slurm),
-                                  store_->identity(), [this] { return store_->Flush(); })
-                            : nullptr),
+      slurm_(options_.slurm
+                 ? std::make_unique<SlurmExecutor>(
+                       scheduler_, *options_.slurm, std::make_unique<SlurmTools>(*options_.slurm),
+                       store_->identity(), [this] { return store_->Flush(); })
+                 : nullptr),
       executor_(kRpcThreads),
       context_{security_->authenticator(),
                options_.limits,

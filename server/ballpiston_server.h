@@ -55,7 +55,7 @@ struct ServerOptions {
   std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // a cluster beside the threads
-  ExperimentFactory factory;  // empty: the core's, by the chosen model
+  ExperimentFactory factory;               // empty: the core's, by the chosen model
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;

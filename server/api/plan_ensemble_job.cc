@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <set>
+#include <thread>
 
 #include "server/api/methods.h"
 #include "server/convert/errors.h"
@@ -12,10 +13,23 @@ namespace {
 // More points than this are planned by as many of them, evenly spread.
 constexpr size_t kMostPoints = 1000;
 
+// In seconds of processor time.
 struct PlannedWork {
   double points = 0;
-  double pilots = 0;  // each run once, by one worker
+  double pilots = 0;  // each is run once
+  double stored = 0;  // of the store's thread
+
+  double Computed() const { return points + pilots; }
+  // Workers and the store's thread share the cores.
+  double Time(int workers) const {
+    const double cores = std::max(1.0, static_cast<double>(std::thread::hardware_concurrency()));
+    return std::max({Computed() / workers, stored, (Computed() + stored) / cores});
+  }
 };
+
+double SecondsToStore(const Ladder& ladder, const MachineRates& rates) {
+  return ladder.answer.model == Model::kSpectrum ? rates.stored_spectrum : rates.stored_closed_form;
+}
 
 }  // namespace
 
@@ -33,14 +47,17 @@ absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     if (ladder.pilot && !pilots.insert(*ladder.pilot).second) ladder.DropPilot();
     work.pilots += ladder.work_of_pilot;
     work.points += ladder.Chosen().work.value_or(0) - ladder.work_of_pilot;
+    work.stored += SecondsToStore(ladder, service.ladder.machine().rates);
     *response.add_points() = PointPlanMessage(point, ladder);
   }
   const Machine& machine = service.ladder.machine();
-  work.points *= static_cast<double>(points) / static_cast<double>(planned);
+  const double share = static_cast<double>(points) / static_cast<double>(planned);
+  work.points *= share;
+  work.stored *= share;
   work.points += machine.rates.first_point;
   response.set_point_count(static_cast<int32_t>(points));
-  response.set_work(work.points + work.pilots);
-  response.set_time(work.points / machine.workers + work.pilots);
+  response.set_work(work.Computed());
+  response.set_time(work.Time(machine.workers));
   response.set_workers(machine.workers);
   *response.mutable_rates() = RatesMessage(machine.rates);
   return response;

@@ -286,14 +286,13 @@ absl::Status CheckSlurm(const CLI::App& app, bool with_slurm, const SlurmOptions
         "nodes of the cluster share");
   }
   if (with_slurm && !absl::StartsWith(slurm.shared_folder, "/")) {
-    return absl::InvalidArgumentError(absl::StrCat("--slurm-shared-folder=", slurm.shared_folder,
-                                                   " is not an absolute path"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--slurm-shared-folder=", slurm.shared_folder, " is not an absolute path"));
   }
   if (with_slurm) return absl::OkStatus();
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || !absl::StartsWith(option->get_name(), "--slurm-")) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(option->get_name(), " needs --executor=slurm"));
+    return absl::InvalidArgumentError(absl::StrCat(option->get_name(), " needs --executor=slurm"));
   }
   return absl::OkStatus();
 }

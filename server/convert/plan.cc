@@ -39,6 +39,8 @@ v1::ComputingRates RatesMessage(const MachineRates& rates) {
   message.set_wall_hit_single(rates.lanes_single.wall_hit);
   message.set_event_reference(rates.reference.wall_hit);
   message.set_first_point(rates.first_point);
+  message.set_stored_closed_form(rates.stored_closed_form);
+  message.set_stored_spectrum(rates.stored_spectrum);
   return message;
 }
 

@@ -109,9 +109,8 @@ absl::Status Collect(const Command& command, const std::stop_token& stop, Descri
   while (out.open() || err.open()) {
     if (stop.stop_requested()) return absl::CancelledError("stopped");
     if (Clock::now() >= end) {
-      return absl::DeadlineExceededError(
-          absl::StrCat(command.words[0], " did not end within ", command.limit.count() / 1000,
-                       " s"));
+      return absl::DeadlineExceededError(absl::StrCat(command.words[0], " did not end within ",
+                                                      command.limit.count() / 1000, " s"));
     }
     std::array<pollfd, 2> polled = {pollfd{out.number(), POLLIN, 0},
                                     pollfd{err.number(), POLLIN, 0}};

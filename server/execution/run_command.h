@@ -19,9 +19,9 @@ struct Command {
 };
 
 struct CommandOutput {
-  int exit_code = 0;    // 128 and the number of the signal that ended it
-  std::string output;   // standard output, at most 64 MiB
-  std::string errors;   // standard error
+  int exit_code = 0;   // 128 and the number of the signal that ended it
+  std::string output;  // standard output, at most 64 MiB
+  std::string errors;  // standard error
 };
 
 // Kills the program at the limit (DEADLINE_EXCEEDED) and when stop is requested (CANCELLED).

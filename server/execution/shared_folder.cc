@@ -37,8 +37,8 @@ absl::Status CheckOwner(const std::string& path) {
   if (stat(path.c_str(), &found) != 0) return Unusable(path, errno);
   if (!S_ISDIR(found.st_mode)) return Refused(path, "is not a folder");
   if (found.st_uid != geteuid()) {
-    return Refused(path, absl::StrCat("belongs to user ", found.st_uid, ", not to this server's user ",
-                                      geteuid()));
+    return Refused(path, absl::StrCat("belongs to user ", found.st_uid,
+                                      ", not to this server's user ", geteuid()));
   }
   if ((found.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
     return Refused(path, absl::StrFormat("can be written by other users (mode %04o): chmod go-w",
@@ -90,7 +90,8 @@ absl::StatusOr<std::string> SharedFolder::CopyWorker(const std::string& program)
   if (!bytes.ok()) return bytes.status();
   const std::string hash = Sha256(*bytes);
   std::string name = absl::StrCat(own_, "/ballpiston-worker-");
-  for (size_t i = 0; i < 8; ++i) absl::StrAppendFormat(&name, "%02x", static_cast<uint8_t>(hash[i]));
+  for (size_t i = 0; i < 8; ++i)
+    absl::StrAppendFormat(&name, "%02x", static_cast<uint8_t>(hash[i]));
   const absl::StatusOr<std::string> copy = BytesOf(name);
   if (copy.ok() && *copy == *bytes) return name;
   const absl::Status written = WriteProgram(name, *bytes);

@@ -24,9 +24,9 @@ class SharedFolder {
   // `identity` names the server among all that use the folder.
   SharedFolder(std::string folder, std::string identity);
 
-  // Makes the server's own folder if there is none. FAILED_PRECONDITION unless SHARED is an absolute
-  // path of a folder that belongs to this user and that other users cannot write; UNAVAILABLE if it
-  // cannot be used now. Errors name the folder.
+  // Makes the server's own folder if there is none. FAILED_PRECONDITION unless SHARED is an
+  // absolute path of a folder that belongs to this user and that other users cannot write;
+  // UNAVAILABLE if it cannot be used now. Errors name the folder.
   absl::Status Prepare() const;
 
   // Copies the program, unless there is a copy with the same bytes. Returns the copy's path.

@@ -102,10 +102,12 @@ JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
           .engine_version = std::string(kEngineVersion)};
 }
 
-void SlurmExecutor::SetProblem(const std::string& problem) {
+void SlurmExecutor::NoteOutcome(Activity activity, const absl::Status& outcome) {
+  const std::string problem(outcome.message());
   std::lock_guard lock(mutex_);
-  if (std::exchange(problem_, problem) == problem) return;
-  if (problem.empty()) return LogInfo("slurm: works again");
+  std::string& known = problems_[static_cast<size_t>(activity)];
+  if (std::exchange(known, problem) == problem) return;
+  if (outcome.ok()) return LogInfo("slurm: works again");
   LogError(absl::StrCat("slurm: ", problem));
 }
 
@@ -126,12 +128,19 @@ std::vector<std::string> SlurmExecutor::ArrayNames() const {
 
 void SlurmExecutor::CollectArray(const std::string& name) {
   std::lock_guard one_at_a_time(collect_mutex_);
+  if (!HasArray(name)) return;  // it was removed meanwhile
   const absl::StatusOr<std::vector<ChunkFileName>> files = ListChunkFiles(folder_.PathOf(name));
-  if (!files.ok()) return SetProblem(std::string(files.status().message()));
+  NoteOutcome(Activity::kFiles, files.status());
+  if (!files.ok()) return;
   for (const ChunkFileName& file : *files) {
     if (stop_.stop_requested()) return;
     if (IsNew(name, file)) TakeFile(name, file);
   }
+}
+
+bool SlurmExecutor::HasArray(const std::string& name) const {
+  std::lock_guard lock(mutex_);
+  return arrays_.contains(name);
 }
 
 SlurmExecutor::Task* SlurmExecutor::FindTask(const std::string& array, size_t task) {
@@ -167,19 +176,15 @@ void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name
 absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile& file,
                                       const std::vector<Lease>& leases) const {
   const auto refuse = [&](absl::string_view why) {
-    return absl::DataLossError(absl::StrCat(
-        array, "/", ChunkFileName{file.task, file.sequence}.Text(), ": ", why));
+    return absl::DataLossError(
+        absl::StrCat(array, "/", ChunkFileName{file.task, file.sequence}.Text(), ": ", why));
   };
   if (file.array != array) return refuse(absl::StrCat("is of array ", file.array));
   for (const LeaseChunks& of_lease : file.leases) {
     if (of_lease.lease >= leases.size()) return refuse("has a lease that its task has not");
     const Lease& lease = leases[of_lease.lease];
-    const bool is_its_job = of_lease.job == IdentityOf(lease) && of_lease.point == lease.point;
-    if (!is_its_job) return refuse("has chunks of another job, point or engine");
-    for (const ChunkResult& chunk : of_lease.chunks) {
-      const bool is_leased = chunk.chunk >= lease.start.chunk && chunk.chunk < lease.end;
-      if (!is_leased) return refuse("has a chunk that its lease has not");
-    }
+    const absl::Status checked = CheckLeaseChunks({IdentityOf(lease), lease}, of_lease);
+    if (!checked.ok()) return refuse(checked.message());
   }
   return absl::OkStatus();
 }
@@ -188,9 +193,8 @@ absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile&
 absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<Lease>& leases) {
   absl::Status taken;
   for (const LeaseChunks& of_lease : file.leases) {
-    const absl::Status reported =
-        scheduler_.Report(leases[of_lease.lease],
-                          {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
+    const absl::Status reported = scheduler_.Report(
+        leases[of_lease.lease], {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
     if (absl::IsUnavailable(reported)) return reported;
     if (!reported.ok()) taken = reported;
   }
@@ -223,10 +227,12 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
 // ---- what an earlier process left ----
 
 void SlurmExecutor::Recover() {
-  absl::Status prepared = folder_.Prepare();
-  if (!prepared.ok()) return SetProblem(std::string(prepared.message()));
+  const absl::Status prepared = folder_.Prepare();
+  NoteOutcome(Activity::kFiles, prepared);
+  if (!prepared.ok()) return;
   const auto names = folder_.ListArrays(prefix_);
-  if (!names.ok()) return SetProblem(std::string(names.status().message()));
+  NoteOutcome(Activity::kFiles, names.status());
+  if (!names.ok()) return;
   for (const std::string& name : *names) RecoverArray(name);
 }
 
@@ -317,10 +323,8 @@ void SlurmExecutor::DropUnneededTasks() {
     const absl::Status cancelled = id.empty()
                                        ? tools_->Cancel(name, stop_.get_token())
                                        : tools_->CancelTasks(name, id, tasks, stop_.get_token());
-    if (!cancelled.ok()) {
-      SetProblem(std::string(cancelled.message()));
-      continue;
-    }
+    NoteOutcome(Activity::kQueue, cancelled);
+    if (!cancelled.ok()) continue;
     std::lock_guard lock(mutex_);
     Array& array = arrays_.at(name);
     for (const size_t task : tasks) array.tasks[task].unneeded = true;
@@ -339,8 +343,8 @@ void SlurmExecutor::QueryIfDue() {
   }
   const auto queue = tools_->Query(prefix_, stop_.get_token());
   if (stop_.stop_requested()) return;
-  if (!queue.ok()) return SetProblem(std::string(queue.status().message()));
-  NoteQueue(*queue, now);
+  NoteOutcome(Activity::kQueue, queue.status());
+  if (queue.ok()) NoteQueue(*queue, now);
 }
 
 void SlurmExecutor::NoteQueue(const std::map<std::string, QueuedArray>& queue,
@@ -350,12 +354,8 @@ void SlurmExecutor::NoteQueue(const std::map<std::string, QueuedArray>& queue,
     NoteTasks(name, queued == queue.end() ? nullptr : &queued->second, asked);
   }
   for (const auto& [name, array] : queue) {
-    bool is_known = false;
-    {
-      std::lock_guard lock(mutex_);
-      is_known = arrays_.contains(name);
-    }
-    if (!is_known) tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
+    if (!HasArray(name))
+      tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
   }
 }
 
@@ -405,14 +405,16 @@ void SlurmExecutor::EndLostTasks(const std::string& name) {
   LogInfo(absl::StrCat("slurm: ", lost, " tasks of ", name,
                        " ended without their last file; their chunks are computed again"));
   if (without_file == lost) {
-    BackOff(absl::StrCat("tasks of ", name, " left no file in ", folder_.PathOf(name),
-                         ": see the logs there, and whether the nodes share this folder"));
+    BackOff(absl::UnavailableError(
+        absl::StrCat("tasks of ", name, " left no file in ", folder_.PathOf(name),
+                     ": see the logs there, and whether the nodes share this folder")));
   }
   EndTasks([](const Task& task) { return task.is_lost; }, true);
 }
 
 void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& reason) {
-  BackOff(absl::StrCat("tasks of ", name, " would wait for ever: ", reason));
+  BackOff(
+      absl::UnavailableError(absl::StrCat("tasks of ", name, " would wait for ever: ", reason)));
   if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // again after the next query
   {
     std::lock_guard lock(mutex_);
@@ -421,8 +423,8 @@ void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& re
   EndTasks([](const Task& task) { return task.unneeded; }, false);
 }
 
-void SlurmExecutor::BackOff(const std::string& problem) {
-  SetProblem(problem);
+void SlurmExecutor::BackOff(const absl::Status& problem) {
+  NoteOutcome(Activity::kSubmission, problem);
   std::lock_guard lock(mutex_);
   const auto first = std::min<std::chrono::milliseconds>(kFirstBackoff, options_.query_interval);
   backoff_ = std::clamp<std::chrono::milliseconds>(2 * backoff_, first, kLongestBackoff);
@@ -442,7 +444,7 @@ void SlurmExecutor::SubmitNew() {
   }
   if (room == 0 || stop_.stop_requested()) return;
   const absl::StatusOr<std::string> worker = PreparedWorker();
-  if (!worker.ok()) return BackOff(std::string(worker.status().message()));
+  if (!worker.ok()) return BackOff(worker.status());
   const bool is_full = Gather(static_cast<double>(room) * capacity_.seconds);
   if (gathered_.empty()) return;
   if (!is_full && ++looks_at_gathered_ < kGatherLooks) return;
@@ -492,19 +494,19 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
   if (!written.ok()) {
     folder_.RemoveArray(name);
     ReturnUntried(tasks);
-    return BackOff(std::string(written.message()));
+    return BackOff(written);
   }
   Array array;
   for (std::vector<Lease>& leases : tasks) {
     const size_t n = leases.size();
     array.tasks.push_back({.leases = std::move(leases), .seconds = std::vector<double>(n, 0)});
   }
-  ArraySubmission submission = {.name = name,
-                                .tasks = array.tasks.size(),
-                                .folder = folder_.PathOf(name),
-                                .command = {worker, "--task-file",
-                                            absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
-                                            "--out", folder_.PathOf(name)}};
+  ArraySubmission submission = {
+      .name = name,
+      .tasks = array.tasks.size(),
+      .folder = folder_.PathOf(name),
+      .command = {worker, "--task-file", absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
+                  "--out", folder_.PathOf(name)}};
   {
     std::lock_guard lock(mutex_);
     arrays_.emplace(name, std::move(array));
@@ -526,7 +528,7 @@ absl::Status SlurmExecutor::WriteArray(const std::string& name,
 
 void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& submitted) {
   if (submitted.ok() || absl::IsUnknown(submitted)) {
-    SetProblem(std::string(submitted.message()));
+    NoteOutcome(Activity::kSubmission, submitted);
     std::lock_guard lock(mutex_);
     Array& array = arrays_.at(name);
     array.submitted = true;
@@ -535,10 +537,11 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
   }
   if (absl::StrContains(submitted.message(), "Invalid job array specification")) {
     array_size_ = std::max<size_t>(array_size_ / 2, 1);
-    SetProblem(absl::StrCat(submitted.message(), "; arrays now have ", array_size_,
-                            " tasks: set --slurm-max-array-size"));
+    NoteOutcome(Activity::kSubmission, absl::UnavailableError(absl::StrCat(
+                                           submitted.message(), "; arrays now have ", array_size_,
+                                           " tasks: set --slurm-max-array-size")));
   } else {
-    BackOff(std::string(submitted.message()));
+    BackOff(submitted);
   }
   {
     std::lock_guard lock(mutex_);
@@ -593,7 +596,10 @@ size_t SlurmExecutor::TasksInFlight() const {
 SlurmStatus SlurmExecutor::Status() const {
   std::lock_guard lock(mutex_);
   SlurmStatus status = counts_;
-  status.problem = problem_;
+  for (const std::string& problem : problems_) {
+    if (problem.empty()) continue;
+    absl::StrAppend(&status.problem, status.problem.empty() ? "" : "; ", problem);
+  }
   for (const auto& [name, array] : arrays_) {
     for (const Task& task : array.tasks) {
       status.tasks_waiting += task.state == TaskState::kWaiting;

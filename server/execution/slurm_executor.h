@@ -1,10 +1,11 @@
-// Computes leases on a Slurm cluster: job arrays of ballpiston-worker, and files in a shared folder.
+// Computes leases on a Slurm cluster: job arrays of ballpiston-worker, and files in a shared
+// folder.
 //
-// An array has tasks of one run. A task has leases that take minutes together. The server writes the
-// leases into the array's task file and submits the array; a task leaves its chunks in files, which
-// the executor reads as they appear and reports. A file with a checksum proves its chunks. Slurm
-// says only which tasks wait and run: if a task is gone and has left no final file, the missing
-// chunks of its leases go back to the scheduler.
+// An array has tasks of one run. A task has leases that take minutes together. The server writes
+// the leases into the array's task file and submits the array; a task leaves its chunks in files,
+// which the executor reads as they appear and reports. A file with a checksum proves its chunks.
+// Slurm says only which tasks wait and run: if a task is gone and has left no final file, the
+// missing chunks of its leases go back to the scheduler.
 //
 // What is computed for nothing is bounded, and nothing is lost, if slurmctld, a node, a worker or
 // this server is killed at any time: chunks are counted once because the scheduler takes each once,
@@ -16,6 +17,7 @@
 #ifndef BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
 #define BALLPISTON_SERVER_EXECUTION_SLURM_EXECUTOR_H_
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -67,19 +69,20 @@ class SlurmExecutor : public Executor {
   SlurmStatus Status() const;
 
  private:
+  enum class Activity { kFiles, kQueue, kSubmission };
   enum class TaskState { kUnknown, kWaiting, kRunning, kOver };
 
   struct Task {
     std::vector<Lease> leases = {};
-    std::vector<double> seconds = {};     // of processor time, by lease
-    std::set<uint32_t> read_files = {};   // sequence numbers
+    std::vector<double> seconds = {};    // of processor time, by lease
+    std::set<uint32_t> read_files = {};  // sequence numbers
     TaskState state = TaskState::kUnknown;
     bool left_a_file = false;
     bool has_unread_file = false;  // of a point that is not open yet
     bool is_final = false;         // it has left its last file
     bool is_lost = false;
-    bool unneeded = false;         // Slurm does not have it (any more)
-    int missing = 0;               // queries in a row in which it was not in the queue
+    bool unneeded = false;  // Slurm does not have it (any more)
+    int missing = 0;        // queries in a row in which it was not in the queue
   };
 
   struct Array {
@@ -92,6 +95,7 @@ class SlurmExecutor : public Executor {
   // ---- files ----
   void CollectUntilStopped();
   std::vector<std::string> ArrayNames() const;
+  bool HasArray(const std::string& name) const;
   void CollectArray(const std::string& name);
   bool IsNew(const std::string& array, const ChunkFileName& file);
   void TakeFile(const std::string& array, const ChunkFileName& name);
@@ -117,7 +121,7 @@ class SlurmExecutor : public Executor {
   void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);
   void EndLostTasks(const std::string& name);
   void GiveUpWaiting(const std::string& name, const std::string& reason);
-  void BackOff(const std::string& problem);
+  void BackOff(const absl::Status& problem);
 
   // ---- submission ----
   void SubmitNew();
@@ -136,7 +140,7 @@ class SlurmExecutor : public Executor {
   size_t TasksInFlight() const;
 
   bool AwaitNextLook();  // false: stopped
-  void SetProblem(const std::string& problem);
+  void NoteOutcome(Activity activity, const absl::Status& outcome);
   std::string NewName();
   JobIdentity IdentityOf(const Lease& lease) const;
 
@@ -149,13 +153,13 @@ class SlurmExecutor : public Executor {
   const SharedFolder folder_;
   Capacity capacity_;
 
-  std::mutex collect_mutex_;   // for all of CollectArray; taken before the other
-  mutable std::mutex mutex_;   // never held while the scheduler is called, but for Needs
+  std::mutex collect_mutex_;  // for all of CollectArray; taken before the other
+  mutable std::mutex mutex_;  // never held while the scheduler is called, but for Needs
   std::condition_variable changed_;
   std::stop_source stop_;
   std::map<std::string, Array> arrays_;  // by name
   SlurmStatus counts_;
-  std::string problem_;
+  std::array<std::string, 3> problems_;  // by activity; empty: its last attempt succeeded
   Clock::time_point last_query_;
   Clock::time_point next_submission_;
   std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file

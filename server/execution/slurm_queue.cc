@@ -18,9 +18,9 @@ constexpr size_t kMostIndex = 4'000'000;  // Slurm's own bound of MaxArraySize
 // Reasons of Slurm 22.05. A task waits for an operator; quotas and limits of the number of jobs are
 // not among them, because they pass.
 constexpr std::array<absl::string_view, 14> kForever = {
-    "AccountNotAllowed", "BadConstraints",     "InvalidAccount",     "InvalidQOS",
-    "JobHeldAdmin",      "JobHeldUser",        "JobLaunchFailure",   "PartitionConfig",
-    "PartitionDown",     "PartitionInactive",  "PartitionNodeLimit", "PartitionTimeLimit",
+    "AccountNotAllowed", "BadConstraints",    "InvalidAccount",     "InvalidQOS",
+    "JobHeldAdmin",      "JobHeldUser",       "JobLaunchFailure",   "PartitionConfig",
+    "PartitionDown",     "PartitionInactive", "PartitionNodeLimit", "PartitionTimeLimit",
     "QOSNotAllowed",     "QOSTimeLimit"};
 
 bool IsWaiting(absl::string_view state) {
@@ -37,8 +37,7 @@ bool IsRunning(absl::string_view state) {
 // One item: "7", "0-3" or "10-20:5".
 void AddIndices(absl::string_view item, size_t most, std::set<size_t>& indices) {
   const std::vector<absl::string_view> with_step = absl::StrSplit(item, absl::MaxSplits(':', 1));
-  const std::vector<absl::string_view> ends =
-      absl::StrSplit(with_step[0], absl::MaxSplits('-', 1));
+  const std::vector<absl::string_view> ends = absl::StrSplit(with_step[0], absl::MaxSplits('-', 1));
   uint64_t first = 0, last = 0, step = 1;
   if (!absl::SimpleAtoi(ends.front(), &first) || !absl::SimpleAtoi(ends.back(), &last)) return;
   if (with_step.size() == 2 && (!absl::SimpleAtoi(with_step[1], &step) || step == 0)) return;

@@ -13,8 +13,8 @@ namespace ballpiston::server {
 
 // The tasks of one array that have not ended.
 struct QueuedArray {
-  std::string id;             // Slurm's number of the array, which it may give out again
-  std::set<size_t> waiting;   // indices
+  std::string id;            // Slurm's number of the array, which it may give out again
+  std::set<size_t> waiting;  // indices
   std::set<size_t> running;
   std::set<std::string> reasons;  // why tasks wait
 };

@@ -60,7 +60,8 @@ std::vector<std::string> SlurmEnvironment() {
   std::vector<std::string> kept;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const absl::string_view text = *variable;
-    const bool is_slurms = absl::StartsWith(text, "SLURM_") && !absl::StartsWith(text, "SLURM_CONF=");
+    const bool is_slurms =
+        absl::StartsWith(text, "SLURM_") && !absl::StartsWith(text, "SLURM_CONF=");
     const bool changes_tools = absl::StartsWith(text, "SBATCH_") ||
                                absl::StartsWith(text, "SQUEUE_") ||
                                absl::StartsWith(text, "SCANCEL_");
@@ -86,10 +87,10 @@ absl::Status SlurmTools::Submit(const ArraySubmission& array, const std::stop_to
                              absl::StrCat("--array=0-", array.tasks - 1),
                              absl::StrCat("--time=", options_.time_limit_minutes),
                              absl::StrCat("--signal=B:USR1@", kSecondsToFinish), "--requeue",
-                             "--open-mode=append",
-                             absl::StrCat("--chdir=", array.folder),
+                             "--open-mode=append", absl::StrCat("--chdir=", array.folder),
                              absl::StrCat("--output=", array.folder, "/%a.log")});
-  if (!options_.partition.empty()) words.push_back(absl::StrCat("--partition=", options_.partition));
+  if (!options_.partition.empty())
+    words.push_back(absl::StrCat("--partition=", options_.partition));
   if (!options_.account.empty()) words.push_back(absl::StrCat("--account=", options_.account));
   words.insert(words.end(), options_.sbatch_options.begin(), options_.sbatch_options.end());
   const absl::StatusOr<CommandOutput> run = RunCommand(command, stop);
@@ -103,9 +104,8 @@ absl::Status SlurmTools::Submit(const ArraySubmission& array, const std::stop_to
 
 absl::StatusOr<std::map<std::string, QueuedArray>> SlurmTools::Query(absl::string_view prefix,
                                                                      const std::stop_token& stop) {
-  Command command = {.words = Words("squeue"),
-                     .environment = SlurmEnvironment(),
-                     .limit = kOtherLimit};
+  Command command = {
+      .words = Words("squeue"), .environment = SlurmEnvironment(), .limit = kOtherLimit};
   command.words.insert(command.words.end(),
                        {"--noheader", "--me", absl::StrCat("--format=", kQueueFormat)});
   const auto run = Succeeded(RunCommand(command, stop), "squeue");
@@ -114,21 +114,18 @@ absl::StatusOr<std::map<std::string, QueuedArray>> SlurmTools::Query(absl::strin
 }
 
 absl::Status SlurmTools::Cancel(const std::string& name, const std::stop_token& stop) {
-  Command command = {.words = Words("scancel"),
-                     .environment = SlurmEnvironment(),
-                     .limit = kOtherLimit};
+  Command command = {
+      .words = Words("scancel"), .environment = SlurmEnvironment(), .limit = kOtherLimit};
   command.words.insert(command.words.end(), {"--me", absl::StrCat("--name=", name)});
   return Succeeded(RunCommand(command, stop), "scancel").status();
 }
 
 absl::Status SlurmTools::CancelTasks(const std::string& name, const std::string& id,
                                      const std::set<size_t>& tasks, const std::stop_token& stop) {
-  Command command = {.words = Words("scancel"),
-                     .environment = SlurmEnvironment(),
-                     .limit = kOtherLimit};
-  command.words.insert(command.words.end(),
-                       {"--me", absl::StrCat("--name=", name),
-                        absl::StrCat(id, "_[", IndicesText(tasks), "]")});
+  Command command = {
+      .words = Words("scancel"), .environment = SlurmEnvironment(), .limit = kOtherLimit};
+  command.words.insert(command.words.end(), {"--me", absl::StrCat("--name=", name),
+                                             absl::StrCat(id, "_[", IndicesText(tasks), "]")});
   return Succeeded(RunCommand(command, stop), "scancel").status();
 }
 

@@ -23,14 +23,14 @@ namespace ballpiston::server {
 
 struct SlurmOptions {
   std::string shared_folder;
-  std::string partition;            // these three are empty for the cluster's defaults
+  std::string partition;  // these three are empty for the cluster's defaults
   std::string account;
   std::string cluster;
   int64_t time_limit_minutes = 60;
-  std::vector<std::string> sbatch_options = {};  // further words for sbatch
-  std::string worker = {};          // the program; empty: InstalledWorker
-  size_t max_tasks = 1000;          // submitted and not ended
-  size_t max_array_size = 1000;     // Slurm's MaxArraySize, less one
+  std::vector<std::string> sbatch_options = {};    // further words for sbatch
+  std::string worker = {};                         // the program; empty: InstalledWorker
+  size_t max_tasks = 1000;                         // submitted and not ended
+  size_t max_array_size = 1000;                    // Slurm's MaxArraySize, less one
   std::chrono::milliseconds task_length{180'000};  // of computing, about
   std::chrono::milliseconds least_work{60'000};    // a run with less to compute stays here
   std::chrono::milliseconds query_interval{30'000};
@@ -41,8 +41,8 @@ struct SlurmOptions {
 struct ArraySubmission {
   std::string name;
   size_t tasks = 0;
-  std::string folder;               // for the tasks' logs
-  std::vector<std::string> command; // of a task; its index is $SLURM_ARRAY_TASK_ID
+  std::string folder;                // for the tasks' logs
+  std::vector<std::string> command;  // of a task; its index is $SLURM_ARRAY_TASK_ID
 };
 
 class SlurmTools {

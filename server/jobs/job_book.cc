@@ -239,7 +239,7 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
   job->AddRestoredPoints(points.count(), points.samples, points.last);
-  JobJournal(job, store_, nullptr).Ended(why);
+  JobJournal(job, store_, true, nullptr).Ended(why);
   return absl::OkStatus();
 }
 
@@ -276,7 +276,7 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.restarts = job->restarts();
   request.principal = job->principal();
   request.priority = job->Record().priority;
-  request.journal = std::make_shared<JobJournal>(std::move(job), store_,
+  request.journal = std::make_shared<JobJournal>(std::move(job), store_, request.has_checkpoints,
                                                  [this](const Job& ended) { Forget(ended); });
   scheduler_.Add(std::move(request));
 }
@@ -556,7 +556,8 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
     if (!parsed.ok()) return false;
     ClearDetails(*result);
     bytes += result->ByteSizeLong();
-    points.push_back({number, std::make_shared<const v1::PointResult>(PointResultMessage(*result))});
+    points.push_back(
+        {number, std::make_shared<const v1::PointResult>(PointResultMessage(*result))});
     return points.size() < limit && bytes < kMaxBytesOfPoints;
   };
   const absl::Status read = store_.Read(

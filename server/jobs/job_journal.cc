@@ -58,9 +58,9 @@ absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd&
 
 }  // namespace
 
-JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store,
+JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed,
                        std::function<void(const Job&)> on_ended)
-    : job_(std::move(job)), store_(store), on_ended_(std::move(on_ended)) {}
+    : job_(std::move(job)), store_(store), resumed_(resumed), on_ended_(std::move(on_ended)) {}
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
@@ -128,6 +128,7 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
   storage::Result result = ResultRecordOf(point, experiment, merged, Details::kIncluded);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(result.samples()),
                   ResultRecordBytes(result)};
+  row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   ClearDetails(result);
   const auto told = std::make_shared<const v1::PointResult>(PointResultMessage(result));
   Failpoint("point.before_record");

@@ -10,17 +10,18 @@
 #include <functional>
 #include <memory>
 
-#include "server/scheduling/run_journal.h"
 #include "server/jobs/job.h"
+#include "server/scheduling/run_journal.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {
 
 class JobJournal : public RunJournal {
  public:
-  // `on_ended` is called, on the store's thread, when the job has ended for good. The store has to
-  // outlive this.
-  JobJournal(std::shared_ptr<Job> job, Store& store, std::function<void(const Job&)> on_ended);
+  // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called, on the store's
+  // thread, when the job has ended for good. The store has to outlive this.
+  JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed,
+             std::function<void(const Job&)> on_ended);
 
   void Began() override;
   absl::StatusOr<StoredPoint> ReadPoint(size_t point) override;
@@ -36,6 +37,7 @@ class JobJournal : public RunJournal {
  private:
   const std::shared_ptr<Job> job_;
   Store& store_;
+  const bool resumed_;
   const std::function<void(const Job&)> on_ended_;
 };
 

@@ -29,7 +29,7 @@ struct Lease {
   int64_t run = 0;     // these two are RunRequest's key and restarts
   int64_t restarts = 0;
   size_t executor = 0;
-  int attempt = 1;     // greater than 1 if an executor returned some of the chunks
+  int attempt = 1;  // greater than 1 if an executor returned some of the chunks
 
   std::shared_ptr<const EnsembleSpec> spec;  // of the run
   std::vector<size_t> opens = {};            // points to open; empty: the lease has chunks

@@ -1,7 +1,7 @@
 // Chooses the model that answers a point, with the rates of this server and the pilots that it has
 // run.
 //
-// The server measures rates when they are first needed (about 0.3 s) and keeps them until it stops.
+// The server measures rates when they are first needed (about 0.5 s) and keeps them until it stops.
 // The rates of points without samples include all work to serve them. The store keeps pilots. If a
 // pilot cannot be read, it is run again; if it cannot be stored, its result is still used.
 // Thread-safe.
@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 
+#include "ballpiston/storage/records.pb.h"
 #include "core/model_choice/ladder.h"
 #include "server/scheduling/point_opener.h"
 #include "server/store/store.h"
@@ -36,8 +37,8 @@ class ModelLadder : public PointOpener {
 
  private:
   void Measure();
-  // Does all the work that serves a point without samples.
-  void Serve(const EnsembleSpec& spec);
+  // Does all the work that serves a point without samples. Returns its result.
+  storage::Result Serve(const EnsembleSpec& spec);
   std::optional<Pilot> Known(const PilotPlace& place);
 
   Store& store_;

@@ -59,7 +59,7 @@ std::optional<Lease> OpenPoint::NextChunks(const Capacity& capacity, const Chunk
   lease.end = first->first;
   const FoldState& state = fold_.state();
   if (lease.end == state.chunk) lease.start = {state.chunk, state.blocks, state.partial};
-  const bool takes_the_rest = std::isinf(capacity.seconds) && fold_.waiting() == 0;
+  const bool takes_the_rest = limits.local && std::isinf(capacity.seconds) && fold_.waiting() == 0;
   if (takes_the_rest && lease.end == next_chunk_) {
     lease.end = next_chunk_ = chunks();
     return lease;
@@ -86,9 +86,8 @@ void OpenPoint::Adopt(uint64_t first, uint64_t end) {
   const uint64_t before = next_chunk_;
   next_chunk_ = std::max(next_chunk_, std::min(end, chunks()));
   Return(before, std::min(first, next_chunk_), 1);
-  std::erase_if(returned_, [&](const auto& chunk) {
-    return chunk.first >= first && chunk.first < end;
-  });
+  std::erase_if(returned_,
+                [&](const auto& chunk) { return chunk.first >= first && chunk.first < end; });
 }
 
 double OpenPoint::ExpectedSeconds() const {

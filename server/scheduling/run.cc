@@ -102,8 +102,8 @@ bool Run::IsWantedElsewhere() const {
 std::optional<Lease> Run::NextOpening() {
   if (!HasPointsToOpen()) return std::nullopt;
   const size_t most = NeedsNoSamples(*spec_) ? kCheapPoints
-                      : IsWantedElsewhere() ? kPointsForElsewhere
-                                            : 1;
+                      : IsWantedElsewhere()  ? kPointsForElsewhere
+                                             : 1;
   Lease lease;
   while (lease.opens.size() < most && !reopen_.empty()) {
     lease.opens.push_back(reopen_.extract(reopen_.begin()).value());
@@ -123,8 +123,11 @@ void Run::PointOpened(size_t point, std::unique_ptr<OpenPoint> open) {
   if (stopped_) open->RequestStop();
   sampled_points_ += 1;
   sampled_seconds_ += open->ExpectedSeconds();
-  if (const auto adopted = adopted_.extract(point)) {
-    for (const Lease& lease : adopted.mapped()) open->Adopt(lease.start.chunk, lease.end);
+  if (const auto adopted = unopened_.extract(point)) {
+    for (const Lease& lease : adopted.mapped().all) open->Adopt(lease.start.chunk, lease.end);
+    for (const Lease& lease : adopted.mapped().returned) {
+      open->Return(lease.start.chunk, lease.end, lease.attempt);
+    }
   }
   open_.emplace(point, std::move(open));
   leasable_.insert(point);
@@ -147,17 +150,10 @@ void Run::PilotIsKnown(const PilotPlace& place) {
 bool Run::Adopt(const Lease& lease) {
   if (lease.restarts != restarts_ || lease.point >= finished_.size()) return false;
   if (finished_[lease.point] || open_.contains(lease.point)) return false;
-  adopted_[lease.point].push_back(lease);
+  unopened_[lease.point].all.push_back(lease);
   if (opened_early_.insert(lease.point).second) reopen_.insert(lease.point);
   SkipFinishedPoints();
   return true;
-}
-
-void Run::ReturnAdopted(const Lease& lease) {
-  const auto found = adopted_.find(lease.point);
-  if (found == adopted_.end()) return;
-  std::erase_if(found->second, [&](const Lease& one) { return one.number == lease.number; });
-  if (found->second.empty()) adopted_.erase(found);
 }
 
 OpenPoint* Run::Find(const Lease& lease) const {
@@ -175,6 +171,16 @@ void Run::Close(const Lease& lease) {
   } else {
     leasable_.erase(lease.point);
     open_.erase(lease.point);
+  }
+}
+
+void Run::Return(const Lease& lease, int attempt) {
+  if (OpenPoint* open = Find(lease)) {
+    open->Return(lease.start.chunk, lease.end, attempt);
+    HasChunks(lease);
+  } else if (const auto unopened = unopened_.find(lease.point); unopened != unopened_.end()) {
+    unopened->second.returned.push_back(lease);
+    unopened->second.returned.back().attempt = attempt;
   }
 }
 

@@ -63,8 +63,8 @@ class Run {
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
 
-  // Whether executors that are not local wait for points that nobody has opened: the next lease of a
-  // local executor opens points.
+  // Whether executors that are not local wait for points that nobody has opened: the next lease of
+  // a local executor opens points.
   bool IsWantedElsewhere() const;
 
   // The leases of local executors, and their turns in progress: a run ends when there are none.
@@ -82,10 +82,12 @@ class Run {
 
   // A lease of an earlier process; false if its point is finished.
   bool Adopt(const Lease& lease);
-  void ForgetAdopted(size_t point) { adopted_.erase(point); }
-  void ReturnAdopted(const Lease& lease);
+  void ForgetAdopted(size_t point) { unopened_.erase(point); }
   // Its leases were adopted, and it is not open yet.
-  bool IsUnopened(size_t point) const { return adopted_.contains(point); }
+  bool IsUnopened(size_t point) const { return unopened_.contains(point); }
+
+  // Chunks of the lease that are still needed go out again, as this attempt.
+  void Return(const Lease& lease, int attempt);
 
   // Null if the lease's point or pilot is not open (any more).
   OpenPoint* Find(const Lease& lease) const;
@@ -112,6 +114,11 @@ class Run {
   void set_began() { began_ = true; }
 
  private:
+  struct AdoptedLeases {
+    std::vector<Lease> all;
+    std::vector<Lease> returned;  // of these; `attempt` is the next one
+  };
+
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor);
   std::optional<Lease> NextOpening();
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
@@ -135,8 +142,8 @@ class Run {
   std::set<size_t> leasable_;  // open points that may have chunks to lease
   std::map<PilotPlace, std::vector<size_t>> waiting_;
   std::set<size_t> reopen_;  // points whose pilot is known now, or that have adopted leases
-  std::map<size_t, std::vector<Lease>> adopted_;  // by point, until it is open
-  std::set<size_t> opened_early_;                 // points not to be opened in grid order
+  std::map<size_t, AdoptedLeases> unopened_;  // points with adopted leases that are not open yet
+  std::set<size_t> opened_early_;             // points not to be opened in grid order
   size_t next_point_ = 0;
   size_t opening_ = 0;  // leases that open points
   size_t turns_ = 0;

@@ -20,7 +20,7 @@
 namespace ballpiston::server {
 
 struct StoredPoint {
-  std::optional<FoldState> state;         // empty: there is no checkpoint
+  std::optional<FoldState> state;        // empty: there is no checkpoint
   std::vector<ChunkResult> chunks = {};  // that arrived early
 };
 

@@ -15,11 +15,20 @@ namespace {
 // Seconds of work on a point between two checkpoints, for each local worker.
 constexpr double kBetweenCheckpoints = 0.1;
 
+// Also: a chunk has at least the samples of its merged blocks.
+absl::Status CheckChunkOf(const OpenPoint& open, const ChunkResult& chunk) {
+  const FoldState& state = open.fold().state();
+  if (chunk.chunk == state.chunk && chunk.result.samples < state.partial.samples) {
+    return absl::DataLossError("a chunk has fewer samples than its merged blocks");
+  }
+  return CheckChunk(*open.experiment(), chunk);
+}
+
 // Removes chunks that the experiment cannot have computed. DATA_LOSS if there are any.
-absl::Status DropImpossible(const PointExperiment& experiment, std::vector<ChunkResult>& chunks) {
+absl::Status DropImpossible(const OpenPoint& open, std::vector<ChunkResult>& chunks) {
   absl::Status found;
   std::erase_if(chunks, [&](const ChunkResult& chunk) {
-    const absl::Status checked = CheckChunk(experiment, chunk);
+    const absl::Status checked = CheckChunkOf(open, chunk);
     if (!checked.ok()) found = checked;
     return !checked.ok();
   });
@@ -64,12 +73,16 @@ void Scheduler::Add(RunRequest request) {
 }
 
 void Scheduler::Cancel(int64_t key) {
+  StopAndConclude(key, absl::CancelledError("the job was cancelled"));
+}
+
+void Scheduler::StopAndConclude(int64_t key, absl::Status why) {
   RunPointer run;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(key);
     if (run == nullptr) return;
-    StopRun(*run, absl::CancelledError("the job was cancelled"));
+    StopRun(*run, std::move(why));
   }
   WakeExecutors();
   Conclude(run);
@@ -219,11 +232,7 @@ void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
     run->journal().Worked(seconds);
     if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
     executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
-    run->ReturnAdopted(lease);
-    if (OpenPoint* open = run->Find(lease)) {
-      open->Return(lease.start.chunk, lease.end, tried ? lease.attempt + 1 : lease.attempt);
-      run->HasChunks(lease);
-    }
+    run->Return(lease, tried ? lease.attempt + 1 : lease.attempt);
   }
   WakeExecutors();
   run->journal().AwaitRoom();
@@ -245,8 +254,7 @@ bool Scheduler::Needs(const Lease& lease) const {
 }
 
 void Scheduler::Fail(const Lease& lease, absl::Status why) {
-  std::lock_guard lock(mutex_);
-  if (const RunPointer run = FindRun(lease.run)) StopRun(*run, std::move(why));
+  StopAndConclude(lease.run, std::move(why));
 }
 
 // ---- opening points ----
@@ -303,7 +311,8 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   }
   absl::Cleanup give_up = [&] {
     std::lock_guard lock(mutex_);
-    EndPilot(place);
+    const auto owned = pilots_.find(place);
+    if (owned != pilots_.end() && owned->second == run.key()) EndPilot(place);
   };
   // It may have become known before this run took it on.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
@@ -344,24 +353,34 @@ absl::Status Scheduler::Resume(Run& run, size_t index, OpenPoint& open) {
 absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   RunPointer run;
   absl::Status checked;
+  bool is_finished = false;
+  const bool is_elsewhere = !executors_[lease.executor].traits.local;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(lease.run);
-    if (run != nullptr && run->IsUnopened(lease.point)) {
+    if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
-    if (!executors_[lease.executor].traits.local) {
-      checked = DropImpossible(*open->experiment(), report.chunks);
+    if (is_elsewhere) {
+      checked = DropImpossible(*open, report.chunks);
+      report.partial = {};
     }
     Merge(*run, lease, *open, std::move(report));
-    if (!open->fold().finished()) return checked;
-    open->RequestStop();
-    DropStoppedLeases(*run);
-    run->TurnBegins();  // so that the run does not end before its point
+    is_finished = open->fold().finished();
+    if (is_finished) {
+      open->RequestStop();
+      DropStoppedLeases(*run);
+      run->TurnBegins();  // so that the run does not end before its point
+    }
   }
-  FinishPoint(run, lease);
+  // A local executor wakes the others when its turn ends.
+  if (is_finished) {
+    FinishPoint(run, lease);
+  } else if (is_elsewhere) {
+    WakeExecutors();
+  }
   return checked;
 }
 
@@ -379,9 +398,8 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
   if (lease.pilot) return;
   run.HasChunks(lease);
   if (samples > 0) {
-    open.version = run.journal().Merged({.point = lease.point,
-                                         .samples = samples,
-                                         .share_of_point = ShareOfPoint(open, samples)});
+    open.version = run.journal().Merged(
+        {.point = lease.point, .samples = samples, .share_of_point = ShareOfPoint(open, samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
   if (!fold.finished()) CheckpointIfDue(run, lease, open);

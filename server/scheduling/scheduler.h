@@ -2,9 +2,9 @@
 //
 // The scheduler is passive: it has no threads and no clock. Executors (executor.h) call it. A lease
 // goes to the run whose turn it is (fair_share.h; each executor has its own shares), or to the next
-// run if that run has no lease for this executor now. The scheduler merges chunks in order under its
-// lock, so results depend neither on executors nor on the order of reports. Properties, each with a
-// test of its name:
+// run if that run has no lease for this executor now. The scheduler merges chunks in order under
+// its lock, so results depend neither on executors nor on the order of reports. Properties, each
+// with a test of its name:
 //   1. TheSameBitsForEveryOrderOfReports.
 //   2. AChunkCountsOnceHoweverOftenItIsReported.
 //   3. ReturnedChunksGoOutAgain.
@@ -44,7 +44,8 @@ struct LivePoint {
 // What an executor computed of a lease.
 struct LeaseReport {
   std::vector<ChunkResult> chunks = {};  // complete ones, in any order
-  PartialChunk partial = {};             // of the first chunk that is not complete; or no blocks
+  // Of the first chunk that is not complete; or no blocks. Dropped unless the executor is local.
+  PartialChunk partial = {};
   double seconds = 0;  // of processor time since the previous report about this point
 };
 
@@ -77,7 +78,8 @@ class Scheduler {
   // ---- for executors ----
 
   // The lease to work on now; empty if there is none. For a local executor it may be a lease that
-  // the executor has already (Executor::HasTurn). A turn at the lease begins. May wait for the disk.
+  // the executor has already (Executor::HasTurn). A turn at the lease begins. May wait for the
+  // disk.
   std::optional<Lease> Next(const Capacity& capacity);
 
   // Opens the points of a lease that asks for it. May take long.
@@ -88,20 +90,20 @@ class Scheduler {
   //   UNAVAILABLE  the point is not open yet: report again later
   absl::Status Report(const Lease& lease, LeaseReport report);
 
-  // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor time
-  // of the whole turn. False if the executor needs the lease no more. May wait for the disk.
+  // For a local executor: a turn at the lease ends, after its last report. `seconds`: processor
+  // time of the whole turn. False if the executor needs the lease no more. May wait for the disk.
   bool EndTurn(const Lease& lease, double seconds);
 
   // These three are for executors that are not local.
 
-  // The executor ends with the lease. Chunks that were not reported go out again, as another attempt
-  // if the executor `tried` to compute them. `seconds`: processor time of the lease. May wait for
-  // the disk.
+  // The executor ends with the lease. Chunks that were not reported go out again, as another
+  // attempt if the executor `tried` to compute them. `seconds`: processor time of the lease. May
+  // wait for the disk.
   void Return(const Lease& lease, double seconds, bool tried = true);
 
   // A lease that an earlier process of this server gave to the executor: run, point, chunks and
-  // attempt of it. Its chunks are not leased again until it is returned. Before the first lease, and
-  // after the run was added. Returns the lease with its number; empty if it is not needed.
+  // attempt of it. Its chunks are not leased again until it is returned. Before the first lease,
+  // and after the run was added. Returns the lease with its number; empty if it is not needed.
   std::optional<Lease> Adopt(Lease lease);
 
   // Whether chunks of the lease may still be needed.
@@ -154,6 +156,7 @@ class Scheduler {
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease);
+  void StopAndConclude(int64_t run, absl::Status why);
   void Conclude(const RunPointer& run);
   void WakeExecutors();
 

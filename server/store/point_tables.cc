@@ -66,28 +66,27 @@ absl::StatusOr<std::optional<std::string>> ReadCheckpoint(Database& database, in
 }
 
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row) {
-  const absl::StatusOr<int64_t> last = LastResultNumber(database, job);
-  if (!last.ok()) return last.status();
-  const int64_t number = *last + 1;
-  const absl::Status inserted =
-      database
-          .Prepare(
-              "INSERT INTO results (job, point, samples, result, finish) VALUES (?, ?, ?, ?, ?)"
-              " ON CONFLICT DO NOTHING")
-          .Bind(job)
-          .Bind(row.point)
-          .Bind(row.samples)
-          .BindBlob(row.result)
-          .Bind(number)
-          .Run();
-  if (!inserted.ok()) return inserted;
-  const bool is_new = database.RowsChanged() == 1;
+  int64_t number = 0;
+  {
+    Query query = database.Prepare(
+        "INSERT INTO results (job, point, samples, result, finish)"
+        " SELECT ?1, ?2, ?3, ?4, coalesce(max(finish), 0) + 1 FROM results WHERE job = ?1"
+        " ON CONFLICT DO NOTHING RETURNING finish");
+    query.Bind(job).Bind(row.point).Bind(row.samples).BindBlob(row.result);
+    const absl::StatusOr<bool> inserted = query.Step();
+    if (!inserted.ok()) return inserted.status();
+    if (*inserted) number = query.Integer(0);
+    if (const absl::StatusOr<bool> end = *inserted ? query.Step() : inserted; !end.ok()) {
+      return end.status();
+    }
+  }
+  if (!row.has_checkpoint) return number;
   for (const char* sql : {"DELETE FROM checkpoints WHERE job = ? AND point = ?",
                           "DELETE FROM chunks WHERE job = ? AND point = ?"}) {
     const absl::Status dropped = DropOfPoint(database, sql, job, row.point);
     if (!dropped.ok()) return dropped;
   }
-  return is_new ? number : 0;
+  return number;
 }
 
 absl::StatusOr<int64_t> LastResultNumber(Database& database, int64_t job) {

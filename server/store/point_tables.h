@@ -35,7 +35,8 @@ absl::StatusOr<std::vector<std::string>> ReadChunks(Database& database, int64_t 
 struct PointRow {
   int64_t point = 0;
   double samples = 0;
-  std::string result;  // serialized storage::Result
+  std::string result;          // serialized storage::Result
+  bool has_checkpoint = true;  // or may have one, or chunks
 };
 
 // Drops the point's checkpoint and chunks, which are no longer needed. The first writer wins. The

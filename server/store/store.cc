@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
@@ -34,20 +35,26 @@ std::string Text(const absl::Status& status) {
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const std::string& path, Options options) {
   auto writer = OpenStoreFile(path, options.vfs);
   if (!writer.ok()) return writer.status();
-  auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
-  if (!reader.ok()) return reader.status();
-  auto identity = (*reader)->Text("SELECT identity FROM server");
+  std::vector<std::unique_ptr<Database>> readers;
+  for (int i = 0; i < options.readers; ++i) {
+    auto reader = Database::Open(path, Database::Mode::kReadOnly, options.vfs);
+    if (!reader.ok()) return reader.status();
+    readers.push_back(*std::move(reader));
+  }
+  auto identity = readers.front()->Text("SELECT identity FROM server");
   if (!identity.ok()) return identity.status();
-  return std::unique_ptr<Store>(new Store(*std::move(writer), *std::move(reader),
-                                          std::move(options), *std::move(identity)));
+  return std::unique_ptr<Store>(new Store(*std::move(writer), std::move(readers),
+                                          std::move(options), path, *std::move(identity)));
 }
 
-Store::Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options,
-             std::string identity)
+Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Database>> readers,
+             Options options, std::string path, std::string identity)
     : options_(std::move(options)),
+      path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      reader_(std::move(reader)),
+      free_readers_(std::move(readers)),
+      readers_(free_readers_.size()),
       thread_([this] { WriteUntilClosed(); }) {}
 
 Store::~Store() { Close(); }
@@ -156,9 +163,34 @@ void Store::Post(Write write) {
 }
 
 absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
-  std::lock_guard lock(reader_mutex_);
-  if (reader_ == nullptr) return Closed();
-  return read(*reader_);
+  std::unique_ptr<Database> reader = TakeReader();
+  if (reader == nullptr) return Closed();
+  const absl::Cleanup give_back = [&] { GiveBack(std::move(reader)); };
+  return read(*reader);
+}
+
+std::unique_ptr<Database> Store::TakeReader() {
+  std::unique_lock lock(readers_mutex_);
+  reader_is_free_.wait(lock, [this] { return readers_ == 0 || !free_readers_.empty(); });
+  if (readers_ == 0) return nullptr;
+  std::unique_ptr<Database> reader = std::move(free_readers_.back());
+  free_readers_.pop_back();
+  return reader;
+}
+
+void Store::GiveBack(std::unique_ptr<Database> reader) {
+  std::lock_guard lock(readers_mutex_);
+  free_readers_.push_back(std::move(reader));
+  reader_is_free_.notify_all();
+}
+
+// Waits for those in use.
+void Store::CloseReaders() {
+  std::unique_lock lock(readers_mutex_);
+  reader_is_free_.wait(lock, [this] { return free_readers_.size() == readers_; });
+  free_readers_.clear();
+  readers_ = 0;
+  reader_is_free_.notify_all();
 }
 
 void Store::AwaitRoom() {
@@ -186,10 +218,7 @@ void Store::Close() {
   }
   if (!thread_.joinable()) return;
   thread_.join();
-  {
-    std::lock_guard lock(reader_mutex_);
-    reader_.reset();
-  }
+  CloseReaders();
   Failpoint("stop.before_checkpoint");
   writer_.reset();  // last: the last connection to close checkpoints
 }

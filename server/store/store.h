@@ -3,7 +3,7 @@
 // One thread owns the only connection that writes and that copies the log back into the file. It
 // commits writes in groups (a commit flushes the disk, which takes some 4 ms; a row in a group
 // takes 0.1 ms). Order is kept: earlier writes are committed earlier or in the same group. Reads
-// use a second, read-only connection and see committed data. Thread-safe.
+// use read-only connections, several at a time, and see committed data. Thread-safe.
 //
 // There are two kinds of writes. A `Commit` is a client's request: it is committed at once and
 // fails if the disk fails. A `Record` is a computed result: it may wait `delay` for others, and if
@@ -63,6 +63,7 @@ class Store {
     std::chrono::milliseconds delay{100};
     std::chrono::milliseconds retry{1000};  // after a failure of the disk
     std::chrono::milliseconds stall{5000};  // a commit that takes longer: the disk hangs
+    int readers = 4;                        // read-only connections
     size_t max_pending = 10'000;            // AwaitRoom waits above it,
     size_t max_pending_bytes = 64 << 20;    // and above this
     std::string vfs = {};                   // of SQLite; empty: the operating system's
@@ -91,7 +92,7 @@ class Store {
   void RecordResult(int64_t job, PointRow row,
                     std::function<void(int64_t number)> stored = nullptr);
 
-  // Runs `read` on the read-only connection, one at a time.
+  // Runs `read` on one of the read-only connections; waits while all are in use.
   absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read);
 
   // Returns when few enough writes are pending, or the store is closing.
@@ -111,6 +112,8 @@ class Store {
 
   // Writes what is pending and ends the thread. Later writes fail.
   void Close();
+
+  const std::string& path() const { return path_; }
 
   // The random name that the store got when it was made.
   const std::string& identity() const { return identity_; }
@@ -147,8 +150,12 @@ class Store {
     bool whole = true;  // all pending writes, not only requests
   };
 
-  Store(std::unique_ptr<Database> writer, std::unique_ptr<Database> reader, Options options,
-        std::string identity);
+  Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Database>> readers,
+        Options options, std::string path, std::string identity);
+
+  std::unique_ptr<Database> TakeReader();  // null: closed
+  void GiveBack(std::unique_ptr<Database> reader);
+  void CloseReaders();
 
   void Post(Write write);
   absl::Status Await(Change change, Done done, bool ordered);
@@ -173,11 +180,14 @@ class Store {
   void NoteHealth(const absl::Status& status);
 
   const Options options_;
+  const std::string path_;
   const std::string identity_;
   std::unique_ptr<Database> writer_;  // only the store's thread uses it
 
-  std::mutex reader_mutex_;
-  std::unique_ptr<Database> reader_;
+  std::mutex readers_mutex_;
+  std::condition_variable reader_is_free_;
+  std::vector<std::unique_ptr<Database>> free_readers_;
+  size_t readers_ = 0;  // free or in use; 0: closed
 
   mutable std::mutex mutex_;
   std::condition_variable posted_;

@@ -184,7 +184,7 @@ absl::Status WriteBytes(const std::string& path, absl::string_view text) {
   if (text.size() > kMaxCheckedFile) return TooLarge(text.size());
   const absl::StatusOr<std::string> temporary = TemporaryName(path);
   if (!temporary.ok()) return temporary.status();
-  const absl::Status written = WriteNewFile(*temporary, text);
+  absl::Status written = WriteNewFile(*temporary, text);
   if (!written.ok()) {
     unlink(temporary->c_str());
     return written;
@@ -230,7 +230,7 @@ absl::StatusOr<std::string> ReadCheckedFile(const std::string& path, FileKind ki
   if (!file.ok()) return About(path, file.status());
   const absl::StatusOr<absl::string_view> payload = PayloadOf(kind, *file);
   if (!payload.ok()) return About(path, payload.status());
-  return std::string(*payload);
+  return std::string(payload->data(), payload->size());
 }
 
 }  // namespace ballpiston::server

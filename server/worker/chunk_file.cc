@@ -165,7 +165,7 @@ absl::Status CheckLeaseChunks(const IdentifiedLease& lease, const LeaseChunks& c
     if (chunk.chunk < lease.lease.start.chunk || chunk.chunk >= lease.lease.end) {
       return Damaged("chunk", absl::StrCat("is ", chunk.chunk, ", which is not in the lease"));
     }
-    const absl::Status checked = CheckChunk(*lease.lease.experiment, chunk);
+    absl::Status checked = CheckChunk(*lease.lease.experiment, chunk);
     if (!checked.ok()) return checked;
   }
   return absl::OkStatus();

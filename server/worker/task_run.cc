@@ -132,7 +132,7 @@ void TaskRun::StartFile() {
 
 absl::Status TaskRun::Write(bool is_final) {
   next_.is_final = is_final;
-  const absl::Status written = Retried([&] { return WriteOnce(); });
+  absl::Status written = Retried([&] { return WriteOnce(); });
   if (!written.ok()) return written;
   report_(absl::StrCat("wrote ", ChunkFileName{next_.task, next_.sequence}.Text(),
                        is_final ? ", the final file" : ""));

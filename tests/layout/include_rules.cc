@@ -85,7 +85,7 @@ const std::vector<Rule>& Rules() {
        {"core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/"},
        true},
       {"tests/benchmark/",
-       {"core/", "server/execution/", "tests/support/", "hwy/", "benchmark/"},
+       {"core/", "server/scheduling/", "tests/support/", "hwy/", "benchmark/"},
        true},
       {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
       {"tests/tools/",

@@ -67,7 +67,7 @@ class RecordingJournal : public RunJournal {
     return *outcome;
   }
 
-  std::map<size_t, FoldState> stored;                         // these two are set before the run
+  std::map<size_t, FoldState> stored;  // these two are set before the run
   std::map<size_t, std::vector<ChunkResult>> stored_chunks;
   std::mutex mutex;
   std::condition_variable changed;

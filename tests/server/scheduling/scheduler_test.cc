@@ -16,8 +16,9 @@
 #include "core/ensemble/point_fold.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/scheduling/recording_journal.h"
+#include "tests/server/scheduling/run_requests.h"
 #include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 
@@ -25,18 +26,6 @@ namespace ballpiston::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-using JournalPointer = std::shared_ptr<RecordingJournal>;
-
-RunRequest RunOf(int64_t key, const EnsembleSpec& spec, const JournalPointer& journal) {
-  RunRequest request;
-  request.key = key;
-  request.spec = spec;
-  request.finished.assign(PointCount(spec), false);
-  request.has_checkpoints = journal != nullptr && !journal->stored.empty();
-  request.journal = journal;
-  return request;
-}
 
 JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
                       const std::string& principal = "", int32_t priority = 0) {
@@ -46,14 +35,6 @@ JournalPointer AddRun(ThreadPool& pool, int64_t key, const EnsembleSpec& spec,
   request.priority = priority;
   pool.Add(std::move(request));
   return journal;
-}
-
-void ExpectAllPointsRight(const EnsembleSpec& spec, const RecordingJournal& journal) {
-  const auto blocks = static_cast<uint64_t>(*spec.target.samples);
-  ASSERT_EQ(journal.finished.size(), PointCount(spec));
-  for (const auto& [point, merged] : journal.finished) {
-    EXPECT_TRUE(merged == FakeMerged(spec, point, blocks)) << "point " << point;
-  }
 }
 
 TEST(Scheduler, TheSameBitsWithAnyNumberOfWorkers) {
@@ -326,10 +307,9 @@ TEST(Scheduler, AnExceptionFailsItsRunOnly) {
 }
 
 TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
-  ThreadPool pool(2,
-                  [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
-                    throw std::runtime_error("no such experiment");
-                  });
+  ThreadPool pool(2, [](const EnsembleSpec&, size_t) -> std::unique_ptr<const PointExperiment> {
+    throw std::runtime_error("no such experiment");
+  });
   const auto journal = AddRun(pool, 1, FakeSpec(3, 20));
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }

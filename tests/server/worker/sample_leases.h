@@ -14,8 +14,8 @@
 
 namespace ballpiston::server {
 
-// One point of the experiment, with some thousand samples as its target.
-EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = 3000);
+// One point of the experiment, with a few thousand samples as its target.
+EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = 2000);
 
 // One of each experiment and sampling model.
 std::vector<EnsembleSpec> EverySampledSpec();

@@ -126,7 +126,7 @@ TEST_F(WorkerProgramTest, EndsWhenTheToleranceIsReached) {
 
 // The second run computes the rest of the chunks, and the third run nothing.
 TEST_F(WorkerProgramTest, ASignalledTaskContinuesWhereItStopped) {
-  const IdentifiedLease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 150'000));
+  const IdentifiedLease lease = LeaseOf(SpecOf(kEquilibrium, Model::kBilliardReference, 80'000));
   WriteTasks({{lease}});
   for (const int signal : {SIGUSR1, SIGTERM}) {
     Process first(Command({"--flush-seconds", "0"}));
