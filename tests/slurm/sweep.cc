@@ -19,10 +19,11 @@ namespace {
 using google::protobuf::Struct;
 
 // A job of a few seconds is large enough, a task takes some seconds, and Slurm is asked often.
-Words FlagsOf(const std::string& shared_folder, const Words& further) {
-  return Joined({{"--executor=slurm", "--slurm-shared-folder", shared_folder},
-                 Split("--slurm-least-seconds 2 --slurm-task-seconds 3 --slurm-query-seconds 2"),
-                 further});
+Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
+  return Joined({{"--executor=slurm", "--slurm-shared-folder", shared_folder,
+                  "--slurm-least-seconds", "2", "--slurm-query-seconds", "2",
+                  "--slurm-task-seconds", absl::StrCat(set_up.task_seconds)},
+                 set_up.flags});
 }
 
 std::string PointsOfJob(const TestServer& server, const std::string& job) {
@@ -79,7 +80,7 @@ Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.c
   mkdir(shared_folder().c_str(), 0700);
   server_ = std::make_unique<TestServer>(
       ServerSetUp{.workers = set_up_.workers,
-                  .flags = FlagsOf(shared_folder(), set_up_.flags),
+                  .flags = FlagsOf(shared_folder(), set_up_),
                   .launcher = {"env", Launcher(cluster_), PathWith(set_up_.path)}});
 }
 

@@ -30,7 +30,8 @@ struct SlurmCounts {
 
 struct SweepSetUp {
   Words cluster = {};  // lines of slurm.conf
-  Words flags = {};    // of the server; the last one with a name counts
+  Words flags = {};    // of the server
+  int task_seconds = 3;
   int samples = 1'000'000;
   int workers = 1;
   std::string path = {};  // first in the server's PATH

@@ -32,6 +32,7 @@ constexpr std::chrono::seconds kUsual(60);
 constexpr Limit kLonger[] = {
     {"end_to_end_test", "BadInputTest", std::chrono::seconds(300)},
     {"slurm_test", "Slurm", std::chrono::seconds(300)},
+    {"slurm_test", "Slurm/SlurmControllerKilled", std::chrono::seconds(300)},
     {"torture_test", "Kills", std::chrono::seconds(300)},
     {"torture_test", "Overhead", std::chrono::seconds(120)},
     {"torture_test", "StalledReaders", std::chrono::seconds(120)},
