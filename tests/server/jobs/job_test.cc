@@ -164,7 +164,7 @@ class JobJournalTest : public testing::Test {
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_, nullptr);
-    journal_.emplace(job_, *store_, nullptr);
+    journal_.emplace(job_, *store_, false, nullptr);
   }
 
   void Finish(size_t point) {

@@ -278,6 +278,18 @@ TEST(Scheduler, AChunkStaysLocalAfterFiveAttempts) {
   ExpectComplete(SixChunks(), *journal);
 }
 
+// The chunks are somebody else's by then.
+TEST(Scheduler, ASecondReturnHasNoEffect) {
+  Cluster cluster(kWholePoint);
+  cluster.Begin(SixChunks());
+  const auto first = cluster.remote.Take();
+  ASSERT_TRUE(first);
+  cluster.remote.Return(*first);
+  ASSERT_TRUE(cluster.remote.Take());
+  cluster.remote.Return(*first);
+  EXPECT_FALSE(cluster.remote.Take());
+}
+
 TEST(Scheduler, AnUntriedLeaseCountsNoAttempt) {
   Cluster cluster;
   cluster.Begin(SixChunks());
@@ -461,7 +473,9 @@ TEST(Scheduler, NoLeaseIsGivenAfterTheShutdown) {
   cluster.scheduler.Shutdown();
   EXPECT_TRUE(lease->stop.stop_requested());
   EXPECT_TRUE(cluster.remote.is_shut_down());
+  cluster.Add(SixChunks(), 2);
   EXPECT_FALSE(cluster.scheduler.Next({.executor = cluster.remote.number()}));
+  EXPECT_FALSE(cluster.scheduler.Next({.executor = 0}));
   EXPECT_EQ(journal->ends, 0);
 }
 

@@ -71,7 +71,9 @@ class ThreadDriver : public ExecutorDriver {
   // Threads report out of order if several leases are in progress, so these are short then.
   ThreadDriver(Scheduler& scheduler, Delivery delivery)
       : threads_(scheduler, kThreads,
-                 delivery == Delivery::kOutOfOrder ? 1 : std::numeric_limits<double>::infinity()) {}
+                 delivery == Delivery::kOutOfOrder ? 1 : std::numeric_limits<double>::infinity()) {
+    threads_.Start();
+  }
 
   absl::Status AwaitEnd(RecordingJournal& journal) override { return journal.AwaitEnd(); }
   void AwaitLease(Gate& gate) override { gate.AwaitWaiting(kThreads); }
@@ -89,7 +91,7 @@ class ThreadDriver : public ExecutorDriver {
 class RemoteDriver : public ExecutorDriver {
  public:
   RemoteDriver(Scheduler& scheduler, Delivery delivery)
-      : delivery_(delivery), local_(scheduler), remote_(scheduler) {}
+      : delivery_(delivery), local_(scheduler, kShortLease), remote_(scheduler) {}
 
   absl::Status AwaitEnd(RecordingJournal& journal) override {
     while (!journal.outcome) {
@@ -100,7 +102,8 @@ class RemoteDriver : public ExecutorDriver {
   }
 
   void AwaitLease(Gate&) override {
-    ASSERT_TRUE(local_.TakeTurn());  // opens points
+    ASSERT_TRUE(local_.TakeTurn());   // opens points
+    ASSERT_TRUE(local_.TakeTurn(1));  // computes block 0
     kept_ = remote_.Take();
     ASSERT_TRUE(kept_);
   }
@@ -157,6 +160,8 @@ class RemoteDriver : public ExecutorDriver {
     }
     remote_.Return(lease);
   }
+
+  static constexpr double kShortLease = 0;  // of one chunk
 
   const Delivery delivery_;
   SteppedExecutor local_;
@@ -324,6 +329,7 @@ TEST_P(ExecutorContract, ALaterProcessGivesTheSameBytes) {
     world.driver().AwaitLease(gate);
     world.scheduler().Shutdown();
     EXPECT_TRUE(journal->finished.empty());
+    EXPECT_FALSE(journal->checkpoints.empty());
     checkpoints = journal->checkpoints;
   }
   World world(GetParam(), Delivery::kInOrder);

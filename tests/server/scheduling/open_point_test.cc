@@ -209,7 +209,12 @@ TEST(OpenPoint, BeyondTheExpectedEndChunksComeOneByOne) {
 
 TEST(OpenPoint, AnInfiniteCapacityTakesChunksBeyondTheExpectedEnd) {
   OpenPoint point = PointOf(WithTolerance());
-  EXPECT_EQ(Next(point, kInfinity), Chunks(0, point.experiment()->plan().chunks()));
+  const uint64_t chunks = point.experiment()->plan().chunks();
+  EXPECT_EQ(Next(point, kInfinity), Chunks(0, chunks));
+  OpenPoint with_an_early_chunk = PointOf(WithTolerance());
+  AddChunks(with_an_early_chunk, 1, 2);
+  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(0, 1));
+  EXPECT_EQ(Next(with_an_early_chunk, kInfinity), Chunks(2, chunks));
 }
 
 TEST(OpenPoint, ExpectedSecondsFallWithMergedChunks) {

@@ -88,6 +88,7 @@ TEST_F(PilotsTest, APilotIsComputedOnceByAnyNumberOfThreads) {
     FakePilotOpener opener(OnePlace);
     Scheduler scheduler(opener, threads);
     ThreadExecutor executor(scheduler, threads);
+    executor.Start();
     std::vector<JournalPointer> journals;
     for (int64_t key = 1; key <= 10; ++key) {
       journals.push_back(std::make_shared<RecordingJournal>());

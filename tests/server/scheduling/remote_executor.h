@@ -64,6 +64,7 @@ class RemoteExecutor : public Executor {
                   .longest_chunk = longest_chunk} {}
 
   ExecutorTraits traits() const override { return {.local = false}; }
+  void Start() override {}
   void Wake() override { ++wakes_; }
   bool HasTurn(int64_t) const override { return false; }
   void Shutdown() override { is_shut_down_ = true; }

@@ -23,6 +23,7 @@ class SteppedExecutor : public Executor {
         capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
 
   ExecutorTraits traits() const override { return {.local = true}; }
+  void Start() override {}
   void Wake() override {}
   bool HasTurn(int64_t lease) const override {
     const auto found = folds_.find(lease);
@@ -65,15 +66,19 @@ class SteppedExecutor : public Executor {
       while (blocks-- > 0 && !lease.stop.stop_requested()) {
         const std::optional<Block> block = fold.NextBlock();
         if (!block) break;
-        auto chunks = fold.Add(*block, *RunBlock(experiment, *block));
-        const absl::Status taken =
-            scheduler_.Report(lease, {.chunks = std::move(chunks), .partial = fold.partial()});
+        LeaseReport report = {.chunks = fold.Add(*block, *RunBlock(experiment, *block)),
+                              .partial = fold.partial(),
+                              .seconds = kSecondsOfABlock};
+        const absl::Status taken = scheduler_.Report(lease, std::move(report));
         if (!taken.ok()) return taken;
       }
       return absl::OkStatus();
     });
     if (!computed.ok()) scheduler_.Fail(lease, computed);
   }
+
+  // Without work there is nothing to write at a shutdown.
+  static constexpr double kSecondsOfABlock = 1e-3;
 
   Scheduler& scheduler_;
   const Capacity capacity_;
