@@ -35,6 +35,12 @@ constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr double kWholePoint = std::numeric_limits<double>::infinity();
 constexpr double kLeaseBesideACluster = 60;
 
+SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
+  if (!options.slurm) return {};
+  return {.least_seconds_elsewhere =
+              std::chrono::duration<double>(options.slurm->least_work).count()};
+}
+
 Health::Services ServicesOfHealth() {
   const std::string ensemble = v1::EnsembleService::service_full_name();
   return {.all = {ensemble, v1::AnalyticService::service_full_name(),
@@ -120,7 +126,8 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
       store_(std::move(store)),
       ladder_(*store_, options_.workers),
       factory_(options_.factory ? std::make_unique<FactoryOpener>(options_.factory) : nullptr),
-      scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers),
+      scheduler_(factory_ ? *factory_ : static_cast<PointOpener&>(ladder_), options_.workers,
+                 OptionsOfScheduler(options_)),
       book_(*store_, options_.limits, scheduler_, [this] { watches_.LookNow(); }),
       threads_(scheduler_, options_.workers, options_.slurm ? kLeaseBesideACluster : kWholePoint),
       slurm_(options_.slurm

@@ -79,8 +79,7 @@ void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
 void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
   BeginGroup(app, "Slurm, with --executor=slurm");
   AddChoice(app, "executor", with_slurm, {{"threads", false}, {"slurm", true}},
-            "threads: this server's alone; slurm: work that is expected to take a minute or more "
-            "also goes to a Slurm cluster");
+            "threads: this server's alone; slurm: long work also goes to a Slurm cluster");
   app.add_option("--slurm-shared-folder", slurm.shared_folder,
                  "folder that the server and all nodes of the cluster see under this absolute "
                  "path. It belongs to the server's user; other users cannot write it")
@@ -93,7 +92,7 @@ void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
                  "cluster, where a site has several; needs slurmdbd")
       ->type_name("NAME");
   AddInteger(app, "slurm-time-limit-minutes", slurm.time_limit_minutes,
-             Between(int64_t{2}, kMostSlurmMinutes), "time limit of a task");
+             Between(int64_t{1}, kMostSlurmMinutes), "time limit of a task");
   app.add_option("--slurm-option", slurm.sbatch_options,
                  "one further word for sbatch, such as --slurm-option=--mem-per-cpu=500M; may be "
                  "given several times")
@@ -107,6 +106,8 @@ void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
              "tasks of one job array; less than the cluster's MaxArraySize");
   AddSeconds(app, "slurm-task-seconds", slurm.task_length, Between(1.0, 86400.0),
              "computing time of a task, about; at most half of the time limit is used");
+  AddSeconds(app, "slurm-least-seconds", slurm.least_work, Between(1.0, 86400.0),
+             "a job that is expected to take less of one core is computed by this server alone");
   AddSeconds(app, "slurm-query-seconds", slurm.query_interval, Between(1.0, 3600.0),
              "time between two queries of Slurm's queue");
   app.add_option("--slurm-worker", slurm.worker,

@@ -54,6 +54,18 @@ absl::StatusOr<CommandOutput> Succeeded(absl::StatusOr<CommandOutput> run,
   return absl::UnavailableError(absl::StrCat(tool, ": ", ErrorsOf(*run)));
 }
 
+// scancel complains of each task that has ended since the query.
+bool AllHaveEnded(absl::string_view errors) {
+  size_t ended = 0;
+  for (const absl::string_view line : absl::StrSplit(errors, '\n', absl::SkipWhitespace())) {
+    const bool has_ended = absl::StrContains(line, "Invalid job id specified") ||
+                           absl::StrContains(line, "already completing or completed");
+    if (!has_ended) return false;
+    ++ended;
+  }
+  return ended > 0;
+}
+
 }  // namespace
 
 std::vector<std::string> SlurmEnvironment() {
@@ -126,7 +138,9 @@ absl::Status SlurmTools::CancelTasks(const std::string& name, const std::string&
       .words = Words("scancel"), .environment = SlurmEnvironment(), .limit = kOtherLimit};
   command.words.insert(command.words.end(), {"--me", absl::StrCat("--name=", name),
                                              absl::StrCat(id, "_[", IndicesText(tasks), "]")});
-  return Succeeded(RunCommand(command, stop), "scancel").status();
+  const absl::StatusOr<CommandOutput> run = RunCommand(command, stop);
+  if (run.ok() && AllHaveEnded(run->errors)) return absl::OkStatus();
+  return Succeeded(run, "scancel").status();
 }
 
 }  // namespace ballpiston::server

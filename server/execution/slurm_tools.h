@@ -32,6 +32,7 @@ struct SlurmOptions {
   size_t max_tasks = 1000;                         // submitted and not ended
   size_t max_array_size = 1000;                    // Slurm's MaxArraySize, less one
   std::chrono::milliseconds task_length{180'000};  // of computing, about
+  std::chrono::milliseconds least_work{60'000};    // a run with less to compute stays here
   std::chrono::milliseconds query_interval{30'000};
   std::chrono::milliseconds collect_interval{1'000};  // between looks for files with chunks
 };

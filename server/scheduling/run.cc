@@ -6,8 +6,6 @@
 namespace ballpiston::server {
 namespace {
 
-// A run that is expected to take less is computed here: to send it elsewhere would take longer.
-constexpr double kLeastSecondsElsewhere = 60;
 // An attempt ends without a result if the machine is lost or the time limit is too short. After so
 // many a chunk is computed here.
 constexpr int kMostAttemptsElsewhere = 5;
@@ -21,7 +19,7 @@ constexpr size_t kPointsForElsewhere = 32;
 
 }  // namespace
 
-Run::Run(RunRequest request)
+Run::Run(RunRequest request, SchedulerOptions options)
     : key_(request.key),
       restarts_(request.restarts),
       principal_(std::move(request.principal)),
@@ -30,6 +28,7 @@ Run::Run(RunRequest request)
       finished_(std::move(request.finished)),
       has_checkpoints_(request.has_checkpoints),
       journal_(std::move(request.journal)),
+      options_(options),
       shortfall_(std::move(request.shortfall)) {
   SkipFinishedPoints();
 }
@@ -90,10 +89,10 @@ bool Run::IsLarge() const {
   const auto unopened = static_cast<double>(finished_.size() - next_point_ + reopen_.size());
   double seconds = unopened * sampled_seconds_ / sampled_points_;
   for (const auto& [index, point] : open_) {
-    if (seconds >= kLeastSecondsElsewhere) break;
+    if (seconds >= options_.least_seconds_elsewhere) break;
     seconds += point->ExpectedSeconds();
   }
-  return seconds >= kLeastSecondsElsewhere;
+  return seconds >= options_.least_seconds_elsewhere;
 }
 
 bool Run::IsWantedElsewhere() const {

@@ -43,9 +43,15 @@ struct RunRequest {
   std::shared_ptr<RunJournal> journal;
 };
 
+struct SchedulerOptions {
+  // A run with less to compute, in seconds of one core at nominal speed, is computed here: to send
+  // it elsewhere would take longer.
+  double least_seconds_elsewhere = 60;
+};
+
 class Run {
  public:
-  explicit Run(RunRequest request);
+  Run(RunRequest request, SchedulerOptions options);
 
   int64_t key() const { return key_; }
   const std::string& principal() const { return principal_; }
@@ -129,6 +135,7 @@ class Run {
   const std::vector<bool> finished_;
   const bool has_checkpoints_;
   const std::shared_ptr<RunJournal> journal_;
+  const SchedulerOptions options_;
 
   std::map<size_t, std::unique_ptr<OpenPoint>> open_;
   std::map<PilotPlace, std::unique_ptr<OpenPoint>> pilots_;

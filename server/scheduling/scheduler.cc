@@ -48,7 +48,8 @@ double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
 
 }  // namespace
 
-Scheduler::Scheduler(PointOpener& opener, int workers) : opener_(opener), workers_(workers) {}
+Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
+    : opener_(opener), workers_(workers), options_(options) {}
 
 size_t Scheduler::AddExecutor(Executor& executor) {
   std::lock_guard lock(mutex_);
@@ -59,7 +60,7 @@ size_t Scheduler::AddExecutor(Executor& executor) {
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
-  const auto run = std::make_shared<Run>(std::move(request));
+  const auto run = std::make_shared<Run>(std::move(request), options_);
   {
     std::lock_guard lock(mutex_);
     runs_.emplace(run->key(), run);

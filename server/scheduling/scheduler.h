@@ -59,7 +59,7 @@ class Scheduler {
  public:
   // The opener must outlive this. `workers`: the threads of local executors, for budgets and
   // checkpoints.
-  Scheduler(PointOpener& opener, int workers);
+  Scheduler(PointOpener& opener, int workers, SchedulerOptions options = {});
 
   // Before the first lease. The executor must shut down before this is destroyed. Returns its
   // number.
@@ -162,6 +162,7 @@ class Scheduler {
 
   PointOpener& opener_;
   const int workers_;
+  const SchedulerOptions options_;
   std::atomic<double> samples_ = 0;
   std::atomic<double> processor_seconds_ = 0;
 

@@ -1,0 +1,80 @@
+// A Slurm cluster in the test's process. It starts, runs, loses and kills tasks when the test says
+// so. It outlives the executors that use it. Thread-safe.
+#ifndef BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
+#define BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/execution/slurm_tools.h"
+#include "server/worker/task_file.h"
+
+namespace ballpiston::server {
+
+class FakeSlurm {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  std::unique_ptr<SlurmTools> Tools(const SlurmOptions& options);
+
+  // ---- how it behaves from now on ----
+
+  // What a submission answers. It is accepted if `accepts`, whatever the answer.
+  void Answer(const absl::Status& submission, bool accepts);
+  void AnswerQuery(const absl::Status& query);
+  void SetReason(const std::string& reason);  // why tasks wait
+
+  // ---- what the test does ----
+
+  void Add(const std::string& name, size_t tasks);  // an array that nobody here submitted
+  void Start(const std::string& name, size_t task);  // it runs, and has left no file yet
+  // The task has ended, whatever its files say. Without an index, all tasks of all arrays.
+  void Lose(const std::string& name, size_t task);
+  void LoseAll();
+  // Computes the task as ballpiston-worker does, and ends it.
+  absl::Status Run(const std::string& name, size_t task);
+  void RunAll();
+
+  // ---- what it has seen ----
+
+  std::vector<ArraySubmission> submissions() const;  // also refused ones
+  std::vector<std::string> cancelled() const;        // names; or NAME_[INDICES]
+  std::vector<Clock::time_point> queries() const;
+  std::map<std::string, std::set<size_t>> queue() const;  // names and tasks that have not ended
+
+ private:
+  class FakeTools;
+  struct Array {
+    std::string id;
+    std::string folder;
+    std::set<size_t> waiting, running;
+  };
+
+  void End(const std::string& name, size_t task);  // requires the lock
+
+  mutable std::mutex mutex_;
+  absl::Status submission_, query_;
+  bool accepts_ = true;
+  std::string reason_ = "Priority";
+  int last_id_ = 0;
+  std::map<std::string, Array> arrays_;
+  std::vector<ArraySubmission> submissions_;
+  std::vector<std::string> cancelled_;
+  std::vector<Clock::time_point> queries_;
+};
+
+// The task of an array in this folder, as the server wrote it.
+absl::StatusOr<ArrayTask> TaskIn(const std::string& folder, size_t task);
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_TESTS_SERVER_EXECUTION_FAKE_SLURM_H_

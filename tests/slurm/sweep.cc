@@ -1,0 +1,153 @@
+#include "tests/slurm/sweep.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace ballpiston {
+namespace {
+
+using google::protobuf::Struct;
+
+// A job of a few seconds is large enough, a task takes some seconds, and Slurm is asked often.
+Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
+  return Joined({{"--executor=slurm", "--slurm-shared-folder", shared_folder,
+                  "--slurm-least-seconds", "2", "--slurm-query-seconds", "2",
+                  "--slurm-task-seconds", absl::StrCat(set_up.task_seconds)},
+                 set_up.flags});
+}
+
+std::string PointsOfJob(const TestServer& server, const std::string& job) {
+  const ProcessResult result = server.Client({"result", job, "--format", "json"});
+  EXPECT_THAT(result, ExitsWith(0));
+  return PointsOf(result.out);
+}
+
+// By threads alone. Computed once for each number of samples.
+const std::string& PlainPoints(int samples) {
+  static std::map<int, std::string>& known = *new std::map<int, std::string>;
+  std::string& points = known[samples];
+  if (!points.empty()) return points;
+  const TestServer server;
+  const std::string job = server.Submit(SweepOf(samples));
+  EXPECT_THAT(server.Client({"watch", job}), ExitsWith(0));
+  return points = PointsOfJob(server, job);
+}
+
+void ExpectSamples(const std::string& points, int samples) {
+  const Struct document = ParseJson("{" + points);
+  const google::protobuf::Value& list = At(document, "points");
+  ASSERT_EQ(Length(list), kPoints);
+  for (int i = 0; i < kPoints; ++i) EXPECT_EQ(At(list, i, "samples").number_value(), samples);
+}
+
+std::string Launcher(const Cluster& cluster) { return "SLURM_CONF=" + cluster.conf(); }
+
+std::string PathWith(const std::string& first) {
+  const std::string path = std::getenv("PATH");
+  return absl::StrCat("PATH=", first, first.empty() ? "" : ":", path);
+}
+
+}  // namespace
+
+Words SweepOf(int samples, int seed) {
+  return Joined({Split("first-hit --rho 0.529561127988977 --delta 0.1,0.08,0.06,0.05 "
+                       "--epsilon 0.1,0.2,0.3,0.4 --exponent 1 --model billiard"),
+                 {"--seed", absl::StrCat(seed), "--samples", absl::StrCat(samples)}});
+}
+
+void Await(const std::string& what, const std::function<bool()>& condition,
+           std::chrono::seconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) {
+      throw std::runtime_error("still waiting for: " + what);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+Sweep::Sweep(SweepSetUp set_up) : set_up_(std::move(set_up)), cluster_(set_up_.cluster) {
+  mkdir(shared_folder().c_str(), 0700);
+  server_ = std::make_unique<TestServer>(
+      ServerSetUp{.workers = set_up_.workers,
+                  .flags = FlagsOf(shared_folder(), set_up_),
+                  .launcher = {"env", Launcher(cluster_), PathWith(set_up_.path)}});
+}
+
+Sweep::~Sweep() {
+  KeepCounts();
+  const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  absl::PrintF("%s: %.0f s; by the cluster: %g chunks; %g tasks lost, %g files refused, %g queries%s\n",
+               test->name(), seconds, earlier_.chunks, earlier_.lost, earlier_.refused,
+               earlier_.queries, notes_);
+  std::fflush(stdout);
+  if (testing::Test::HasFailure()) absl::PrintF("%s\n", server_->log());
+}
+
+void Sweep::Submit() { job_ = server_->Submit(SweepOf(set_up_.samples)); }
+
+SlurmCounts Sweep::Counts() const {
+  const Struct status = server_->Json({"status"});
+  const google::protobuf::Value& slurm = At(status, "slurm");
+  const auto number = [&](const char* key) { return At(slurm, key).number_value(); };
+  return {.problem = At(slurm, "problem").string_value(),
+          .waiting = number("waiting_tasks"),
+          .running = number("running_tasks"),
+          .submitted = number("submitted_tasks"),
+          .chunks = number("chunks"),
+          .lost = number("lost_tasks"),
+          .refused = number("refused_files"),
+          .queries = number("queries")};
+}
+
+void Sweep::KeepCounts() {
+  const SlurmCounts now = Counts();
+  earlier_.chunks += now.chunks;
+  earlier_.lost += now.lost;
+  earlier_.refused += now.refused;
+  earlier_.queries += now.queries;
+}
+
+void Sweep::AwaitTasks() const {
+  Await("tasks in the cluster", [this] { return Counts().tasks() > 0; });
+}
+
+void Sweep::AwaitRunningTasks() const {
+  Await("workers", [this] { return !Workers().empty(); });
+}
+
+void Sweep::AwaitProblem(const std::string& text) const {
+  Await("the problem: " + text,
+        [&] { return Counts().problem.find(text) != std::string::npos; });
+}
+
+std::vector<pid_t> Sweep::Workers() const {
+  return ProcessesWith(absl::StrCat("--task-file", std::string(1, '\0'), shared_folder(), "/"));
+}
+
+void Sweep::KillServer() {
+  KeepCounts();
+  server_->KillHard();
+  server_->Start();
+}
+
+void Sweep::ExpectTheSameBytes() {
+  EXPECT_THAT(server_->Client({"watch", job_}), ExitsWith(0));
+  const std::string points = PointsOfJob(*server_, job_);
+  ExpectSamples(points, set_up_.samples);
+  EXPECT_TRUE(points == PlainPoints(set_up_.samples)) << "other bytes than with threads alone";
+}
+
+}  // namespace ballpiston

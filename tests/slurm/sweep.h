@@ -1,0 +1,77 @@
+// A real server with a Slurm cluster, and one job that is large enough for the cluster.
+#ifndef BALLPISTON_TESTS_SLURM_SWEEP_H_
+#define BALLPISTON_TESTS_SLURM_SWEEP_H_
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tests/end_to_end/programs.h"
+#include "tests/slurm/cluster.h"
+
+namespace ballpiston {
+
+// Sixteen points; a million samples of each take 20 s of one core.
+inline constexpr int kPoints = 16;
+Words SweepOf(int samples, int seed = 11);
+
+// Returns when the condition holds. Throws std::runtime_error after a minute.
+void Await(const std::string& what, const std::function<bool()>& condition,
+           std::chrono::seconds limit = std::chrono::seconds(60));
+
+struct SlurmCounts {
+  std::string problem;
+  double waiting = 0, running = 0, submitted = 0;
+  double chunks = 0, lost = 0, refused = 0, queries = 0;
+
+  double tasks() const { return waiting + running + submitted; }
+};
+
+struct SweepSetUp {
+  Words cluster = {};  // lines of slurm.conf
+  Words flags = {};    // of the server
+  int task_seconds = 3;
+  int samples = 1'000'000;
+  int workers = 1;
+  std::string path = {};  // first in the server's PATH
+};
+
+class Sweep {
+ public:
+  explicit Sweep(SweepSetUp set_up = {});  // the cluster and the server run
+  ~Sweep();                                // prints a line with what was counted
+
+  const Cluster& cluster() const { return cluster_; }
+  TestServer& server() { return *server_; }
+  std::string shared_folder() const { return cluster_.folder().File("shared"); }
+
+  void Submit();
+  const std::string& job() const { return job_; }
+  SlurmCounts Counts() const;
+  void AwaitTasks() const;         // until the cluster has tasks of this server
+  void AwaitRunningTasks() const;  // until workers run
+  void AwaitProblem(const std::string& text) const;
+  std::vector<pid_t> Workers() const;  // that compute
+  void KillServer();                   // kill -9, and starts it again on the same data folder
+
+  // Waits for the end. The test fails unless the job succeeded, each point has the number of samples
+  // that was asked for, and the bytes are those of a server that has threads alone.
+  void ExpectTheSameBytes();
+  void Note(const std::string& what) { notes_ += "; " + what; }
+
+ private:
+  void KeepCounts();
+
+  const SweepSetUp set_up_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const Cluster cluster_;
+  std::unique_ptr<TestServer> server_;
+  std::string job_;
+  SlurmCounts earlier_;  // of the server's processes that were killed
+  std::string notes_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SLURM_SWEEP_H_
