@@ -1,8 +1,8 @@
 // Computes a range of chunks of one point: hands out their blocks and merges each chunk's blocks.
 //
-// Blocks may arrive in any order, from any number of threads. A block that arrives early waits until
-// all blocks before it are merged. So a chunk's result has the same bits for every order of arrival.
-// Properties, each with a test of its name:
+// Blocks may arrive in any order, from any number of threads. A block that arrives early waits
+// until all blocks before it are merged. So a chunk's result has the same bits for every order of
+// arrival. Properties, each with a test of its name:
 //   1. ChunksAreIndependentOfTheOrderOfBlocks.  2. AResumedChunkHasTheSameBits.
 // Not thread-safe.
 #ifndef BALLPISTON_CORE_ENSEMBLE_CHUNK_FOLD_H_

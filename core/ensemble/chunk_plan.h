@@ -50,7 +50,8 @@ class ChunkPlan {
     return samples * events_per_sample_ * seconds_per_event_;
   }
 
-  // The fewest chunks that together have at least `samples` samples; all if there are fewer samples.
+  // The fewest chunks that together have at least `samples` samples; all if there are fewer
+  // samples.
   uint64_t ChunksFor(double samples) const;
   uint64_t SamplesBefore(uint64_t chunk) const;  // chunk <= chunks()
 

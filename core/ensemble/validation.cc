@@ -91,7 +91,8 @@ void CheckTolerance(const EnsembleSpec& spec, Found& found) {
     found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
                                                       "; permitted: 0 < tolerance < 1")});
   }
-  const bool can_be_missed = spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
+  const bool can_be_missed =
+      spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
   if (can_be_missed && !HasTooManyPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
 }
 

@@ -28,8 +28,8 @@ struct Machine {
 using PilotSource = std::function<std::optional<Pilot>(const PilotPlace&)>;
 
 // The model that answers at a point; for AUTO the service's choice. Without a budget the choice
-// depends on the spec alone, not on the machine. Empty only if the choice needs a pilot that has not
-// run. The spec must have no violations.
+// depends on the spec alone, not on the machine. Empty only if the choice needs a pilot that has
+// not run. The spec must have no violations.
 std::optional<Answer> ChooseAnswer(const EnsembleSpec& spec, const PointParameters& point,
                                    const Machine& machine, const PilotSource& pilots);
 

@@ -1,5 +1,5 @@
-// Exact conversion between the core's accumulators and their records: a point's checkpoint, a chunk.
-// Pure functions.
+// Exact conversion between the core's accumulators and their records: a point's checkpoint, a
+// chunk. Pure functions.
 //
 // A record that can be parsed may still be damaged. So before a point is resumed, CheckFoldState
 // checks that the point's experiment can have written the record.

@@ -51,7 +51,7 @@ void AddHistogram(const SignedHistogram& histogram, storage::Result& result) {
   const std::vector<uint64_t>& counts = histogram.histogram.counts;
   record->mutable_counts()->Assign(counts.begin(), counts.end());
   record->mutable_expected_probabilities()->Assign(histogram.expected_probabilities.begin(),
-                                                    histogram.expected_probabilities.end());
+                                                   histogram.expected_probabilities.end());
 }
 
 void AddCurve(const Curve& curve, storage::Result& result) {

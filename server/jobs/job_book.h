@@ -23,12 +23,12 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/convert/spec.h"
-#include "server/scheduling/scheduler.h"
 #include "server/jobs/acceptance.h"
 #include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
 #include "server/limits.h"
+#include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
 #include "server/store/store.h"
 

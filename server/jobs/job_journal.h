@@ -10,8 +10,8 @@
 #include <functional>
 #include <memory>
 
-#include "server/scheduling/run_journal.h"
 #include "server/jobs/job.h"
+#include "server/scheduling/run_journal.h"
 #include "server/store/store.h"
 
 namespace ballpiston::server {

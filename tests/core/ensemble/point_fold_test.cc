@@ -50,9 +50,7 @@ void ExpectEqual(const std::vector<ChunkResult>& a, const std::vector<ChunkResul
 
 class FoldTest : public testing::Test {
  protected:
-  ChunkFold WholeRange() const {
-    return {point_->plan(), PartialChunk(), point_->plan().chunks()};
-  }
+  ChunkFold WholeRange() const { return {point_->plan(), PartialChunk(), point_->plan().chunks()}; }
 
   const std::unique_ptr<const PointExperiment> point_ = Point({.samples = 1000});
   const std::vector<ComputedBlock> blocks_ = BlocksOf(*point_);

@@ -17,8 +17,8 @@
 #include "server/store/store.h"
 #include "tests/fault/store/service_on_disk.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/thread_pool.h"
 #include "tests/server/requests.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 

@@ -77,8 +77,8 @@ ServiceOnDisk::ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile) {
   if (!status_.ok()) return;
   store_ = *std::move(store);
   pool_ = std::make_unique<ThreadPool>(1, Factory(turnstile));
-  book_ = std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler(),
-                                    [this] { OnStateChange(); });
+  book_ =
+      std::make_unique<JobBook>(*store_, Limits(), pool_->scheduler(), [this] { OnStateChange(); });
   status_ = book_->Resume();
 }
 

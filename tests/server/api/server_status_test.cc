@@ -17,10 +17,10 @@
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/thread_pool.h"
 #include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 

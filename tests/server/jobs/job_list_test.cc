@@ -12,8 +12,8 @@
 #include "server/jobs/job_name.h"
 #include "server/store/job_table.h"
 #include "tests/server/fake_experiments.h"
-#include "tests/server/thread_pool.h"
 #include "tests/server/requests.h"
+#include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
