@@ -79,7 +79,7 @@ const std::vector<Rule>& Rules() {
        {"core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/"},
        true},
       {"tests/benchmark/",
-       {"core/", "server/execution/", "tests/support/", "hwy/", "benchmark/"},
+       {"core/", "server/", "tests/support/", "absl/", "hwy/", "benchmark/"},
        true},
       {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
       {"tests/tools/",
