@@ -33,7 +33,6 @@
 #include "server/convert/spec.h"
 #include "server/execution/processor_time.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_state.h"
 #include "server/scheduling/scheduler.h"
 #include "server/store/store.h"
 #include "tests/support/temporary_folder.h"
