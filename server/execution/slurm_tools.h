@@ -23,7 +23,7 @@ namespace ballpiston::server {
 
 struct SlurmOptions {
   std::string shared_folder;
-  std::string partition;  // these three are empty for the cluster's defaults
+  std::string partition = {};  // these three are empty for the cluster's defaults
   std::string account = {};
   std::string cluster = {};
   int64_t time_limit_minutes = 60;

@@ -32,8 +32,9 @@ class SharedFolderTest : public testing::Test {
   }
 
   void ExpectRefused(const std::string& path, const std::string& why) const {
-    EXPECT_THAT(SharedFolder(path, "me").Prepare(),
-                StatusIs(absl::StatusCode::kFailedPrecondition, AllOf(HasSubstr(path), HasSubstr(why))));
+    EXPECT_THAT(
+        SharedFolder(path, "me").Prepare(),
+        StatusIs(absl::StatusCode::kFailedPrecondition, AllOf(HasSubstr(path), HasSubstr(why))));
   }
 
   const TemporaryFolder temporary_;
@@ -129,10 +130,12 @@ TEST_F(SharedFolderTest, AMissingWorkerIsNotFound) {
 TEST_F(SharedFolderTest, ArraysAreListedByTheirPrefix) {
   ASSERT_OK(shared_.Prepare());
   EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(IsEmpty()));
-  for (const std::string name : {"bp-me-1", "bp-me-2", "bp-you-3"}) ASSERT_OK(shared_.MakeArray(name));
+  for (const std::string name : {"bp-me-1", "bp-me-2", "bp-you-3"})
+    ASSERT_OK(shared_.MakeArray(name));
   WriteFile(shared_.PathOf("bp-me-4"), "not a folder");
   WriteFile(shared_.PathOf("bp-me-1") + "/tasks", "");
-  EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(UnorderedElementsAre("bp-me-1", "bp-me-2")));
+  EXPECT_THAT(shared_.ListArrays("bp-me-"),
+              IsOkAndHolds(UnorderedElementsAre("bp-me-1", "bp-me-2")));
   shared_.RemoveArray("bp-me-1");
   shared_.RemoveArray("bp-me-none");
   EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(UnorderedElementsAre("bp-me-2")));

@@ -58,8 +58,7 @@ EnsembleSpec PointOfChunks(uint64_t chunks) {
 class ClusteredServer {
  public:
   ClusteredServer(FakeSlurm& slurm, const SlurmOptions& options)
-      : slurm_(slurm),
-        executor_(scheduler_, options, slurm.Tools(options), kIdentity, [this] {
+      : slurm_(slurm), executor_(scheduler_, options, slurm.Tools(options), kIdentity, [this] {
           ++flushes_;
           return flush_ok_ ? absl::OkStatus() : absl::UnavailableError("the disk is full");
         }) {}
