@@ -25,6 +25,8 @@ constexpr int kGatherLooks = 2;
 constexpr std::chrono::seconds kFirstBackoff(30);
 constexpr std::chrono::seconds kLongestBackoff(600);
 
+// The signal before the time limit comes at most so much earlier (slurm_tools.cc).
+constexpr double kMostSecondsToFinish = 90;
 // A longer chunk would end near the time limit on a slow machine.
 constexpr double kShareOfTheLimit = 0.5;
 
@@ -41,7 +43,8 @@ std::string InstalledWorker() {
 }
 
 Capacity CapacityOf(const SlurmOptions& options) {
-  const double limit = 60 * static_cast<double>(options.time_limit_minutes);
+  const double limit = std::max(
+      60 * static_cast<double>(options.time_limit_minutes) - kMostSecondsToFinish, 1.0);
   return {.seconds = std::min(Seconds(options.task_length), kShareOfTheLimit * limit),
           .longest_chunk = kShareOfTheLimit * limit};
 }
@@ -134,7 +137,9 @@ void SlurmExecutor::CollectArray(const std::string& name) {
   if (!files.ok()) return;
   for (const ChunkFileName& file : *files) {
     if (stop_.stop_requested()) return;
-    if (IsNew(name, file)) TakeFile(name, file);
+    if (!IsNew(name, file)) continue;
+    scheduler_.AwaitRoom();
+    TakeFile(name, file);
   }
 }
 
@@ -478,12 +483,10 @@ void SlurmExecutor::SubmitRun(const std::string& worker, std::vector<Lease> leas
   for (Lease& lease : leases) {
     if (!scheduler_.Needs(lease)) continue;
     if (tasks.empty() || SecondsOf(tasks.back()) + lease.seconds / 2 > capacity_.seconds) {
+      if (tasks.size() == array_size_) SubmitArray(worker, std::exchange(tasks, {}));
       tasks.emplace_back();
     }
     tasks.back().push_back(std::move(lease));
-    if (tasks.size() == array_size_ && SecondsOf(tasks.back()) >= capacity_.seconds) {
-      SubmitArray(worker, std::exchange(tasks, {}));
-    }
   }
   if (!tasks.empty()) SubmitArray(worker, std::move(tasks));
 }
@@ -535,8 +538,9 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
     array.submit_time = Clock::now();
     return;
   }
-  if (absl::StrContains(submitted.message(), "Invalid job array specification")) {
-    array_size_ = std::max<size_t>(array_size_ / 2, 1);
+  const bool is_too_large = absl::StrContains(submitted.message(), "Invalid job array");
+  if (is_too_large && array_size_ > 1) {
+    array_size_ /= 2;
     NoteOutcome(Activity::kSubmission, absl::UnavailableError(absl::StrCat(
                                            submitted.message(), "; arrays now have ", array_size_,
                                            " tasks: set --slurm-max-array-size")));
@@ -573,7 +577,9 @@ void SlurmExecutor::RemoveEnded() {
       if (over && !to_be_cancelled) ended.push_back(name);
     }
   }
-  if (ended.empty() || !flush_().ok()) return;
+  if (ended.empty()) return;
+  { std::lock_guard files_being_reported(collect_mutex_); }  // are reported before the flush
+  if (!flush_().ok()) return;
   for (const std::string& name : ended) {
     std::lock_guard one_at_a_time(collect_mutex_);
     folder_.RemoveArray(name);
