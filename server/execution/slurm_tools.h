@@ -23,9 +23,9 @@ namespace ballpiston::server {
 
 struct SlurmOptions {
   std::string shared_folder;
-  std::string partition;  // these three are empty for the cluster's defaults
-  std::string account;
-  std::string cluster;
+  std::string partition = {};  // these three are empty for the cluster's defaults
+  std::string account = {};
+  std::string cluster = {};
   int64_t time_limit_minutes = 60;
   std::vector<std::string> sbatch_options = {};    // further words for sbatch
   std::string worker = {};                         // the program; empty: InstalledWorker

@@ -34,7 +34,9 @@ class FakeSlurm::FakeTools : public SlurmTools {
     for (const auto& [name, array] : slurm_.arrays_) {
       if (!absl::StartsWith(name, prefix)) continue;
       QueuedArray& queued = queue[name];
-      queued = {.id = array.id, .waiting = array.waiting, .running = array.running};
+      queued.id = array.id;
+      queued.waiting = array.waiting;
+      queued.running = array.running;
       if (!array.waiting.empty()) queued.reasons.insert(slurm_.reason_);
     }
     return queue;
