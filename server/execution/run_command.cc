@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "absl/cleanup/cleanup.h"
@@ -24,6 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr size_t kMostOutput = size_t{64} << 20;
 constexpr std::chrono::milliseconds kLook(50);  // at the stop token
+// A program that has closed its output ends at once, as a rule.
+constexpr std::chrono::milliseconds kPause(1);
 
 class Descriptor {
  public:
@@ -102,16 +105,31 @@ void ReadInto(std::string& text, Descriptor& from) {
   if (n == 0 || (n < 0 && errno != EINTR && errno != EAGAIN)) from.Close();
 }
 
-// Until both are closed. Not OK: the program has to be killed.
-absl::Status Collect(const Command& command, const std::stop_token& stop, Descriptor& out,
-                     Descriptor& err, CommandOutput& result) {
-  const Clock::time_point end = Clock::now() + command.limit;
+// How long a program may run. Not OK: it has to be killed.
+class Bounds {
+ public:
+  Bounds(const Command& command, const std::stop_token& stop)
+      : command_(command), stop_(stop), end_(Clock::now() + command.limit) {}
+
+  absl::Status Check() const {
+    if (stop_.stop_requested()) return absl::CancelledError("stopped");
+    if (Clock::now() < end_) return absl::OkStatus();
+    return absl::DeadlineExceededError(absl::StrCat(command_.words[0], " did not end within ",
+                                                    command_.limit.count() / 1000, " s"));
+  }
+
+ private:
+  const Command& command_;
+  const std::stop_token& stop_;
+  const Clock::time_point end_;
+};
+
+// Until both are closed.
+absl::Status Collect(const Bounds& bounds, Descriptor& out, Descriptor& err,
+                     CommandOutput& result) {
   while (out.open() || err.open()) {
-    if (stop.stop_requested()) return absl::CancelledError("stopped");
-    if (Clock::now() >= end) {
-      return absl::DeadlineExceededError(absl::StrCat(command.words[0], " did not end within ",
-                                                      command.limit.count() / 1000, " s"));
-    }
+    const absl::Status status = bounds.Check();
+    if (!status.ok()) return status;
     std::array<pollfd, 2> polled = {pollfd{out.number(), POLLIN, 0},
                                     pollfd{err.number(), POLLIN, 0}};
     if (poll(polled.data(), polled.size(), static_cast<int>(kLook.count())) <= 0) continue;
@@ -119,6 +137,18 @@ absl::Status Collect(const Command& command, const std::stop_token& stop, Descri
     if (polled[1].revents != 0) ReadInto(result.errors, err);
   }
   return absl::OkStatus();
+}
+
+// A program that has closed its output may run on.
+absl::Status AwaitEnd(pid_t pid, const Bounds& bounds) {
+  while (true) {
+    siginfo_t ended = {};
+    const int waited = waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOHANG | WNOWAIT);
+    if (waited == 0 && ended.si_pid == pid) return absl::OkStatus();
+    const absl::Status status = bounds.Check();
+    if (!status.ok()) return status;
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 int ExitCodeOf(pid_t pid) {
@@ -146,10 +176,12 @@ absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop
   out->write.Close();
   err->write.Close();
   CommandOutput result;
-  const absl::Status collected = Collect(command, stop, out->read, err->read, result);
-  if (!collected.ok()) kill(*pid, SIGKILL);
+  const Bounds bounds(command, stop);
+  absl::Status ended = Collect(bounds, out->read, err->read, result);
+  if (ended.ok()) ended = AwaitEnd(*pid, bounds);
+  if (!ended.ok()) kill(*pid, SIGKILL);
   result.exit_code = ExitCodeOf(*pid);
-  if (!collected.ok()) return collected;
+  if (!ended.ok()) return ended;
   return result;
 }
 

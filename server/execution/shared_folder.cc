@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -59,8 +60,10 @@ absl::StatusOr<std::string> BytesOf(const std::string& path) {
   return bytes;
 }
 
+// What is left of a failed copy would keep a full disk full.
 absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
   const std::string temporary = absl::StrCat(path, ".new");
+  absl::Cleanup remove = [&] { unlink(temporary.c_str()); };
   {
     std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -69,6 +72,7 @@ absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
   }
   if (chmod(temporary.c_str(), 0700) != 0) return Unusable(temporary, errno);
   if (rename(temporary.c_str(), path.c_str()) != 0) return Unusable(path, errno);
+  std::move(remove).Cancel();
   return absl::OkStatus();
 }
 

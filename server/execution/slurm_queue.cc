@@ -41,6 +41,7 @@ void AddIndices(absl::string_view item, size_t most, std::set<size_t>& indices) 
   uint64_t first = 0, last = 0, step = 1;
   if (!absl::SimpleAtoi(ends.front(), &first) || !absl::SimpleAtoi(ends.back(), &last)) return;
   if (with_step.size() == 2 && (!absl::SimpleAtoi(with_step[1], &step) || step == 0)) return;
+  step = std::min<uint64_t>(step, most + 1);  // the sum below does not overflow
   for (uint64_t i = first; i <= std::min<uint64_t>(last, most); i += step) indices.insert(i);
 }
 

@@ -56,7 +56,7 @@ class FakeSlurm {
   struct Array {
     std::string id;
     std::string folder;
-    std::set<size_t> waiting, running;
+    std::set<size_t> waiting = {}, running = {};
   };
 
   void End(const std::string& name, size_t task);  // requires the lock

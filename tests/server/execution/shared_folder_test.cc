@@ -63,11 +63,9 @@ TEST_F(SharedFolderTest, AFileIsRefused) {
 }
 
 TEST_F(SharedFolderTest, AnotherUsersFolderIsRefused) {
-  const std::string foreign = geteuid() == 0 ? path_ : "/";
-  if (geteuid() == 0) {
-    ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
-  }
-  ExpectRefused(foreign, "belongs to user");
+  if (geteuid() != 0) return ExpectRefused("/", "belongs to user 0");
+  ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
+  ExpectRefused(path_, "belongs to user 65534");
 }
 
 TEST_F(SharedFolderTest, AFolderThatOthersCanWriteIsRefusedUntilItIsRepaired) {
