@@ -1,6 +1,7 @@
 #include "server/execution/slurm_executor.h"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -75,7 +76,7 @@ SlurmExecutor::SlurmExecutor(Scheduler& scheduler, SlurmOptions options,
 SlurmExecutor::~SlurmExecutor() { Shutdown(); }
 
 void SlurmExecutor::Start() {
-  Recover();
+  recovered_ = Recover();
   collector_ = std::thread([this] { CollectUntilStopped(); });
   steerer_ = std::thread([this] { SteerUntilStopped(); });
 }
@@ -101,7 +102,7 @@ bool SlurmExecutor::AwaitNextLook() {
 JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
   return {.server = identity_,
           .job = lease.run,
-          .restarts = lease.restarts,
+          .generation = lease.generation,
           .engine_version = std::string(kEngineVersion)};
 }
 
@@ -118,7 +119,11 @@ void SlurmExecutor::NoteOutcome(Activity activity, const absl::Status& outcome) 
 
 void SlurmExecutor::CollectUntilStopped() {
   do {
-    for (const std::string& name : ArrayNames()) CollectArray(name);
+    Guarded(Activity::kFiles, [this] {
+      absl::Status all;
+      for (const std::string& name : ArrayNames()) all.Update(CollectArray(name));
+      return all;
+    });
   } while (AwaitNextLook());
 }
 
@@ -129,18 +134,18 @@ std::vector<std::string> SlurmExecutor::ArrayNames() const {
   return names;
 }
 
-void SlurmExecutor::CollectArray(const std::string& name) {
+absl::Status SlurmExecutor::CollectArray(const std::string& name) {
   std::lock_guard one_at_a_time(collect_mutex_);
-  if (!HasArray(name)) return;  // it was removed meanwhile
+  if (!HasArray(name)) return absl::OkStatus();  // it was removed meanwhile
   const absl::StatusOr<std::vector<ChunkFileName>> files = ListChunkFiles(folder_.PathOf(name));
-  NoteOutcome(Activity::kFiles, files.status());
-  if (!files.ok()) return;
+  if (!files.ok()) return files.status();
   for (const ChunkFileName& file : *files) {
-    if (stop_.stop_requested()) return;
+    if (stop_.stop_requested()) break;
     if (!IsNew(name, file)) continue;
     scheduler_.AwaitRoom();
     TakeFile(name, file);
   }
+  return absl::OkStatus();
 }
 
 bool SlurmExecutor::HasArray(const std::string& name) const {
@@ -198,6 +203,11 @@ absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile&
 absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<Lease>& leases) {
   absl::Status taken;
   for (const LeaseChunks& of_lease : file.leases) {
+    if (scheduler_.IsUnopened(leases[of_lease.lease])) {
+      return absl::UnavailableError("a point is not open yet");
+    }
+  }
+  for (const LeaseChunks& of_lease : file.leases) {
     const absl::Status reported = scheduler_.Report(
         leases[of_lease.lease], {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
     if (absl::IsUnavailable(reported)) return reported;
@@ -225,20 +235,20 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
   if (file->is_final) task->is_final = true;
   for (const LeaseChunks& of_lease : file->leases) {
     counts_.chunks += static_cast<double>(of_lease.chunks.size());
-    task->seconds[of_lease.lease] += of_lease.processor_seconds;
   }
 }
 
 // ---- what an earlier process left ----
 
-void SlurmExecutor::Recover() {
+bool SlurmExecutor::Recover() {
   const absl::Status prepared = folder_.Prepare();
   NoteOutcome(Activity::kFiles, prepared);
-  if (!prepared.ok()) return;
+  if (!prepared.ok()) return false;
   const auto names = folder_.ListArrays(prefix_);
   NoteOutcome(Activity::kFiles, names.status());
-  if (!names.ok()) return;
+  if (!names.ok()) return false;
   for (const std::string& name : *names) RecoverArray(name);
+  return true;
 }
 
 void SlurmExecutor::RecoverArray(const std::string& name) {
@@ -260,11 +270,10 @@ SlurmExecutor::Task SlurmExecutor::RecoveredTask(const std::vector<IdentifiedLea
     Lease lease = recorded;
     lease.executor = capacity_.executor;
     lease.run = job.job;
-    lease.restarts = job.restarts;
+    lease.generation = job.generation;
     const bool is_ours = job == IdentityOf(lease);
     const std::optional<Lease> adopted = is_ours ? scheduler_.Adopt(lease) : std::nullopt;
     task.leases.push_back(adopted.value_or(lease));
-    task.seconds.push_back(0);
   }
   return task;
 }
@@ -273,30 +282,50 @@ SlurmExecutor::Task SlurmExecutor::RecoveredTask(const std::vector<IdentifiedLea
 
 void SlurmExecutor::SteerUntilStopped() {
   do {
-    EndFinalTasks();
-    DropUnneededTasks();
-    QueryIfDue();
-    SubmitNew();
-    RemoveEnded();
+    Guarded(Activity::kQueue, [this] {
+      Steer();
+      return absl::OkStatus();
+    });
   } while (AwaitNextLook());
+}
+
+void SlurmExecutor::Steer() {
+  // Points that were opened meanwhile adopt nothing; then the array is cancelled.
+  if (!recovered_) recovered_ = Recover();
+  if (!recovered_) return;
+  EndFinalTasks();
+  DropUnneededTasks();
+  QueryIfDue();
+  SubmitNew();
+  RemoveEnded();
+}
+
+// An exception, for example for want of memory, is a problem and does not end the server.
+void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()> round) {
+  absl::Status outcome;
+  try {
+    outcome = round();
+    if (activity == Activity::kQueue) return;  // its parts have noted their outcomes
+  } catch (const std::exception& error) {
+    outcome = absl::InternalError(error.what());
+  }
+  NoteOutcome(activity, outcome);
 }
 
 // The tasks' leases go back to the scheduler without the lock.
 void SlurmExecutor::EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried) {
-  std::vector<std::pair<Lease, double>> returned;
+  std::vector<Lease> returned;
   {
     std::lock_guard lock(mutex_);
     for (auto& [name, array] : arrays_) {
       for (Task& task : array.tasks) {
         if (task.state == TaskState::kOver || !has_ended(task)) continue;
         task.state = TaskState::kOver;
-        for (size_t i = 0; i < task.leases.size(); ++i) {
-          returned.emplace_back(task.leases[i], task.seconds[i]);
-        }
+        returned.insert(returned.end(), task.leases.begin(), task.leases.end());
       }
     }
   }
-  for (const auto& [lease, seconds] : returned) scheduler_.Return(lease, seconds, tried);
+  for (const Lease& lease : returned) scheduler_.Return(lease, tried);
 }
 
 void SlurmExecutor::EndFinalTasks() {
@@ -391,7 +420,7 @@ void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued
 
 // A last look for their files comes first.
 void SlurmExecutor::EndLostTasks(const std::string& name) {
-  CollectArray(name);
+  CollectArray(name).IgnoreError();  // the thread that reads files meets the same error
   EndFinalTasks();
   size_t lost = 0, without_file = 0;
   {
@@ -439,24 +468,35 @@ void SlurmExecutor::BackOff(const absl::Status& problem) {
 // ---- submission ----
 
 void SlurmExecutor::SubmitNew() {
-  size_t room = 0;
-  {
-    std::lock_guard lock(mutex_);
-    if (Clock::now() < next_submission_) return;
-    const size_t in_flight = TasksInFlight();
-    room = options_.max_tasks - std::min(in_flight, options_.max_tasks);
-    if (backoff_.count() > 0) room = std::min<size_t>(room, in_flight == 0 ? 1 : 0);
-  }
-  if (room == 0 || stop_.stop_requested()) return;
-  const absl::StatusOr<std::string> worker = PreparedWorker();
-  if (!worker.ok()) return BackOff(worker.status());
+  const size_t room = RoomForTasks();
+  if (room == 0) return ReturnGathered();
   const bool is_full = Gather(static_cast<double>(room) * capacity_.seconds);
   if (gathered_.empty()) return;
   if (!is_full && ++looks_at_gathered_ < kGatherLooks) return;
   looks_at_gathered_ = 0;
+  const absl::StatusOr<std::string> worker = PreparedWorker();
+  if (!worker.ok()) {
+    BackOff(worker.status());
+    return ReturnGathered();
+  }
   for (auto& [run, leases] : std::exchange(gathered_, {})) {
     SubmitRun(*worker, std::move(leases));
   }
+}
+
+// 0 while nothing is to be submitted. After a failure one task alone.
+size_t SlurmExecutor::RoomForTasks() const {
+  std::lock_guard lock(mutex_);
+  if (stop_.stop_requested() || Clock::now() < next_submission_) return 0;
+  const size_t in_flight = TasksInFlight();
+  if (backoff_.count() > 0) return in_flight == 0 ? 1 : 0;
+  return options_.max_tasks - std::min(in_flight, options_.max_tasks);
+}
+
+// The server's threads can take them.
+void SlurmExecutor::ReturnGathered() {
+  for (const auto& [run, leases] : std::exchange(gathered_, {})) ReturnUntried({leases});
+  looks_at_gathered_ = 0;
 }
 
 absl::StatusOr<std::string> SlurmExecutor::PreparedWorker() const {
@@ -492,17 +532,18 @@ void SlurmExecutor::SubmitRun(const std::string& worker, std::vector<Lease> leas
 }
 
 void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vector<Lease>> tasks) {
+  if (RoomForTasks() == 0) return ReturnUntried(tasks);  // an array before it was refused
   const std::string name = NewName();
-  const absl::Status written = WriteArray(name, tasks);
+  const absl::Status made = folder_.MakeArray(name);
+  const absl::Status written = made.ok() ? WriteArray(name, tasks) : made;
   if (!written.ok()) {
-    folder_.RemoveArray(name);
+    if (made.ok()) folder_.RemoveArray(name);
     ReturnUntried(tasks);
     return BackOff(written);
   }
   Array array;
   for (std::vector<Lease>& leases : tasks) {
-    const size_t n = leases.size();
-    array.tasks.push_back({.leases = std::move(leases), .seconds = std::vector<double>(n, 0)});
+    array.tasks.push_back({.leases = std::move(leases)});
   }
   ArraySubmission submission = {
       .name = name,
@@ -519,8 +560,6 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
 
 absl::Status SlurmExecutor::WriteArray(const std::string& name,
                                        const std::vector<std::vector<Lease>>& tasks) const {
-  const absl::Status made = folder_.MakeArray(name);
-  if (!made.ok()) return made;
   std::vector<std::vector<IdentifiedLease>> identified;
   for (const std::vector<Lease>& leases : tasks) {
     std::vector<IdentifiedLease>& of_task = identified.emplace_back();
@@ -556,7 +595,7 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
 
 void SlurmExecutor::ReturnUntried(const std::vector<std::vector<Lease>>& tasks) {
   for (const std::vector<Lease>& leases : tasks) {
-    for (const Lease& lease : leases) scheduler_.Return(lease, 0, false);
+    for (const Lease& lease : leases) scheduler_.Return(lease, false);
   }
 }
 
