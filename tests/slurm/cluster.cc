@@ -29,7 +29,8 @@ void Run(std::vector<std::string> words) {
 
 Cluster::Cluster(const std::vector<std::string>& parameters) {
   const std::string folder = folder_.File("cluster");
-  const std::string stop = absl::StrCat("cat >/dev/null; exec '", Script(), "' stop '", folder, "'");
+  const std::string stop =
+      absl::StrCat("cat >/dev/null; exec '", Script(), "' stop '", folder, "'");
   keeper_.reset(popen(stop.c_str(), "we"));
   if (keeper_ == nullptr) throw std::runtime_error("no shell");
   std::vector<std::string> words = {Script(), "start", folder};
@@ -58,7 +59,8 @@ std::vector<pid_t> ProcessesWith(const std::string& text) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
     const std::string name = entry.path().filename();
     if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isdigit(c); })) continue;
-    if (absl::StrContains(Contents(entry.path() / "cmdline"), text)) found.push_back(std::stoi(name));
+    if (absl::StrContains(Contents(entry.path() / "cmdline"), text))
+      found.push_back(std::stoi(name));
   }
   return found;
 }

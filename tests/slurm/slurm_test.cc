@@ -1,5 +1,5 @@
-// Jobs on a whole Slurm cluster whose parts are killed. Whatever happens, a job gives the bytes that
-// threads alone give, and each sample counts once.
+// Jobs on a whole Slurm cluster whose parts are killed. Whatever happens, a job gives the bytes
+// that threads alone give, and each sample counts once.
 //
 // The clusters have no accounting (slurmdbd): nothing here needs it.
 #include <gtest/gtest.h>
@@ -74,12 +74,12 @@ TEST(Slurm, CancellingTheJobEmptiesTheQueue) {
 TEST(Slurm, TheQueueIsAskedForAtMostOnceInAnInterval) {
   const TemporaryFolder folder;
   const std::string calls = folder.File("calls"), program = folder.File("squeue");
-  WriteFile(program, absl::StrCat("#!/bin/sh\ndate +%s%N >>", calls, "\nexec /usr/bin/squeue \"$@\"\n"));
+  WriteFile(program,
+            absl::StrCat("#!/bin/sh\ndate +%s%N >>", calls, "\nexec /usr/bin/squeue \"$@\"\n"));
   chmod(program.c_str(), 0700);
   constexpr double kInterval = 2;
-  Sweep sweep({.flags = Split("--slurm-max-array-size 2"),
-               .path = folder.path()});
-  for (int seed = 1; seed <= 4; ++seed) sweep.server().Submit(SweepOf(500'000, seed));
+  Sweep sweep({.flags = Split("--slurm-max-array-size 2"), .path = folder.path()});
+  for (int seed = 1; seed <= 3; ++seed) sweep.server().Submit(SweepOf(300'000, seed));
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   std::vector<double> times;
@@ -89,7 +89,8 @@ TEST(Slurm, TheQueueIsAskedForAtMostOnceInAnInterval) {
   ASSERT_GT(times.size(), 3u);
   double least = kInterval;
   for (size_t i = 1; i < times.size(); ++i) least = std::min(least, times[i] - times[i - 1]);
-  // A call on a busy machine may be written to the file late, but the number of all calls is bounded.
+  // A call on a busy machine may be written to the file late, but the number of all calls is
+  // bounded.
   EXPECT_LE(kInterval * static_cast<double>(times.size() - 1), times.back() - times.front() + 0.5);
   EXPECT_GT(least, kInterval - 0.5);
   sweep.Note(absl::StrCat(times.size(), " calls of squeue, at least ", least, " s apart"));
@@ -173,9 +174,10 @@ TEST(Slurm, TasksThatReachTheirTimeLimitGiveTheSameBytes) {
 TEST(Slurm, ATaskThatHangsIsComputedAgainAfterItsTimeLimit) {
   const TemporaryFolder folder;
   const std::string worker = folder.File("worker");
-  WriteFile(worker, absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
-                                 " 2>/dev/null; then trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
-                                 "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
+  WriteFile(worker,
+            absl::StrCat("#!/bin/sh\nif mkdir ", folder.File("hung"),
+                         " 2>/dev/null; then trap '' USR1 TERM; while :; do sleep 1; done; fi\n",
+                         "exec ", BuildPath("bin/ballpiston-worker"), " \"$@\"\n"));
   Sweep sweep({.flags = Joined({Split("--slurm-time-limit-minutes 1 --slurm-worker"), {worker}})});
   sweep.Submit();
   sweep.ExpectTheSameBytes();
@@ -235,7 +237,7 @@ TEST(Slurm, APartitionThatIsMadeLaterIsUsed) {
 // ---- the shared folder ----
 
 TEST(Slurm, AFolderThatOthersCanWriteIsUsedAfterItsRepair) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   chmod(sweep.shared_folder().c_str(), 0777);
   sweep.Submit();
   sweep.AwaitProblem("can be written by other users");
@@ -269,7 +271,7 @@ class SmallDisk {
 };
 
 TEST(Slurm, AFullFolderIsUsedAfterItIsEmptied) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   const SmallDisk disk(sweep.shared_folder());
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a file system";
   disk.Fill();
@@ -282,7 +284,7 @@ TEST(Slurm, AFullFolderIsUsedAfterItIsEmptied) {
 }
 
 TEST(Slurm, AFolderThatFillsUpDuringTheTasksGivesTheSameBytes) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   const SmallDisk disk(sweep.shared_folder());
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a file system";
   sweep.Submit();

@@ -20,10 +20,10 @@ using google::protobuf::Struct;
 
 // A job of a few seconds is large enough, a task takes some seconds, and Slurm is asked often.
 Words FlagsOf(const std::string& shared_folder, const SweepSetUp& set_up) {
-  return Joined({{"--executor=slurm", "--slurm-shared-folder", shared_folder,
-                  "--slurm-least-seconds", "2", "--slurm-query-seconds", "2",
-                  "--slurm-task-seconds", absl::StrCat(set_up.task_seconds)},
-                 set_up.flags});
+  return Joined(
+      {{"--executor=slurm", "--slurm-shared-folder", shared_folder, "--slurm-least-seconds", "2",
+        "--slurm-query-seconds", "2", "--slurm-task-seconds", absl::StrCat(set_up.task_seconds)},
+       set_up.flags});
 }
 
 std::string PointsOfJob(const TestServer& server, const std::string& job) {
@@ -89,9 +89,10 @@ Sweep::~Sweep() {
   const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  absl::PrintF("%s: %.0f s; by the cluster: %g chunks; %g tasks lost, %g files refused, %g queries%s\n",
-               test->name(), seconds, earlier_.chunks, earlier_.lost, earlier_.refused,
-               earlier_.queries, notes_);
+  absl::PrintF(
+      "%s: %.0f s; by the cluster: %g chunks; %g tasks lost, %g files refused, %g queries%s\n",
+      test->name(), seconds, earlier_.chunks, earlier_.lost, earlier_.refused, earlier_.queries,
+      notes_);
   std::fflush(stdout);
   if (testing::Test::HasFailure()) absl::PrintF("%s\n", server_->log());
 }
@@ -129,8 +130,7 @@ void Sweep::AwaitRunningTasks() const {
 }
 
 void Sweep::AwaitProblem(const std::string& text) const {
-  Await("the problem: " + text,
-        [&] { return Counts().problem.find(text) != std::string::npos; });
+  Await("the problem: " + text, [&] { return Counts().problem.find(text) != std::string::npos; });
 }
 
 std::vector<pid_t> Sweep::Workers() const {

@@ -55,8 +55,8 @@ class Sweep {
   std::vector<pid_t> Workers() const;  // that compute
   void KillServer();                   // kill -9, and starts it again on the same data folder
 
-  // Waits for the end. The test fails unless the job succeeded, each point has the number of samples
-  // that was asked for, and the bytes are those of a server that has threads alone.
+  // Waits for the end. The test fails unless the job succeeded, each point has the number of
+  // samples that was asked for, and the bytes are those of a server that has threads alone.
   void ExpectTheSameBytes();
   void Note(const std::string& what) { notes_ += "; " + what; }
 

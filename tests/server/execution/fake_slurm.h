@@ -35,7 +35,7 @@ class FakeSlurm {
 
   // ---- what the test does ----
 
-  void Add(const std::string& name, size_t tasks);  // an array that nobody here submitted
+  void Add(const std::string& name, size_t tasks);   // an array that nobody here submitted
   void Start(const std::string& name, size_t task);  // it runs, and has left no file yet
   // The task has ended, whatever its files say. Without an index, all tasks of all arrays.
   void Lose(const std::string& name, size_t task);

@@ -24,6 +24,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
+ino_t FileNumber(const std::string& path) {
+  struct stat found {};
+  EXPECT_EQ(stat(path.c_str(), &found), 0);
+  return found.st_ino;
+}
+
 class SharedFolderTest : public testing::Test {
  protected:
   SharedFolderTest() {
@@ -32,8 +38,9 @@ class SharedFolderTest : public testing::Test {
   }
 
   void ExpectRefused(const std::string& path, const std::string& why) const {
-    EXPECT_THAT(SharedFolder(path, "me").Prepare(),
-                StatusIs(absl::StatusCode::kFailedPrecondition, AllOf(HasSubstr(path), HasSubstr(why))));
+    EXPECT_THAT(
+        SharedFolder(path, "me").Prepare(),
+        StatusIs(absl::StatusCode::kFailedPrecondition, AllOf(HasSubstr(path), HasSubstr(why))));
   }
 
   const TemporaryFolder temporary_;
@@ -95,9 +102,9 @@ TEST_F(SharedFolderTest, TheWorkerIsCopiedOnceForEachVersion) {
   ASSERT_OK_AND_ASSIGN(const std::string first, shared_.CopyWorker(program));
   EXPECT_EQ(Contents(first), "first");
   EXPECT_EQ(ModeOf(first), 0700u);
-  const auto written = std::filesystem::last_write_time(first);
+  const ino_t file = FileNumber(first);
   EXPECT_THAT(shared_.CopyWorker(program), IsOkAndHolds(first));
-  EXPECT_EQ(std::filesystem::last_write_time(first), written);
+  EXPECT_EQ(FileNumber(first), file);
   WriteFile(program, "second");
   ASSERT_OK_AND_ASSIGN(const std::string second, shared_.CopyWorker(program));
   EXPECT_NE(second, first);
@@ -127,10 +134,12 @@ TEST_F(SharedFolderTest, AMissingWorkerIsNotFound) {
 TEST_F(SharedFolderTest, ArraysAreListedByTheirPrefix) {
   ASSERT_OK(shared_.Prepare());
   EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(IsEmpty()));
-  for (const std::string name : {"bp-me-1", "bp-me-2", "bp-you-3"}) ASSERT_OK(shared_.MakeArray(name));
+  for (const std::string name : {"bp-me-1", "bp-me-2", "bp-you-3"})
+    ASSERT_OK(shared_.MakeArray(name));
   WriteFile(shared_.PathOf("bp-me-4"), "not a folder");
   WriteFile(shared_.PathOf("bp-me-1") + "/tasks", "");
-  EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(UnorderedElementsAre("bp-me-1", "bp-me-2")));
+  EXPECT_THAT(shared_.ListArrays("bp-me-"),
+              IsOkAndHolds(UnorderedElementsAre("bp-me-1", "bp-me-2")));
   shared_.RemoveArray("bp-me-1");
   shared_.RemoveArray("bp-me-none");
   EXPECT_THAT(shared_.ListArrays("bp-me-"), IsOkAndHolds(UnorderedElementsAre("bp-me-2")));
