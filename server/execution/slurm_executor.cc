@@ -44,8 +44,8 @@ std::string InstalledWorker() {
 }
 
 Capacity CapacityOf(const SlurmOptions& options) {
-  const double limit = std::max(
-      60 * static_cast<double>(options.time_limit_minutes) - kMostSecondsToFinish, 1.0);
+  const double limit =
+      std::max(60 * static_cast<double>(options.time_limit_minutes) - kMostSecondsToFinish, 1.0);
   return {.seconds = std::min(Seconds(options.task_length), kShareOfTheLimit * limit),
           .longest_chunk = kShareOfTheLimit * limit};
 }

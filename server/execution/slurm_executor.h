@@ -8,8 +8,8 @@
 // missing chunks of its leases go back to the scheduler.
 //
 // slurmctld, a node, a worker or this server may be killed at any time. No chunk is lost, because a
-// chunk that did not arrive is leased again, and task files outlive the server (Scheduler::Adopt). No
-// chunk counts twice, because the scheduler takes each once.
+// chunk that did not arrive is leased again, and task files outlive the server (Scheduler::Adopt).
+// No chunk counts twice, because the scheduler takes each once.
 //
 // If Slurm refuses, or the shared folder cannot be used, the leases go back to the scheduler, for
 // the server's threads, and the executor tries again later with one task. Status() has the reason.

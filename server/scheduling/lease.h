@@ -40,7 +40,7 @@ struct Lease {
 
   PartialChunk start = {};  // the first chunk, and what is merged of it already
   uint64_t end = 0;         // the chunk after the last
-  double seconds = 0;  // predicted, of one core at nominal speed; 0 if all the rest is leased
+  double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};

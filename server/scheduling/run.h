@@ -33,10 +33,10 @@ struct Shortfall {
 };
 
 struct RunRequest {
-  int64_t key = 0;        // greater for a newer job
+  int64_t key = 0;         // greater for a newer job
   int64_t generation = 0;  // of the job among all that had this key in a store's life (backups!)
-  std::string principal;  // the job's owner, for fair shares
-  int32_t priority = 0;   // among the principal's; higher first
+  std::string principal;   // the job's owner, for fair shares
+  int32_t priority = 0;    // among the principal's; higher first
   EnsembleSpec spec;
   std::vector<bool> finished;               // by point of the grid: nothing left to compute
   bool has_checkpoints = false;             // ask the journal for them

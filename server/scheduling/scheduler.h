@@ -96,8 +96,8 @@ class Scheduler {
 
   // These are for executors that are not local.
 
-  // The executor ends with the lease. Chunks that were not reported go out again, as another attempt
-  // if the executor `tried` to compute them. May wait for the disk.
+  // The executor ends with the lease. Chunks that were not reported go out again, as another
+  // attempt if the executor `tried` to compute them. May wait for the disk.
   void Return(const Lease& lease, bool tried = true);
 
   // Returns when the disk has room for more reports.

@@ -79,7 +79,7 @@ TEST(Slurm, TheQueueIsAskedForAtMostOnceInAnInterval) {
   chmod(program.c_str(), 0700);
   constexpr double kInterval = 2;
   Sweep sweep({.flags = Split("--slurm-max-array-size 2"), .path = folder.path()});
-  for (int seed = 1; seed <= 4; ++seed) sweep.server().Submit(SweepOf(500'000, seed));
+  for (int seed = 1; seed <= 3; ++seed) sweep.server().Submit(SweepOf(300'000, seed));
   sweep.Submit();
   sweep.ExpectTheSameBytes();
   std::vector<double> times;
@@ -237,7 +237,7 @@ TEST(Slurm, APartitionThatIsMadeLaterIsUsed) {
 // ---- the shared folder ----
 
 TEST(Slurm, AFolderThatOthersCanWriteIsUsedAfterItsRepair) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   chmod(sweep.shared_folder().c_str(), 0777);
   sweep.Submit();
   sweep.AwaitProblem("can be written by other users");
@@ -271,7 +271,7 @@ class SmallDisk {
 };
 
 TEST(Slurm, AFullFolderIsUsedAfterItIsEmptied) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   const SmallDisk disk(sweep.shared_folder());
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a file system";
   disk.Fill();
@@ -284,7 +284,7 @@ TEST(Slurm, AFullFolderIsUsedAfterItIsEmptied) {
 }
 
 TEST(Slurm, AFolderThatFillsUpDuringTheTasksGivesTheSameBytes) {
-  Sweep sweep({.samples = 2'000'000});
+  Sweep sweep;
   const SmallDisk disk(sweep.shared_folder());
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a file system";
   sweep.Submit();

@@ -38,7 +38,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr char kIdentity[] = "server1";
@@ -519,17 +518,27 @@ TEST_F(SlurmExecutorTest, FilesThatAreNoChunkFilesAreLeftAlone) {
 
 // ---- the shared folder ----
 
-TEST_F(SlurmExecutorTest, AFolderThatBecomesUsableIsUsed) {
+TEST_F(SlurmExecutorTest, AFolderThatIsUnusableAtTheStartIsUsedLater) {
   chmod(shared_.c_str(), 0777);
   StartServer();
+  server_->AwaitProblem("can be written by other users");
+  spec_ = PointOfChunks(3);
+  journal_ = server_->AddOpenRun(1, spec_);
+  chmod(shared_.c_str(), 0700);
+  RunToRightEnd();
+  AwaitThat([&] { return server_->Status().problem.empty(); });
+}
+
+TEST_F(SlurmExecutorTest, NothingIsSubmittedWhileTheFolderIsUnusable) {
+  StartServer();
+  chmod(shared_.c_str(), 0777);
   spec_ = PointOfChunks(3);
   journal_ = server_->AddOpenRun(1, spec_);
   server_->AwaitProblem("can be written by other users");
   EXPECT_THAT(slurm_.submissions(), IsEmpty());
   chmod(shared_.c_str(), 0700);
-  server_->AwaitSubmissions(1);
-  AwaitThat([&] { return server_->Status().problem.empty(); });
   RunToRightEnd();
+  AwaitThat([&] { return server_->Status().problem.empty(); });
 }
 
 TEST_F(SlurmExecutorTest, AMissingWorkerIsAProblem) {
