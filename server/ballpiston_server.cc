@@ -104,7 +104,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
         new BallpistonServer(std::move(options), *std::move(directory), *address,
                              *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
-    server->StartExecutors();
+    if (status.ok()) server->StartExecutors();
     if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;

@@ -223,7 +223,7 @@ storage::Lease LeaseRecord(const Lease& lease, const JobIdentity& job) {
   storage::Lease record;
   record.set_server(job.server);
   record.set_job(job.job);
-  record.set_restarts(job.restarts);
+  record.set_generation(job.generation);
   record.set_engine_version(job.engine_version);
   record.set_point(static_cast<int64_t>(lease.point));
   record.set_attempt(lease.attempt);
@@ -245,7 +245,7 @@ absl::StatusOr<IdentifiedLease> LeaseOfRecord(const storage::Lease& record) {
   absl::StatusOr<Lease> lease = ChunksOf(record, *std::move(spec));
   if (!lease.ok()) return lease.status();
   return IdentifiedLease{
-      .job = {record.server(), record.job(), record.restarts(), record.engine_version()},
+      .job = {record.server(), record.job(), record.generation(), record.engine_version()},
       .lease = *std::move(lease)};
 }
 

@@ -108,7 +108,8 @@ std::string SharedFolder::PathOf(const std::string& array) const {
 }
 
 absl::Status SharedFolder::MakeArray(const std::string& array) const {
-  return MakeFolder(PathOf(array));
+  const std::string path = PathOf(array);
+  return mkdir(path.c_str(), 0700) == 0 ? absl::OkStatus() : Unusable(path, errno);
 }
 
 void SharedFolder::RemoveArray(const std::string& array) const {
@@ -122,7 +123,9 @@ absl::StatusOr<std::vector<std::string>> SharedFolder::ListArrays(const std::str
   for (fs::directory_iterator entry(own_, error), end; !error && entry != end;
        entry.increment(error)) {
     std::string name = entry->path().filename().string();
-    if (absl::StartsWith(name, prefix) && entry->is_directory(error)) {
+    std::error_code unknown;  // of a link to nowhere, which is no array
+    const bool is_folder = entry->is_directory(unknown) && !entry->is_symlink(unknown);
+    if (absl::StartsWith(name, prefix) && is_folder) {
       arrays.push_back(std::move(name));
     }
   }

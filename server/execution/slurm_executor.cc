@@ -1,6 +1,7 @@
 #include "server/execution/slurm_executor.h"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <random>
@@ -25,6 +26,8 @@ constexpr int kGatherLooks = 2;
 constexpr std::chrono::seconds kFirstBackoff(30);
 constexpr std::chrono::seconds kLongestBackoff(600);
 
+// The signal before the time limit comes at most so much earlier (slurm_tools.cc).
+constexpr double kMostSecondsToFinish = 90;
 // A longer chunk would end near the time limit on a slow machine.
 constexpr double kShareOfTheLimit = 0.5;
 
@@ -41,7 +44,8 @@ std::string InstalledWorker() {
 }
 
 Capacity CapacityOf(const SlurmOptions& options) {
-  const double limit = 60 * static_cast<double>(options.time_limit_minutes);
+  const double limit =
+      std::max(60 * static_cast<double>(options.time_limit_minutes) - kMostSecondsToFinish, 1.0);
   return {.seconds = std::min(Seconds(options.task_length), kShareOfTheLimit * limit),
           .longest_chunk = kShareOfTheLimit * limit};
 }
@@ -72,7 +76,7 @@ SlurmExecutor::SlurmExecutor(Scheduler& scheduler, SlurmOptions options,
 SlurmExecutor::~SlurmExecutor() { Shutdown(); }
 
 void SlurmExecutor::Start() {
-  Recover();
+  recovered_ = Recover();
   collector_ = std::thread([this] { CollectUntilStopped(); });
   steerer_ = std::thread([this] { SteerUntilStopped(); });
 }
@@ -98,7 +102,7 @@ bool SlurmExecutor::AwaitNextLook() {
 JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
   return {.server = identity_,
           .job = lease.run,
-          .restarts = lease.restarts,
+          .generation = lease.generation,
           .engine_version = std::string(kEngineVersion)};
 }
 
@@ -115,7 +119,11 @@ void SlurmExecutor::NoteOutcome(Activity activity, const absl::Status& outcome) 
 
 void SlurmExecutor::CollectUntilStopped() {
   do {
-    for (const std::string& name : ArrayNames()) CollectArray(name);
+    Guarded(Activity::kFiles, [this] {
+      absl::Status all;
+      for (const std::string& name : ArrayNames()) all.Update(CollectArray(name));
+      return all;
+    });
   } while (AwaitNextLook());
 }
 
@@ -126,16 +134,18 @@ std::vector<std::string> SlurmExecutor::ArrayNames() const {
   return names;
 }
 
-void SlurmExecutor::CollectArray(const std::string& name) {
+absl::Status SlurmExecutor::CollectArray(const std::string& name) {
   std::lock_guard one_at_a_time(collect_mutex_);
-  if (!HasArray(name)) return;  // it was removed meanwhile
+  if (!HasArray(name)) return absl::OkStatus();  // it was removed meanwhile
   const absl::StatusOr<std::vector<ChunkFileName>> files = ListChunkFiles(folder_.PathOf(name));
-  NoteOutcome(Activity::kFiles, files.status());
-  if (!files.ok()) return;
+  if (!files.ok()) return files.status();
   for (const ChunkFileName& file : *files) {
-    if (stop_.stop_requested()) return;
-    if (IsNew(name, file)) TakeFile(name, file);
+    if (stop_.stop_requested()) break;
+    if (!IsNew(name, file)) continue;
+    scheduler_.AwaitRoom();
+    TakeFile(name, file);
   }
+  return absl::OkStatus();
 }
 
 bool SlurmExecutor::HasArray(const std::string& name) const {
@@ -193,6 +203,11 @@ absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile&
 absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<Lease>& leases) {
   absl::Status taken;
   for (const LeaseChunks& of_lease : file.leases) {
+    if (scheduler_.IsUnopened(leases[of_lease.lease])) {
+      return absl::UnavailableError("a point is not open yet");
+    }
+  }
+  for (const LeaseChunks& of_lease : file.leases) {
     const absl::Status reported = scheduler_.Report(
         leases[of_lease.lease], {.chunks = of_lease.chunks, .seconds = of_lease.processor_seconds});
     if (absl::IsUnavailable(reported)) return reported;
@@ -220,20 +235,20 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
   if (file->is_final) task->is_final = true;
   for (const LeaseChunks& of_lease : file->leases) {
     counts_.chunks += static_cast<double>(of_lease.chunks.size());
-    task->seconds[of_lease.lease] += of_lease.processor_seconds;
   }
 }
 
 // ---- what an earlier process left ----
 
-void SlurmExecutor::Recover() {
+bool SlurmExecutor::Recover() {
   const absl::Status prepared = folder_.Prepare();
   NoteOutcome(Activity::kFiles, prepared);
-  if (!prepared.ok()) return;
+  if (!prepared.ok()) return false;
   const auto names = folder_.ListArrays(prefix_);
   NoteOutcome(Activity::kFiles, names.status());
-  if (!names.ok()) return;
+  if (!names.ok()) return false;
   for (const std::string& name : *names) RecoverArray(name);
+  return true;
 }
 
 void SlurmExecutor::RecoverArray(const std::string& name) {
@@ -255,11 +270,10 @@ SlurmExecutor::Task SlurmExecutor::RecoveredTask(const std::vector<IdentifiedLea
     Lease lease = recorded;
     lease.executor = capacity_.executor;
     lease.run = job.job;
-    lease.restarts = job.restarts;
+    lease.generation = job.generation;
     const bool is_ours = job == IdentityOf(lease);
     const std::optional<Lease> adopted = is_ours ? scheduler_.Adopt(lease) : std::nullopt;
     task.leases.push_back(adopted.value_or(lease));
-    task.seconds.push_back(0);
   }
   return task;
 }
@@ -268,30 +282,50 @@ SlurmExecutor::Task SlurmExecutor::RecoveredTask(const std::vector<IdentifiedLea
 
 void SlurmExecutor::SteerUntilStopped() {
   do {
-    EndFinalTasks();
-    DropUnneededTasks();
-    QueryIfDue();
-    SubmitNew();
-    RemoveEnded();
+    Guarded(Activity::kQueue, [this] {
+      Steer();
+      return absl::OkStatus();
+    });
   } while (AwaitNextLook());
+}
+
+void SlurmExecutor::Steer() {
+  // Points that were opened meanwhile adopt nothing; then the array is cancelled.
+  if (!recovered_) recovered_ = Recover();
+  if (!recovered_) return;
+  EndFinalTasks();
+  DropUnneededTasks();
+  QueryIfDue();
+  SubmitNew();
+  RemoveEnded();
+}
+
+// An exception, for example for want of memory, is a problem and does not end the server.
+void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()> round) {
+  absl::Status outcome;
+  try {
+    outcome = round();
+    if (activity == Activity::kQueue) return;  // its parts have noted their outcomes
+  } catch (const std::exception& error) {
+    outcome = absl::InternalError(error.what());
+  }
+  NoteOutcome(activity, outcome);
 }
 
 // The tasks' leases go back to the scheduler without the lock.
 void SlurmExecutor::EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried) {
-  std::vector<std::pair<Lease, double>> returned;
+  std::vector<Lease> returned;
   {
     std::lock_guard lock(mutex_);
     for (auto& [name, array] : arrays_) {
       for (Task& task : array.tasks) {
         if (task.state == TaskState::kOver || !has_ended(task)) continue;
         task.state = TaskState::kOver;
-        for (size_t i = 0; i < task.leases.size(); ++i) {
-          returned.emplace_back(task.leases[i], task.seconds[i]);
-        }
+        returned.insert(returned.end(), task.leases.begin(), task.leases.end());
       }
     }
   }
-  for (const auto& [lease, seconds] : returned) scheduler_.Return(lease, seconds, tried);
+  for (const Lease& lease : returned) scheduler_.Return(lease, tried);
 }
 
 void SlurmExecutor::EndFinalTasks() {
@@ -386,7 +420,7 @@ void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued
 
 // A last look for their files comes first.
 void SlurmExecutor::EndLostTasks(const std::string& name) {
-  CollectArray(name);
+  CollectArray(name).IgnoreError();  // the thread that reads files meets the same error
   EndFinalTasks();
   size_t lost = 0, without_file = 0;
   {
@@ -434,24 +468,35 @@ void SlurmExecutor::BackOff(const absl::Status& problem) {
 // ---- submission ----
 
 void SlurmExecutor::SubmitNew() {
-  size_t room = 0;
-  {
-    std::lock_guard lock(mutex_);
-    if (Clock::now() < next_submission_) return;
-    const size_t in_flight = TasksInFlight();
-    room = options_.max_tasks - std::min(in_flight, options_.max_tasks);
-    if (backoff_.count() > 0) room = std::min<size_t>(room, in_flight == 0 ? 1 : 0);
-  }
-  if (room == 0 || stop_.stop_requested()) return;
-  const absl::StatusOr<std::string> worker = PreparedWorker();
-  if (!worker.ok()) return BackOff(worker.status());
+  const size_t room = RoomForTasks();
+  if (room == 0) return ReturnGathered();
   const bool is_full = Gather(static_cast<double>(room) * capacity_.seconds);
   if (gathered_.empty()) return;
   if (!is_full && ++looks_at_gathered_ < kGatherLooks) return;
   looks_at_gathered_ = 0;
+  const absl::StatusOr<std::string> worker = PreparedWorker();
+  if (!worker.ok()) {
+    BackOff(worker.status());
+    return ReturnGathered();
+  }
   for (auto& [run, leases] : std::exchange(gathered_, {})) {
     SubmitRun(*worker, std::move(leases));
   }
+}
+
+// 0 while nothing is to be submitted. After a failure one task alone.
+size_t SlurmExecutor::RoomForTasks() const {
+  std::lock_guard lock(mutex_);
+  if (stop_.stop_requested() || Clock::now() < next_submission_) return 0;
+  const size_t in_flight = TasksInFlight();
+  if (backoff_.count() > 0) return in_flight == 0 ? 1 : 0;
+  return options_.max_tasks - std::min(in_flight, options_.max_tasks);
+}
+
+// The server's threads can take them.
+void SlurmExecutor::ReturnGathered() {
+  for (const auto& [run, leases] : std::exchange(gathered_, {})) ReturnUntried({leases});
+  looks_at_gathered_ = 0;
 }
 
 absl::StatusOr<std::string> SlurmExecutor::PreparedWorker() const {
@@ -478,28 +523,27 @@ void SlurmExecutor::SubmitRun(const std::string& worker, std::vector<Lease> leas
   for (Lease& lease : leases) {
     if (!scheduler_.Needs(lease)) continue;
     if (tasks.empty() || SecondsOf(tasks.back()) + lease.seconds / 2 > capacity_.seconds) {
+      if (tasks.size() == array_size_) SubmitArray(worker, std::exchange(tasks, {}));
       tasks.emplace_back();
     }
     tasks.back().push_back(std::move(lease));
-    if (tasks.size() == array_size_ && SecondsOf(tasks.back()) >= capacity_.seconds) {
-      SubmitArray(worker, std::exchange(tasks, {}));
-    }
   }
   if (!tasks.empty()) SubmitArray(worker, std::move(tasks));
 }
 
 void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vector<Lease>> tasks) {
+  if (RoomForTasks() == 0) return ReturnUntried(tasks);  // an array before it was refused
   const std::string name = NewName();
-  const absl::Status written = WriteArray(name, tasks);
+  const absl::Status made = folder_.MakeArray(name);
+  const absl::Status written = made.ok() ? WriteArray(name, tasks) : made;
   if (!written.ok()) {
-    folder_.RemoveArray(name);
+    if (made.ok()) folder_.RemoveArray(name);
     ReturnUntried(tasks);
     return BackOff(written);
   }
   Array array;
   for (std::vector<Lease>& leases : tasks) {
-    const size_t n = leases.size();
-    array.tasks.push_back({.leases = std::move(leases), .seconds = std::vector<double>(n, 0)});
+    array.tasks.push_back({.leases = std::move(leases)});
   }
   ArraySubmission submission = {
       .name = name,
@@ -516,8 +560,6 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
 
 absl::Status SlurmExecutor::WriteArray(const std::string& name,
                                        const std::vector<std::vector<Lease>>& tasks) const {
-  const absl::Status made = folder_.MakeArray(name);
-  if (!made.ok()) return made;
   std::vector<std::vector<IdentifiedLease>> identified;
   for (const std::vector<Lease>& leases : tasks) {
     std::vector<IdentifiedLease>& of_task = identified.emplace_back();
@@ -535,8 +577,9 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
     array.submit_time = Clock::now();
     return;
   }
-  if (absl::StrContains(submitted.message(), "Invalid job array specification")) {
-    array_size_ = std::max<size_t>(array_size_ / 2, 1);
+  const bool is_too_large = absl::StrContains(submitted.message(), "Invalid job array");
+  if (is_too_large && array_size_ > 1) {
+    array_size_ /= 2;
     NoteOutcome(Activity::kSubmission, absl::UnavailableError(absl::StrCat(
                                            submitted.message(), "; arrays now have ", array_size_,
                                            " tasks: set --slurm-max-array-size")));
@@ -552,7 +595,7 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
 
 void SlurmExecutor::ReturnUntried(const std::vector<std::vector<Lease>>& tasks) {
   for (const std::vector<Lease>& leases : tasks) {
-    for (const Lease& lease : leases) scheduler_.Return(lease, 0, false);
+    for (const Lease& lease : leases) scheduler_.Return(lease, false);
   }
 }
 
@@ -573,7 +616,9 @@ void SlurmExecutor::RemoveEnded() {
       if (over && !to_be_cancelled) ended.push_back(name);
     }
   }
-  if (ended.empty() || !flush_().ok()) return;
+  if (ended.empty()) return;
+  { std::lock_guard files_being_reported(collect_mutex_); }  // are reported before the flush
+  if (!flush_().ok()) return;
   for (const std::string& name : ended) {
     std::lock_guard one_at_a_time(collect_mutex_);
     folder_.RemoveArray(name);

@@ -7,9 +7,9 @@
 // Slurm says only which tasks wait and run: if a task is gone and has left no final file, the
 // missing chunks of its leases go back to the scheduler.
 //
-// What is computed for nothing is bounded, and nothing is lost, if slurmctld, a node, a worker or
-// this server is killed at any time: chunks are counted once because the scheduler takes each once,
-// and task files outlive the server (Scheduler::Adopt).
+// slurmctld, a node, a worker or this server may be killed at any time. No chunk is lost, because a
+// chunk that did not arrive is leased again, and task files outlive the server (Scheduler::Adopt).
+// No chunk counts twice, because the scheduler takes each once.
 //
 // If Slurm refuses, or the shared folder cannot be used, the leases go back to the scheduler, for
 // the server's threads, and the executor tries again later with one task. Status() has the reason.
@@ -32,6 +32,7 @@
 #include <thread>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "server/execution/shared_folder.h"
 #include "server/execution/slurm_tools.h"
 #include "server/scheduling/scheduler.h"
@@ -74,7 +75,6 @@ class SlurmExecutor : public Executor {
 
   struct Task {
     std::vector<Lease> leases = {};
-    std::vector<double> seconds = {};    // of processor time, by lease
     std::set<uint32_t> read_files = {};  // sequence numbers
     TaskState state = TaskState::kUnknown;
     bool left_a_file = false;
@@ -96,7 +96,7 @@ class SlurmExecutor : public Executor {
   void CollectUntilStopped();
   std::vector<std::string> ArrayNames() const;
   bool HasArray(const std::string& name) const;
-  void CollectArray(const std::string& name);
+  absl::Status CollectArray(const std::string& name);
   bool IsNew(const std::string& array, const ChunkFileName& file);
   void TakeFile(const std::string& array, const ChunkFileName& name);
   absl::Status CheckFile(const std::string& array, const ChunkFile& file,
@@ -107,12 +107,14 @@ class SlurmExecutor : public Executor {
                 const absl::StatusOr<ChunkFile>& file, const absl::Status& taken);
 
   // ---- what an earlier process left ----
-  void Recover();
+  bool Recover();  // false: the folder cannot be used now
   void RecoverArray(const std::string& name);
   Task RecoveredTask(const std::vector<IdentifiedLease>& leases);
 
   // ---- Slurm ----
   void SteerUntilStopped();
+  void Steer();
+  void Guarded(Activity activity, absl::FunctionRef<absl::Status()> round);
   void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried);
   void EndFinalTasks();
   void DropUnneededTasks();
@@ -125,6 +127,8 @@ class SlurmExecutor : public Executor {
 
   // ---- submission ----
   void SubmitNew();
+  size_t RoomForTasks() const;
+  void ReturnGathered();
   absl::StatusOr<std::string> PreparedWorker() const;
   bool Gather(double seconds);
   void SubmitRun(const std::string& worker, std::vector<Lease> leases);
@@ -165,6 +169,7 @@ class SlurmExecutor : public Executor {
   std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
 
   // Of the thread that runs Slurm's tools.
+  bool recovered_ = false;
   std::map<int64_t, std::vector<Lease>> gathered_;  // by run: not submitted yet
   int looks_at_gathered_ = 0;
   size_t array_size_;

@@ -17,11 +17,25 @@ constexpr size_t kMostIndex = 4'000'000;  // Slurm's own bound of MaxArraySize
 
 // Reasons of Slurm 22.05. A task waits for an operator; quotas and limits of the number of jobs are
 // not among them, because they pass.
-constexpr std::array<absl::string_view, 14> kForever = {
-    "AccountNotAllowed", "BadConstraints",    "InvalidAccount",     "InvalidQOS",
-    "JobHeldAdmin",      "JobHeldUser",       "JobLaunchFailure",   "PartitionConfig",
-    "PartitionDown",     "PartitionInactive", "PartitionNodeLimit", "PartitionTimeLimit",
-    "QOSNotAllowed",     "QOSTimeLimit"};
+constexpr std::array kForever = {absl::string_view("AccountNotAllowed"),
+                                 absl::string_view("BadConstraints"),
+                                 absl::string_view("InvalidAccount"),
+                                 absl::string_view("InvalidQOS"),
+                                 absl::string_view("JobHeldAdmin"),
+                                 absl::string_view("JobHeldUser"),
+                                 absl::string_view("JobLaunchFailure"),
+                                 absl::string_view("PartitionConfig"),
+                                 absl::string_view("PartitionDown"),
+                                 absl::string_view("PartitionInactive"),
+                                 absl::string_view("PartitionNodeLimit"),
+                                 absl::string_view("PartitionTimeLimit"),
+                                 absl::string_view("QOSMinCpuNotSatisfied"),
+                                 absl::string_view("QOSNotAllowed"),
+                                 absl::string_view("QOSTimeLimit"),
+                                 absl::string_view("launch failed requeued held"),
+                                 absl::string_view("launch_failed_requeued_held")};
+// Limits of one job, such as QOSMaxWallDurationPerJobLimit.
+constexpr absl::string_view kOfOneJob = "PerJobLimit";
 
 bool IsWaiting(absl::string_view state) {
   return state == "PENDING" || state == "REQUEUED" || state == "REQUEUE_HOLD" ||
@@ -87,7 +101,8 @@ std::map<std::string, QueuedArray> ParseQueue(absl::string_view lines, absl::str
 }
 
 bool WaitsForever(absl::string_view reason) {
-  return std::find(kForever.begin(), kForever.end(), reason) != kForever.end();
+  return absl::EndsWith(reason, kOfOneJob) ||
+         std::find(kForever.begin(), kForever.end(), reason) != kForever.end();
 }
 
 }  // namespace ballpiston::server

@@ -17,6 +17,7 @@
 #include "server/jobs/question.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
+#include "server/security/sha256.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
 
@@ -138,6 +139,15 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
     shortfall = {point, ToleranceNotReached(spec, point, reached)};
     return false;
   });
+}
+
+// Tells a job from another that had its sequence before the store was restored from a backup, and
+// from itself under an older engine.
+int64_t GenerationOf(const Job& job) {
+  const std::string hash = Sha256(absl::StrCat(job.id(), " ", job.restarts()));
+  uint64_t number = 0;
+  for (size_t i = 0; i < 7; ++i) number = number << 8 | static_cast<uint8_t>(hash[i]);
+  return static_cast<int64_t>(number);
 }
 
 // What a run goes on from. `damage`: what the store has of the job is not what it wrote.
@@ -273,7 +283,7 @@ std::shared_ptr<Job> JobBook::Register(JobRecord record) {
 
 void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.key = job->sequence();
-  request.restarts = job->restarts();
+  request.generation = GenerationOf(*job);
   request.principal = job->principal();
   request.priority = job->Record().priority;
   request.journal = std::make_shared<JobJournal>(std::move(job), store_, request.has_checkpoints,

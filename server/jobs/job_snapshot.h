@@ -1,7 +1,7 @@
 // What a job's unfinished points were at one moment, made once for all who watch the job.
 //
-// To make one takes the pool's lock and copies what the points have merged, so a thousand watchers
-// share one: what is young enough, or still true, is handed out again. Thread-safe.
+// To make one takes the scheduler's lock and copies what the points have merged, so a thousand
+// watchers share one: what is young enough, or still true, is handed out again. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 #define BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 

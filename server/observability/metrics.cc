@@ -152,7 +152,7 @@ std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
       Gauge("ballpiston_busy_workers", "Those that compute now.", server.busy_workers),
       Counter("ballpiston_blocks_computed_total", "Blocks of samples.", server.blocks_computed),
       Counter("ballpiston_samples_computed_total", "Samples in them.", server.samples_computed),
-      Counter("ballpiston_processor_seconds_total", "Processor time of the workers.",
+      Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
               server.processor_seconds),
       Gauge("ballpiston_streams", "Open watches.", server.streams),
       Gauge("ballpiston_store_bytes", "The store on disk, its log included.", server.store_bytes),

@@ -33,7 +33,7 @@ struct ServerSnapshot {
   // Since the start.
   double blocks_computed = 0;
   double samples_computed = 0;
-  double processor_seconds = 0;  // of the workers
+  double processor_seconds = 0;  // of all executors
 
   // Of a Slurm cluster; none without one.
   struct Slurm {

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 
-#include "absl/functional/function_ref.h"
 #include "server/scheduling/lease.h"
 
 namespace ballpiston::server {

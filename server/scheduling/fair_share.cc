@@ -116,6 +116,17 @@ void FairShare::TurnBegins(int64_t run) {
   ChangePrincipal(name, begin);
 }
 
+void FairShare::Used(int64_t run, double seconds) {
+  const auto found = runs_.find(run);
+  if (found == runs_.end()) return;
+  const auto use = [seconds](Share& time) {
+    time.used += seconds;
+    time.spent += seconds;
+  };
+  ChangeRun(run, use);
+  ChangePrincipal(found->second.principal->first, use);
+}
+
 void FairShare::TurnEnds(int64_t run, double seconds) {
   const auto found = runs_.find(run);
   if (found == runs_.end()) return;

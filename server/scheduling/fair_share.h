@@ -12,8 +12,9 @@
 // with more compute time than others and returns keeps the difference; otherwise a sequence of
 // short jobs would get more time than one long job.
 //
-// A choice takes the time of a look-up, plus the time to skip runs without a task. Workers hold all
-// work of such a run, so there are no more such runs than workers. Properties, each with a test of
+// A choice takes the time of a look-up, plus the time to skip runs without a task. For the threads
+// there are no more such runs than threads, because threads hold all work of such a run. For an
+// executor elsewhere every small run is one. Properties, each with a test of
 // its name:
 //   1. UnequalBlocksGetEqualTime.
 //   2. PrincipalsGetEqualTimeWhateverTheirJobs.
@@ -53,6 +54,9 @@ class FairShare {
   // run that First returned, so the runs before it had no task.
   void TurnBegins(int64_t run);
   void TurnEnds(int64_t run, double seconds);
+
+  // A run has used more time in a turn that goes on.
+  void Used(int64_t run, double seconds);
 
   size_t runs() const { return runs_.size(); }
 

@@ -26,8 +26,8 @@ namespace ballpiston::server {
 
 struct Lease {
   int64_t number = 0;  // greater than those before, in the scheduler's life
-  int64_t run = 0;     // these two are RunRequest's key and restarts
-  int64_t restarts = 0;
+  int64_t run = 0;     // these two are RunRequest's key and generation
+  int64_t generation = 0;
   size_t executor = 0;
   int attempt = 1;  // greater than 1 if an executor returned some of the chunks
 
@@ -40,7 +40,7 @@ struct Lease {
 
   PartialChunk start = {};  // the first chunk, and what is merged of it already
   uint64_t end = 0;         // the chunk after the last
-  double seconds = 0;       // predicted, of one core at nominal speed
+  double seconds = 0;       // predicted, of one core at nominal speed; 0 if all the rest is leased
 
   // Stop is requested when the chunks are no longer needed.
   std::stop_token stop = {};

@@ -53,7 +53,7 @@ double SecondsToStore(const std::string& path, const storage::Result& result) {
   using Clock = std::chrono::steady_clock;
   constexpr int64_t kResults = 3000;
   const std::string bytes = ResultRecordBytes(result);
-  // As a job's journal does, which tells it when it is stored.
+  // A job's journal keeps the API's message until the result is stored; so does this.
   std::vector<std::shared_ptr<const v1::PointResult>> told;
   for (int64_t i = 0; i < kResults; ++i) {
     told.push_back(std::make_shared<const v1::PointResult>(PointResultMessage(result)));

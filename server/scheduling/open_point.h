@@ -43,7 +43,7 @@ class OpenPoint {
   // These chunks are leased already.
   void Adopt(uint64_t first, uint64_t end);
 
-  // That the chunks that are not merged are expected to take, of one core at nominal speed.
+  // Expected seconds of the chunks that are not merged, of one core at nominal speed.
   double ExpectedSeconds() const;
 
   std::stop_token stop() const { return stop_.get_token(); }

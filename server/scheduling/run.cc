@@ -21,7 +21,7 @@ constexpr size_t kPointsForElsewhere = 32;
 
 Run::Run(RunRequest request, SchedulerOptions options)
     : key_(request.key),
-      restarts_(request.restarts),
+      generation_(request.generation),
       principal_(std::move(request.principal)),
       priority_(request.priority),
       spec_(std::make_shared<const EnsembleSpec>(std::move(request.spec))),
@@ -79,7 +79,7 @@ std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTra
 
 Lease Run::Completed(Lease lease) const {
   lease.run = key_;
-  lease.restarts = restarts_;
+  lease.generation = generation_;
   lease.spec = spec_;
   return lease;
 }
@@ -148,7 +148,7 @@ void Run::PilotIsKnown(const PilotPlace& place) {
 }
 
 bool Run::Adopt(const Lease& lease) {
-  if (lease.restarts != restarts_ || lease.point >= finished_.size()) return false;
+  if (lease.generation != generation_ || lease.point >= finished_.size()) return false;
   if (finished_[lease.point] || open_.contains(lease.point)) return false;
   unopened_[lease.point].all.push_back(lease);
   if (opened_early_.insert(lease.point).second) reopen_.insert(lease.point);

@@ -1,7 +1,8 @@
 // The state of one job during its computation: its open points, its pilots, and its next lease.
 //
-// Points are opened in grid order, when no open point has a chunk left to lease. So a grid of
-// 100,000 points takes only the memory of its open points. A point that waits for a pilot takes a
+// Points are opened in grid order, when no open point has a chunk left to lease, or ahead when an
+// executor elsewhere has no work; points of adopted leases come first. So a grid of 100,000 points
+// takes only the memory of its open points. A point that waits for a pilot takes a
 // few bytes. Not thread-safe: the scheduler's lock guards it.
 #ifndef BALLPISTON_SERVER_SCHEDULING_RUN_H_
 #define BALLPISTON_SERVER_SCHEDULING_RUN_H_
@@ -32,10 +33,10 @@ struct Shortfall {
 };
 
 struct RunRequest {
-  int64_t key = 0;        // greater for a newer job
-  int64_t restarts = 0;   // how often a newer engine began the job anew
-  std::string principal;  // the job's owner, for fair shares
-  int32_t priority = 0;   // among the principal's; higher first
+  int64_t key = 0;         // greater for a newer job
+  int64_t generation = 0;  // of the job among all that had this key in a store's life (backups!)
+  std::string principal;   // the job's owner, for fair shares
+  int32_t priority = 0;    // among the principal's; higher first
   EnsembleSpec spec;
   std::vector<bool> finished;               // by point of the grid: nothing left to compute
   bool has_checkpoints = false;             // ask the journal for them
@@ -128,7 +129,7 @@ class Run {
   Lease Completed(Lease lease) const;
 
   const int64_t key_;
-  const int64_t restarts_;
+  const int64_t generation_;
   const std::string principal_;
   const int32_t priority_;
   const std::shared_ptr<const EnsembleSpec> spec_;

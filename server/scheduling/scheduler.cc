@@ -111,23 +111,35 @@ void Scheduler::StopRun(Run& run, absl::Status why) {
   for (const auto& [place, owner] : pilots_) {
     if (owner == run.key()) left.push_back(place);
   }
-  for (const PilotPlace& place : left) EndPilot(place);
+  for (const PilotPlace& place : left) EndPilot(run, place);
 }
 
 // Runs that wait for the pilot open their points again; the first of them may begin it anew.
-void Scheduler::EndPilot(const PilotPlace& place) {
-  pilots_.erase(place);
+void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
+  const auto found = pilots_.find(place);
+  if (found == pilots_.end() || found->second != owner.key()) return;  // another has taken it over
+  pilots_.erase(found);
   for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
 }
 
+// Ends their turns, if they are of an executor elsewhere.
+template <typename IsDropped>
+void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
+  for (size_t i = 0; i < executors_.size(); ++i) {
+    auto held = held_.lower_bound({i, run.key(), 0});
+    const auto end = held_.lower_bound({i, run.key() + 1, 0});
+    while (held != end) {
+      const bool drops = is_dropped(held->second);
+      if (drops && !executors_[i].traits.local) executors_[i].shares.TurnEnds(run.key(), 0);
+      held = drops ? held_.erase(held) : std::next(held);
+    }
+  }
+}
+
 void Scheduler::DropStoppedLeases(const Run& run) {
-  std::erase_if(held_, [&](const auto& entry) {
-    const auto& [lease, turns] = entry.second;
-    if (lease.run != run.key() || !IsStopped(run, lease)) return false;
-    Member& member = executors_[lease.executor];
-    if (member.traits.local) return turns == 0;
-    member.shares.TurnEnds(run.key(), 0);
-    return true;
+  DropLeases(run, [&](const Held& held) {
+    const bool is_local = executors_[held.lease.executor].traits.local;
+    return IsStopped(run, held.lease) && !(is_local && held.turns > 0);
   });
 }
 
@@ -222,16 +234,13 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
   return continues;
 }
 
-void Scheduler::Return(const Lease& lease, double seconds, bool tried) {
-  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
+void Scheduler::Return(const Lease& lease, bool tried) {
   RunPointer run;
   {
     std::lock_guard lock(mutex_);
     run = FindRun(lease.run);
-    if (run == nullptr) return;
-    run->journal().Worked(seconds);
-    if (held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
-    executors_[lease.executor].shares.TurnEnds(lease.run, seconds);
+    if (run == nullptr || held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
+    executors_[lease.executor].shares.TurnEnds(lease.run, 0);
     run->Return(lease, tried ? lease.attempt + 1 : lease.attempt);
   }
   WakeExecutors();
@@ -251,6 +260,21 @@ std::optional<Lease> Scheduler::Adopt(Lease lease) {
 bool Scheduler::Needs(const Lease& lease) const {
   std::lock_guard lock(mutex_);
   return held_.contains(KeyOf(lease));
+}
+
+bool Scheduler::IsUnopened(const Lease& lease) const {
+  std::lock_guard lock(mutex_);
+  const RunPointer run = FindRun(lease.run);
+  return run != nullptr && run->IsUnopened(lease.point);
+}
+
+void Scheduler::AwaitRoom() {
+  RunPointer any;
+  {
+    std::lock_guard lock(mutex_);
+    if (!runs_.empty()) any = runs_.begin()->second;
+  }
+  if (any != nullptr) any->journal().AwaitRoom();
 }
 
 void Scheduler::Fail(const Lease& lease, absl::Status why) {
@@ -294,12 +318,7 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
 void Scheduler::DropAdopted(Run& run, size_t index) {
   std::lock_guard lock(mutex_);
   run.ForgetAdopted(index);
-  std::erase_if(held_, [&](const auto& entry) {
-    const Lease& lease = entry.second.lease;
-    if (lease.run != run.key() || lease.point != index || lease.pilot) return false;
-    executors_[lease.executor].shares.TurnEnds(run.key(), 0);
-    return true;
-  });
+  DropLeases(run, [&](const Held& held) { return held.lease.point == index && !held.lease.pilot; });
 }
 
 absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
@@ -311,8 +330,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
   }
   absl::Cleanup give_up = [&] {
     std::lock_guard lock(mutex_);
-    const auto owned = pilots_.find(place);
-    if (owned != pilots_.end() && owned->second == run.key()) EndPilot(place);
+    EndPilot(run, place);
   };
   // It may have become known before this run took it on.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
@@ -361,6 +379,7 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
     if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
     }
+    if (run != nullptr && is_elsewhere) Charge(*run, lease, report.seconds);
     OpenPoint* open = run ? run->Find(lease) : nullptr;
     if (open == nullptr || open->fold().finished()) return absl::OkStatus();
     if (is_elsewhere) {
@@ -384,6 +403,12 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   return checked;
 }
 
+void Scheduler::Charge(Run& run, const Lease& lease, double seconds) {
+  processor_seconds_.fetch_add(seconds, std::memory_order_relaxed);
+  run.journal().Worked(seconds);
+  executors_[lease.executor].shares.Used(lease.run, seconds);
+}
+
 void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report) {
   PointFold& fold = open.fold();
   open.work += report.seconds;
@@ -402,7 +427,7 @@ void Scheduler::Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport
         {.point = lease.point, .samples = samples, .share_of_point = ShareOfPoint(open, samples)});
   }
   if (!fold.finished()) EndIfBudgetIsSpent(run, lease, open);
-  if (!fold.finished()) CheckpointIfDue(run, lease, open);
+  if (!fold.finished() && samples > 0) CheckpointIfDue(run, lease, open);
 }
 
 void Scheduler::EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open) {
@@ -453,7 +478,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   {
     std::lock_guard lock(mutex_);
     run->Close(lease);
-    if (lease.pilot) EndPilot(*lease.pilot);
+    if (lease.pilot) EndPilot(*run, *lease.pilot);
     if (!told.ok()) StopRun(*run, std::move(told));
     run->TurnEnds();
   }

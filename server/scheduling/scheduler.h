@@ -94,12 +94,14 @@ class Scheduler {
   // time of the whole turn. False if the executor needs the lease no more. May wait for the disk.
   bool EndTurn(const Lease& lease, double seconds);
 
-  // These three are for executors that are not local.
+  // These are for executors that are not local.
 
   // The executor ends with the lease. Chunks that were not reported go out again, as another
-  // attempt if the executor `tried` to compute them. `seconds`: processor time of the lease. May
-  // wait for the disk.
-  void Return(const Lease& lease, double seconds, bool tried = true);
+  // attempt if the executor `tried` to compute them. May wait for the disk.
+  void Return(const Lease& lease, bool tried = true);
+
+  // Returns when the disk has room for more reports.
+  void AwaitRoom();
 
   // A lease that an earlier process of this server gave to the executor: run, point, chunks and
   // attempt of it. Its chunks are not leased again until it is returned. Before the first lease,
@@ -108,6 +110,8 @@ class Scheduler {
 
   // Whether chunks of the lease may still be needed.
   bool Needs(const Lease& lease) const;
+  // Whether the point of an adopted lease is still to be opened.
+  bool IsUnopened(const Lease& lease) const;
 
   // The run ends with this status.
   void Fail(const Lease& lease, absl::Status why);
@@ -146,7 +150,10 @@ class Scheduler {
   void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open);
   void WriteCheckpoints(Run& run);
   void StopRun(Run& run, absl::Status why);
-  void EndPilot(const PilotPlace& place);
+  void EndPilot(const Run& owner, const PilotPlace& place);
+  void Charge(Run& run, const Lease& lease, double seconds);
+  template <typename IsDropped>
+  void DropLeases(const Run& run, IsDropped is_dropped);
   // Leases whose stop was requested and at which no local turn is in progress.
   void DropStoppedLeases(const Run& run);
 

@@ -77,7 +77,7 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
-// Of its unfinished points.
+// The rows of a job's unfinished points.
 constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = ?",
                                            "DELETE FROM chunks WHERE job = ?"};
 

@@ -1,6 +1,5 @@
 // The SQL about what was computed: checkpoints and chunks of unfinished points, results of finished
-// ones. Each
-// function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
+// ones. Each function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 #define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 

@@ -139,6 +139,10 @@ absl::Status CheckKind(const std::string& path, Database& database, bool& unfini
     return Refused(path, absl::StrCat("has version ", *version,
                                       ", newer than this program's version ", kSchemaVersion));
   }
+  if (*version >= 1 && *version < kSchemaVersion) {
+    return Refused(path, absl::StrCat("has version ", *version,
+                                      ", older than this program's version ", kSchemaVersion));
+  }
   if (*version < 1) return Refused(path, absl::StrCat("is damaged (version ", *version, ")"));
   return absl::OkStatus();
 }

@@ -1,10 +1,10 @@
 // The tables of the store, and the checks before a file is taken for one.
 //
-//   jobs      one row a job; `sequence` is its age and the key of the next three
+//   jobs      one row a job; `sequence` is its age and the key of the next four
 //   requests  (principal, request id) -> the job that was its answer
 //   checkpoints (job, point) -> storage Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
-//   results   (job, point) -> PointResult, of finished points
+//   results   (job, point) -> storage Result, of finished points
 //   server    one row: a random name of this store, by which a cluster's jobs are told apart
 //   pilots    what pilot runs found of the limit's error, by place and engine
 //
@@ -22,7 +22,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 1;
+inline constexpr int64_t kSchemaVersion = 2;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is

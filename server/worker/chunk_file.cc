@@ -28,7 +28,7 @@ void Fill(const LeaseChunks& chunks, storage::LeaseChunks& record) {
   record.set_lease(static_cast<uint32_t>(chunks.lease));
   record.set_server(chunks.job.server);
   record.set_job(chunks.job.job);
-  record.set_restarts(chunks.job.restarts);
+  record.set_generation(chunks.job.generation);
   record.set_engine_version(chunks.job.engine_version);
   record.set_point(static_cast<int64_t>(chunks.point));
   record.set_attempt(chunks.attempt);
@@ -51,7 +51,7 @@ absl::Status CheckNumbers(const storage::LeaseChunks& record) {
 LeaseChunks ChunksOf(const storage::LeaseChunks& record) {
   LeaseChunks chunks = {
       .lease = record.lease(),
-      .job = {record.server(), record.job(), record.restarts(), record.engine_version()},
+      .job = {record.server(), record.job(), record.generation(), record.engine_version()},
       .point = static_cast<size_t>(record.point()),
       .attempt = record.attempt(),
       .processor_seconds = record.processor_seconds()};

@@ -1,4 +1,4 @@
-// The cost of choosing the next run, which the worker pool does under its lock for each turn of
+// The cost of choosing the next run, which the scheduler does under its lock for each turn of
 // 0.05 s: with many runs, with many principals, and with runs that have no block to compute.
 #include <string>
 

@@ -33,7 +33,6 @@
 #include "server/convert/spec.h"
 #include "server/execution/processor_time.h"
 #include "server/jobs/job_book.h"
-#include "server/jobs/job_state.h"
 #include "server/scheduling/scheduler.h"
 #include "server/store/store.h"
 #include "tests/support/temporary_folder.h"
@@ -260,7 +259,7 @@ void AcceptChunks(const ExperimentKind& kind, Order order, size_t chunks) {
     std::vector<ChunkResult> results = computed.Of(lease);
     meter.Measure([&] {
       ExitUnless(server.scheduler().Report(lease, {.chunks = std::move(results)}));
-      server.scheduler().Return(lease, 1);
+      server.scheduler().Return(lease);
       return 0;
     });
     if (order == Order::kOneCommitAChunk) server.store().Flush().IgnoreError();
@@ -380,7 +379,7 @@ class Sweep {
       if (event.local) {
         scheduler.EndTurn(lease, lease.seconds);
       } else {
-        scheduler.Return(lease, lease.seconds);
+        scheduler.Return(lease);
       }
       return 0;
     });

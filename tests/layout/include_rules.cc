@@ -85,7 +85,7 @@ const std::vector<Rule>& Rules() {
        {"core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/"},
        true},
       {"tests/benchmark/",
-       {"core/", "server/execution/", "server/scheduling/", "tests/support/", "hwy/", "benchmark/"},
+       {"core/", "server/", "tests/support/", "absl/", "hwy/", "benchmark/"},
        true},
       {"tests/sanitizer/", {"ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"}, true},
       {"tests/tools/",

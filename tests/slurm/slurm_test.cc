@@ -121,7 +121,8 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
   sweep.cluster().Do("kill-controller");
   sweep.cluster().Do("lose-state");
   sweep.cluster().Do("start-controller");
-  const ProcessResult foreign = sweep.cluster().Tool({"sbatch", "--parsable", "--wrap=sleep 1000"});
+  const ProcessResult foreign =
+      sweep.cluster().Tool({"sbatch", "--parsable", "--output=/dev/null", "--wrap=sleep 1000"});
   EXPECT_THAT(foreign, ExitsWith(0));
   sweep.ExpectTheSameBytes();
   Await("an idle server", [&] { return sweep.Counts().tasks() == 0; });
@@ -189,8 +190,9 @@ TEST(Slurm, PreemptedTasksGiveTheSameBytes) {
   sweep.Submit();
   sweep.AwaitRunningTasks();
   for (int node = 0; node < 2; ++node) {
-    const ProcessResult urgent = sweep.cluster().Tool(
-        {"sbatch", "-p", "urgent", "--ntasks=4", "--nodes=1", "--wrap=sleep 5"});
+    const ProcessResult urgent =
+        sweep.cluster().Tool({"sbatch", "-p", "urgent", "--ntasks=4", "--nodes=1",
+                              "--output=/dev/null", "--wrap=sleep 5"});
     EXPECT_THAT(urgent, ExitsWith(0));
   }
   bool requeued = false;

@@ -20,7 +20,9 @@ class FakeSlurm::FakeTools : public SlurmTools {
     slurm_.submissions_.push_back(array);
     if (!slurm_.accepts_) return slurm_.submission_;
     Array& taken = slurm_.arrays_[array.name];
-    taken = {.id = absl::StrCat(++slurm_.last_id_), .folder = array.folder};
+    taken = Array();
+    taken.id = absl::StrCat(++slurm_.last_id_);
+    taken.folder = array.folder;
     for (size_t i = 0; i < array.tasks; ++i) taken.waiting.insert(i);
     return slurm_.submission_;
   }

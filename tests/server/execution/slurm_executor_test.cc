@@ -460,7 +460,7 @@ const BadFile kBadFiles[] = {
      "not the job of the lease"},
     {"OfTheJobBeforeItsRestart",
      [](ArrayTask task, const std::string& folder) {
-       task.leases.at(0).job.restarts -= 1;
+       task.leases.at(0).job.generation -= 1;
        RunInto(task, folder);
      },
      "not the job of the lease"},

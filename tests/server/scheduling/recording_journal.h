@@ -1,4 +1,4 @@
-// A journal that remembers everything, for tests of the worker pool.
+// A journal that remembers everything, for tests of the scheduler.
 #ifndef BALLPISTON_TESTS_SERVER_RECORDING_JOURNAL_H_
 #define BALLPISTON_TESTS_SERVER_RECORDING_JOURNAL_H_
 

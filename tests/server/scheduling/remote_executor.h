@@ -80,8 +80,8 @@ class RemoteExecutor : public Executor {
     return scheduler_.Report(lease, {.chunks = std::move(chunks), .seconds = seconds});
   }
   absl::Status ReportAll(const Lease& lease) { return Report(lease, ComputedChunks(lease)); }
-  void Return(const Lease& lease, bool tried = true, double seconds = 0) {
-    if (!is_shut_down_) scheduler_.Return(lease, seconds, tried);
+  void Return(const Lease& lease, bool tried = true) {
+    if (!is_shut_down_) scheduler_.Return(lease, tried);
   }
   void Fail(const Lease& lease, absl::Status why) {
     if (!is_shut_down_) scheduler_.Fail(lease, std::move(why));

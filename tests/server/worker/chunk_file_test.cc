@@ -101,7 +101,7 @@ TEST(LeaseChunks, OfAnotherLeaseAreDataLoss) {
   ASSERT_GT(good.chunks.size(), 1u);
   EXPECT_OK(CheckLeaseChunks(lease, good));
   LeaseChunks other_job = good, other_point = good, impossible = good;
-  ++other_job.job.restarts;
+  ++other_job.job.generation;
   ++other_point.point;
   impossible.chunks[0].result.samples = ~uint64_t{0};
   for (const LeaseChunks& chunks : {other_job, other_point, impossible}) {

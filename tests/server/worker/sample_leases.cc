@@ -47,7 +47,7 @@ std::string NameOf(const EnsembleSpec& spec) {
 }
 
 JobIdentity SomeJob() {
-  return {.server = "a server", .job = 12, .restarts = 3, .engine_version = kEngineVersion};
+  return {.server = "a server", .job = 12, .generation = 3, .engine_version = kEngineVersion};
 }
 
 IdentifiedLease LeaseOf(const EnsembleSpec& spec, uint64_t first, uint64_t end) {
