@@ -67,8 +67,7 @@ std::vector<pid_t> ProcessesWith(const std::string& text) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
     const std::string name = entry.path().filename();
     if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isdigit(c); })) continue;
-    if (absl::StrContains(CommandLineOf(entry.path()), text))
-      found.push_back(std::stoi(name));
+    if (absl::StrContains(CommandLineOf(entry.path()), text)) found.push_back(std::stoi(name));
   }
   return found;
 }
