@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "tests/support/files.h"
 #include "tests/support/paths.h"
 
 namespace ballpiston {
@@ -23,6 +24,13 @@ void Run(std::vector<std::string> words) {
   const ProcessResult result = RunProgram({.command = words});
   if (result.exit_code == 0) return;
   throw std::runtime_error(absl::StrCat(words[1], " failed: ", result.err));
+}
+
+// Empty if the process ends meanwhile.
+std::string CommandLineOf(const std::filesystem::path& process) {
+  std::ostringstream text;
+  text << std::ifstream(process / "cmdline", std::ios::binary).rdbuf();
+  return text.str();
 }
 
 }  // namespace
@@ -59,8 +67,7 @@ std::vector<pid_t> ProcessesWith(const std::string& text) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
     const std::string name = entry.path().filename();
     if (!std::all_of(name.begin(), name.end(), [](char c) { return std::isdigit(c); })) continue;
-    if (absl::StrContains(Contents(entry.path() / "cmdline"), text))
-      found.push_back(std::stoi(name));
+    if (absl::StrContains(CommandLineOf(entry.path()), text)) found.push_back(std::stoi(name));
   }
   return found;
 }

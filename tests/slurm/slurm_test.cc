@@ -118,15 +118,21 @@ TEST(Slurm, LostStateGivesTheSameBytes) {
   Sweep sweep({.flags = Split("--slurm-max-array-size 4")});
   sweep.Submit();
   sweep.AwaitRunningTasks();
+  const std::vector<pid_t> lost = sweep.Workers();
   sweep.cluster().Do("kill-controller");
   sweep.cluster().Do("lose-state");
   sweep.cluster().Do("start-controller");
-  const ProcessResult foreign = sweep.cluster().Tool({"sbatch", "--parsable", "--wrap=sleep 1000"});
+  // Slurm kills what it no longer knows, by number: a new job with that number would end too.
+  Await("the end of the lost tasks", [&] {
+    return std::all_of(lost.begin(), lost.end(), [](pid_t worker) { return kill(worker, 0) != 0; });
+  });
+  const ProcessResult foreign =
+      sweep.cluster().Tool({"sbatch", "--parsable", "--output=/dev/null", "--wrap=sleep 1000"});
   EXPECT_THAT(foreign, ExitsWith(0));
   sweep.ExpectTheSameBytes();
   Await("an idle server", [&] { return sweep.Counts().tasks() == 0; });
   EXPECT_EQ(sweep.cluster().Queue().size(), 1u) << "the job of others is cancelled";
-  sweep.Note("the number given out again: " + foreign.out.substr(0, foreign.out.find('\n')));
+  sweep.Note("the number of the job of others: " + foreign.out.substr(0, foreign.out.find('\n')));
 }
 
 // ---- nodes ----
@@ -189,8 +195,9 @@ TEST(Slurm, PreemptedTasksGiveTheSameBytes) {
   sweep.Submit();
   sweep.AwaitRunningTasks();
   for (int node = 0; node < 2; ++node) {
-    const ProcessResult urgent = sweep.cluster().Tool(
-        {"sbatch", "-p", "urgent", "--ntasks=4", "--nodes=1", "--wrap=sleep 5"});
+    const ProcessResult urgent =
+        sweep.cluster().Tool({"sbatch", "-p", "urgent", "--ntasks=4", "--nodes=1",
+                              "--output=/dev/null", "--wrap=sleep 5"});
     EXPECT_THAT(urgent, ExitsWith(0));
   }
   bool requeued = false;
