@@ -42,6 +42,11 @@ bool IsStopped(const Run& run, const Lease& lease) {
   return open != nullptr && open->fold().finished();
 }
 
+bool GoesBefore(const Lease& a, const Lease& b) {
+  if (a.pilot.has_value() != b.pilot.has_value()) return a.pilot.has_value();
+  return a.point < b.point;
+}
+
 double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
   return static_cast<double>(samples) / static_cast<double>(open.experiment()->plan().samples());
 }
@@ -199,14 +204,16 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   return lease;
 }
 
+// Of the pilots first, then of the first point, so that points end in grid order.
 std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
-  for (auto held = held_.lower_bound({executor, run.key(), 0}); held != held_.end(); ++held) {
+  const Lease* first = nullptr;
+  const auto end = held_.lower_bound({executor, run.key() + 1, 0});
+  for (auto held = held_.lower_bound({executor, run.key(), 0}); held != end; ++held) {
     const Lease& lease = held->second.lease;
-    if (lease.executor != executor || lease.run != run.key()) break;
-    if (lease.stop.stop_requested()) continue;
-    if (executors_[executor].executor->HasTurn(lease.number)) return lease;
+    if (lease.stop.stop_requested() || (first != nullptr && !GoesBefore(lease, *first))) continue;
+    if (executors_[executor].executor->HasTurn(lease.number)) first = &lease;
   }
-  return std::nullopt;
+  return first == nullptr ? std::nullopt : std::optional(*first);
 }
 
 bool Scheduler::EndTurn(const Lease& lease, double seconds) {
