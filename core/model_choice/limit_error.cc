@@ -18,6 +18,16 @@ constexpr double kPilotsShareOfTheBound = 0.3;
 // relative error at a pilot's place is up to 2.5, but it falls with delta.
 constexpr double kWhereItScales = 4;
 
+EnsembleSpec PilotSpec(const PilotPlace& place) {
+  EnsembleSpec spec = {.experiment = &kEnergyRelaxation,
+                       .grid = {{kRho, {place.rho}}, {kDelta, {place.delta}}},
+                       .target = {.samples = kPilotOrbits},
+                       .model = Model::kBilliard,
+                       .purpose = Purpose::kPilot};
+  if (place.epsilon) spec.grid[kEpsilon] = {*place.epsilon};
+  return spec;
+}
+
 }  // namespace
 
 PointParameters PointOf(const PilotPlace& place) {
@@ -29,16 +39,6 @@ PilotPlace PilotPlaceFor(const PointParameters& point) {
   PilotPlace cheap = place;
   cheap.delta = std::max(place.delta, kPilotsShareOfTheBound * PairDeltaBound(place.rho));
   return ExpectedLimitError(PointOf(cheap)) < kWhereItScales ? cheap : place;
-}
-
-EnsembleSpec PilotSpec(const PilotPlace& place) {
-  EnsembleSpec spec = {.experiment = &kEnergyRelaxation,
-                       .grid = {{kRho, {place.rho}}, {kDelta, {place.delta}}},
-                       .target = {.samples = kPilotOrbits},
-                       .model = Model::kBilliard,
-                       .purpose = Purpose::kPilot};
-  if (place.epsilon) spec.grid[kEpsilon] = {*place.epsilon};
-  return spec;
 }
 
 std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place) {

@@ -47,7 +47,6 @@ struct Pilot {
 
 // The billiard run of a pilot, a few seconds of one core, and its result when it is merged.
 std::unique_ptr<const PointExperiment> PilotExperiment(const PilotPlace& place);
-EnsembleSpec PilotSpec(const PilotPlace& place);
 Pilot PilotOf(const PointExperiment& experiment, const BlockResult& merged);
 
 // Predicted processor time of a pilot.

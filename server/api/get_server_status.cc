@@ -15,7 +15,7 @@ v1::ServerStatus::State StateOf(const ServerSnapshot& now) {
   return now.store_failing ? v1::ServerStatus::STORE_FAILING : v1::ServerStatus::SERVING;
 }
 
-v1::SlurmStatus SlurmMessage(const ServerSnapshot::Slurm& slurm) {
+v1::SlurmStatus SlurmMessage(const SlurmStatus& slurm) {
   v1::SlurmStatus message;
   message.set_problem(slurm.problem);
   message.set_waiting_tasks(slurm.waiting_tasks);

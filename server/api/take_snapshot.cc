@@ -37,18 +37,6 @@ void AddWork(const ServiceContext& service, ServerSnapshot& snapshot) {
   snapshot.processor_seconds = work.processor_seconds;
 }
 
-void AddSlurm(const SlurmExecutor& executor, ServerSnapshot& snapshot) {
-  const SlurmStatus now = executor.Status();
-  snapshot.slurm = {.problem = now.problem,
-                    .waiting_tasks = static_cast<double>(now.tasks_waiting),
-                    .running_tasks = static_cast<double>(now.tasks_running),
-                    .submitted_tasks = static_cast<double>(now.tasks_unknown),
-                    .chunks = now.chunks,
-                    .lost_tasks = now.tasks_lost,
-                    .refused_files = now.files_refused,
-                    .queries = now.queries};
-}
-
 void AddStore(const ServiceContext& service, ServerSnapshot& snapshot) {
   snapshot.store_bytes =
       FileBytes(service.store_path) + FileBytes(absl::StrCat(service.store_path, "-wal"));
@@ -68,7 +56,7 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   snapshot.draining = service.draining;
   AddJobs(service.book, snapshot);
   AddWork(service, snapshot);
-  if (service.slurm != nullptr) AddSlurm(*service.slurm, snapshot);
+  if (service.slurm != nullptr) snapshot.slurm = service.slurm->Status();
   AddStore(service, snapshot);
   snapshot.streams = static_cast<int64_t>(service.watches.size());
   snapshot.failed_authentications = service.calls.not_let_in();

@@ -59,7 +59,9 @@ bool CountsNoSampleTwice(const BlockResult& result) {
                      [&](const Histogram& h) { return HoldsAtMost(result.samples, h); });
 }
 
-void Fill(const BlockResult& result, storage::Accumulators& record) {
+}  // namespace
+
+void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
   record.set_samples(result.samples);
   for (const Moments& moments : result.moments) Fill(moments, *record.add_moments());
   for (const BatchMeans& means : result.batch_means) Fill(means, *record.add_batch_means());
@@ -68,7 +70,7 @@ void Fill(const BlockResult& result, storage::Accumulators& record) {
   record.set_max_energy_error(result.health.max_energy_error);
 }
 
-BlockResult ResultOf(const storage::Accumulators& record) {
+BlockResult ResultOfAccumulators(const storage::Accumulators& record) {
   BlockResult result;
   result.samples = record.samples();
   for (const auto& moments : record.moments()) result.moments.push_back(MomentsOf(moments));
@@ -78,6 +80,8 @@ BlockResult ResultOf(const storage::Accumulators& record) {
   result.health.max_energy_error = record.max_energy_error();
   return result;
 }
+
+namespace {
 
 // Whether the experiment can have written this result for that number of planned samples. A result
 // of 0 planned samples is empty.
@@ -103,18 +107,12 @@ bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
 
 }  // namespace
 
-void FillAccumulators(const BlockResult& result, storage::Accumulators& record) {
-  Fill(result, record);
-}
-
-BlockResult ResultOfAccumulators(const storage::Accumulators& record) { return ResultOf(record); }
-
 std::string FoldRecordBytes(const FoldState& state) {
   storage::Checkpoint record;
   record.set_chunk(state.chunk);
   record.set_blocks(state.blocks);
-  Fill(state.complete, *record.mutable_complete());
-  Fill(state.partial, *record.mutable_partial());
+  FillAccumulators(state.complete, *record.mutable_complete());
+  FillAccumulators(state.partial, *record.mutable_partial());
   return DeterministicBytes(record);
 }
 
@@ -125,21 +123,21 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
   }
   return FoldState{.chunk = record.chunk(),
                    .blocks = record.blocks(),
-                   .complete = ResultOf(record.complete()),
-                   .partial = ResultOf(record.partial())};
+                   .complete = ResultOfAccumulators(record.complete()),
+                   .partial = ResultOfAccumulators(record.partial())};
 }
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {
   storage::Chunk record;
   record.set_chunk(chunk.chunk);
-  Fill(chunk.result, *record.mutable_result());
+  FillAccumulators(chunk.result, *record.mutable_result());
   return DeterministicBytes(record);
 }
 
 absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
   storage::Chunk record;
   if (!record.ParseFromString(bytes)) return absl::DataLossError("a stored chunk cannot be read");
-  return ChunkResult{.chunk = record.chunk(), .result = ResultOf(record.result())};
+  return ChunkResult{.chunk = record.chunk(), .result = ResultOfAccumulators(record.result())};
 }
 
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {

@@ -78,6 +78,10 @@ absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
 
 }  // namespace
 
+std::string TaskFileIn(const std::string& array_folder) {
+  return absl::StrCat(array_folder, "/tasks");
+}
+
 SharedFolder::SharedFolder(std::string folder, std::string identity)
     : shared_(std::move(folder)), own_(absl::StrCat(shared_, "/", identity)) {}
 

@@ -17,7 +17,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr char kTaskFile[] = "tasks";
+std::string TaskFileIn(const std::string& array_folder);
 
 class SharedFolder {
  public:

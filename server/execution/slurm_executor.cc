@@ -73,7 +73,10 @@ SlurmExecutor::SlurmExecutor(Scheduler& scheduler, SlurmOptions options,
   capacity_.executor = scheduler_.AddExecutor(*this);
 }
 
-SlurmExecutor::~SlurmExecutor() { Shutdown(); }
+SlurmExecutor::~SlurmExecutor() {
+  Shutdown();
+  scheduler_.RemoveExecutor(capacity_.executor);
+}
 
 void SlurmExecutor::Start() {
   recovered_ = Recover();
@@ -228,7 +231,7 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
   if (task == nullptr) return;
   task->read_files.insert(name.sequence);
   task->has_unread_file = false;
-  if (!taken.ok()) ++counts_.files_refused;
+  if (!taken.ok()) ++counts_.refused_files;
   if (!file.ok() || absl::IsDataLoss(taken)) return;
   task->left_a_file = true;
   backoff_ = std::chrono::milliseconds(0);
@@ -253,7 +256,7 @@ bool SlurmExecutor::Recover() {
 
 void SlurmExecutor::RecoverArray(const std::string& name) {
   Array array{.submitted = true, .submit_time = Clock::now()};
-  const auto tasks = ReadTasks(absl::StrCat(folder_.PathOf(name), "/", kTaskFile));
+  const auto tasks = ReadTasks(TaskFileIn(folder_.PathOf(name)));
   if (!tasks.ok()) LogError(absl::StrCat("slurm: ", tasks.status().message()));
   if (tasks.ok()) {
     for (const std::vector<IdentifiedLease>& of_task : *tasks) {
@@ -332,39 +335,57 @@ void SlurmExecutor::EndFinalTasks() {
   EndTasks([](const Task& task) { return task.is_final; }, true);
 }
 
+void SlurmExecutor::EndUnneededTasks() {
+  EndTasks([](const Task& task) { return task.unneeded; }, false);
+}
+
+bool SlurmExecutor::IsNeeded(const Task& task) const {
+  return std::ranges::any_of(task.leases,
+                             [this](const Lease& lease) { return scheduler_.Needs(lease); });
+}
+
+// Empty if Slurm has to do nothing, or not yet: some tasks can be cancelled after a query alone.
+std::optional<SlurmExecutor::Cancellation> SlurmExecutor::CancellationOf(const std::string& name,
+                                                                         const Array& array) const {
+  Cancellation cancellation = {.name = name};
+  bool all = true;
+  for (size_t i = 0; i < array.tasks.size(); ++i) {
+    if (array.tasks[i].state == TaskState::kOver) continue;
+    const bool is_needed = IsNeeded(array.tasks[i]);
+    if (!is_needed) cancellation.tasks.insert(i);
+    all = all && !is_needed;
+  }
+  if (!all) cancellation.id = array.id;
+  const bool has_unreadable_tasks = array.tasks.empty() && array.submitted;
+  const bool is_due = !cancellation.tasks.empty() && (all || !array.id.empty());
+  return is_due || has_unreadable_tasks ? std::optional(cancellation) : std::nullopt;
+}
+
 void SlurmExecutor::DropUnneededTasks() {
-  std::map<std::string, std::set<size_t>> unneeded;
-  std::map<std::string, std::string> ids;  // empty: the whole array
+  std::vector<Cancellation> cancellations;
   {
     std::lock_guard lock(mutex_);
-    for (auto& [name, array] : arrays_) {
-      bool all = true;
-      for (size_t i = 0; i < array.tasks.size(); ++i) {
-        Task& task = array.tasks[i];
-        if (task.state == TaskState::kOver) continue;
-        const bool is_needed = std::ranges::any_of(
-            task.leases, [&](const Lease& lease) { return scheduler_.Needs(lease); });
-        if (!is_needed) unneeded[name].insert(i);
-        all = all && !is_needed;
+    for (const auto& [name, array] : arrays_) {
+      if (auto cancellation = CancellationOf(name, array)) {
+        cancellations.push_back(*std::move(cancellation));
       }
-      ids[name] = all ? "" : array.id;
-      if (!all && array.id.empty()) unneeded.erase(name);  // until the next query
-      if (array.tasks.empty() && array.submitted) unneeded[name] = {};
     }
   }
-  for (const auto& [name, tasks] : unneeded) {
-    const std::string& id = ids.at(name);
-    const absl::Status cancelled = id.empty()
-                                       ? tools_->Cancel(name, stop_.get_token())
-                                       : tools_->CancelTasks(name, id, tasks, stop_.get_token());
-    NoteOutcome(Activity::kQueue, cancelled);
-    if (!cancelled.ok()) continue;
-    std::lock_guard lock(mutex_);
-    Array& array = arrays_.at(name);
-    for (const size_t task : tasks) array.tasks[task].unneeded = true;
-    if (tasks.empty()) array.submitted = false;
-  }
-  EndTasks([](const Task& task) { return task.unneeded; }, false);
+  for (const Cancellation& cancellation : cancellations) Cancel(cancellation);
+  EndUnneededTasks();
+}
+
+void SlurmExecutor::Cancel(const Cancellation& cancellation) {
+  const auto& [name, id, tasks] = cancellation;
+  const absl::Status cancelled = id.empty()
+                                     ? tools_->Cancel(name, stop_.get_token())
+                                     : tools_->CancelTasks(name, id, tasks, stop_.get_token());
+  NoteOutcome(Activity::kQueue, cancelled);
+  if (!cancelled.ok()) return;
+  std::lock_guard lock(mutex_);
+  Array& array = arrays_.at(name);
+  for (const size_t task : tasks) array.tasks[task].unneeded = true;
+  if (tasks.empty()) array.submitted = false;
 }
 
 void SlurmExecutor::QueryIfDue() {
@@ -433,7 +454,7 @@ void SlurmExecutor::EndLostTasks(const std::string& name) {
       ++lost;
       without_file += task.left_a_file ? 0 : 1;
     }
-    counts_.tasks_lost += static_cast<double>(lost);
+    counts_.lost_tasks += static_cast<double>(lost);
   }
   if (lost == 0) return;
   LogInfo(absl::StrCat("slurm: ", lost, " tasks of ", name,
@@ -450,11 +471,16 @@ void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& re
   BackOff(
       absl::UnavailableError(absl::StrCat("tasks of ", name, " would wait for ever: ", reason)));
   if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // again after the next query
+  EndArray(name);
+}
+
+// Slurm does not have it, and its leases are free for others.
+void SlurmExecutor::EndArray(const std::string& name) {
   {
     std::lock_guard lock(mutex_);
     for (Task& task : arrays_.at(name).tasks) task.unneeded = true;
   }
-  EndTasks([](const Task& task) { return task.unneeded; }, false);
+  EndUnneededTasks();
 }
 
 void SlurmExecutor::BackOff(const absl::Status& problem) {
@@ -545,12 +571,11 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
   for (std::vector<Lease>& leases : tasks) {
     array.tasks.push_back({.leases = std::move(leases)});
   }
-  ArraySubmission submission = {
-      .name = name,
-      .tasks = array.tasks.size(),
-      .folder = folder_.PathOf(name),
-      .command = {worker, "--task-file", absl::StrCat(folder_.PathOf(name), "/", kTaskFile),
-                  "--out", folder_.PathOf(name)}};
+  ArraySubmission submission = {.name = name,
+                                .tasks = array.tasks.size(),
+                                .folder = folder_.PathOf(name),
+                                .command = {worker, "--task-file", TaskFileIn(folder_.PathOf(name)),
+                                            "--out", folder_.PathOf(name)}};
   {
     std::lock_guard lock(mutex_);
     arrays_.emplace(name, std::move(array));
@@ -565,7 +590,7 @@ absl::Status SlurmExecutor::WriteArray(const std::string& name,
     std::vector<IdentifiedLease>& of_task = identified.emplace_back();
     for (const Lease& lease : leases) of_task.push_back({IdentityOf(lease), lease});
   }
-  return WriteTaskFile(absl::StrCat(folder_.PathOf(name), "/", kTaskFile), name, identified);
+  return WriteTaskFile(TaskFileIn(folder_.PathOf(name)), name, identified);
 }
 
 void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& submitted) {
@@ -586,11 +611,7 @@ void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& 
   } else {
     BackOff(submitted);
   }
-  {
-    std::lock_guard lock(mutex_);
-    for (Task& task : arrays_.at(name).tasks) task.unneeded = true;
-  }
-  EndTasks([](const Task& task) { return task.unneeded; }, false);
+  EndArray(name);
 }
 
 void SlurmExecutor::ReturnUntried(const std::vector<std::vector<Lease>>& tasks) {
@@ -647,9 +668,9 @@ SlurmStatus SlurmExecutor::Status() const {
   }
   for (const auto& [name, array] : arrays_) {
     for (const Task& task : array.tasks) {
-      status.tasks_waiting += task.state == TaskState::kWaiting;
-      status.tasks_running += task.state == TaskState::kRunning;
-      status.tasks_unknown += task.state == TaskState::kUnknown;
+      status.waiting_tasks += task.state == TaskState::kWaiting;
+      status.running_tasks += task.state == TaskState::kRunning;
+      status.submitted_tasks += task.state == TaskState::kUnknown;
     }
   }
   return status;

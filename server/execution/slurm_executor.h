@@ -26,6 +26,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -35,21 +36,11 @@
 #include "absl/functional/function_ref.h"
 #include "server/execution/shared_folder.h"
 #include "server/execution/slurm_tools.h"
+#include "server/observability/slurm_status.h"
 #include "server/scheduling/scheduler.h"
 #include "server/worker/chunk_file.h"
 
 namespace ballpiston::server {
-
-struct SlurmStatus {
-  std::string problem;  // empty: none
-  size_t tasks_waiting = 0;
-  size_t tasks_running = 0;
-  size_t tasks_unknown = 0;  // submitted, and not seen in the queue yet
-  double chunks = 0;         // these four since the start
-  double files_refused = 0;
-  double tasks_lost = 0;
-  double queries = 0;
-};
 
 class SlurmExecutor : public Executor {
  public:
@@ -92,6 +83,13 @@ class SlurmExecutor : public Executor {
     Clock::time_point submit_time = {};
   };
 
+  // Of some tasks, or, without `id`, of the whole array.
+  struct Cancellation {
+    std::string name;
+    std::string id = {};
+    std::set<size_t> tasks = {};
+  };
+
   // ---- files ----
   void CollectUntilStopped();
   std::vector<std::string> ArrayNames() const;
@@ -117,7 +115,12 @@ class SlurmExecutor : public Executor {
   void Guarded(Activity activity, absl::FunctionRef<absl::Status()> round);
   void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried);
   void EndFinalTasks();
+  void EndUnneededTasks();
+  void EndArray(const std::string& name);
+  bool IsNeeded(const Task& task) const;
+  std::optional<Cancellation> CancellationOf(const std::string& name, const Array& array) const;
   void DropUnneededTasks();
+  void Cancel(const Cancellation& cancellation);
   void QueryIfDue();
   void NoteQueue(const std::map<std::string, QueuedArray>& queue, Clock::time_point asked);
   void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);

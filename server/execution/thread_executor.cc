@@ -90,7 +90,10 @@ void ThreadExecutor::Start() {
   for (int i = 0; i < workers_; ++i) threads_.emplace_back([this] { Work(); });
 }
 
-ThreadExecutor::~ThreadExecutor() { Shutdown(); }
+ThreadExecutor::~ThreadExecutor() {
+  Shutdown();
+  scheduler_.RemoveExecutor(capacity_.executor);
+}
 
 void ThreadExecutor::Wake() {
   {

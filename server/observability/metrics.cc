@@ -102,7 +102,7 @@ void AddHistogram(MetricFamily& family, const MethodCounts::Totals& call) {
   family.metric.push_back(std::move(metric));
 }
 
-void AddSlurm(const ServerSnapshot::Slurm& slurm, std::vector<MetricFamily>& metrics) {
+void AddSlurm(const SlurmStatus& slurm, std::vector<MetricFamily>& metrics) {
   MetricFamily tasks{"ballpiston_slurm_tasks",
                      "Tasks of job arrays, by state. submitted: since Slurm's last answer.",
                      MetricType::Gauge,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "absl/time/time.h"
+#include "server/observability/slurm_status.h"
 
 namespace ballpiston::server {
 
@@ -35,19 +36,7 @@ struct ServerSnapshot {
   double samples_computed = 0;
   double processor_seconds = 0;  // of all executors
 
-  // Of a Slurm cluster; none without one.
-  struct Slurm {
-    std::string problem;  // empty: none
-    double waiting_tasks = 0;
-    double running_tasks = 0;
-    double submitted_tasks = 0;
-    // Since the start.
-    double chunks = 0;
-    double lost_tasks = 0;
-    double refused_files = 0;
-    double queries = 0;
-  };
-  std::optional<Slurm> slurm;
+  std::optional<SlurmStatus> slurm;  // none without a cluster
 
   int64_t streams = 0;
 

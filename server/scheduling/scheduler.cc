@@ -62,6 +62,20 @@ size_t Scheduler::AddExecutor(Executor& executor) {
   return executors_.size() - 1;
 }
 
+void Scheduler::RemoveExecutor(size_t executor) {
+  std::lock_guard lock(mutex_);
+  executors_[executor].executor = nullptr;
+}
+
+std::vector<Executor*> Scheduler::Executors() const {
+  std::lock_guard lock(mutex_);
+  std::vector<Executor*> executors;
+  for (const Member& member : executors_) {
+    if (member.executor != nullptr) executors.push_back(member.executor);
+  }
+  return executors;
+}
+
 // ---- runs ----
 
 void Scheduler::Add(RunRequest request) {
@@ -99,7 +113,7 @@ void Scheduler::Shutdown() {
     if (std::exchange(shutting_down_, true)) return;
     for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
   }
-  for (const Member& member : executors_) member.executor->Shutdown();
+  for (Executor* executor : Executors()) executor->Shutdown();
   std::lock_guard lock(mutex_);
   for (const auto& [key, run] : runs_) WriteCheckpoints(*run);
 }
@@ -160,7 +174,7 @@ void Scheduler::Conclude(const RunPointer& run) {
 }
 
 void Scheduler::WakeExecutors() {
-  for (const Member& member : executors_) member.executor->Wake();
+  for (Executor* executor : Executors()) executor->Wake();
 }
 
 // ---- leases ----

@@ -61,9 +61,10 @@ class Scheduler {
   // checkpoints.
   Scheduler(PointOpener& opener, int workers, SchedulerOptions options = {});
 
-  // Before the first lease. The executor must shut down before this is destroyed. Returns its
-  // number.
+  // Before the first lease. Returns the executor's number.
   size_t AddExecutor(Executor& executor);
+  // The scheduler calls the executor no more. After the executor's Shutdown, in its destructor.
+  void RemoveExecutor(size_t executor);
 
   void Add(RunRequest request);
 
@@ -125,8 +126,8 @@ class Scheduler {
   WorkCounts Counts() const;  // takes no lock
 
  private:
-  struct Member {  // an executor
-    Executor* executor;
+  struct Member {        // an executor
+    Executor* executor;  // null: removed
     ExecutorTraits traits;
     FairShare shares;
   };
@@ -165,6 +166,7 @@ class Scheduler {
   void FinishPoint(const RunPointer& run, const Lease& lease);
   void StopAndConclude(int64_t run, absl::Status why);
   void Conclude(const RunPointer& run);
+  std::vector<Executor*> Executors() const;
   void WakeExecutors();
 
   PointOpener& opener_;

@@ -164,7 +164,7 @@ std::map<std::string, std::set<size_t>> FakeSlurm::queue() const {
 }
 
 absl::StatusOr<ArrayTask> TaskIn(const std::string& folder, size_t task) {
-  return ReadTask(absl::StrCat(folder, "/", kTaskFile), task);
+  return ReadTask(TaskFileIn(folder), task);
 }
 
 }  // namespace ballpiston::server

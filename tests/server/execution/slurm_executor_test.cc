@@ -112,7 +112,7 @@ class ClusteredServer {
   void AwaitIdle() const {
     AwaitThat([&] {
       const SlurmStatus now = executor_.Status();
-      return now.tasks_waiting + now.tasks_running + now.tasks_unknown == 0;
+      return now.waiting_tasks + now.running_tasks + now.submitted_tasks == 0;
     });
   }
 
@@ -207,16 +207,16 @@ TEST_F(SlurmExecutorTest, TasksGiveTheBitsOfOnePlace) {
   EXPECT_THAT(slurm_.submissions(), SizeIs(1));
   const SlurmStatus status = server_->Status();
   EXPECT_EQ(status.chunks, 3);
-  EXPECT_EQ(status.tasks_lost + status.files_refused, 0);
+  EXPECT_EQ(status.lost_tasks + status.refused_files, 0);
   EXPECT_EQ(status.problem, "");
 }
 
 TEST_F(SlurmExecutorTest, TheStatusSaysWhichTasksWaitAndRun) {
   SubmitRun();
-  AwaitThat([&] { return server_->Status().tasks_waiting == 3; });
+  AwaitThat([&] { return server_->Status().waiting_tasks == 3; });
   slurm_.Start(NewestArray(), 1);
-  AwaitThat([&] { return server_->Status().tasks_running == 1; });
-  EXPECT_EQ(server_->Status().tasks_waiting, 2u);
+  AwaitThat([&] { return server_->Status().running_tasks == 1; });
+  EXPECT_EQ(server_->Status().waiting_tasks, 2u);
   RunToRightEnd();
 }
 
@@ -269,13 +269,13 @@ TEST_F(SlurmExecutorTest, AfterARefusalOneTaskProbes) {
 TEST_F(SlurmExecutorTest, AnUnknownSubmissionThatWorkedIsNotRepeated) {
   slurm_.Answer(absl::UnknownError("sbatch: Socket timed out"), true);
   SubmitRun();
-  AwaitThat([&] { return server_->Status().tasks_waiting == 3; });
+  AwaitThat([&] { return server_->Status().waiting_tasks == 3; });
   EXPECT_THAT(server_->Status().problem, HasSubstr("timed out"));
   server_->AwaitQueries(3);
   slurm_.RunAll();
   ExpectRightEnd();
   EXPECT_THAT(slurm_.submissions(), SizeIs(1));
-  EXPECT_EQ(server_->Status().tasks_lost, 0);
+  EXPECT_EQ(server_->Status().lost_tasks, 0);
 }
 
 TEST_F(SlurmExecutorTest, AnUnknownSubmissionThatDidNotWorkIsRepeated) {
@@ -340,7 +340,7 @@ TEST_F(SlurmExecutorTest, LostTasksAreComputedAgain) {
   EXPECT_OK(slurm_.Run(name, 0));
   slurm_.LoseAll();
   server_->AwaitSubmissions(2);
-  EXPECT_EQ(server_->Status().tasks_lost, 2);
+  EXPECT_EQ(server_->Status().lost_tasks, 2);
   ASSERT_OK_AND_ASSIGN(const ArrayTask again, TaskIn(slurm_.submissions()[1].folder, 0));
   EXPECT_EQ(again.leases.at(0).lease.attempt, 2);
   RunToRightEnd();
@@ -354,7 +354,7 @@ TEST_F(SlurmExecutorTest, ATaskIsLostAfterTwoQueriesWithoutIt) {
   server_->AwaitQueries(1);
   slurm_.Lose(NewestArray(), 0);
   const size_t before = slurm_.queries().size();
-  AwaitThat([&] { return server_->Status().tasks_lost > 0; });
+  AwaitThat([&] { return server_->Status().lost_tasks > 0; });
   EXPECT_GE(slurm_.queries().size(), before + 2);
 }
 
@@ -362,7 +362,7 @@ TEST_F(SlurmExecutorTest, TasksThatLeaveNoFileAreAProblem) {
   SubmitRun();
   slurm_.LoseAll();
   server_->AwaitProblem("left no file");
-  EXPECT_EQ(server_->Status().tasks_lost, 3);
+  EXPECT_EQ(server_->Status().lost_tasks, 3);
   AwaitThat([&] { return !slurm_.queue().empty(); });
   EXPECT_EQ(NewestTasks(), 1u);
   RunToRightEnd();
@@ -388,7 +388,7 @@ TEST_F(SlurmExecutorTest, NothingIsLostWhileSlurmDoesNotAnswer) {
   slurm_.AnswerQuery(absl::UnavailableError("squeue: Unable to contact slurm controller"));
   server_->AwaitProblem("Unable to contact slurm controller");
   server_->AwaitQueries(4);
-  EXPECT_EQ(server_->Status().tasks_lost, 0);
+  EXPECT_EQ(server_->Status().lost_tasks, 0);
   EXPECT_OK(slurm_.Run(NewestArray(), 0));
   AwaitThat([&] { return server_->Status().chunks == 1; });
   slurm_.AnswerQuery(absl::OkStatus());
@@ -492,11 +492,11 @@ TEST_P(SlurmBadFileTest, IsRefusedLoggedCountedAndComputedAgain) {
   const ArraySubmission array = slurm_.submissions().at(0);
   ASSERT_OK_AND_ASSIGN(const ArrayTask task, TaskIn(array.folder, 0));
   GetParam().write(task, array.folder);
-  AwaitThat([&] { return server_->Status().files_refused > 0; });
-  EXPECT_EQ(server_->Status().files_refused, 1);
+  AwaitThat([&] { return server_->Status().refused_files > 0; });
+  EXPECT_EQ(server_->Status().refused_files, 1);
   EXPECT_EQ(server_->Status().chunks, 0);
   slurm_.Lose(array.name, 0);
-  AwaitThat([&] { return server_->Status().tasks_lost == 1; });
+  AwaitThat([&] { return server_->Status().lost_tasks == 1; });
   RunToRightEnd();
   server_.reset();
   const std::string log = testing::internal::GetCapturedStderr();
@@ -513,7 +513,7 @@ TEST_F(SlurmExecutorTest, FilesThatAreNoChunkFilesAreLeftAlone) {
     WriteFile(folder + "/" + name, "something");
   }
   RunToRightEnd();
-  EXPECT_EQ(server_->Status().files_refused, 0);
+  EXPECT_EQ(server_->Status().refused_files, 0);
 }
 
 // ---- the shared folder ----

@@ -402,7 +402,6 @@ TEST(Scheduler, AReportFromElsewhereWakesTheExecutors) {
   const int wakes = waiting.wakes();
   EXPECT_OK(cluster.remote.Report(*lease, {ComputedChunks(*lease)[0]}));
   EXPECT_GT(waiting.wakes(), wakes);
-  cluster.scheduler.Shutdown();  // while both executors exist
 }
 
 TEST(Scheduler, WorkElsewhereIsChargedToItsRun) {

@@ -162,7 +162,6 @@ TEST_F(PilotsTest, ACancelledRunLeavesThePilotToTheNextRun) {
   ExpectRight(*journals[1], 3);
   EXPECT_EQ(opener_.opened(), 2);
   EXPECT_EQ(opener_.kept().at(kPlace).size(), 1u);
-  scheduler_.Shutdown();  // while both executors exist
 }
 
 TEST_F(PilotsTest, ARunThatWaitsForAPilotHoldsNoThread) {

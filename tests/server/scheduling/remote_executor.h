@@ -63,6 +63,8 @@ class RemoteExecutor : public Executor {
                   .seconds = seconds,
                   .longest_chunk = longest_chunk} {}
 
+  ~RemoteExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
+
   ExecutorTraits traits() const override { return {.local = false}; }
   void Start() override {}
   void Wake() override { ++wakes_; }

@@ -22,6 +22,8 @@ class SteppedExecutor : public Executor {
       : scheduler_(scheduler),
         capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
 
+  ~SteppedExecutor() override { scheduler_.RemoveExecutor(capacity_.executor); }
+
   ExecutorTraits traits() const override { return {.local = true}; }
   void Start() override {}
   void Wake() override {}
