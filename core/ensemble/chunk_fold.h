@@ -49,7 +49,7 @@ class ChunkFold {
   // it already has.
   std::vector<ChunkResult> Add(const Block& block, BlockResult result);
 
-  // What is merged of the first chunk that is not complete.
+  // The merged blocks of the first incomplete chunk.
   const PartialChunk& partial() const { return partial_; }
   bool finished() const { return partial_.chunk == end_; }
   size_t waiting() const { return early_.size(); }

@@ -45,7 +45,7 @@ class ChunkPlan {
   uint64_t BlocksIn(uint64_t chunk) const;
   Block BlockAt(uint64_t chunk, uint64_t index) const;
 
-  // Of one core at nominal speed.
+  // The expected time on one core at nominal speed.
   double SecondsFor(double samples) const {
     return samples * events_per_sample_ * seconds_per_event_;
   }

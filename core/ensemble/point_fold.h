@@ -75,7 +75,8 @@ class LocalPoint {
   // The experiment must outlive this.
   explicit LocalPoint(const PointExperiment& experiment);
 
-  // As in ChunkFold. Empty also if the point is finished.
+  // The next block to compute; empty if none is left or the point is finished
+  // (ChunkFold::NextBlock).
   std::optional<Block> NextBlock();
   void Add(const Block& block, BlockResult result);
 

@@ -1,5 +1,5 @@
-// What the core measured at a point, as the store's record: the same bytes for the same numbers. A
-// value that is not finite is left out. Pure functions.
+// A point's results, from the core's numbers to the store's record: equal numbers give equal bytes.
+// A value that is not finite is left out. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
 #define BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
 

@@ -60,7 +60,7 @@ absl::StatusOr<std::string> BytesOf(const std::string& path) {
   return bytes;
 }
 
-// What is left of a failed copy would keep a full disk full.
+// If the copy fails, its part is removed: the disk may be full.
 absl::Status WriteProgram(const std::string& path, const std::string& bytes) {
   const std::string temporary = absl::StrCat(path, ".new");
   absl::Cleanup remove = [&] { unlink(temporary.c_str()); };

@@ -185,7 +185,7 @@ void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name
   NoteFile(array, name, file, taken);
 }
 
-// Of this array, and for the leases that its task has.
+// DATA_LOSS unless the file belongs to this array and its chunks to the leases of its task.
 absl::Status SlurmExecutor::CheckFile(const std::string& array, const ChunkFile& file,
                                       const std::vector<Lease>& leases) const {
   const auto refuse = [&](absl::string_view why) {

@@ -171,7 +171,7 @@ class SlurmExecutor : public Executor {
   Clock::time_point next_submission_;
   std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
 
-  // Of the thread that runs Slurm's tools.
+  // Used only by the thread that runs Slurm's tools.
   bool recovered_ = false;
   std::map<int64_t, std::vector<Lease>> gathered_;  // by run: not submitted yet
   int looks_at_gathered_ = 0;

@@ -1,4 +1,4 @@
-// What squeue says of job arrays.
+// Reads the output of squeue: the job arrays in the queue, and the states of their tasks.
 #ifndef BALLPISTON_SERVER_EXECUTION_SLURM_QUEUE_H_
 #define BALLPISTON_SERVER_EXECUTION_SLURM_QUEUE_H_
 
