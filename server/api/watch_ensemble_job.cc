@@ -8,6 +8,8 @@
 #include "server/api/request_check.h"
 #include "server/api/resume_token.h"
 #include "server/convert/errors.h"
+#include "server/convert/point_result.h"
+#include "server/convert/result_record.h"
 #include "server/jobs/job_state.h"
 
 namespace ballpiston::server {
@@ -301,7 +303,9 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
   if (!points.ok()) return points.status();
   if (points->empty()) return false;
   for (const FinishedPoint& point : *points) {
-    *message_.mutable_snapshot()->add_finished_points() = *point.result;
+    const absl::StatusOr<storage::Result> result = ResultFromBytes(*point.result);
+    if (!result.ok()) return WithReason(result.status(), "STORE_FAILED");
+    *message_.mutable_snapshot()->add_finished_points() = PointResultMessage(*result);
   }
   std::lock_guard lock(mutex_);
   told_finished_ = points->back().number;

@@ -106,7 +106,7 @@ void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
              "tasks of one job array; less than the cluster's MaxArraySize");
   AddSeconds(app, "slurm-task-seconds", slurm.task_length, Between(1.0, 86400.0),
              "computing time of a task, about; at most half of the time limit is used");
-  AddSeconds(app, "slurm-least-seconds", slurm.least_work, Between(1.0, 86400.0),
+  AddSeconds(app, "slurm-least-seconds", slurm.least_work, Between(0.0, 86400.0),
              "a job that is expected to take less of one core is computed by this server alone");
   AddSeconds(app, "slurm-query-seconds", slurm.query_interval, Between(1.0, 3600.0),
              "time between two queries of Slurm's queue");

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/engine_version.h"
+#include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/worker/task_file.h"
 
@@ -180,6 +181,7 @@ void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name
   absl::Status taken = file.status();
   if (taken.ok()) taken = CheckFile(array, *file, leases);
   if (taken.ok()) taken = ReportFile(*file, leases);
+  Failpoint("slurm.file_reported");
   if (absl::IsUnavailable(taken)) return NoteUnread(array, name);
   if (!taken.ok()) LogError(absl::StrCat("slurm: a chunk file is refused: ", taken.message()));
   NoteFile(array, name, file, taken);
@@ -580,7 +582,10 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
     std::lock_guard lock(mutex_);
     arrays_.emplace(name, std::move(array));
   }
-  NoteSubmission(name, tools_->Submit(submission, stop_.get_token()));
+  Failpoint("slurm.tasks_written");
+  const absl::Status submitted = tools_->Submit(submission, stop_.get_token());
+  Failpoint("slurm.submitted");
+  NoteSubmission(name, submitted);
 }
 
 absl::Status SlurmExecutor::WriteArray(const std::string& name,

@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
-#include "ballpiston/v1/result.pb.h"
 #include "server/jobs/job_snapshot.h"
 #include "server/store/job_record.h"
 
@@ -31,7 +30,7 @@ inline constexpr size_t kRecentPoints = 100;
 
 struct FinishedPoint {
   int64_t number = 0;
-  std::shared_ptr<const v1::PointResult> result;  // without histograms and curves
+  std::shared_ptr<const std::string> result;  // ResultRecordBytes, without histograms and curves
 };
 
 class Job {

@@ -566,8 +566,7 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
     if (!parsed.ok()) return false;
     ClearDetails(*result);
     bytes += result->ByteSizeLong();
-    points.push_back(
-        {number, std::make_shared<const v1::PointResult>(PointResultMessage(*result))});
+    points.push_back({number, std::make_shared<const std::string>(ResultRecordBytes(*result))});
     return points.size() < limit && bytes < kMaxBytesOfPoints;
   };
   const absl::Status read = store_.Read(

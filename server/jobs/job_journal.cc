@@ -8,7 +8,6 @@
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
 #include "server/convert/fold_record.h"
-#include "server/convert/point_result.h"
 #include "server/convert/result_record.h"
 #include "server/observability/failpoint.h"
 #include "server/store/job_table.h"
@@ -130,11 +129,12 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                   ResultRecordBytes(result)};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   ClearDetails(result);
-  const auto told = std::make_shared<const v1::PointResult>(PointResultMessage(result));
+  auto told = std::make_shared<const std::string>(ResultRecordBytes(result));
   Failpoint("point.before_record");
-  store_.RecordResult(job_->sequence(), std::move(row), [job = job_, told](int64_t number) {
-    job->AddFinishedPoint({number, told});
-  });
+  store_.RecordResult(job_->sequence(), std::move(row),
+                      [job = job_, told = std::move(told)](int64_t number) {
+                        job->AddFinishedPoint({number, told});
+                      });
   Failpoint("point.recorded");
 }
 

@@ -17,7 +17,7 @@
 namespace ballpiston::server {
 
 // Every place there is, in the order of a job's life; tests visit them all.
-inline constexpr std::array<std::string_view, 21> kFailpoints = {
+inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "create.in_transaction",    // the job's row is written, not committed
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
@@ -25,6 +25,9 @@ inline constexpr std::array<std::string_view, 21> kFailpoints = {
     "store.after_commit",       // the group is on disk; no client has an answer
     "block.merged",             // into its point; not recorded
     "checkpoint.before_write",  // in a transaction that has begun
+    "slurm.tasks_written",      // the leases of an array are in a file, and not submitted
+    "slurm.submitted",          // Slurm has the array; the server knows nothing of it
+    "slurm.file_reported",      // the scheduler has a file's chunks; few are on disk
     "point.before_record",      // all its blocks are merged
     "point.recorded",           // its result waits to be written
     "job.before_end",           // all its points are finished; its end is not recorded

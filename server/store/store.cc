@@ -155,7 +155,8 @@ void Store::Post(Write write) {
       ordered_ += write.ordered ? 1 : 0;
       bytes_ += write.bytes;
       pending_.push_back(std::move(write));
-      posted_.notify_one();
+      // The store's thread knows already when the other writes are due.
+      if (pending_.size() == 1 || BatchIsDue(Clock::now())) posted_.notify_one();
       return;
     }
   }
@@ -266,7 +267,10 @@ void Store::WriteUntilClosed() {
 bool Store::BatchIsDue(Clock::time_point now) const {
   if (closing_ || requests_ > 0) return true;
   if (failing_) return !stop_waiting_ && retry_time_ <= now;
-  return urgent_ > 0 || (!pending_.empty() && pending_.front().due <= now);
+  // Not only when all room is taken: AwaitRoom would wait while the store waits for the delay.
+  const bool half_full =
+      pending_.size() > options_.max_pending / 2 || bytes_ > options_.max_pending_bytes / 2;
+  return urgent_ > 0 || half_full || (!pending_.empty() && pending_.front().due <= now);
 }
 
 // None only when the store is closed and nothing is left to write.

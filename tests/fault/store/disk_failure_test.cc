@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <future>
 #include <memory>
 #include <set>
 #include <string>
@@ -357,6 +358,23 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   disk.StopRefusing();
   worker.join();
   EXPECT_TRUE(has_room);
+}
+
+// A delay gathers small batches. It does not hold back those who wait for room.
+TEST(DiskFailure, ManyWritesAreNotDelayed) {
+  FaultDisk disk;
+  Store::Options options;
+  options.delay = std::chrono::hours(1);
+  options.max_pending = 10;
+  options.vfs = disk.vfs();
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
+  std::promise<void> stored;
+  for (int point = 0; point < 6; ++point) {
+    store->RecordResult(99, {.point = point, .samples = 1, .result = "x"}, [&](int64_t number) {
+      if (number == 6) stored.set_value();
+    });
+  }
+  stored.get_future().wait();
 }
 
 // ---- a whole life with one refusal in it ----

@@ -20,16 +20,15 @@
 #include "server/observability/failpoint.h"
 #include "tests/fault/torture/connected_server.h"
 #include "tests/fault/torture/findings.h"
+#include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
 #include "tests/fault/torture/visitor.h"
+#include "tests/support/stand_in_slurm.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestLife(600);
-// If the server does not pass the failpoint within this time, the test kills it.
-constexpr std::chrono::milliseconds kWaitForFailpoint(1500);
 // If a failpoint was never passed, the server is started up to this many times more, each time with
 // a longer wait.
 constexpr int kMostFurtherLives = 30;
@@ -47,15 +46,22 @@ bool ComesWithStop(std::string_view failpoint) {
   return failpoint.starts_with("stop.") || failpoint.starts_with("checkpoint.");
 }
 
+struct Pace {
+  std::chrono::milliseconds longest_life;
+  // If the server does not pass the failpoint within this time, the test kills it.
+  std::chrono::milliseconds wait_for_failpoint;
+};
+
 class Killer {
  public:
-  Killer(ConnectedServer& server, Findings& findings) : server_(server), findings_(findings) {}
+  Killer(ConnectedServer& server, Pace pace, Findings& findings)
+      : server_(server), pace_(pace), findings_(findings) {}
 
   // In one case of four the random life begins with the process, before the server is ready.
   void KillAtRandom() {
     server_.Spawn();
     if (Pick(0, 3) != 0) server_.AwaitReady();
-    const std::chrono::milliseconds life(Pick(0, static_cast<int>(kLongestLife.count())));
+    const std::chrono::milliseconds life(Pick(0, static_cast<int>(pace_.longest_life.count())));
     const auto early = server_.AwaitEnd(life);
     if (early) return findings_.Wrong(absl::StrCat("ended by itself: ", server_.log()));
     server_.KillHard();
@@ -63,14 +69,14 @@ class Killer {
   }
 
   // Kills at the first pass of the failpoint, or at a random pass if it has killed before. Waits up
-  // to `wait` for the kill.
-  void KillAt(std::string_view failpoint, std::chrono::milliseconds wait = kWaitForFailpoint) {
+  // to `waits` times as long as usual for the kill.
+  void KillAt(std::string_view failpoint, int waits = 1) {
     server_.Spawn(Armed(failpoint));
     if (server_.AwaitReady() && ComesWithStop(failpoint)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(Pick(0, 300)));
       server_.Signal(SIGTERM);
     }
-    const auto end = server_.AwaitEnd(wait);
+    const auto end = server_.AwaitEnd(waits * pace_.wait_for_failpoint);
     if (!end) server_.KillHard();
     const bool stopped = end && *end == 0 && ComesWithStop(failpoint);
     const bool passed = end && !stopped;
@@ -97,31 +103,32 @@ class Killer {
   int Pick(int least, int most) { return std::uniform_int_distribution<int>(least, most)(random_); }
 
   ConnectedServer& server_;
+  const Pace pace_;
   Findings& findings_;
   std::map<std::string_view, int> kills_at_;
   std::mt19937_64 random_{20};
 };
 
 // Half of them at random, half at failpoints, in turn.
-void KillManyTimes(int kills, ConnectedServer& server, Findings& findings) {
-  Killer killer(server, findings);
+void KillManyTimes(int kills, const std::vector<std::string_view>& failpoints, Killer& killer,
+                   Findings& findings) {
   for (int i = 0; i < kills; ++i) {
     if (i % 2 == 0) {
       killer.KillAtRandom();
     } else {
       const size_t turn = static_cast<size_t>(i) / 2;
-      killer.KillAt(server::kFailpoints[turn % server::kFailpoints.size()]);
+      killer.KillAt(failpoints[turn % failpoints.size()]);
     }
   }
   int fewest = kills;
-  for (const std::string_view failpoint : server::kFailpoints) {
+  for (const std::string_view failpoint : failpoints) {
     for (int i = 1; i <= kMostFurtherLives && killer.KillsAt(failpoint) == 0; ++i) {
-      killer.KillAt(failpoint, i * kWaitForFailpoint);
+      killer.KillAt(failpoint, i);
     }
     fewest = std::min(fewest, killer.KillsAt(failpoint));
     EXPECT_GT(killer.KillsAt(failpoint), 0) << failpoint << " was never passed";
   }
-  findings.Count("failpoints", static_cast<int64_t>(server::kFailpoints.size()));
+  findings.Count("failpoints", static_cast<int64_t>(failpoints.size()));
   findings.Count("fewest kills at one of the failpoints", fewest);
 }
 
@@ -133,13 +140,28 @@ std::set<std::string> NamesOn(ConnectedServer& server) {
   return names;
 }
 
-TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
-  Findings findings("kills");
+std::vector<std::string_view> Failpoints(bool of_slurm) {
+  std::vector<std::string_view> failpoints;
+  for (const std::string_view failpoint : server::kFailpoints) {
+    if (failpoint.starts_with("slurm.") == of_slurm) failpoints.push_back(failpoint);
+  }
+  return failpoints;
+}
+
+struct Scene {
+  ServerSetUp server = {};
+  Pace pace;
+  std::vector<v1::EnsembleSpec> questions;
+  std::vector<std::string_view> failpoints;
+  int kills = 0;
+};
+
+void KillUnderVisitors(const Scene& scene, Findings& findings) {
   Exam exam;
-  exam.questions = Questions();
+  exam.questions = scene.questions;
   exam.answers = UndisturbedAnswers(exam.questions);
 
-  ConnectedServer server;
+  ConnectedServer server(scene.server);
   std::vector<Visitor> visitors;
   for (int i = 0; i < Size(4, 6); ++i) {
     visitors.emplace_back(server.Connect(), exam, static_cast<uint64_t>(i), findings);
@@ -150,7 +172,8 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
     threads.emplace_back([&] { visitor.VisitUntil(enough); });
   }
   const auto start = std::chrono::steady_clock::now();
-  KillManyTimes(Size(2 * static_cast<int>(server::kFailpoints.size()), 1000), server, findings);
+  Killer killer(server, scene.pace, findings);
+  KillManyTimes(scene.kills, scene.failpoints, killer, findings);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   findings.Note("seconds of killing", absl::StrFormat("%.0f", took.count()));
 
@@ -163,8 +186,41 @@ TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
     expected.merge(visitor.names());
   }
   EXPECT_EQ(NamesOn(server), expected);  // none is lost, none is there twice, none is back
-  EXPECT_EQ(findings.Report(), "");
   EXPECT_GT(findings.count("results compared byte by byte"), 0);
+}
+
+TEST(Kills, LoseNothingThatWasAcknowledgedAndCountNothingTwice) {
+  Findings findings("kills");
+  const std::vector<std::string_view> failpoints = Failpoints(false);
+  KillUnderVisitors({.pace = {.longest_life = std::chrono::milliseconds(600),
+                              .wait_for_failpoint = std::chrono::milliseconds(1500)},
+                     .questions = Questions(),
+                     .failpoints = failpoints,
+                     .kills = Size(2 * static_cast<int>(failpoints.size()), 1000)},
+                    findings);
+  EXPECT_EQ(findings.Report(), "");
+}
+
+// Lives long enough for tasks to be submitted and read. Tasks of a killed server run on.
+TEST(Kills, OfAServerWithAClusterLoseNothingAndCountNothingTwice) {
+  Findings findings("kills of a server with a cluster");
+  const StandInSlurm slurm;
+  const std::vector<std::string> flags = {"--executor=slurm",       "--slurm-shared-folder",
+                                          slurm.shared_folder(),    "--slurm-least-seconds=0",
+                                          "--slurm-task-seconds=1", "--slurm-query-seconds=1",
+                                          "--slurm-max-tasks=4"};
+  std::vector<v1::EnsembleSpec> questions = Questions();
+  for (v1::EnsembleSpec& question : LargeQuestions()) questions.push_back(std::move(question));
+  KillUnderVisitors({.server = {.workers = 1, .flags = flags, .launcher = slurm.Launcher()},
+                     .pace = {.longest_life = std::chrono::seconds(4),
+                              .wait_for_failpoint = std::chrono::seconds(6)},
+                     .questions = std::move(questions),
+                     .failpoints = Failpoints(true),
+                     .kills = Size(6, 200)},
+                    findings);
+  findings.Count("tasks of the cluster", slurm.tasks());
+  EXPECT_GT(slurm.tasks(), 0);
+  EXPECT_EQ(findings.Report(), "");
 }
 
 }  // namespace

@@ -79,6 +79,13 @@ std::vector<EnsembleSpec> Questions() {
           WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), 20'000)};
 }
 
+std::vector<EnsembleSpec> LargeQuestions() {
+  const auto returns = EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME;
+  return {WithSamples(FirstHit({0.1, 0.2, 0.3, 0.4}), 300'000),
+          WithSamples(Question(returns, EnsembleSpec::BILLIARD, {0.2, 0.1}, {0.1, 0.2, 0.3, 0.4}),
+                      300'000)};
+}
+
 EnsembleSpec ManyPoints(int points, int64_t samples) {
   EnsembleSpec spec =
       Question(EnsembleSpec::CONDITIONAL_MEAN_FREE_TIME, EnsembleSpec::BILLIARD, {0.2});

@@ -18,6 +18,9 @@ namespace ballpiston::torture {
 // number of samples and with a tolerance. Each takes 0.02 s to 1 s of one core.
 std::vector<v1::EnsembleSpec> Questions();
 
+// Questions of some seconds of one core.
+std::vector<v1::EnsembleSpec> LargeQuestions();
+
 // Many points, each of much the same cost.
 v1::EnsembleSpec ManyPoints(int points, int64_t samples);
 

@@ -10,6 +10,7 @@
 #include "absl/time/clock.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "server/convert/result_record.h"
 #include "server/jobs/job_journal.h"
 #include "server/jobs/job_name.h"
 #include "server/jobs/job_snapshot.h"
@@ -34,9 +35,7 @@ JobRecord JobWithPoints(int64_t points) {
 }
 
 FinishedPoint FinishedPointOf(int number) {
-  auto point = std::make_shared<v1::PointResult>();
-  point->set_index(number);
-  return {number, point};
+  return {number, std::make_shared<const std::string>(std::to_string(number))};
 }
 
 std::vector<int64_t> Numbers(const std::vector<FinishedPoint>& points) {
@@ -190,8 +189,8 @@ TEST_F(JobJournalTest, OnlyStoredChangesAreSent) {
   EXPECT_EQ(job_->state(), EnsembleJob::RUNNING);
   const auto told = *job_->FinishedAfter(0, 10);
   EXPECT_THAT(Numbers(told), testing::ElementsAre(1, 2));
-  EXPECT_EQ(told[0].result->index(), 2);
-  EXPECT_EQ(told[1].result->index(), 0);
+  EXPECT_EQ(ResultFromBytes(*told[0].result)->index(), 2);
+  EXPECT_EQ(ResultFromBytes(*told[1].result)->index(), 0);
 }
 
 TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {

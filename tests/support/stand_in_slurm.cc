@@ -1,0 +1,94 @@
+#include "tests/support/stand_in_slurm.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/files.h"
+#include "tests/support/process.h"
+
+namespace ballpiston {
+namespace {
+
+// Below $arrays is a folder for each array: the script, the array's number, and for each task a
+// file with the number of its process.
+
+constexpr char kSbatch[] = R"sh(
+for word; do
+  case $word in
+    --job-name=*) name=${word#--job-name=} ;;
+    --array=0-*) last=${word#--array=0-} ;;
+  esac
+done
+array=$arrays/$name
+mkdir "$array" && cat >"$array/script" && echo $$ >"$array/number" || exit 1
+for task in $(seq 0 "$last"); do
+  echo "$name" >>"$arrays/../started"
+  SLURM_ARRAY_TASK_ID=$task setsid sh "$array/script" </dev/null >/dev/null 2>&1 &
+  echo $! >"$array/task.$task"
+done
+echo $$
+)sh";
+
+constexpr char kSqueue[] = R"sh(
+for file in "$arrays"/*/task.*; do
+  read -r process <"$file" && readlink "/proc/$process/exe" >/dev/null || continue
+  read -r number <"${file%/*}/number"
+  array=${file%/*}
+  echo "$number|${file##*.}|${array##*/}|RUNNING|None"
+done 2>/dev/null
+exit 0
+)sh";
+
+// NUMBER_[0-3,7] after the name: those tasks alone.
+constexpr char kScancel[] = R"sh(
+tasks='*'
+for word; do
+  case $word in
+    --name=*) name=${word#--name=} ;;
+    *_\[*\]) list=${word#*_\[} tasks= ;;
+  esac
+done
+for range in $(echo "${list%\]}" | tr , ' '); do
+  tasks="$tasks $(seq "${range%-*}" "${range#*-}")"
+done
+for task in $tasks; do
+  for file in "$arrays"/$name/task.$task; do kill -KILL "$(cat "$file")"; done
+done 2>/dev/null
+exit 0
+)sh";
+
+}  // namespace
+
+StandInSlurm::StandInSlurm() {
+  mkdir(shared_folder().c_str(), 0700);
+  mkdir(folder_.File("arrays").c_str(), 0700);
+  mkdir(folder_.File("programs").c_str(), 0700);
+  const auto write = [&](const std::string& name, const char* script) {
+    const std::string path = folder_.File("programs/" + name);
+    WriteFile(path, "#!/bin/sh\narrays='" + folder_.File("arrays") + "'" + script);
+    chmod(path.c_str(), 0700);
+  };
+  write("sbatch", kSbatch);
+  write("squeue", kSqueue);
+  write("scancel", kScancel);
+}
+
+StandInSlurm::~StandInSlurm() {
+  RunProgram({.command = {folder_.File("programs/scancel"), "--name=*"}});
+}
+
+std::vector<std::string> StandInSlurm::Launcher() const {
+  return {"env", "PATH=" + folder_.File("programs") + ":" + std::getenv("PATH")};
+}
+
+int StandInSlurm::tasks() const {
+  const std::string path = folder_.File("started");
+  if (!std::filesystem::exists(path)) return 0;
+  const std::string lines = Contents(path);
+  return static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,32 @@
+// Programs in the place of sbatch, squeue and scancel, for tests without Slurm. Each task of an
+// array becomes a process on this machine at once, and runs on when the server is killed.
+#ifndef BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_
+#define BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_
+
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston {
+
+class StandInSlurm {
+ public:
+  StandInSlurm();
+  ~StandInSlurm();  // ends all tasks
+  StandInSlurm(const StandInSlurm&) = delete;
+  StandInSlurm& operator=(const StandInSlurm&) = delete;
+
+  // The words before a server's command line, so that it finds the programs.
+  std::vector<std::string> Launcher() const;
+  std::string shared_folder() const { return folder_.File("shared"); }
+  // How many tasks it has started so far.
+  int tasks() const;
+
+ private:
+  const TemporaryFolder folder_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_SUPPORT_STAND_IN_SLURM_H_
