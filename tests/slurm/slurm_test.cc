@@ -113,6 +113,29 @@ TEST_P(SlurmControllerKilled, GivesTheSameBytes) {
 
 INSTANTIATE_TEST_SUITE_P(Slurm, SlurmControllerKilled, testing::Values(0, 1, 2, 5));
 
+// Its connections stay open, and no answer comes.
+TEST(Slurm, AControllerThatHangsGivesTheSameBytes) {
+  Sweep sweep;
+  sweep.Submit();
+  sweep.AwaitRunningTasks();
+  sweep.cluster().Do("pause-controller");
+  Pause(std::chrono::seconds(10));
+  sweep.cluster().Do("resume-controller");
+  sweep.ExpectTheSameBytes();
+}
+
+// Without munge no tool of Slurm works.
+TEST(Slurm, AClusterWithoutMungeIsUsedAgainWhenItIsBack) {
+  Sweep sweep({.samples = 2'000'000});
+  sweep.Submit();
+  sweep.AwaitRunningTasks();
+  sweep.cluster().Do("kill-munge");
+  sweep.AwaitProblem("squeue");
+  sweep.cluster().Do("start-munge");
+  sweep.ExpectTheSameBytes();
+  EXPECT_EQ(sweep.Counts().problem, "");
+}
+
 // Slurm gives the numbers of the lost arrays to other arrays.
 TEST(Slurm, LostStateGivesTheSameBytes) {
   Sweep sweep({.flags = Split("--slurm-max-array-size 4")});
@@ -142,6 +165,16 @@ TEST(Slurm, ANodeThatDiesWithItsTasksGivesTheSameBytes) {
   sweep.Submit();
   sweep.AwaitRunningTasks();
   sweep.cluster().Do("kill-node", "n1");
+  sweep.ExpectTheSameBytes();
+}
+
+// Slurm notices only later that the tasks are gone.
+TEST(Slurm, ANodeThatIsBackAtOnceGivesTheSameBytes) {
+  Sweep sweep({.cluster = {"SlurmdTimeout=5"}});
+  sweep.Submit();
+  sweep.AwaitRunningTasks();
+  sweep.cluster().Do("kill-node", "n1");
+  sweep.cluster().Do("start-node", "n1");
   sweep.ExpectTheSameBytes();
 }
 
