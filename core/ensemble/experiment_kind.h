@@ -59,6 +59,11 @@ struct ExperimentKind {
 
   const LimitError* limit_error = nullptr;  // null: no bound is known
 
+  // The exact probabilities of the bins of each histogram; over all histograms they sum to 1. Null
+  // if the experiment has no histograms.
+  std::vector<std::vector<double>> (*expected_probabilities)(const PointParameters& point) =
+      nullptr;
+
   // Besides AUTO, which answers everything.
   bool IsAnsweredBy(Model model) const;
   // Whether the whole answer has a closed form.

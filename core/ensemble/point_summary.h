@@ -31,7 +31,6 @@ struct SignedHistogram {
   std::string name;
   int sigma = 0;
   Histogram histogram;
-  std::vector<double> expected_probabilities;  // of each bin; over both signs they sum to 1
 };
 
 // A function of time.

@@ -30,15 +30,16 @@ void Record(const Return& hit, BlockResult* result) {
   CountIngoing(hit, result->histograms);
 }
 
-KlDivergence RelativeEntropyTo(const std::vector<SignedHistogram>& histograms) {
-  std::vector<uint64_t> counts;
-  std::vector<double> probabilities;
-  for (const SignedHistogram& h : histograms) {
-    counts.insert(counts.end(), h.histogram.counts.begin(), h.histogram.counts.end());
-    probabilities.insert(probabilities.end(), h.expected_probabilities.begin(),
-                         h.expected_probabilities.end());
+std::vector<double> Joined(const std::vector<std::vector<double>>& lists) {
+  std::vector<double> joined;
+  for (const std::vector<double>& list : lists) {
+    joined.insert(joined.end(), list.begin(), list.end());
   }
-  return RelativeEntropy(counts, probabilities);
+  return joined;
+}
+
+std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& point) {
+  return IngoingBinProbabilities(IngoingLaw(point[kEpsilon]));
 }
 
 Estimate MeanCosAlpha(const Moments& moments) {
@@ -84,7 +85,7 @@ class FirstHitExperiment : public PointExperiment {
         law_{point[kEpsilon], point[kExponent]},
         equilibrium_(point[kEpsilon]),
         return_time_(geometry_, point[kEpsilon]),
-        expected_(IngoingBinProbabilities(equilibrium_)) {}
+        expected_(Joined(IngoingBinProbabilities(equilibrium_))) {}
 
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override {
     return RunBlockOrbits(
@@ -120,7 +121,7 @@ class FirstHitExperiment : public PointExperiment {
       summary.estimates.push_back(*variation);
     }
     summary.histograms = LabelledHistograms(merged);
-    if (merged.samples > 0) summary.kl_divergence = RelativeEntropyTo(summary.histograms);
+    if (merged.samples > 0) summary.kl_divergence = DistanceFromEquilibrium(merged);
     return summary;
   }
 
@@ -130,16 +131,24 @@ class FirstHitExperiment : public PointExperiment {
   std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const {
     std::vector<SignedHistogram> labelled;
     for (size_t i = 0; i < merged.histograms.size(); ++i) {
-      labelled.push_back({"alpha", kIngoingSigmas[i], merged.histograms[i], expected_[i]});
+      labelled.push_back({"alpha", kIngoingSigmas[i], merged.histograms[i]});
     }
     return labelled;
+  }
+
+  KlDivergence DistanceFromEquilibrium(const BlockResult& merged) const {
+    std::vector<uint64_t> counts;
+    for (const Histogram& histogram : merged.histograms) {
+      counts.insert(counts.end(), histogram.counts.begin(), histogram.counts.end());
+    }
+    return RelativeEntropy(counts, expected_);
   }
 
   PairGeometry geometry_;
   ReturnLaw law_;
   IngoingLaw equilibrium_;
   ReturnTime return_time_;
-  std::vector<std::vector<double>> expected_;  // probabilities of the bins of each histogram
+  std::vector<double> expected_;  // probabilities of all bins
 };
 
 std::unique_ptr<PointExperiment> CreateFirstHit(const EnsembleSpec& spec,
@@ -162,6 +171,7 @@ constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .check_tolerance = CheckToleranceOfReturns,
                                             .work = WorkOfAReturn,
                                             .collisions = OneCollision,
-                                            .error = ErrorOfAReturn};
+                                            .error = ErrorOfAReturn,
+                                            .expected_probabilities = ExpectedProbabilities};
 
 }  // namespace ballpiston

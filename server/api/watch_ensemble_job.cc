@@ -304,7 +304,7 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
   if (points->empty()) return false;
   for (const FinishedPoint& point : *points) {
     const absl::StatusOr<storage::Result> result = ResultFromBytes(*point.result);
-    if (!result.ok()) return WithReason(result.status(), "STORE_FAILED");
+    if (!result.ok()) return StoreFailure(result.status());
     *message_.mutable_snapshot()->add_finished_points() = PointResultMessage(*result);
   }
   std::lock_guard lock(mutex_);

@@ -177,6 +177,7 @@ absl::Status StoreFailure(const absl::Status& status) {
   const std::string type = absl::StrCat(kTypePrefix, google::rpc::ErrorInfo().GetTypeName());
   if (status.ok() || status.GetPayload(type)) return status;
   if (absl::IsResourceExhausted(status)) return WithReason(status, "STORE_FULL");
+  if (absl::IsDataLoss(status)) return WithReason(status, "STORE_DAMAGED");
   return WithReason(absl::UnavailableError(status.message()), "STORE_FAILED");
 }
 

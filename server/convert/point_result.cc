@@ -1,5 +1,8 @@
 #include "server/convert/point_result.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "core/ensemble/parameter.h"
 #include "server/convert/spec.h"
 
@@ -57,7 +60,6 @@ void Fill(const storage::Histogram& record, v1::Histogram& message) {
   message.set_lower(record.lower());
   message.set_upper(record.upper());
   message.mutable_counts()->Assign(record.counts().begin(), record.counts().end());
-  *message.mutable_expected_probabilities() = record.expected_probabilities();
 }
 
 void Fill(const storage::Curve& record, v1::Curve& message) {
@@ -82,11 +84,29 @@ v1::PointResult PointResultMessage(const storage::Result& record) {
   message.set_samples(static_cast<double>(record.samples()));
   for (const auto& estimate : record.estimates()) Fill(estimate, *message.add_estimates());
   if (record.has_divergence()) Fill(record.divergence(), *message.mutable_kl_divergence());
-  for (const auto& histogram : record.histograms()) Fill(histogram, *message.add_histograms());
-  for (const auto& curve : record.curves()) Fill(curve, *message.add_curves());
   message.mutable_health()->set_escapes(static_cast<double>(record.escapes()));
   if (record.has_max_energy_error()) {
     message.mutable_health()->set_max_energy_error(record.max_energy_error());
+  }
+  return message;
+}
+
+v1::PointResult PointResultMessage(const storage::Result& record, const storage::Details& details,
+                                   const ExperimentKind& experiment) {
+  v1::PointResult message = PointResultMessage(record);
+  for (const auto& curve : details.curves()) Fill(curve, *message.add_curves());
+  for (const auto& histogram : details.histograms()) Fill(histogram, *message.add_histograms());
+  if (details.histograms().empty() || experiment.expected_probabilities == nullptr) return message;
+  const PointParameters point = PointOf(record);
+  const auto is_missing = [&](const ParameterUse& use) {
+    return use.needed && !point.Find(*use.parameter);
+  };
+  if (std::ranges::any_of(experiment.parameters, is_missing)) return message;  // a damaged record
+  const auto expected = experiment.expected_probabilities(point);
+  for (int i = 0; i < std::min(message.histograms_size(), static_cast<int>(expected.size())); ++i) {
+    const std::vector<double>& bins = expected[static_cast<size_t>(i)];
+    message.mutable_histograms(i)->mutable_expected_probabilities()->Assign(bins.begin(),
+                                                                            bins.end());
   }
   return message;
 }

@@ -1,13 +1,17 @@
-// A stored result as the API's PointResult. Pure function.
+// A stored result as the API's PointResult. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
 #define BALLPISTON_SERVER_CONVERT_POINT_RESULT_H_
 
 #include "ballpiston/storage/records.pb.h"
 #include "ballpiston/v1/result.pb.h"
+#include "core/ensemble/experiment_kind.h"
 
 namespace ballpiston::server {
 
-v1::PointResult PointResultMessage(const storage::Result& record);
+v1::PointResult PointResultMessage(const storage::Result& record);  // without details
+// `experiment`: that of the result's job.
+v1::PointResult PointResultMessage(const storage::Result& record, const storage::Details& details,
+                                   const ExperimentKind& experiment);
 
 }  // namespace ballpiston::server
 

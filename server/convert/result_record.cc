@@ -42,20 +42,18 @@ void SetDivergence(const KlDivergence& divergence, storage::Result& result) {
   record->set_standard_error(divergence.standard_error);
 }
 
-void AddHistogram(const SignedHistogram& histogram, storage::Result& result) {
-  storage::Histogram* record = result.add_histograms();
+void AddHistogram(const SignedHistogram& histogram, storage::Details& details) {
+  storage::Histogram* record = details.add_histograms();
   record->set_name(histogram.name);
   record->set_sigma(histogram.sigma);
   record->set_lower(histogram.histogram.lower);
   record->set_upper(histogram.histogram.upper);
   const std::vector<uint64_t>& counts = histogram.histogram.counts;
   record->mutable_counts()->Assign(counts.begin(), counts.end());
-  record->mutable_expected_probabilities()->Assign(histogram.expected_probabilities.begin(),
-                                                   histogram.expected_probabilities.end());
 }
 
-void AddCurve(const Curve& curve, storage::Result& result) {
-  storage::Curve* record = result.add_curves();
+void AddCurve(const Curve& curve, storage::Details& details) {
+  storage::Curve* record = details.add_curves();
   record->set_name(curve.name);
   for (const CurvePoint& point : curve.points) {
     storage::Curve::Point* added = record->add_points();
@@ -93,8 +91,7 @@ storage::Result::Model RecordOf(Model model) {
 }  // namespace
 
 storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
-                               const BlockResult& merged, Details details) {
-  const PointSummary summary = experiment.Summarize(merged);
+                               const PointSummary& summary) {
   storage::Result result;
   result.set_index(static_cast<int64_t>(index));
   for (const Parameter* parameter : kParameters) {
@@ -112,12 +109,15 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
     AddEstimate(estimate, answer, &estimate == &summary.estimates.front(), result);
   }
   if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
-  if (details == Details::kIncluded) {
-    for (const SignedHistogram& histogram : summary.histograms) AddHistogram(histogram, result);
-    for (const Curve& curve : summary.curves) AddCurve(curve, result);
-  }
   SetHealth(summary.health, result);
   return result;
+}
+
+storage::Details DetailsRecordOf(const PointSummary& summary) {
+  storage::Details details;
+  for (const SignedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
+  for (const Curve& curve : summary.curves) AddCurve(curve, details);
+  return details;
 }
 
 Estimate FirstEstimateOf(const storage::Result& result) {
@@ -129,17 +129,20 @@ Estimate FirstEstimateOf(const storage::Result& result) {
   return first;
 }
 
-void ClearDetails(storage::Result& result) {
-  result.clear_histograms();
-  result.clear_curves();
-}
+std::string RecordBytes(const storage::Result& result) { return DeterministicBytes(result); }
 
-std::string ResultRecordBytes(const storage::Result& result) { return DeterministicBytes(result); }
+std::string RecordBytes(const storage::Details& details) { return DeterministicBytes(details); }
 
 absl::StatusOr<storage::Result> ResultFromBytes(const std::string& bytes) {
   storage::Result result;
   if (result.ParseFromString(bytes)) return result;
   return absl::DataLossError("a stored result cannot be read");
+}
+
+absl::StatusOr<storage::Details> DetailsFromBytes(const std::string& bytes) {
+  storage::Details details;
+  if (details.ParseFromString(bytes)) return details;
+  return absl::DataLossError("the stored details of a result cannot be read");
 }
 
 }  // namespace ballpiston::server

@@ -12,20 +12,21 @@
 
 namespace ballpiston::server {
 
-// Histograms and curves: what is left out of BASIC views.
-enum class Details { kLeftOut, kIncluded };
-
-// Requires at least one merged block, if the experiment has any.
+// All but the details. Requires at least one merged block in the summary, if the experiment has
+// any.
 storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
-                               const BlockResult& merged, Details details);
+                               const PointSummary& summary);
 
-void ClearDetails(storage::Result& result);
+// Histograms and curves.
+storage::Details DetailsRecordOf(const PointSummary& summary);
 
 // Value and standard error of the first estimate; of a result without one, 0 and none.
 Estimate FirstEstimateOf(const storage::Result& result);
 
-std::string ResultRecordBytes(const storage::Result& result);
-absl::StatusOr<storage::Result> ResultFromBytes(const std::string& bytes);  // DATA_LOSS
+std::string RecordBytes(const storage::Result& result);
+std::string RecordBytes(const storage::Details& details);  // empty if there are none
+absl::StatusOr<storage::Result> ResultFromBytes(const std::string& bytes);    // DATA_LOSS
+absl::StatusOr<storage::Details> DetailsFromBytes(const std::string& bytes);  // DATA_LOSS
 
 }  // namespace ballpiston::server
 

@@ -30,7 +30,7 @@ inline constexpr size_t kRecentPoints = 100;
 
 struct FinishedPoint {
   int64_t number = 0;
-  std::shared_ptr<const std::string> result;  // ResultRecordBytes, without histograms and curves
+  std::shared_ptr<const std::string> result;  // serialized storage::Result
 };
 
 class Job {

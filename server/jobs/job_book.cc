@@ -129,7 +129,7 @@ std::vector<bool> Finished(const JobRecord& record, const StoredPoints& points) 
 absl::Status ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
                            std::optional<Shortfall>& shortfall, absl::Status& damage) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
-  return ReadResults(database, record.sequence, 0, [&](PointRow row) {
+  return ReadResults(database, record.sequence, 0, Details::kLeftOut, [&](PointRow row) {
     const absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
     damage = result.status();
     if (!damage.ok()) return false;
@@ -259,7 +259,7 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
       [&](Database& database) { return ReadRestored(database, record, spec, restored); });
   if (!read.ok()) return read;
   if (!restored.damage.ok()) {
-    return EndUnresumable(record, WithReason(restored.damage, "STORE_FAILED"));
+    return EndUnresumable(record, StoreFailure(restored.damage));
   }
   const StoredPoints& points = restored.points;
   RunRequest request;
@@ -455,7 +455,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
 
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   std::optional<JobRecord> record;
-  const absl::Status committed = store_.Commit([&](Database& database) -> absl::Status {
+  const absl::Status committed = store_.CommitDeletion([&](Database& database) -> absl::Status {
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
@@ -476,6 +476,11 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
                                              const ResultsQuery& query) {
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
+  const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record->spec);
+  if (!spec.ok()) return StoreFailure(spec.status());
+  const ExperimentKind* const experiment =
+      FindExperiment(static_cast<uint64_t>(spec->experiment()));
+  if (experiment == nullptr) return StoreFailure(absl::DataLossError("a job of no experiment"));
   ResultsPage page;
   size_t bytes = 0;
   absl::Status parsed;
@@ -483,8 +488,10 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
     absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
     parsed = result.status();
     if (!parsed.ok()) return false;
-    if (!query.histograms) ClearDetails(*result);
-    v1::PointResult message = PointResultMessage(*result);
+    const absl::StatusOr<storage::Details> details = DetailsFromBytes(row.details);
+    parsed = details.status();
+    if (!parsed.ok()) return false;
+    v1::PointResult message = PointResultMessage(*result, *details, *experiment);
     bytes += message.ByteSizeLong();
     const bool full = page.points.size() == static_cast<size_t>(query.max_points);
     const bool ends = full || (!page.points.empty() && bytes > query.max_bytes);
@@ -493,10 +500,11 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
     return !ends;
   };
   const absl::Status read = store_.Read([&](Database& database) {
-    return ReadResults(database, record->sequence, query.first_point, take);
+    const Details details = query.histograms ? Details::kIncluded : Details::kLeftOut;
+    return ReadResults(database, record->sequence, query.first_point, details, take);
   });
   if (!read.ok()) return StoreFailure(read);
-  if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
+  if (!parsed.ok()) return StoreFailure(parsed);
   return page;
 }
 
@@ -542,7 +550,7 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
     snapshot.finished = job.last_finished();
     for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
       const storage::Result now =
-          ResultRecordOf(point.index, *point.experiment, point.merged, Details::kLeftOut);
+          ResultRecordOf(point.index, *point.experiment, point.experiment->Summarize(point.merged));
       snapshot.points.push_back({point.version, PointResultMessage(now)});
     }
     return snapshot;
@@ -557,22 +565,16 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
   }
   std::vector<FinishedPoint> points;
   size_t bytes = 0;
-  absl::Status parsed;
   const auto take = [&](int64_t number, const PointRow& row) {
     // One that the job does not know of yet would make a token that it does not know either.
     if (active != nullptr && number > active->last_finished()) return false;
-    absl::StatusOr<storage::Result> result = ResultFromBytes(row.result);
-    parsed = result.status();
-    if (!parsed.ok()) return false;
-    ClearDetails(*result);
-    bytes += result->ByteSizeLong();
-    points.push_back({number, std::make_shared<const std::string>(ResultRecordBytes(*result))});
+    bytes += row.result.size();
+    points.push_back({number, std::make_shared<const std::string>(row.result)});
     return points.size() < limit && bytes < kMaxBytesOfPoints;
   };
   const absl::Status read = store_.Read(
       [&](Database& database) { return ReadResultsStoredAfter(database, sequence, after, take); });
   if (!read.ok()) return StoreFailure(read);
-  if (!parsed.ok()) return WithReason(parsed, "STORE_FAILED");
   return points;
 }
 

@@ -51,7 +51,7 @@ absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd&
   const absl::Status lost = absl::DataLossError(
       absl::StrCat("of ", job.points, " computed points the store keeps ", *stored));
   end.state = v1::EnsembleJob::FAILED;
-  end.error = RpcStatus(WithReason(lost, "STORE_FAILED")).SerializeAsString();
+  end.error = RpcStatus(StoreFailure(lost)).SerializeAsString();
   return absl::OkStatus();
 }
 
@@ -124,12 +124,12 @@ void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
   if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
-  storage::Result result = ResultRecordOf(point, experiment, merged, Details::kIncluded);
-  PointRow row = {static_cast<int64_t>(point), static_cast<double>(result.samples()),
-                  ResultRecordBytes(result)};
+  const PointSummary summary = experiment.Summarize(merged);
+  PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
+                  RecordBytes(ResultRecordOf(point, experiment, summary)),
+                  RecordBytes(DetailsRecordOf(summary))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
-  ClearDetails(result);
-  auto told = std::make_shared<const std::string>(ResultRecordBytes(result));
+  auto told = std::make_shared<const std::string>(row.result);
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {

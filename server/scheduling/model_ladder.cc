@@ -48,18 +48,16 @@ void RemoveStore(const std::string& path) {
 
 // What a store needs for one of many results like this, with its commits, by the clock: the disk's
 // time counts. 0 if the store cannot be made.
-double SecondsToStore(const std::string& path, const storage::Result& result) {
+double SecondsToStore(const std::string& path, PointRow row) {
   using Clock = std::chrono::steady_clock;
   constexpr int64_t kResults = 3000;
-  const std::string bytes = ResultRecordBytes(result);
   RemoveStore(path);
   const absl::Cleanup remove = [&] { RemoveStore(path); };
   auto store = Store::Open(path, {.delay = std::chrono::milliseconds(0), .readers = 1});
   if (!store.ok()) return 0;
   const Clock::time_point begin = Clock::now();
-  for (int64_t point = 0; point < kResults; ++point) {
-    (*store)->RecordResult(1, {.point = point, .result = bytes, .has_checkpoint = false},
-                           [](int64_t) {});
+  for (row.point = 0; row.point < kResults; ++row.point) {
+    (*store)->RecordResult(1, row, [](int64_t) {});
   }
   if (!(*store)->Flush().ok()) return 0;
   store->reset();  // folds the log into the database
@@ -92,17 +90,17 @@ void ModelLadder::Measure() {
   machine_ = {rates, workers_};
 }
 
-storage::Result ModelLadder::Serve(const EnsembleSpec& spec) {
+PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
   ThreadSeconds();  // a worker looks at the clock twice
   const OpenedPoint opened = Open(spec, 0);
   const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
-  storage::Result result = ResultRecordOf(0, experiment, BlockResult(), Details::kIncluded);
-  ResultRecordBytes(result);
-  storage::Result told = result;
-  ClearDetails(told);
-  ResultRecordBytes(told);
+  const PointSummary summary = experiment.Summarize(BlockResult());
+  PointRow row = {.result = RecordBytes(ResultRecordOf(0, experiment, summary)),
+                  .details = RecordBytes(DetailsRecordOf(summary)),
+                  .has_checkpoint = false};
+  const auto told = std::make_shared<const std::string>(row.result);
   ThreadSeconds();
-  return result;
+  return row;
 }
 
 OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {

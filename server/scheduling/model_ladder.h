@@ -14,7 +14,6 @@
 #include <mutex>
 #include <optional>
 
-#include "ballpiston/storage/records.pb.h"
 #include "core/model_choice/ladder.h"
 #include "server/scheduling/point_opener.h"
 #include "server/store/store.h"
@@ -37,8 +36,8 @@ class ModelLadder : public PointOpener {
 
  private:
   void Measure();
-  // Does all the work that serves a point without samples. Returns its result.
-  storage::Result Serve(const EnsembleSpec& spec);
+  // Does all the work that serves a point without samples. Returns its row.
+  PointRow Serve(const EnsembleSpec& spec);
   std::optional<Pilot> Known(const PilotPlace& place);
 
   Store& store_;

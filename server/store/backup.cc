@@ -55,20 +55,6 @@ class TemporaryFile {
   int error_ = 0;
 };
 
-absl::Status Copy(Database& store, const std::string& path) {
-  const auto copy = Database::Open(path, Database::Mode::kReadWrite);
-  if (!copy.ok()) return copy.status();
-  // No journal: until it is complete it is nothing. Flushed once, at the end.
-  const absl::Status set = (*copy)->Execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
-  if (!set.ok()) return set;
-  const absl::Status copied = store.CopyTo(**copy);
-  if (!copied.ok()) return copied;
-  // Out of WAL mode, which the copied header says it is in.
-  const auto mode = (*copy)->Text("PRAGMA journal_mode = DELETE");
-  if (!mode.ok()) return mode.status();
-  return *mode == "delete" ? absl::OkStatus() : absl::InternalError("backup: it keeps a log");
-}
-
 absl::Status Sync(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool synced = file >= 0 && fsync(file) == 0;
@@ -98,7 +84,7 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   if (!source.ok()) return source.status();
   const TemporaryFile copy(target);
   if (copy.error() != 0) return CannotWrite(target, copy.error());
-  const absl::Status copied = Copy(**source, copy.path());
+  const absl::Status copied = (*source)->CopyTo(copy.path());
   if (!copied.ok()) return copied;
   absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
   if (!summary.ok()) return summary.status();

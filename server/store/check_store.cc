@@ -37,9 +37,9 @@ class StoreCheck {
   absl::StatusOr<StoreSummary> Run() {
     const absl::Status begun = database_.Execute("BEGIN");
     if (!begun.ok()) return begun;
-    for (const auto part :
-         {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::CheckJobs,
-          &StoreCheck::CheckRows, &StoreCheck::CheckResults, &StoreCheck::CheckCheckpoints}) {
+    for (const auto part : {&StoreCheck::CheckPages, &StoreCheck::Count, &StoreCheck::CheckJobs,
+                            &StoreCheck::CheckRows, &StoreCheck::CheckResults,
+                            &StoreCheck::CheckDetails, &StoreCheck::CheckCheckpoints}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
       // So damaged that this part cannot be read.
@@ -142,9 +142,16 @@ class StoreCheck {
     };
     const absl::Status results = ForEach(
         "SELECT job, point FROM results LEFT JOIN jobs ON sequence = job"
-        " WHERE sequence IS NULL OR point < 0 OR point >= points",
+        " WHERE (sequence IS NULL AND job NOT IN (SELECT job FROM deleted))"
+        " OR point < 0 OR point >= points",
         report("a result of no point"));
     if (!results.ok()) return results;
+    const absl::Status details = ForEach(
+        "SELECT details.job, details.point FROM details LEFT JOIN results"
+        " ON results.job = details.job AND results.point = details.point"
+        " WHERE results.job IS NULL AND details.job NOT IN (SELECT job FROM deleted)",
+        report("details of no result"));
+    if (!details.ok()) return details;
     const absl::Status checkpoints =
         ForEach(absl::StrCat("SELECT job, point FROM checkpoints LEFT JOIN jobs ON sequence = job"
                              " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= ",
@@ -171,6 +178,15 @@ class StoreCheck {
       Found(absl::StrCat("the result of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
                          result.ok() ? absl::StrCat("is of point ", result->index())
                                      : std::string(result.status().message())));
+    });
+  }
+
+  absl::Status CheckDetails() {
+    return ForEach("SELECT job, point, record FROM details", [this](const Query& row) {
+      const auto details = DetailsFromBytes(row.Bytes(2));
+      if (details.ok()) return;
+      Found(absl::StrCat("the details of job ", row.Integer(0), ", point ", row.Integer(1), ": ",
+                         details.status().message()));
     });
   }
 

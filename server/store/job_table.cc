@@ -201,7 +201,8 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question) {
   for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?"}) {
+       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?",
+        "DELETE FROM details WHERE job = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;
   }
@@ -217,7 +218,7 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
 
 absl::Status DeleteJob(Database& database, int64_t sequence) {
   for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "DELETE FROM results WHERE job = ?",
+       {kDropUnfinished[0], kDropUnfinished[1], "INSERT INTO deleted (job) VALUES (?)",
         "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;

@@ -69,7 +69,7 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question);
 
-// With its results and requests.
+// With its requests. Its results go later (sweeper.h), and nobody can find them meanwhile.
 absl::Status DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

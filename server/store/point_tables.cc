@@ -80,6 +80,15 @@ absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const Poin
       return end.status();
     }
   }
+  if (number > 0 && !row.details.empty()) {
+    const absl::Status inserted =
+        database.Prepare("INSERT INTO details (job, point, record) VALUES (?, ?, ?)")
+            .Bind(job)
+            .Bind(row.point)
+            .BindBlob(row.details)
+            .Run();
+    if (!inserted.ok()) return inserted;
+  }
   if (!row.has_checkpoint) return number;
   for (const char* sql : {"DELETE FROM checkpoints WHERE job = ? AND point = ?",
                           "DELETE FROM chunks WHERE job = ? AND point = ?"}) {
@@ -114,17 +123,23 @@ absl::Status ReadResultsStoredAfter(
   }
 }
 
-absl::Status ReadResults(Database& database, int64_t job, int64_t first,
+absl::Status ReadResults(Database& database, int64_t job, int64_t first, Details details,
                          const std::function<bool(PointRow row)>& on_row) {
+  const bool with_details = details == Details::kIncluded;
   Query query = database.Prepare(
-      "SELECT point, samples, result FROM results WHERE job = ? AND point >= ? ORDER BY point");
+      with_details ? "SELECT point, samples, result, record FROM results LEFT JOIN details USING "
+                     "(job, point)"
+                     " WHERE job = ? AND point >= ? ORDER BY point"
+                   : "SELECT point, samples, result FROM results WHERE job = ? AND point >= ?"
+                     " ORDER BY point");
   query.Bind(job).Bind(first);
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
-    if (!*row || !on_row({query.Integer(0), query.Real(1), query.Bytes(2)})) {
-      return absl::OkStatus();
-    }
+    if (!*row) return absl::OkStatus();
+    PointRow read = {query.Integer(0), query.Real(1), query.Bytes(2)};
+    if (with_details) read.details = query.Bytes(3);
+    if (!on_row(std::move(read))) return absl::OkStatus();
   }
 }
 

@@ -35,6 +35,7 @@ struct PointRow {
   int64_t point = 0;
   double samples = 0;
   std::string result;          // serialized storage::Result
+  std::string details = {};    // serialized storage::Details; empty if there are none or not read
   bool has_checkpoint = true;  // or may have one, or chunks
 };
 
@@ -43,8 +44,10 @@ struct PointRow {
 // they were stored; 0 if the point had a result.
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row);
 
+enum class Details { kLeftOut, kIncluded };
+
 // In grid order, from point `first`; ends when `on_row` returns false.
-absl::Status ReadResults(Database& database, int64_t job, int64_t first,
+absl::Status ReadResults(Database& database, int64_t job, int64_t first, Details details,
                          const std::function<bool(PointRow row)>& on_row);
 
 // In the order in which they were stored, those after number `after`; ends when `on_row` returns

@@ -70,6 +70,15 @@ CREATE TABLE results (
   finish INTEGER NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
+CREATE TABLE details (
+  job INTEGER NOT NULL,
+  point INTEGER NOT NULL,
+  record BLOB NOT NULL,
+  PRIMARY KEY (job, point)
+) STRICT;
+CREATE TABLE deleted (
+  job INTEGER PRIMARY KEY
+) STRICT;
 CREATE INDEX results_by_finish ON results (job, finish);
 CREATE TABLE server (
   identity TEXT NOT NULL
@@ -222,6 +231,11 @@ absl::Status MakeTables(Database& database) {
 }
 
 absl::Status Prepare(Database& database) {
+  // Before the first page is written: the file can give free pages back. Debian's SQLite would
+  // overwrite deleted rows with zeros, which would take as much room in the log as the rows had.
+  const absl::Status frees =
+      database.Execute("PRAGMA auto_vacuum = INCREMENTAL; PRAGMA secure_delete = OFF;");
+  if (!frees.ok()) return frees;
   const auto mode = database.Text("PRAGMA journal_mode = WAL");
   if (!mode.ok()) return mode.status();
   if (*mode != "wal") return absl::UnavailableError("store: this file system has no WAL mode");

@@ -5,6 +5,8 @@
 //   checkpoints (job, point) -> storage Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> storage Result, of finished points
+//   details   (job, point) -> storage Details, of those that have any
+//   deleted   jobs whose results and details are still being removed (sweeper.h)
 //   server    one row: a random name of this store, by which a cluster's jobs are told apart
 //   pilots    what pilot runs found of the limit's error, by place and engine
 //
@@ -22,7 +24,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr int64_t kSchemaVersion = 2;
+inline constexpr int64_t kSchemaVersion = 3;
 inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is

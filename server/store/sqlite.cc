@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -49,21 +48,6 @@ absl::Status Failure(sqlite3* connection) {
           absl::StrCat("store: ", sqlite3_errmsg(connection))};
 }
 
-// In WAL mode the file itself is written to by checkpoints alone. There is one such connection in a
-// server, and its file has the same methods whenever it is opened.
-void PassFailpointAtCheckpoints(sqlite3* connection) {
-  sqlite3_file* file = nullptr;
-  sqlite3_file_control(connection, "main", SQLITE_FCNTL_FILE_POINTER, &file);
-  if (file == nullptr || file->pMethods == nullptr) return;
-  static sqlite3_io_methods methods = *file->pMethods;
-  static const auto write = file->pMethods->xWrite;
-  methods.xWrite = [](sqlite3_file* to, const void* bytes, int count, sqlite3_int64 offset) {
-    Failpoint("checkpoint.page");
-    return write(to, bytes, count, offset);
-  };
-  file->pMethods = &methods;
-}
-
 const char* VfsName(const std::string& vfs) { return vfs.empty() ? nullptr : vfs.c_str(); }
 
 }  // namespace
@@ -73,7 +57,7 @@ bool IsOfTheDisk(const absl::Status& status) {
   status.ForEachPayload([&](absl::string_view, const absl::Cord&) { has_payload = true; });
   if (has_payload) return false;
   return absl::IsUnavailable(status) || absl::IsResourceExhausted(status) ||
-         absl::IsPermissionDenied(status) || absl::IsDataLoss(status);
+         absl::IsPermissionDenied(status);
 }
 
 Query::Query(sqlite3_stmt* statement, absl::Status prepared)
@@ -159,7 +143,6 @@ absl::StatusOr<std::unique_ptr<Database>> Database::Open(const std::string& path
   if (code != SQLITE_OK) return Failure(connection);
   sqlite3_extended_result_codes(connection, 1);
   sqlite3_busy_timeout(connection, kBusyMilliseconds);
-  if (mode == Mode::kReadWrite && FailpointsAreArmed()) PassFailpointAtCheckpoints(connection);
   return database;
 }
 
@@ -231,15 +214,20 @@ absl::StatusOr<std::string> Database::FileStart(int bytes) const {
   return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code)));
 }
 
-absl::Status Database::CopyTo(Database& target) {
-  sqlite3_backup* copy = sqlite3_backup_init(target.connection_, "main", connection_, "main");
-  if (copy == nullptr) return Failure(target.connection_);
-  // All pages in one step, which is one reading transaction.
-  const int stepped = sqlite3_backup_step(copy, -1);
-  const int finished = sqlite3_backup_finish(copy);
-  if (stepped == SQLITE_DONE && finished == SQLITE_OK) return absl::OkStatus();
-  const int code = stepped == SQLITE_DONE ? finished : stepped;
-  return {CodeOf(code, 0), absl::StrCat("store: copying failed: ", sqlite3_errstr(code))};
+absl::Status Database::CopyTo(const std::string& path) {
+  return Prepare("VACUUM INTO ?").BindText(path).Run();
+}
+
+std::shared_ptr<const DiskCalls> Database::WatchDisk() {
+  disk_calls_ = std::make_shared<DiskCalls>();
+  sqlite3_file* file = nullptr;
+  // In WAL mode the file itself is written to by checkpoints alone.
+  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
+  if (file != nullptr) disk_calls_->Watch(*file, "checkpoint.page");
+  sqlite3_file* log = nullptr;
+  sqlite3_file_control(connection_, "main", SQLITE_FCNTL_JOURNAL_POINTER, &log);
+  if (log != nullptr) disk_calls_->Watch(*log);
+  return disk_calls_;
 }
 
 int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }

@@ -4,7 +4,8 @@
 // may succeed later (IsOfTheDisk):
 //   RESOURCE_EXHAUSTED  it is full, or the user's quota is
 //   UNAVAILABLE         input/output error, cannot open, locked, out of memory, ...
-//   DATA_LOSS           the file is damaged, or no database
+// Of the file, so that it will not:
+//   DATA_LOSS           it is damaged, or no database
 // Of the statement or what was bound to it, so that it will never succeed:
 //   INVALID_ARGUMENT    a constraint, a type, a value too big
 //   INTERNAL            anything else
@@ -21,6 +22,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "server/store/disk_calls.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -91,8 +93,12 @@ class Database {
   absl::StatusOr<int64_t> FileBytes() const;
   absl::StatusOr<std::string> FileStart(int bytes) const;
 
-  // Makes `target` a copy of this database, as it is at one moment.
-  absl::Status CopyTo(Database& target);
+  // Writes a copy of this database, as it is at one moment, to an empty or missing file: not in WAL
+  // mode, and without free pages.
+  absl::Status CopyTo(const std::string& path);
+
+  // From now on, of the open file and its log. Lives as long as somebody holds it.
+  std::shared_ptr<const DiskCalls> WatchDisk();
 
   int64_t LastInsertedRow() const;
   int64_t RowsChanged() const;  // by the last statement that was run
@@ -100,6 +106,7 @@ class Database {
  private:
   explicit Database(sqlite3* connection) : connection_(connection) {}
 
+  std::shared_ptr<DiskCalls> disk_calls_;  // outlives the connection
   sqlite3* connection_;
   std::map<std::string, sqlite3_stmt*> statements_;
 };

@@ -20,6 +20,12 @@ namespace {
 // not fit leaves some room for requests.
 constexpr size_t kSmallestGroup = 32;
 
+// Bounds how long a transaction holds the writer, and what the log can have that the file has no
+// room for.
+constexpr size_t kMostGroupBytes = 2 << 20;
+
+constexpr std::chrono::seconds kBetweenReserves(60);
+
 absl::Status Stalled() {
   return absl::UnavailableError("store: the disk does not answer; the request was not taken");
 }
@@ -53,36 +59,41 @@ Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Datab
       path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
+      reserve_(path_, options_.reserve_bytes, options_.vfs),
+      disk_calls_(writer_->WatchDisk()),
       free_readers_(std::move(readers)),
-      readers_(free_readers_.size()),
-      thread_([this] { WriteUntilClosed(); }) {}
+      readers_(free_readers_.size()) {
+  reserve_.Take();
+  thread_ = std::thread([this] { WriteUntilClosed(); });
+}
 
 Store::~Store() { Close(); }
 
 // ---- posting ----
 
 absl::Status Store::Commit(Change change, Done done) {
-  return Await(std::move(change), std::move(done), false);
+  return Await({.change = std::move(change), .done = std::move(done)});
+}
+
+absl::Status Store::CommitDeletion(Change change) {
+  return Await({.change = std::move(change), .frees_space = true});
 }
 
 absl::Status Store::Flush() {
-  return Await([](Database&) { return absl::OkStatus(); }, nullptr, true);
+  return Await({.change = [](Database&) { return absl::OkStatus(); }, .ordered = true});
 }
 
-absl::Status Store::Await(Change change, Done done, bool ordered) {
+absl::Status Store::Await(Write write) {
   if (stalled()) {
-    if (done) done(Stalled());
+    if (write.done) write.done(Stalled());
     return Stalled();
   }
   // Shared: the store's thread may still be leaving set_value when this one returns.
   auto committed = std::make_shared<std::promise<absl::Status>>();
   std::future<absl::Status> result = committed->get_future();
-  Write write;
-  write.change = std::move(change);
   write.urgent = true;
   write.lasting = false;
-  write.ordered = ordered;
-  write.done = [committed, done = std::move(done)](const absl::Status& status) {
+  write.done = [committed, done = std::move(write.done)](const absl::Status& status) {
     if (done) done(status);
     committed->set_value(status);
   };
@@ -133,7 +144,7 @@ void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t n
   write.job = job;
   write.point = row.point;
   write.is_result = true;
-  write.bytes = row.result.size();
+  write.bytes = row.result.size() + row.details.size();
   write.change = [job, row = std::move(row), number](Database& database) {
     const absl::StatusOr<int64_t> inserted = InsertResult(database, job, row);
     *number = inserted.value_or(0);
@@ -229,10 +240,7 @@ bool Store::failing() const {
   return failing_;
 }
 
-bool Store::stalled() const {
-  std::lock_guard lock(mutex_);
-  return group_begin_ && Clock::now() - *group_begin_ > options_.stall;
-}
+bool Store::stalled() const { return disk_calls_->Waiting() > options_.stall; }
 
 int64_t Store::commits() const {
   std::lock_guard lock(mutex_);
@@ -257,53 +265,78 @@ int64_t Store::pending_writes() const {
 // ---- which writes are next ----
 
 void Store::WriteUntilClosed() {
-  while (std::optional<Batch> batch = AwaitBatch()) {
-    MarkSuperseded(batch->writes);
-    const absl::Status status = CommitBatch(batch->writes);
-    Settle(*std::move(batch), status);
+  while (AwaitWork()) {
+    if (std::optional<Batch> batch = TakeBatch()) {
+      MarkSuperseded(batch->writes);
+      const absl::Status status = CommitBatch(batch->writes);
+      Settle(*std::move(batch), status);
+    }
+    Sweep();
   }
 }
 
 bool Store::BatchIsDue(Clock::time_point now) const {
-  if (closing_ || requests_ > 0) return true;
-  if (failing_) return !stop_waiting_ && retry_time_ <= now;
+  if (closing_) return true;
+  // While space is being freed, records on a full disk would take it at once.
+  const bool records_wait = failing_ && sweep_advances_;
+  if (requests_ > (records_wait ? ordered_ : 0)) return true;
+  if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
   // Not only when all room is taken: AwaitRoom would wait while the store waits for the delay.
   const bool half_full =
       pending_.size() > options_.max_pending / 2 || bytes_ > options_.max_pending_bytes / 2;
   return urgent_ > 0 || half_full || (!pending_.empty() && pending_.front().due <= now);
 }
 
-// None only when the store is closed and nothing is left to write.
-std::optional<Store::Batch> Store::AwaitBatch() {
-  std::unique_lock lock(mutex_);
-  while (!BatchIsDue(Clock::now())) {
-    if (failing_ && !stop_waiting_) {
-      posted_.wait_until(lock, retry_time_);
-    } else if (pending_.empty() || failing_) {
-      posted_.wait(lock);
-    } else {
-      posted_.wait_until(lock, pending_.front().due);
-    }
-  }
-  if (closing_ && pending_.empty()) return std::nullopt;
-  return TakePending(closing_ || retry_time_ <= Clock::now());
+bool Store::SweepIsDue(Clock::time_point now) const {
+  return sweeping_ && !sweep_is_damaged_ && !closing_ && next_sweep_ <= now;
 }
 
-// While the disk fails and it is not yet time to `retry`, only requests: they are few and small.
-Store::Batch Store::TakePending(bool retry) {
+std::optional<Store::Clock::time_point> Store::NextDue() const {
+  std::optional<Clock::time_point> due;
+  if (failing_ && !stop_waiting_ && !sweep_advances_) due = retry_time_;
+  if (!failing_ && !pending_.empty()) due = pending_.front().due;
+  const bool sweeps = sweeping_ && !sweep_is_damaged_ && !closing_;
+  if (sweeps) due = std::min(due.value_or(next_sweep_), next_sweep_);
+  return due;
+}
+
+bool Store::AwaitWork() {
+  std::unique_lock lock(mutex_);
+  for (auto now = Clock::now(); !BatchIsDue(now) && !SweepIsDue(now); now = Clock::now()) {
+    if (const std::optional<Clock::time_point> due = NextDue()) {
+      posted_.wait_until(lock, *due);
+    } else {
+      posted_.wait(lock);
+    }
+  }
+  return !closing_ || !pending_.empty();
+}
+
+std::optional<Store::Batch> Store::TakeBatch() {
+  std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  if (!BatchIsDue(now)) return std::nullopt;
+  const bool records_wait = failing_ && sweep_advances_ && !closing_;
+  const bool retry = closing_ || retry_time_ <= now || ordered_ > 0;
+  return TakePending(!records_wait && (!failing_ || retry));
+}
+
+// While the disk fails and it is not yet time to retry, only requests: they are few and small.
+Store::Batch Store::TakePending(bool whole) {
   Batch batch;
-  batch.whole = !failing_ || retry || ordered_ > 0;
-  batch.writes = batch.whole ? std::exchange(pending_, {}) : TakeRequests();
-  urgent_ -= batch.whole ? urgent_ : requests_;
-  requests_ = 0;
-  ordered_ = 0;
+  batch.whole = whole;
+  batch.writes = whole ? std::exchange(pending_, {}) : TakeRequests();
+  urgent_ -= whole ? urgent_ : batch.writes.size();
+  requests_ = whole ? 0 : ordered_;
+  if (whole) ordered_ = 0;
   in_batch_ = batch.writes.size();
   return batch;
 }
 
 Store::Writes Store::TakeRequests() {
-  const auto first = std::stable_partition(pending_.begin(), pending_.end(),
-                                           [](const Write& write) { return write.lasting; });
+  const auto first =
+      std::stable_partition(pending_.begin(), pending_.end(),
+                            [](const Write& write) { return write.lasting || write.ordered; });
   Writes requests(std::make_move_iterator(first), std::make_move_iterator(pending_.end()));
   pending_.erase(first, pending_.end());
   return requests;
@@ -320,12 +353,21 @@ void Store::MarkSuperseded(Writes& batch) const {
 
 // ---- writing them ----
 
+size_t Store::GroupEnd(const Writes& batch, size_t first, size_t most) {
+  size_t end = first, bytes = 0;
+  while (end < batch.size() && end - first < most &&
+         (end == first || bytes + batch[end].bytes <= kMostGroupBytes)) {
+    bytes += batch[end++].bytes;
+  }
+  return end;
+}
+
 absl::Status Store::CommitBatch(Writes& batch) {
   size_t first = 0;
   size_t group = std::max<size_t>(batch.size(), 1);
   absl::Status status;
   do {
-    const size_t last = std::min(first + group, batch.size());
+    const size_t last = GroupEnd(batch, first, group);
     status = CommitGroup(batch, first, last);
     if (status.ok()) {
       first = last;
@@ -344,10 +386,20 @@ absl::Status Store::CommitRequestsAlone(Writes& batch, size_t first, const absl:
   absl::Status failed = first < batch.size() ? absl::OkStatus() : full;
   for (size_t i = first; i < batch.size(); ++i) {
     const bool alone = !batch[i].lasting && !batch[i].ordered;
-    const absl::Status status = alone ? CommitGroup(batch, i, i + 1) : full;
+    const absl::Status status = alone ? CommitRequest(batch, i) : full;
     if (!status.ok()) failed = status;
   }
   return failed;
+}
+
+absl::Status Store::CommitRequest(Writes& batch, size_t request) {
+  const absl::Status status = CommitGroup(batch, request, request + 1);
+  const bool needs_room =
+      absl::IsResourceExhausted(status) && batch[request].frees_space && reserve_.held();
+  if (!needs_room) return status;
+  reserve_.Release();
+  WriteLogBack();  // the file may grow now, and the log begins anew
+  return CommitGroup(batch, request, request + 1);
 }
 
 absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
@@ -393,10 +445,6 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
 // After a failure even an empty group writes something, because only a write shows that the disk
 // works.
 absl::Status Store::BeginGroup() {
-  {
-    std::lock_guard lock(mutex_);
-    group_begin_ = Clock::now();
-  }
   const absl::Status begun = writer_->Execute("BEGIN IMMEDIATE");
   if (!begun.ok() || !failing()) return begun;
   return writer_->Execute(absl::StrCat("PRAGMA user_version = ", kSchemaVersion));
@@ -404,6 +452,41 @@ absl::Status Store::BeginGroup() {
 
 // Frames that cannot be written back now stay in the log.
 void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").IgnoreError(); }
+
+void Store::Sweep() {
+  bool swept_before = false, is_failing = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (closing_ || sweep_is_damaged_ || Clock::now() < next_sweep_) return;
+    swept_before = sweeping_;
+    is_failing = failing_;
+  }
+  const absl::StatusOr<bool> swept = sweeper_.Step(*writer_);
+  const bool has_ended = swept.ok() && !*swept;
+  if (is_failing && swept.ok() && *swept && reserve_.held()) reserve_.Release();
+  // The file gets shorter when the log is written back. A full disk has no room for a longer log.
+  if (is_failing || !swept.ok() || (swept_before && has_ended)) WriteLogBack();
+  if (has_ended && !is_failing && !reserve_.held() && next_reserve_ <= Clock::now()) {
+    reserve_.Take();
+    next_reserve_ = Clock::now() + kBetweenReserves;
+  }
+  NoteSweep(swept);
+}
+
+// A step that fails is tried again later. Damage is not: it would be found each time.
+void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
+  const bool is_damage = absl::IsDataLoss(swept.status());
+  if (is_damage) {
+    LogError(absl::StrCat("the space of deleted jobs is not freed: ", Text(swept.status())));
+  } else if (!swept.ok()) {
+    NoteHealth(swept.status());
+  }
+  std::lock_guard lock(mutex_);
+  sweeping_ = swept.ok() ? *swept : sweeping_;
+  sweep_advances_ = swept.ok() && *swept;
+  sweep_is_damaged_ = is_damage;
+  next_sweep_ = swept.ok() ? Clock::now() : Clock::now() + options_.retry;
+}
 
 // ---- what became of them ----
 
@@ -426,7 +509,6 @@ void Store::Settle(Batch batch, const absl::Status& status) {
 void Store::Requeue(Writes again, size_t freed) {
   std::lock_guard lock(mutex_);
   in_batch_ = 0;
-  group_begin_.reset();
   bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
   for (const Write& write : again) {

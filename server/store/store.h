@@ -20,9 +20,12 @@
 //   - If the disk is full, the store writes the log back into the file, so that the log's space can
 //     be used again. It writes records in smaller and smaller groups. It tries requests alone and
 //     before earlier records, because requests may free space. They succeed while the log has room.
-//     The log has no room left when the file has no room for the log's contents either.
+//     The log has no room left when the file has no room for the log's contents either; then a
+//     request that frees space gets the room of a reserve (reserve.h), and records wait until the
+//     space is free.
 // If the disk hangs (`stalled`), the store refuses new requests until the disk answers; earlier
 // requests wait.
+// What deleted jobs held is freed a little at a time, between other writes (sweeper.h).
 // A write that can never succeed (a violated constraint, too big) is refused alone, and the other
 // writes of its group are committed.
 #ifndef BALLPISTON_SERVER_STORE_STORE_H_
@@ -45,7 +48,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/store/point_tables.h"
+#include "server/store/reserve.h"
 #include "server/store/sqlite.h"
+#include "server/store/sweeper.h"
 
 namespace ballpiston::server {
 
@@ -62,11 +67,13 @@ class Store {
   struct Options {
     std::chrono::milliseconds delay{100};
     std::chrono::milliseconds retry{1000};  // after a failure of the disk
-    std::chrono::milliseconds stall{5000};  // a commit that takes longer: the disk hangs
+    std::chrono::milliseconds stall{5000};  // a call of the disk that takes longer: it hangs
     int readers = 4;                        // read-only connections
     size_t max_pending = 10'000;            // AwaitRoom waits above it,
     size_t max_pending_bytes = 64 << 20;    // and above this
-    std::string vfs = {};                   // of SQLite; empty: the operating system's
+    // Of disk space, for deletions: more than the log can hold that the file has no room for.
+    size_t reserve_bytes = 16 << 20;
+    std::string vfs = {};  // of SQLite; empty: the operating system's
   };
 
   // Errors as OpenStoreFile.
@@ -76,6 +83,8 @@ class Store {
   // Returns when the change is on disk, after `done`. If the disk hangs, returns UNAVAILABLE at
   // once and does not run the change.
   absl::Status Commit(Change change, Done done = nullptr);
+  // As Commit, for a change after which there will be more room.
+  absl::Status CommitDeletion(Change change);
 
   void Record(Change change, Done done = nullptr);
   // As Record, but without delay.
@@ -104,7 +113,7 @@ class Store {
   // The last write failed because of the disk.
   bool failing() const;
 
-  // A commit has been in progress for longer than Options::stall: the disk hangs.
+  // A call of the disk has been in progress for longer than Options::stall: the disk hangs.
   bool stalled() const;
 
   // For a shutdown: AwaitRoom no longer waits, and failed writes are not retried.
@@ -132,9 +141,10 @@ class Store {
     bool urgent = false;
     bool lasting = true;   // retried after a failure
     bool ordered = false;  // a request that must follow all earlier writes
-    size_t bytes = 0;      // of memory, about
-    int64_t job = 0;       // of a checkpoint or a result
-    int64_t point = -1;    // of a checkpoint or a result
+    bool frees_space = false;
+    size_t bytes = 0;    // of memory, about
+    int64_t job = 0;     // of a checkpoint or a result
+    int64_t point = -1;  // of a checkpoint or a result
     bool is_result = false;
     bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
 
@@ -158,11 +168,14 @@ class Store {
   void CloseReaders();
 
   void Post(Write write);
-  absl::Status Await(Change change, Done done, bool ordered);
+  absl::Status Await(Write write);
   void WriteUntilClosed();
-  std::optional<Batch> AwaitBatch();
+  bool AwaitWork();  // false: closed, and nothing is left to write
+  std::optional<Batch> TakeBatch();
   bool BatchIsDue(Clock::time_point now) const;
-  Batch TakePending(bool retry);
+  bool SweepIsDue(Clock::time_point now) const;
+  std::optional<Clock::time_point> NextDue() const;
+  Batch TakePending(bool whole);
   Writes TakeRequests();
   void MarkSuperseded(Writes& batch) const;
 
@@ -173,7 +186,11 @@ class Store {
   absl::Status CommitGroup(Writes& batch, size_t first, size_t last);
   absl::Status TryGroup(Writes& batch, size_t first, size_t last, std::optional<size_t>& culprit);
   absl::Status BeginGroup();
+  absl::Status CommitRequest(Writes& batch, size_t request);
+  static size_t GroupEnd(const Writes& batch, size_t first, size_t most);
   void WriteLogBack();
+  void Sweep();
+  void NoteSweep(const absl::StatusOr<bool>& swept);
 
   void Settle(Batch batch, const absl::Status& status);
   void Requeue(Writes again, size_t freed);
@@ -182,7 +199,11 @@ class Store {
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  std::unique_ptr<Database> writer_;  // only the store's thread uses it
+  // Only the store's thread uses these three.
+  std::unique_ptr<Database> writer_;
+  Sweeper sweeper_;
+  Reserve reserve_;
+  const std::shared_ptr<const DiskCalls> disk_calls_;
 
   std::mutex readers_mutex_;
   std::condition_variable reader_is_free_;
@@ -194,11 +215,10 @@ class Store {
   std::condition_variable written_;
   Writes pending_;
   size_t in_batch_ = 0;
-  std::optional<Clock::time_point> group_begin_;  // of the group that is being written
-  size_t bytes_ = 0;                              // of pending_ and of the batch
-  size_t urgent_ = 0;                             // among pending_; requests are
-  size_t requests_ = 0;                           // among pending_
-  size_t ordered_ = 0;                            // among pending_
+  size_t bytes_ = 0;     // of pending_ and of the batch
+  size_t urgent_ = 0;    // among pending_; requests are
+  size_t requests_ = 0;  // among pending_
+  size_t ordered_ = 0;   // among pending_
   bool failing_ = false;
   std::string failure_;  // the last failure that was logged
   Clock::time_point retry_time_;
@@ -207,6 +227,11 @@ class Store {
   int64_t commits_ = 0;
   int64_t checkpoints_written_ = 0;
   int64_t failures_ = 0;
+  bool sweeping_ = false;          // the last step found something to do
+  bool sweep_advances_ = false;    // and has done it
+  bool sweep_is_damaged_ = false;  // until the next start
+  Clock::time_point next_sweep_;
+  Clock::time_point next_reserve_;
   std::thread thread_;
 };
 

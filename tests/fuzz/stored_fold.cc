@@ -52,8 +52,8 @@ void RequireResumed(const PointExperiment& experiment, const FoldState& state) {
   Require(merged.samples == state.complete.samples + state.partial.samples, "no sample is lost");
   Require(merged.HasShapeOf(experiment.EmptyResult()), "merging keeps the shape");
   const storage::Result result =
-      server::ResultRecordOf(3, experiment, merged, server::Details::kIncluded);
-  Require(server::ResultFromBytes(server::ResultRecordBytes(result)).ok(),
+      server::ResultRecordOf(3, experiment, experiment.Summarize(merged));
+  Require(server::ResultFromBytes(server::RecordBytes(result)).ok(),
           "what was merged can be stored");
 }
 

@@ -16,6 +16,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "server/store/check_store.h"
+#include "server/store/job_table.h"
 #include "tests/fault/store/fault_disk.h"
 #include "tests/fault/store/power_cut.h"
 #include "tests/fault/store/service_on_disk.h"
@@ -305,6 +306,36 @@ TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   EXPECT_TRUE(scene.IsDeleted());
   EXPECT_OK(scene.Cancel());
   EXPECT_EQ(scene.service().AwaitEnd(scene.running()).state(), EnsembleJob::CANCELLED);
+}
+
+void RecordLarge(Store& store, int64_t job) {
+  for (int point = 0; point < 100; ++point) {
+    store.RecordResult(job, {.point = point, .result = "x", .details = std::string(20'000, 'x')});
+  }
+}
+
+// Two jobs of 2 MB each. The file has no room for the first one's log, so that not even a deletion
+// has room in the log.
+TEST(DiskFailure, OnAFullDiskTheReserveHelpsToDeleteALargeJobForAnother) {
+  FaultDisk disk;
+  Store::Options options;
+  options.retry = std::chrono::milliseconds(1);
+  options.reserve_bytes = 4'000'000;
+  options.vfs = disk.vfs();
+  ASSERT_OK_AND_ASSIGN(const auto store, Store::Open(kStorePath, options));
+  RecordLarge(*store, 7);
+  AwaitWritten(*store);
+  disk.SetCapacity(disk.bytes_used() + 200'000);
+  RecordLarge(*store, 8);
+  while (!store->failing()) std::this_thread::yield();
+  ASSERT_OK(store->CommitDeletion([](Database& database) { return DeleteJob(database, 7); }));
+  AwaitWritten(*store);
+  const auto count = [](Database& database) {
+    const auto results = CountResults(database, 8);
+    EXPECT_EQ(results.value_or(0), 100);
+    return results.status();
+  };
+  EXPECT_OK(store->Read(count));
 }
 
 // Results too big for the disk wait, and do not hold up those who would make room.

@@ -34,11 +34,11 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string ResultWithHistogram() {
-  storage::Result result;
-  auto* histogram = result.add_histograms();
+std::string DetailsWithHistogram() {
+  storage::Details details;
+  auto* histogram = details.add_histograms();
   for (uint64_t i = 0; i < 200; ++i) histogram->add_counts(1000 + i);
-  return ResultRecordBytes(result);
+  return RecordBytes(details);
 }
 
 JobRecord NewJob(int number) {
@@ -52,11 +52,11 @@ JobRecord NewJob(int number) {
   return record;
 }
 
-absl::Status AddEnded(Database& database, int number, const std::string& result) {
+absl::Status AddEnded(Database& database, int number, const std::string& details) {
   JobRecord record = NewJob(number);
   const absl::Status made = InsertJob(database, record);
   if (!made.ok()) return made;
-  const auto kept = InsertResult(database, record.sequence, {0, 8, result});
+  const auto kept = InsertResult(database, record.sequence, {0, 8, "", details});
   if (!kept.ok()) return kept.status();
   return EndJob(database, record.sequence,
                 {v1::EnsembleJob::SUCCEEDED, absl::UnixEpoch(), "", 1, 8, 0.1})
@@ -110,7 +110,7 @@ class ReadyInTime : public testing::Test {
 };
 
 TEST_F(ReadyInTime, WithAHundredThousandEndedJobs) {
-  const std::string result = ResultWithHistogram();
+  const std::string result = DetailsWithHistogram();
   Fill(File(), [&](Database& database) {
     for (int i = 0; i < kEndedJobs; ++i) {
       if (const absl::Status added = AddEnded(database, i, result); !added.ok()) return added;

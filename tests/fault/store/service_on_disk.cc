@@ -24,6 +24,7 @@ Store::Options StoreOptions(const FaultDisk& disk) {
   Store::Options options;
   options.delay = std::chrono::hours(1);
   options.retry = std::chrono::milliseconds(1);
+  options.reserve_bytes = 0;  // a disk of a few kB, copied at each cut
   options.vfs = disk.vfs();
   return options;
 }

@@ -17,6 +17,7 @@
 #include "server/convert/spec.h"
 #include "tests/server/error_details.h"
 #include "tests/server/fake_experiments.h"
+#include "tests/server/hanging_disk.h"
 #include "tests/server/own_channel.h"
 #include "tests/server/requests.h"
 #include "tests/server/running_server.h"
@@ -162,25 +163,28 @@ TEST(ServerStatus, IsServedToAnybodyWithAccess) {
 
 class HangingDiskTest : public ServerStatusTest {
  protected:
-  HangingDiskTest() : ServerStatusTest({.stall = std::chrono::milliseconds(1)}) {
-    gate_.AwaitWaiting(1);
-    while (!store_->stalled()) std::this_thread::yield();
-  }
+  HangingDiskTest() : HangingDiskTest(std::make_unique<HangingDisk>()) {}
   ~HangingDiskTest() override {
-    gate_.Open();
+    disk_->Resume();
     hanging_.join();
+    store_->Close();
   }
 
  private:
-  void Hang() {
-    const auto hang = [this](Database&) {
-      gate_.Pass(std::stop_token());
-      return absl::OkStatus();
-    };
-    store_->Commit(hang).IgnoreError();
+  explicit HangingDiskTest(std::unique_ptr<HangingDisk> disk)
+      : ServerStatusTest({.stall = std::chrono::milliseconds(1), .vfs = disk->vfs()}),
+        disk_(std::move(disk)) {
+    disk_->Hang();
+    hanging_ = std::thread([this] {
+      const auto write = [](Database& database) { return InsertChunk(database, 9, 0, 0, "x"); };
+      EXPECT_OK(store_->Commit(write));
+    });
+    disk_->AwaitHanging();
+    while (!store_->stalled()) std::this_thread::yield();
   }
 
-  std::thread hanging_{[this] { Hang(); }};
+  std::unique_ptr<HangingDisk> disk_;
+  std::thread hanging_;
 };
 
 TEST_F(HangingDiskTest, TheStateIsStoreFailing) {

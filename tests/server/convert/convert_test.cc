@@ -284,8 +284,10 @@ TEST(Spec, NotANumberAndInfinityAreViolations) {
 }
 
 v1::PointResult PointResultOf(size_t index, const PointExperiment& experiment,
-                              const BlockResult& merged, Details details) {
-  return PointResultMessage(ResultRecordOf(index, experiment, merged, details));
+                              const BlockResult& merged) {
+  const PointSummary summary = experiment.Summarize(merged);
+  return PointResultMessage(ResultRecordOf(index, experiment, summary), DetailsRecordOf(summary),
+                            kEquilibrium);
 }
 
 TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
@@ -296,7 +298,7 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   merged.moments.resize(1);
   merged.moments[0].Add(0.25);  // one sample: no standard error, no z-score
   merged.health.max_energy_error = kNan;
-  const v1::PointResult result = PointResultOf(3, *experiment, merged, Details::kIncluded);
+  const v1::PointResult result = PointResultOf(3, *experiment, merged);
   ASSERT_EQ(result.estimates_size(), 1);
   EXPECT_EQ(result.index(), 3);
   EXPECT_EQ(result.estimates(0).value(), 0.25);
@@ -306,7 +308,7 @@ TEST(PointResult, ValuesThatDoNotExistAreLeftOut) {
   EXPECT_EQ(result.health().max_energy_error(), 0);
   EXPECT_FALSE(result.parameters().has_epsilon());
   merged.moments[0].mean = kNan;
-  EXPECT_EQ(PointResultOf(3, *experiment, merged, Details::kIncluded).estimates_size(), 0);
+  EXPECT_EQ(PointResultOf(3, *experiment, merged).estimates_size(), 0);
 }
 
 // An answer with everything that a result can hold.
@@ -330,8 +332,7 @@ class ToldExperiment : public PointExperiment {
 };
 
 TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
-  const v1::PointResult result =
-      PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult(), Details::kIncluded);
+  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
   ASSERT_EQ(result.estimates_size(), 3);
   EXPECT_EQ(result.estimates(0).limit(), 3);
   EXPECT_FALSE(result.estimates(0).has_noise_floor());
@@ -352,14 +353,24 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
   }
 }
 
-TEST(PointResult, DetailsCanBeLeftOutOrCleared) {
-  const ToldExperiment told(FakeSpec(1, 1));
-  const v1::PointResult without = PointResultOf(0, told, BlockResult(), Details::kLeftOut);
-  EXPECT_EQ(without.curves_size(), 0);
-  EXPECT_EQ(without.estimates_size(), 3);
-  storage::Result cleared = ResultRecordOf(0, told, BlockResult(), Details::kIncluded);
-  ClearDetails(cleared);
-  EXPECT_EQ(PointResultMessage(cleared).SerializeAsString(), without.SerializeAsString());
+// They are functions of the parameters alone, and are not stored.
+TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
+  const CheckedSpec checked = CheckSpec(OneFirstHit());
+  const auto experiment = PointExperiment::Create(checked.spec, 0);
+  BlockResult merged = experiment->EmptyResult();
+  merged.histograms[0].counts[17] = 3;
+  const PointSummary summary = experiment->Summarize(merged);
+  const storage::Details details = DetailsRecordOf(summary);
+  EXPECT_LT(details.ByteSizeLong(), 2500);
+  const v1::PointResult result =
+      PointResultMessage(ResultRecordOf(0, *experiment, summary), details, kFirstHit);
+  double sum = 0;
+  for (const v1::Histogram& histogram : result.histograms()) {
+    ASSERT_EQ(histogram.expected_probabilities_size(), histogram.counts_size());
+    for (const double probability : histogram.expected_probabilities()) sum += probability;
+  }
+  EXPECT_EQ(result.histograms(0).counts(17), 3);
+  EXPECT_NEAR(sum, 1, 1e-12);  // rounding of a thousand summands
 }
 
 // Relative in an answer, absolute in a result; of the first estimate alone, unless it is 0.
@@ -370,7 +381,7 @@ TEST(PointResult, TheModelsErrorAndReasonComeFromTheAnswer) {
   const auto answered = [&](std::optional<double> error) {
     const auto experiment = PointExperiment::Create(
         spec, 0, {.model = Model::kSpectrum, .reason = "because", .model_error = error});
-    return PointResultOf(0, *experiment, BlockResult(), Details::kLeftOut);
+    return PointResultOf(0, *experiment, BlockResult());
   };
   const v1::PointResult off = answered(0.25);
   EXPECT_EQ(off.model(), v1::EnsembleSpec::SPECTRUM);

@@ -1,0 +1,42 @@
+// Watches how long the disk takes to answer a connection that writes.
+//
+// A transaction may take long. A single call of the disk that takes seconds means that it hangs.
+// SQLite itself tells nothing of the calls, so their functions are replaced in its files.
+#ifndef BALLPISTON_SERVER_STORE_DISK_CALLS_H_
+#define BALLPISTON_SERVER_STORE_DISK_CALLS_H_
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+struct sqlite3_file;
+
+namespace ballpiston::server {
+
+class DiskCalls {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  DiskCalls();
+  ~DiskCalls();
+  DiskCalls(const DiskCalls&) = delete;
+  DiskCalls& operator=(const DiskCalls&) = delete;
+
+  // This must outlive the file's connection. The file's writes pass `failpoint`, if there is one.
+  void Watch(sqlite3_file& file, const char* failpoint = nullptr);
+
+  // How long the present call has taken; 0 between calls. Thread-safe.
+  Clock::duration Waiting() const;
+
+ private:
+  struct Methods;
+  class Call;
+
+  std::vector<std::unique_ptr<Methods>> methods_;  // of the watched files
+  std::atomic<Clock::rep> begin_ = 0;              // of the present call; 0: none
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_DISK_CALLS_H_

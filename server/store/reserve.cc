@@ -1,0 +1,56 @@
+#include "server/store/reserve.h"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/cleanup/cleanup.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr size_t kPieceBytes = size_t{64} << 10;
+
+bool WriteZeros(sqlite3_vfs& files, const std::string& path, size_t bytes) {
+  // SQLite reads the path again later, and wants two zeros at its end.
+  const std::string name = path + std::string(2, '\0');
+  const auto memory = std::make_unique<std::max_align_t[]>(
+      static_cast<size_t>(files.szOsFile) / sizeof(std::max_align_t) + 1);
+  sqlite3_file& file = *reinterpret_cast<sqlite3_file*>(memory.get());
+  const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_SUPER_JOURNAL;
+  if (files.xOpen(&files, name.c_str(), &file, flags, nullptr) != SQLITE_OK) return false;
+  const absl::Cleanup close = [&] { file.pMethods->xClose(&file); };
+  sqlite3_int64 present = 0;
+  file.pMethods->xFileSize(&file, &present);
+  if (present >= static_cast<sqlite3_int64>(bytes)) return true;  // of an earlier process
+  const std::vector<char> zeros(std::min(bytes, kPieceBytes), '\0');
+  for (size_t written = 0; written < bytes; written += zeros.size()) {
+    const int count = static_cast<int>(std::min(zeros.size(), bytes - written));
+    const auto offset = static_cast<sqlite3_int64>(written);
+    if (file.pMethods->xWrite(&file, zeros.data(), count, offset) != SQLITE_OK) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Reserve::Reserve(const std::string& store, size_t bytes, std::string vfs)
+    : path_(store + "-reserve"), bytes_(bytes), vfs_(std::move(vfs)) {}
+
+void Reserve::Take() {
+  sqlite3_vfs* const files = sqlite3_vfs_find(vfs_.empty() ? nullptr : vfs_.c_str());
+  if (bytes_ == 0 || files == nullptr) return;
+  held_ = WriteZeros(*files, path_, bytes_);
+  if (!held_) Release();
+}
+
+void Reserve::Release() {
+  sqlite3_vfs* const files = sqlite3_vfs_find(vfs_.empty() ? nullptr : vfs_.c_str());
+  held_ = false;
+  if (files != nullptr) files->xDelete(files, path_.c_str(), 0);
+}
+
+}  // namespace ballpiston::server

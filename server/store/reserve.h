@@ -1,0 +1,32 @@
+// Space on the disk that is kept for the deletion of jobs. On a full disk even a deletion needs
+// some room in the log before it can free any.
+//
+// It is a file of zeros beside the store. Errors are not reported: without the reserve the store
+// works, and a deletion on a full disk may fail.
+#ifndef BALLPISTON_SERVER_STORE_RESERVE_H_
+#define BALLPISTON_SERVER_STORE_RESERVE_H_
+
+#include <cstddef>
+#include <string>
+
+namespace ballpiston::server {
+
+class Reserve {
+ public:
+  // `vfs` as in Database::Open. Makes nothing yet.
+  Reserve(const std::string& store, size_t bytes, std::string vfs);
+
+  bool held() const { return held_; }
+  void Take();     // writes the file, if there is room
+  void Release();  // removes it
+
+ private:
+  const std::string path_;
+  const size_t bytes_;
+  const std::string vfs_;
+  bool held_ = false;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_STORE_RESERVE_H_

@@ -1,0 +1,118 @@
+#include "server/store/sweeper.h"
+
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/store/backup.h"
+#include "server/store/job_table.h"
+#include "server/store/schema.h"
+#include "server/store/store.h"
+#include "tests/server/store_access.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+constexpr int64_t kMiB = 1 << 20;
+
+class SweeperTest : public testing::Test {
+ protected:
+  std::unique_ptr<Store> Open() { return *Store::Open(path_, {.readers = 1, .reserve_bytes = 0}); }
+  int64_t FileBytes() const { return static_cast<int64_t>(std::filesystem::file_size(path_)); }
+
+  // 20 MB of details.
+  static int64_t AddLargeJob(Store& store, const std::string& id) {
+    JobRecord record;
+    record.id = id;
+    record.points = 1000;
+    EXPECT_OK(store.Commit([&](Database& database) { return InsertJob(database, record); }));
+    for (int64_t point = 0; point < record.points; ++point) {
+      store.RecordResult(record.sequence,
+                         {.point = point, .result = "r", .details = std::string(20'000, 'd')});
+    }
+    EXPECT_OK(store.Flush());
+    EXPECT_OK(store.Commit([&](Database& database) {
+      JobEnd end;
+      end.points_done = record.points;
+      return EndJob(database, record.sequence, end).status();
+    }));
+    return record.sequence;
+  }
+
+  static void Delete(Store& store, int64_t job) {
+    ASSERT_OK(store.CommitDeletion([=](Database& database) { return DeleteJob(database, job); }));
+  }
+
+  static int64_t Count(Store& store, const std::string& table) {
+    return ReadFrom(store, [&](Database& database) {
+      return database.Integer("SELECT count(*) FROM " + table);
+    });
+  }
+
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.File("store.sqlite3");
+};
+
+TEST_F(SweeperTest, TheFileShrinksWhenAJobIsDeleted) {
+  const auto store = Open();
+  const int64_t first = AddLargeJob(*store, "a");
+  AddLargeJob(*store, "b");
+  Delete(*store, first);
+  while (FileBytes() > 23 * kMiB) std::this_thread::yield();  // 5 pages a point, and 256 free ones
+  EXPECT_EQ(Count(*store, "details"), 1000);
+  EXPECT_GT(FileBytes(), 20 * kMiB);  // those of "b"
+}
+
+TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
+  {
+    const auto database = *OpenStoreFile(path_);
+    const auto insert = [&](const char* sql) { return database->Execute(sql); };
+    ASSERT_OK(insert("INSERT INTO deleted (job) VALUES (7)"));
+    ASSERT_OK(insert("INSERT INTO details (job, point, record) VALUES (7, 3, x'00')"));
+    ASSERT_OK(
+        insert("INSERT INTO results (job, point, samples, result, finish)"
+               " VALUES (7, 3, 1, x'00', 1)"));
+    ASSERT_OK(insert("INSERT INTO details (job, point, record) VALUES (8, 3, x'00')"));
+  }
+  const auto store = Open();
+  ASSERT_OK(store->Flush());
+  while (Count(*store, "deleted") > 0) std::this_thread::yield();
+  EXPECT_EQ(Count(*store, "details"), 1);
+  EXPECT_EQ(Count(*store, "results"), 0);
+}
+
+// A step ends soon, so that another write need not wait for the whole.
+TEST_F(SweeperTest, AStepIsShort) {
+  const auto database = *OpenStoreFile(path_);
+  ASSERT_OK(database->Execute(
+      "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 9999)"
+      " INSERT INTO details (job, point, record) SELECT 7, i, zeroblob(1000) FROM n"));
+  ASSERT_OK(database->Execute("INSERT INTO deleted (job) VALUES (7)"));
+  Sweeper sweeper;
+  int steps = 0;
+  while (*sweeper.Step(*database)) ++steps;
+  EXPECT_GT(steps, 5);
+  EXPECT_LE(*database->Integer("PRAGMA freelist_count"), 256);
+}
+
+TEST_F(SweeperTest, ABackupHasNoFreePages) {
+  {
+    const auto database = *OpenStoreFile(path_);
+    ASSERT_OK(
+        database->Execute("INSERT INTO pilots VALUES (hex(zeroblob(500000)), 1, 1, 1, 1, 1)"));
+    ASSERT_OK(database->Execute("DELETE FROM pilots"));
+    EXPECT_GT(*database->Integer("PRAGMA freelist_count"), 200);
+  }
+  const std::string copy = folder_.File("copy");
+  ASSERT_OK(BackupStore(path_, copy));
+  const auto database = *OpenStoreToRead(copy);
+  EXPECT_EQ(*database->Integer("PRAGMA freelist_count"), 0);
+  EXPECT_EQ(*database->Integer("PRAGMA auto_vacuum"), 2);  // incremental, as in the store
+}
+
+}  // namespace
+}  // namespace ballpiston::server
