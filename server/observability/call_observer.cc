@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -19,18 +20,15 @@ using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 using Clock = std::chrono::steady_clock;
 
-const char* TypeName(ServerRpcInfo::Type type) {
-  switch (type) {
-    case ServerRpcInfo::Type::UNARY:
-      return "unary";
-    case ServerRpcInfo::Type::CLIENT_STREAMING:
-      return "client_stream";
-    case ServerRpcInfo::Type::SERVER_STREAMING:
-      return "server_stream";
-    case ServerRpcInfo::Type::BIDI_STREAMING:
-      return "bidi_stream";
-  }
-  return "unary";
+// The reasons that are known are counted from zero: Prometheus does not see the first step of a
+// counter that appears with 1.
+prometheus::Family<prometheus::Counter>& CountByReason(prometheus::Registry& registry,
+                                                       const std::string& name,
+                                                       const std::string& help,
+                                                       const std::vector<std::string>& reasons) {
+  auto& family = prometheus::BuildCounter().Name(name).Help(help).Register(registry);
+  for (const std::string& reason : reasons) family.Add({{"reason", reason}});
+  return family;
 }
 
 std::string ReasonIn(const std::string& error_details) {
@@ -68,6 +66,18 @@ Verdict VerdictOn(const FailedCall& call) {
   }
 }
 
+CallObserver::CallObserver()
+    : statistics_(registry_),
+      not_let_in_(CountByReason(
+          registry_, "ballpiston_failed_authentications_total",
+          "Calls without the credentials or the role they need.",
+          {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"})),
+      limits_reached_(
+          CountByReason(registry_, "ballpiston_limit_refusals_total",
+                        "Calls refused because a limit was reached.",
+                        {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS",
+                         "TOO_MANY_SAMPLES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"})) {}
+
 // One call. Its hooks run one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  public:
@@ -75,9 +85,9 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
       : observer_(observer),
         call_(*info.server_context()),
         path_(info.method()),
-        counts_(observer.statistics_.Of(path_, TypeName(info.type()))),
+        counts_(observer.statistics_.Of(path_, info.type())),
         begin_(Clock::now()) {
-    counts_.Began();
+    counts_.began->Increment();
   }
 
   ~Interceptor() override {
@@ -127,7 +137,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
   const std::string path_;
-  MethodCounts& counts_;
+  const MethodCounts& counts_;
   const Clock::time_point begin_;
   std::atomic<bool> ended_ = false;
 };
@@ -169,8 +179,9 @@ void CallObserver::Failed(const FailedCall& call) {
   const std::string reason =
       call.reason.empty() ? absl::StatusCodeToString(call.code) : call.reason;
   if (verdict != Verdict::kServerFailed) {
-    std::lock_guard lock(mutex_);
-    ++(verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)[reason];
+    (verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)
+        .Add({{"reason", reason}})
+        .Increment();
   }
   WriteLine(call, verdict);
 }
@@ -190,16 +201,6 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
        {"reason", call.reason},
        {"seconds", call.seconds},
        {"lines_left_out", *left_out == 0 ? "" : absl::StrCat(*left_out)}});
-}
-
-std::map<std::string, uint64_t> CallObserver::not_let_in() const {
-  std::lock_guard lock(mutex_);
-  return not_let_in_;
-}
-
-std::map<std::string, uint64_t> CallObserver::limits_reached() const {
-  std::lock_guard lock(mutex_);
-  return limits_reached_;
 }
 
 }  // namespace ballpiston::server
