@@ -4,7 +4,6 @@
 #include <chrono>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -19,17 +18,6 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 using Clock = std::chrono::steady_clock;
-
-// The reasons that are known are counted from zero: Prometheus does not see the first step of a
-// counter that appears with 1.
-prometheus::Family<prometheus::Counter>& CountByReason(prometheus::Registry& registry,
-                                                       const std::string& name,
-                                                       const std::string& help,
-                                                       const std::vector<std::string>& reasons) {
-  auto& family = prometheus::BuildCounter().Name(name).Help(help).Register(registry);
-  for (const std::string& reason : reasons) family.Add({{"reason", reason}});
-  return family;
-}
 
 std::string ReasonIn(const std::string& error_details) {
   google::rpc::Status status;
@@ -66,17 +54,28 @@ Verdict VerdictOn(const FailedCall& call) {
   }
 }
 
+// The reasons that are known are counted from zero: Prometheus does not see the first step of a
+// counter that appears with 1.
 CallObserver::CallObserver()
     : statistics_(registry_),
-      not_let_in_(CountByReason(
-          registry_, "ballpiston_failed_authentications_total",
-          "Calls without the credentials or the role they need.",
-          {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"})),
-      limits_reached_(
-          CountByReason(registry_, "ballpiston_limit_refusals_total",
-                        "Calls refused because a limit was reached.",
-                        {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS",
-                         "TOO_MANY_SAMPLES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"})) {}
+      not_let_in_(prometheus::BuildCounter()
+                      .Name("ballpiston_failed_authentications_total")
+                      .Help("Calls without the credentials or the role they need.")
+                      .Register(registry_)),
+      limits_reached_(prometheus::BuildCounter()
+                          .Name("ballpiston_limit_refusals_total")
+                          .Help("Calls refused because a limit was reached.")
+                          .Register(registry_)) {
+  for (const char* reason :
+       {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
+    not_let_in_.Add({{"reason", reason}});
+  }
+  for (const char* reason :
+       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS",
+        "TOO_MANY_SAMPLES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"}) {
+    limits_reached_.Add({{"reason", reason}});
+  }
+}
 
 // One call. Its hooks run one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {

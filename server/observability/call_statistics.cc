@@ -1,6 +1,5 @@
 #include "server/observability/call_statistics.h"
 
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -55,7 +54,7 @@ CallStatistics::CallStatistics(prometheus::Registry& registry)
                    .Help("From a call's begin to its end.")
                    .Register(registry)) {}
 
-MethodCounts CallStatistics::NewCounts(absl::string_view path, MethodType type) {
+MethodCounts CallStatistics::NewCounts(const std::string& path, MethodType type) {
   // Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
   const std::vector<double> buckets = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
   prometheus::Labels labels = LabelsOf(path, type);
@@ -67,15 +66,9 @@ MethodCounts CallStatistics::NewCounts(absl::string_view path, MethodType type) 
   return counts;
 }
 
-const MethodCounts& CallStatistics::Of(absl::string_view path, MethodType type) {
-  const std::string_view key(path.data(), path.size());
-  {
-    std::shared_lock lock(mutex_);
-    const auto found = methods_.find(key);
-    if (found != methods_.end()) return found->second;
-  }
-  std::unique_lock lock(mutex_);
-  const auto [method, added] = methods_.try_emplace(std::string(key));
+const MethodCounts& CallStatistics::Of(const std::string& path, MethodType type) {
+  std::lock_guard lock(mutex_);
+  const auto [method, added] = methods_.try_emplace(path);
   if (added) method->second = NewCounts(path, type);
   return method->second;
 }

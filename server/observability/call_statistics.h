@@ -2,19 +2,18 @@
 // they took, in the families grpc_server_* of a registry.
 //
 // prometheus-cpp counts. The map from a method's path to its counters is ours: Family::Add, which
-// also finds a counter, builds and hashes a map of labels each time, some 0.5 us under a lock that
-// all methods share. With the map a call costs some 50 ns. Methods are those that the server has
-// registered, so their number is bounded. Thread-safe.
+// also finds a counter, builds and hashes a map of labels each time, and the three of a call would
+// take 1.3 us; with the map a call takes 0.1 us. Methods are those that the server has registered,
+// so their number is bounded. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
 
 #include <array>
 #include <map>
-#include <shared_mutex>
+#include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
-#include "absl/strings/string_view.h"
 #include "grpcpp/support/server_interceptor.h"
 #include "prometheus/counter.h"
 #include "prometheus/family.h"
@@ -40,19 +39,19 @@ class CallStatistics {
 
   // `path` is /PACKAGE.SERVICE/METHOD. The reference stays valid as long as this object. The first
   // call decides the type.
-  const MethodCounts& Of(absl::string_view path, MethodType type);
+  const MethodCounts& Of(const std::string& path, MethodType type);
 
   // Adds the methods of a service of the generated protos, with zeros, before their first call.
   void Expect(const std::string& service);
 
  private:
-  MethodCounts NewCounts(absl::string_view path, MethodType type);
+  MethodCounts NewCounts(const std::string& path, MethodType type);
 
   prometheus::Family<prometheus::Counter>& began_;
   prometheus::Family<prometheus::Counter>& ended_;
   prometheus::Family<prometheus::Histogram>& seconds_;
-  std::shared_mutex mutex_;
-  std::map<std::string, MethodCounts, std::less<>> methods_;  // by path
+  std::mutex mutex_;
+  std::map<std::string, MethodCounts> methods_;  // by path
 };
 
 }  // namespace ballpiston::server

@@ -4,8 +4,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <exception>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
@@ -93,16 +93,13 @@ MetricsEndpoint::MetricsEndpoint(ListenAddress address, Source source)
 }
 
 MetricsEndpoint::~MetricsEndpoint() {
-  std::atomic<bool> stopped = false;
-  std::thread knocking([&] {
-    while (!stopped) {
+  const std::jthread knocking([this](const std::stop_token& stopped) {
+    while (!stopped.stop_requested()) {
       Knock(address_);
       std::this_thread::sleep_for(kKnockInterval);
     }
   });
   exposer_.reset();
-  stopped = true;
-  knocking.join();
 }
 
 }  // namespace ballpiston::server
