@@ -16,13 +16,15 @@ using prometheus::MetricFamily;
 class Page {
  public:
   template <typename Number>
-  void Gauge(const std::string& name, const std::string& help, Number value, Labels labels = {}) {
+  void Gauge(const std::string& name, const std::string& help, Number value,
+             const Labels& labels = {}) {
     prometheus::BuildGauge().Name(name).Help(help).Register(registry_).Add(labels).Set(
         static_cast<double>(value));
   }
 
   template <typename Number>
-  void Counter(const std::string& name, const std::string& help, Number value, Labels labels = {}) {
+  void Counter(const std::string& name, const std::string& help, Number value,
+               const Labels& labels = {}) {
     prometheus::BuildCounter().Name(name).Help(help).Register(registry_).Add(labels).Increment(
         static_cast<double>(value));
   }
