@@ -13,7 +13,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -52,6 +52,9 @@ test-slurm: ## Run jobs on a whole Slurm cluster that the tests start on this ma
 	@cmake --build build/release --target ballpiston ballpistond slurm_test
 	@build/release/bin/slurm_test --gtest_brief=1
 
+test-alerts: ## Test the alert rules for Prometheus, with promtool
+	@scripts/test-alerts.sh
+
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
@@ -69,8 +72,8 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, stability, and ten minutes of each fuzz target
-	@status=0; for task in tsan aarch64 tidy torture test-slurm stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, test-alerts, stability, and ten minutes of each fuzz target
+	@status=0; for task in tsan aarch64 tidy torture test-slurm test-alerts stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

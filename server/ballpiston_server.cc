@@ -216,12 +216,10 @@ absl::Status BallpistonServer::StartMetrics() {
   if (options_.metrics_listen.empty()) return absl::OkStatus();
   for (const std::string& service : ServicesOfHealth().all) calls_.statistics().Expect(service);
   auto endpoint = MetricsEndpoint::Start(options_.metrics_listen, [this] {
-    std::vector<prometheus::MetricFamily> metrics = CallMetrics(calls_.statistics().Read());
     ServerSnapshot now = TakeSnapshot(context_);
     now.certificate_expiry = security_->CertificateExpiry();
-    for (auto& family : ServerMetrics(now)) {
-      metrics.push_back(std::move(family));
-    }
+    std::vector<prometheus::MetricFamily> metrics = ServerMetrics(now);
+    for (auto& family : calls_.metrics().Collect()) metrics.push_back(std::move(family));
     return metrics;
   });
   if (endpoint.ok()) metrics_ = *std::move(endpoint);

@@ -59,8 +59,6 @@ ServerSnapshot TakeSnapshot(const ServiceContext& service) {
   if (service.slurm != nullptr) snapshot.slurm = service.slurm->Status();
   AddStore(service, snapshot);
   snapshot.streams = static_cast<int64_t>(service.watches.size());
-  snapshot.failed_authentications = service.calls.not_let_in();
-  snapshot.limit_refusals = service.calls.limits_reached();
   return snapshot;
 }
 

@@ -19,20 +19,6 @@ using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 using Clock = std::chrono::steady_clock;
 
-const char* TypeName(ServerRpcInfo::Type type) {
-  switch (type) {
-    case ServerRpcInfo::Type::UNARY:
-      return "unary";
-    case ServerRpcInfo::Type::CLIENT_STREAMING:
-      return "client_stream";
-    case ServerRpcInfo::Type::SERVER_STREAMING:
-      return "server_stream";
-    case ServerRpcInfo::Type::BIDI_STREAMING:
-      return "bidi_stream";
-  }
-  return "unary";
-}
-
 std::string ReasonIn(const std::string& error_details) {
   google::rpc::Status status;
   google::rpc::ErrorInfo info;
@@ -68,6 +54,29 @@ Verdict VerdictOn(const FailedCall& call) {
   }
 }
 
+// The reasons that are known are counted from zero: Prometheus does not see the first step of a
+// counter that appears with 1.
+CallObserver::CallObserver()
+    : statistics_(registry_),
+      not_let_in_(prometheus::BuildCounter()
+                      .Name("ballpiston_failed_authentications_total")
+                      .Help("Calls without the credentials or the role they need.")
+                      .Register(registry_)),
+      limits_reached_(prometheus::BuildCounter()
+                          .Name("ballpiston_limit_refusals_total")
+                          .Help("Calls refused because a limit was reached.")
+                          .Register(registry_)) {
+  for (const char* reason :
+       {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
+    not_let_in_.Add({{"reason", reason}});
+  }
+  for (const char* reason :
+       {"QUEUE_FULL", "TOO_MANY_JOBS", "TOO_MANY_ACTIVE_POINTS", "TOO_MANY_POINTS",
+        "TOO_MANY_SAMPLES", "TOO_MANY_STREAMS", "TOO_MANY_CALLS"}) {
+    limits_reached_.Add({{"reason", reason}});
+  }
+}
+
 // One call. Its hooks run one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  public:
@@ -75,9 +84,9 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
       : observer_(observer),
         call_(*info.server_context()),
         path_(info.method()),
-        counts_(observer.statistics_.Of(path_, TypeName(info.type()))),
+        counts_(observer.statistics_.Of(path_, info.type())),
         begin_(Clock::now()) {
-    counts_.Began();
+    counts_.began->Increment();
   }
 
   ~Interceptor() override {
@@ -127,7 +136,7 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
   CallObserver& observer_;
   const grpc::ServerContextBase& call_;
   const std::string path_;
-  MethodCounts& counts_;
+  const MethodCounts& counts_;
   const Clock::time_point begin_;
   std::atomic<bool> ended_ = false;
 };
@@ -169,8 +178,9 @@ void CallObserver::Failed(const FailedCall& call) {
   const std::string reason =
       call.reason.empty() ? absl::StatusCodeToString(call.code) : call.reason;
   if (verdict != Verdict::kServerFailed) {
-    std::lock_guard lock(mutex_);
-    ++(verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)[reason];
+    (verdict == Verdict::kNotLetIn ? not_let_in_ : limits_reached_)
+        .Add({{"reason", reason}})
+        .Increment();
   }
   WriteLine(call, verdict);
 }
@@ -190,16 +200,6 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
        {"reason", call.reason},
        {"seconds", call.seconds},
        {"lines_left_out", *left_out == 0 ? "" : absl::StrCat(*left_out)}});
-}
-
-std::map<std::string, uint64_t> CallObserver::not_let_in() const {
-  std::lock_guard lock(mutex_);
-  return not_let_in_;
-}
-
-std::map<std::string, uint64_t> CallObserver::limits_reached() const {
-  std::lock_guard lock(mutex_);
-  return limits_reached_;
 }
 
 }  // namespace ballpiston::server

@@ -4,11 +4,11 @@
 // It sits inside gRPC (an interceptor), so it also sees calls that never reach their method: a
 // message that is malformed, health, reflection. A call counts as ended just before its status is
 // sent: whoever has the answer finds it counted. A method that no service offers is not counted:
-// anybody could invent any number of them. Thread-safe.
+// anybody could invent any number of them. The counters are prometheus-cpp's; no library ties them
+// to gRPC's C++ server. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,6 +17,10 @@
 #include "absl/status/status.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_interceptor.h"
+#include "prometheus/collectable.h"
+#include "prometheus/counter.h"
+#include "prometheus/family.h"
+#include "prometheus/registry.h"
 #include "server/observability/call_statistics.h"
 #include "server/observability/line_budget.h"
 
@@ -47,6 +51,8 @@ Verdict VerdictOn(const FailedCall& call);
 
 class CallObserver {
  public:
+  CallObserver();
+
   // For ServerBuilder::experimental().SetInterceptorCreators. This has to outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
 
@@ -54,11 +60,9 @@ class CallObserver {
   void Identify(const grpc::ServerContextBase& call, const std::string& principal);
 
   CallStatistics& statistics() { return statistics_; }
-  const CallStatistics& statistics() const { return statistics_; }
 
-  // Calls that were not let in, and those refused because a limit was reached, by reason.
-  std::map<std::string, uint64_t> not_let_in() const;
-  std::map<std::string, uint64_t> limits_reached() const;
+  // Of the calls, and of those that were not let in or refused because a limit was reached.
+  const prometheus::Collectable& metrics() const { return registry_; }
 
   // Counts and logs. For the interceptors, and for tests.
   void Failed(const FailedCall& call);
@@ -70,14 +74,15 @@ class CallObserver {
   std::string Ended(const grpc::ServerContextBase& call);  // returns who made it
   void WriteLine(const FailedCall& call, Verdict verdict);
 
+  prometheus::Registry registry_;  // first: it owns the counters of the next three
   CallStatistics statistics_;
+  prometheus::Family<prometheus::Counter>& not_let_in_;      // by reason
+  prometheus::Family<prometheus::Counter>& limits_reached_;  // by reason
   LineBudget refusals_{10, std::chrono::seconds(1)};
   LineBudget failures_{10, std::chrono::seconds(1)};
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::map<const grpc::ServerContextBase*, std::string> callers_;  // of calls in progress
-  std::map<std::string, uint64_t> not_let_in_;
-  std::map<std::string, uint64_t> limits_reached_;
 };
 
 }  // namespace ballpiston::server

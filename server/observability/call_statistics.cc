@@ -1,62 +1,76 @@
 #include "server/observability/call_statistics.h"
 
-#include <algorithm>
-#include <mutex>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "google/protobuf/descriptor.h"
 
 namespace ballpiston::server {
 namespace {
 
-constexpr auto kRelaxed = std::memory_order_relaxed;
+using MethodType = CallStatistics::MethodType;
 
-const char* TypeOf(const google::protobuf::MethodDescriptor& method) {
-  if (method.client_streaming()) return method.server_streaming() ? "bidi_stream" : "client_stream";
-  return method.server_streaming() ? "server_stream" : "unary";
+constexpr std::array<const char*, 4> kTypeNames = {  // by MethodType
+    "unary", "client_stream", "server_stream", "bidi_stream"};
+
+MethodType TypeOf(const google::protobuf::MethodDescriptor& method) {
+  if (method.client_streaming()) {
+    return method.server_streaming() ? MethodType::BIDI_STREAMING : MethodType::CLIENT_STREAMING;
+  }
+  return method.server_streaming() ? MethodType::SERVER_STREAMING : MethodType::UNARY;
+}
+
+prometheus::Labels LabelsOf(absl::string_view path, MethodType type) {
+  const std::pair<std::string, std::string> names =
+      absl::StrSplit(absl::StripPrefix(path, "/"), absl::MaxSplits('/', 1));
+  return {{"grpc_service", names.first},
+          {"grpc_method", names.second},
+          {"grpc_type", kTypeNames[static_cast<size_t>(type)]}};
 }
 
 }  // namespace
 
-MethodCounts::MethodCounts(absl::string_view path, absl::string_view type) {
-  path = absl::StripPrefix(path, "/");
-  const size_t slash = std::min(path.find('/'), path.size());
-  zero_.service = std::string(path.substr(0, slash));
-  zero_.method = std::string(absl::StripPrefix(path.substr(slash), "/"));
-  zero_.type = std::string(type);
+void MethodCounts::Ended(absl::StatusCode code, double duration) const {
+  const auto known = static_cast<size_t>(code);
+  ended[known < ended.size() ? known : static_cast<size_t>(absl::StatusCode::kUnknown)]
+      ->Increment();
+  seconds->Observe(duration);
 }
 
-void MethodCounts::Ended(absl::StatusCode code, double seconds) {
-  const auto known = std::min(static_cast<size_t>(code), kStatusCodes);
-  ended_[known == kStatusCodes ? static_cast<size_t>(absl::StatusCode::kUnknown) : known].fetch_add(
-      1, kRelaxed);
-  const auto bound = std::lower_bound(kDurationBounds.begin(), kDurationBounds.end(), seconds);
-  durations_[static_cast<size_t>(bound - kDurationBounds.begin())].fetch_add(1, kRelaxed);
-  seconds_.fetch_add(seconds, kRelaxed);
-}
+CallStatistics::CallStatistics(prometheus::Registry& registry)
+    : began_(prometheus::BuildCounter()
+                 .Name("grpc_server_started_total")
+                 .Help("Calls that began.")
+                 .Register(registry)),
+      ended_(prometheus::BuildCounter()
+                 .Name("grpc_server_handled_total")
+                 .Help("Calls that ended, by code.")
+                 .Register(registry)),
+      seconds_(prometheus::BuildHistogram()
+                   .Name("grpc_server_handling_seconds")
+                   .Help("From a call's begin to its end.")
+                   .Register(registry)) {}
 
-MethodCounts::Totals MethodCounts::Read() const {
-  Totals totals = zero_;
-  totals.began = began_.load(kRelaxed);
-  for (size_t i = 0; i < ended_.size(); ++i) totals.ended[i] = ended_[i].load(kRelaxed);
-  for (size_t i = 0; i < durations_.size(); ++i) totals.durations[i] = durations_[i].load(kRelaxed);
-  totals.seconds = seconds_.load(kRelaxed);
-  return totals;
-}
-
-MethodCounts& CallStatistics::Of(absl::string_view path, absl::string_view type) {
-  const std::string_view key(path.data(), path.size());
-  {
-    std::shared_lock lock(mutex_);
-    const auto found = methods_.find(key);
-    if (found != methods_.end()) return *found->second;
+MethodCounts CallStatistics::NewCounts(const std::string& path, MethodType type) {
+  // Upper bounds, in seconds; prometheus-cpp adds an unbounded bucket.
+  const std::vector<double> buckets = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
+  prometheus::Labels labels = LabelsOf(path, type);
+  MethodCounts counts{&began_.Add(labels), {}, &seconds_.Add(labels, buckets)};
+  for (size_t code = 0; code < counts.ended.size(); ++code) {
+    labels["grpc_code"] = absl::StatusCodeToString(static_cast<absl::StatusCode>(code));
+    counts.ended[code] = &ended_.Add(labels);
   }
-  std::unique_lock lock(mutex_);
-  std::unique_ptr<MethodCounts>& counts = methods_[std::string(key)];
-  if (counts == nullptr) counts = std::make_unique<MethodCounts>(path, type);
-  return *counts;
+  return counts;
+}
+
+const MethodCounts& CallStatistics::Of(const std::string& path, MethodType type) {
+  std::lock_guard lock(mutex_);
+  const auto [method, added] = methods_.try_emplace(path);
+  if (added) method->second = NewCounts(path, type);
+  return method->second;
 }
 
 void CallStatistics::Expect(const std::string& service) {
@@ -67,13 +81,6 @@ void CallStatistics::Expect(const std::string& service) {
     const google::protobuf::MethodDescriptor& method = *described->method(i);
     Of(absl::StrCat("/", service, "/", method.name()), TypeOf(method));
   }
-}
-
-std::vector<MethodCounts::Totals> CallStatistics::Read() const {
-  std::shared_lock lock(mutex_);
-  std::vector<MethodCounts::Totals> all;
-  for (const auto& [path, counts] : methods_) all.push_back(counts->Read());
-  return all;
 }
 
 }  // namespace ballpiston::server

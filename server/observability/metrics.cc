@@ -1,180 +1,114 @@
 #include "server/observability/metrics.h"
 
-#include <limits>
 #include <string>
-#include <utility>
 
-#include "absl/status/status.h"
+#include "prometheus/counter.h"
+#include "prometheus/gauge.h"
+#include "prometheus/registry.h"
 
 namespace ballpiston::server {
 namespace {
 
-using prometheus::ClientMetric;
+using prometheus::Labels;
 using prometheus::MetricFamily;
-using prometheus::MetricType;
-using Labels = std::vector<ClientMetric::Label>;
 
-template <typename Number>
-void Add(MetricFamily& family, Labels labels, Number value) {
-  ClientMetric metric;
-  metric.label = std::move(labels);
-  (family.type == MetricType::Counter ? metric.counter.value : metric.gauge.value) =
-      static_cast<double>(value);
-  family.metric.push_back(std::move(metric));
-}
+// The numbers of one scrape. A name that comes again adds to its family.
+class Page {
+ public:
+  template <typename Number>
+  void Gauge(const std::string& name, const std::string& help, Number value,
+             const Labels& labels = {}) {
+    prometheus::BuildGauge().Name(name).Help(help).Register(registry_).Add(labels).Set(
+        static_cast<double>(value));
+  }
 
-template <typename Number>
-MetricFamily One(std::string name, std::string help, MetricType type, Number value) {
-  MetricFamily family{std::move(name), std::move(help), type, {}};
-  Add(family, {}, value);
-  return family;
-}
+  template <typename Number>
+  void Counter(const std::string& name, const std::string& help, Number value,
+               const Labels& labels = {}) {
+    prometheus::BuildCounter().Name(name).Help(help).Register(registry_).Add(labels).Increment(
+        static_cast<double>(value));
+  }
 
-template <typename Number>
-MetricFamily Gauge(std::string name, std::string help, Number value) {
-  return One(std::move(name), std::move(help), MetricType::Gauge, value);
-}
+  std::vector<MetricFamily> Families() const { return registry_.Collect(); }
 
-template <typename Number>
-MetricFamily Counter(std::string name, std::string help, Number value) {
-  return One(std::move(name), std::move(help), MetricType::Counter, value);
-}
+ private:
+  prometheus::Registry registry_;
+};
 
 double SinceEpoch(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
 
-MetricFamily ByReason(std::string name, std::string help,
-                      const std::map<std::string, uint64_t>& counts) {
-  MetricFamily family{std::move(name), std::move(help), MetricType::Counter, {}};
-  for (const auto& [reason, count] : counts) Add(family, {{"reason", reason}}, count);
-  return family;
-}
-
-MetricFamily BuildInfo(const ServerSnapshot& server) {
-  MetricFamily family{"ballpiston_build_info", "Of this program; always 1.", MetricType::Gauge, {}};
-  Add(family, {{"version", server.version}, {"engine_version", server.engine_version}}, 1);
-  return family;
-}
-
-MetricFamily ActiveJobs(const ServerSnapshot& server) {
-  MetricFamily family{
-      "ballpiston_jobs", "Jobs that have not ended, by state.", MetricType::Gauge, {}};
-  Add(family, {{"state", "queued"}}, server.queued_jobs);
-  Add(family, {{"state", "running"}}, server.running_jobs);
-  Add(family, {{"state", "cancelling"}}, server.cancelling_jobs);
-  return family;
-}
-
-MetricFamily EndedJobs(const ServerSnapshot& server) {
-  MetricFamily family{"ballpiston_jobs_ended_total",
-                      "Jobs that ended, by their last state.",
-                      MetricType::Counter,
-                      {}};
-  Add(family, {{"state", "succeeded"}}, server.jobs_succeeded);
-  Add(family, {{"state", "failed"}}, server.jobs_failed);
-  Add(family, {{"state", "cancelled"}}, server.jobs_cancelled);
-  return family;
-}
-
-Labels MethodLabels(const MethodCounts::Totals& call) {
-  return {{"grpc_service", call.service}, {"grpc_method", call.method}, {"grpc_type", call.type}};
-}
-
-void AddCodes(MetricFamily& family, const MethodCounts::Totals& call) {
-  for (size_t code = 0; code < call.ended.size(); ++code) {
-    Labels labels = MethodLabels(call);
-    labels.push_back({"grpc_code", absl::StatusCodeToString(static_cast<absl::StatusCode>(code))});
-    Add(family, std::move(labels), call.ended[code]);
+void AddServer(const ServerSnapshot& server, Page& page) {
+  page.Gauge("ballpiston_build_info", "Of this program; always 1.", 1,
+             {{"version", server.version}, {"engine_version", server.engine_version}});
+  page.Gauge("ballpiston_start_time_seconds", "When the server started, since 1970.",
+             SinceEpoch(server.start_time));
+  page.Gauge("ballpiston_draining", "1 while the server is stopping.", server.draining);
+  page.Gauge("ballpiston_streams", "Open watches.", server.streams);
+  if (server.certificate_expiry) {
+    page.Gauge("ballpiston_certificate_expiry_timestamp_seconds",
+               "Until when the server's certificate is valid, since 1970.",
+               SinceEpoch(*server.certificate_expiry));
   }
 }
 
-void AddHistogram(MetricFamily& family, const MethodCounts::Totals& call) {
-  ClientMetric metric;
-  metric.label = MethodLabels(call);
-  uint64_t count = 0;
-  for (size_t i = 0; i < call.durations.size(); ++i) {
-    count += call.durations[i];
-    const bool bounded = i < kDurationBounds.size();
-    metric.histogram.bucket.push_back(
-        {count, bounded ? kDurationBounds[i] : std::numeric_limits<double>::infinity()});
-  }
-  metric.histogram.sample_count = count;
-  metric.histogram.sample_sum = call.seconds;
-  family.metric.push_back(std::move(metric));
+void AddJobs(const ServerSnapshot& server, Page& page) {
+  const std::string active = "Jobs that have not ended, by state.";
+  page.Gauge("ballpiston_jobs", active, server.queued_jobs, {{"state", "queued"}});
+  page.Gauge("ballpiston_jobs", active, server.running_jobs, {{"state", "running"}});
+  page.Gauge("ballpiston_jobs", active, server.cancelling_jobs, {{"state", "cancelling"}});
+  const std::string ended = "Jobs that ended, by their last state.";
+  page.Counter("ballpiston_jobs_ended_total", ended, server.jobs_succeeded,
+               {{"state", "succeeded"}});
+  page.Counter("ballpiston_jobs_ended_total", ended, server.jobs_failed, {{"state", "failed"}});
+  page.Counter("ballpiston_jobs_ended_total", ended, server.jobs_cancelled,
+               {{"state", "cancelled"}});
+  page.Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.", server.queued_jobs);
 }
 
-void AddSlurm(const SlurmStatus& slurm, std::vector<MetricFamily>& metrics) {
-  MetricFamily tasks{"ballpiston_slurm_tasks",
-                     "Tasks of job arrays, by state. submitted: since Slurm's last answer.",
-                     MetricType::Gauge,
-                     {}};
-  Add(tasks, {{"state", "waiting"}}, slurm.waiting_tasks);
-  Add(tasks, {{"state", "running"}}, slurm.running_tasks);
-  Add(tasks, {{"state", "submitted"}}, slurm.submitted_tasks);
-  metrics.push_back(std::move(tasks));
-  metrics.push_back(Gauge("ballpiston_slurm_failing", "1 while nothing can be submitted.",
-                          !slurm.problem.empty()));
-  metrics.push_back(Counter("ballpiston_slurm_chunks_total", "Chunks received.", slurm.chunks));
-  metrics.push_back(Counter("ballpiston_slurm_lost_tasks_total",
-                            "Tasks that ended without their last file.", slurm.lost_tasks));
-  metrics.push_back(Counter("ballpiston_slurm_refused_files_total",
-                            "Files with chunks that were damaged or of another job.",
-                            slurm.refused_files));
-  metrics.push_back(
-      Counter("ballpiston_slurm_queries_total", "Queries of Slurm's queue.", slurm.queries));
+void AddWork(const ServerSnapshot& server, Page& page) {
+  page.Gauge("ballpiston_workers", "Threads that compute.", server.workers);
+  page.Gauge("ballpiston_busy_workers", "Those that compute now.", server.busy_workers);
+  page.Counter("ballpiston_blocks_computed_total", "Blocks of samples.", server.blocks_computed);
+  page.Counter("ballpiston_samples_computed_total", "Samples in them.", server.samples_computed);
+  page.Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
+               server.processor_seconds);
+}
+
+void AddStore(const ServerSnapshot& server, Page& page) {
+  page.Gauge("ballpiston_store_bytes", "The store on disk, its log included.", server.store_bytes);
+  page.Counter("ballpiston_store_commits_total", "Groups of writes on disk.", server.store_commits);
+  page.Counter("ballpiston_store_checkpoints_written_total",
+               "Checkpoints of unfinished points on disk.", server.store_checkpoints_written);
+  page.Gauge("ballpiston_store_pending_writes", "What waits to be written.",
+             server.store_pending_writes);
+  page.Gauge("ballpiston_store_failing", "1 while the disk refuses writes.", server.store_failing);
+}
+
+void AddSlurm(const SlurmStatus& slurm, Page& page) {
+  const std::string tasks = "Tasks of job arrays, by state. submitted: since Slurm's last answer.";
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.waiting_tasks, {{"state", "waiting"}});
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.running_tasks, {{"state", "running"}});
+  page.Gauge("ballpiston_slurm_tasks", tasks, slurm.submitted_tasks, {{"state", "submitted"}});
+  page.Gauge("ballpiston_slurm_failing", "1 while nothing can be submitted.",
+             !slurm.problem.empty());
+  page.Counter("ballpiston_slurm_chunks_total", "Chunks received.", slurm.chunks);
+  page.Counter("ballpiston_slurm_lost_tasks_total", "Tasks that ended without their last file.",
+               slurm.lost_tasks);
+  page.Counter("ballpiston_slurm_refused_files_total",
+               "Files with chunks that were damaged or of another job.", slurm.refused_files);
+  page.Counter("ballpiston_slurm_queries_total", "Queries of Slurm's queue.", slurm.queries);
 }
 
 }  // namespace
 
-std::vector<MetricFamily> CallMetrics(const std::vector<MethodCounts::Totals>& calls) {
-  MetricFamily began{"grpc_server_started_total", "Calls that began.", MetricType::Counter, {}};
-  MetricFamily ended{
-      "grpc_server_handled_total", "Calls that ended, by code.", MetricType::Counter, {}};
-  MetricFamily seconds{
-      "grpc_server_handling_seconds", "From a call's begin to its end.", MetricType::Histogram, {}};
-  for (const MethodCounts::Totals& call : calls) {
-    Add(began, MethodLabels(call), call.began);
-    AddCodes(ended, call);
-    AddHistogram(seconds, call);
-  }
-  return {std::move(began), std::move(ended), std::move(seconds)};
-}
-
 std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
-  std::vector<MetricFamily> metrics = {
-      BuildInfo(server),
-      Gauge("ballpiston_start_time_seconds", "When the server started, since 1970.",
-            SinceEpoch(server.start_time)),
-      Gauge("ballpiston_draining", "1 while the server is stopping.", server.draining),
-      ActiveJobs(server),
-      EndedJobs(server),
-      Gauge("ballpiston_queue_length", "Jobs that wait for their first turn.", server.queued_jobs),
-      Gauge("ballpiston_workers", "Threads that compute.", server.workers),
-      Gauge("ballpiston_busy_workers", "Those that compute now.", server.busy_workers),
-      Counter("ballpiston_blocks_computed_total", "Blocks of samples.", server.blocks_computed),
-      Counter("ballpiston_samples_computed_total", "Samples in them.", server.samples_computed),
-      Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
-              server.processor_seconds),
-      Gauge("ballpiston_streams", "Open watches.", server.streams),
-      Gauge("ballpiston_store_bytes", "The store on disk, its log included.", server.store_bytes),
-      Counter("ballpiston_store_commits_total", "Groups of writes on disk.", server.store_commits),
-      Counter("ballpiston_store_checkpoints_written_total",
-              "Checkpoints of unfinished points on disk.", server.store_checkpoints_written),
-      Gauge("ballpiston_store_pending_writes", "What waits to be written.",
-            server.store_pending_writes),
-      Gauge("ballpiston_store_failing", "1 while the disk refuses writes.", server.store_failing),
-      ByReason("ballpiston_failed_authentications_total",
-               "Calls without the credentials or the role they need.",
-               server.failed_authentications),
-      ByReason("ballpiston_limit_refusals_total", "Calls refused because a limit was reached.",
-               server.limit_refusals),
-  };
-  if (server.slurm) AddSlurm(*server.slurm, metrics);
-  if (server.certificate_expiry) {
-    metrics.push_back(Gauge("ballpiston_certificate_expiry_timestamp_seconds",
-                            "Until when the server's certificate is valid, since 1970.",
-                            SinceEpoch(*server.certificate_expiry)));
-  }
-  return metrics;
+  Page page;
+  AddServer(server, page);
+  AddJobs(server, page);
+  AddWork(server, page);
+  AddStore(server, page);
+  if (server.slurm) AddSlurm(*server.slurm, page);
+  return page.Families();
 }
 
 }  // namespace ballpiston::server

@@ -1,20 +1,22 @@
-// The server's numbers as Prometheus has them: base units, totals that only grow, no job's id and
-// no principal in a label. Pure functions.
+// The server's numbers as families of Prometheus: base units, totals that only grow, no job's id
+// and no principal in a label.
 //
-//   grpc_server_*   calls: the names and labels that other gRPC servers use
+//   grpc_server_*   calls: the names and labels that other gRPC servers use; call_statistics.h
 //   ballpiston_*    everything else
+//
+// The numbers here belong to the scheduler, the store and others, which the API's status reads too.
+// A scrape therefore copies one snapshot into a registry of its own; counters that the registry
+// keeps would need a second place where each is counted.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 
 #include <vector>
 
 #include "prometheus/metric_family.h"
-#include "server/observability/call_statistics.h"
 #include "server/observability/server_snapshot.h"
 
 namespace ballpiston::server {
 
-std::vector<prometheus::MetricFamily> CallMetrics(const std::vector<MethodCounts::Totals>& calls);
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServerSnapshot& server);
 
 }  // namespace ballpiston::server

@@ -4,15 +4,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <exception>
-#include <mutex>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "prometheus/collectable.h"
-#include "server/listen_address.h"
 
 namespace ballpiston::server {
 namespace {
@@ -32,20 +29,16 @@ absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
   return address;
 }
 
-std::string TextOf(const std::string& host, int port) {
-  ListenAddress address;
-  address.host = host;
-  address.port = port;
-  return address.Text();
-}
-
-// Connects and leaves again: an HTTP server that looks up every two seconds only does so now.
-void Knock(const std::string& host, int port) {
+// Connects and closes the connection. The HTTP server waits up to two seconds for a connection
+// before it sees that it should stop.
+void Knock(const ListenAddress& address) {
   addrinfo hints = {};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  if (getaddrinfo(host.c_str(), absl::StrCat(port).c_str(), &hints, &found) != 0) return;
+  if (getaddrinfo(address.host.c_str(), absl::StrCat(address.port).c_str(), &hints, &found) != 0) {
+    return;
+  }
   const int descriptor = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (descriptor >= 0) {
     [[maybe_unused]] const int connected = connect(descriptor, found->ai_addr, found->ai_addrlen);
@@ -61,42 +54,29 @@ std::vector<std::string> HttpOptions(const ListenAddress& address) {
           "enable_keep_alive",  "no"};
 }
 
-}  // namespace
-
-class MetricsEndpoint::Collector : public prometheus::Collectable {
+class Collector : public prometheus::Collectable {
  public:
-  explicit Collector(Source source) : source_(std::move(source)) {}
+  explicit Collector(MetricsEndpoint::Source source) : source_(std::move(source)) {}
 
-  void Detach() {
-    std::lock_guard lock(mutex_);
-    source_ = nullptr;
-  }
-
-  // Its caller is written in C: nothing may be thrown.
-  std::vector<prometheus::MetricFamily> Collect() const override {
-    std::lock_guard lock(mutex_);
-    try {
-      if (source_) return source_();
-    } catch (const std::exception&) {
-    }
+  // The HTTP server that calls this is written in C: no exception may pass through it.
+  std::vector<prometheus::MetricFamily> Collect() const override try {
+    return source_();
+  } catch (const std::exception&) {
     return {};
   }
 
  private:
-  mutable std::mutex mutex_;
-  Source source_;
+  const MetricsEndpoint::Source source_;
 };
+
+}  // namespace
 
 absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const std::string& address,
                                                                         Source source) {
   const absl::StatusOr<ListenAddress> parsed = ParseLoopback(address);
   if (!parsed.ok()) return parsed.status();
   try {
-    auto exposer = std::make_unique<prometheus::Exposer>(HttpOptions(*parsed));
-    auto collector = std::make_shared<Collector>(std::move(source));
-    exposer->RegisterCollectable(collector);
-    return std::unique_ptr<MetricsEndpoint>(
-        new MetricsEndpoint(parsed->host, std::move(exposer), std::move(collector)));
+    return std::unique_ptr<MetricsEndpoint>(new MetricsEndpoint(*parsed, std::move(source)));
   } catch (const std::exception&) {  // its words help nobody
     return absl::FailedPreconditionError(
         absl::StrCat("--metrics-listen=", address,
@@ -104,28 +84,22 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const st
   }
 }
 
-MetricsEndpoint::MetricsEndpoint(std::string host, std::unique_ptr<prometheus::Exposer> exposer,
-                                 std::shared_ptr<Collector> collector)
-    : host_(std::move(host)),
-      exposer_(std::move(exposer)),
-      collector_(std::move(collector)),
-      port_(exposer_->GetListeningPorts().front()),
-      address_(TextOf(host_, port_)) {}
+MetricsEndpoint::MetricsEndpoint(ListenAddress address, Source source)
+    : address_(std::move(address)),
+      collector_(std::make_shared<Collector>(std::move(source))),
+      exposer_(std::make_unique<prometheus::Exposer>(HttpOptions(address_))) {
+  address_.port = exposer_->GetListeningPorts().front();
+  exposer_->RegisterCollectable(collector_);
+}
 
 MetricsEndpoint::~MetricsEndpoint() {
-  Detach();
-  std::atomic<bool> stopped = false;
-  std::thread knocking([&] {
-    while (!stopped) {
-      Knock(host_, port_);
+  const std::jthread knocking([this](const std::stop_token& stopped) {
+    while (!stopped.stop_requested()) {
+      Knock(address_);
       std::this_thread::sleep_for(kKnockInterval);
     }
   });
   exposer_.reset();
-  stopped = true;
-  knocking.join();
 }
-
-void MetricsEndpoint::Detach() { collector_->Detach(); }
 
 }  // namespace ballpiston::server

@@ -1,9 +1,10 @@
-// Where Prometheus comes to collect: http://HOST:PORT/metrics, on the loopback.
+// Serves http://HOST:PORT/metrics for Prometheus, on the loopback only.
 //
-// The numbers are asked for when somebody collects, and by whoever does: on the threads of the HTTP
-// server, which are its own. It answers GET of /metrics and nothing else, gives up on a request
-// that is not complete after kRequestTimeout, and holds at most kHttpThreads of them; a further one
-// waits. It is neither encrypted nor asks who is there: so no other machine reaches it.
+// prometheus-cpp's Exposer is the HTTP server. It answers GET of /metrics and nothing else, ends a
+// request that is not complete after kRequestTimeout, and serves at most kHttpThreads requests at a
+// time; a further one waits. Ours are the check of the address, because the page is neither
+// encrypted nor authenticated, errors instead of exceptions, and a stop that does not wait for the
+// 2 s in which the Exposer looks once whether it should stop.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
 
@@ -14,8 +15,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "prometheus/collectable.h"
 #include "prometheus/exposer.h"
 #include "prometheus/metric_family.h"
+#include "server/listen_address.h"
 
 namespace ballpiston::server {
 
@@ -26,31 +29,27 @@ class MetricsEndpoint {
  public:
   using Source = std::function<std::vector<prometheus::MetricFamily>()>;
 
-  // HOST:PORT, with a HOST in 127.0.0.0/8, [::1] or localhost; port 0: any that is free. `source`
-  // is called by one thread at a time.
+  // HOST:PORT, with a HOST in 127.0.0.0/8, [::1] or localhost; port 0: any that is free. A thread
+  // of the HTTP server calls `source` for each request, one thread at a time.
   //   INVALID_ARGUMENT     the address is none of these
   //   FAILED_PRECONDITION  nobody can listen there
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,
                                                                 Source source);
-  // Takes as long as a request that is not complete is waited for, if there is one.
+  // Waits for a request that is not complete, at most kRequestTimeout.
   ~MetricsEndpoint();
 
-  const std::string& address() const { return address_; }  // with the port that was chosen
+  std::string address() const { return address_.Text(); }  // with the port that was chosen
 
-  // The source is asked no more when this returns; who collects then gets an empty page.
-  void Detach();
+  // Waits for a call of the source to return. The source is not called again; later requests get
+  // the page without its metrics.
+  void Detach() { exposer_->RemoveCollectable(collector_); }
 
  private:
-  class Collector;
+  MetricsEndpoint(ListenAddress address, Source source);
 
-  MetricsEndpoint(std::string host, std::unique_ptr<prometheus::Exposer> exposer,
-                  std::shared_ptr<Collector> collector);
-
-  const std::string host_;  // without brackets
+  ListenAddress address_;
+  const std::shared_ptr<prometheus::Collectable> collector_;  // calls the source
   std::unique_ptr<prometheus::Exposer> exposer_;
-  const std::shared_ptr<Collector> collector_;
-  const int port_;
-  const std::string address_;
 };
 
 }  // namespace ballpiston::server

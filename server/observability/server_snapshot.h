@@ -3,7 +3,6 @@
 #define BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -45,10 +44,6 @@ struct ServerSnapshot {
   int64_t store_checkpoints_written = 0;
   int64_t store_pending_writes = 0;
   bool store_failing = false;
-
-  // Calls that were turned away since the start, by reason.
-  std::map<std::string, uint64_t> failed_authentications;
-  std::map<std::string, uint64_t> limit_refusals;
 };
 
 }  // namespace ballpiston::server

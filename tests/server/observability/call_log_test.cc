@@ -8,6 +8,7 @@
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
+#include "prometheus/text_serializer.h"
 #include "server/observability/call_observer.h"
 #include "server/observability/log.h"
 #include "tests/server/fake_experiments.h"
@@ -157,7 +158,9 @@ TEST_F(CallLog, AllRefusedCallsAreCountedAndSomeAreLogged) {
   });
   EXPECT_GE(lines.size(), 1u);
   EXPECT_LT(lines.size(), 500u);
-  EXPECT_EQ(calls.not_let_in().at("CREDENTIALS_INVALID"), 500u);
+  EXPECT_THAT(
+      prometheus::TextSerializer().Serialize(calls.metrics().Collect()),
+      HasSubstr("ballpiston_failed_authentications_total{reason=\"CREDENTIALS_INVALID\"} 500\n"));
   // Lines of refusals do not use up those of failures.
   EXPECT_EQ(LinesOf([&] { calls.Failed(Failure(absl::StatusCode::kInternal, "")); }).size(), 1u);
 }

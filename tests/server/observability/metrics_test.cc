@@ -27,8 +27,8 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr char kCreated[] =
-    "grpc_server_handled_total{grpc_service=\"ballpiston.v1.EnsembleService\",grpc_method="
-    "\"CreateEnsembleJob\",grpc_type=\"unary\",grpc_code=\"OK\"}";
+    "grpc_server_handled_total{grpc_code=\"OK\",grpc_method=\"CreateEnsembleJob\","
+    "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type=\"unary\"}";
 
 constexpr char kSample[] =
     R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
@@ -111,10 +111,10 @@ TEST_F(MetricsTest, AWatchOfHealthThatItsClientEndsIsNoFailure) {
   }
   const auto ended_as = [this](const std::string& code) {
     const auto metrics = Metrics();
-    const auto found = metrics.find(
-        "grpc_server_handled_total{grpc_service=\"grpc.health.v1.Health\",grpc_method=\"Watch\","
-        "grpc_type=\"server_stream\",grpc_code=\"" +
-        code + "\"}");
+    const auto found =
+        metrics.find("grpc_server_handled_total{grpc_code=\"" + code +
+                     "\",grpc_method=\"Watch\",grpc_service=\"grpc.health.v1.Health\","
+                     "grpc_type=\"server_stream\"}");
     return found == metrics.end() ? 0 : found->second;
   };
   while (ended_as("CANCELLED") + ended_as("UNKNOWN") == 0) std::this_thread::yield();
@@ -127,9 +127,19 @@ TEST_F(MetricsTest, MethodsAreListedBeforeTheirFirstCall) {
   const auto metrics = Metrics();
   ASSERT_EQ(metrics.count(kCreated), 1u);
   EXPECT_EQ(metrics.at(kCreated), 0);
-  EXPECT_EQ(metrics.count("grpc_server_started_total{grpc_service=\"ballpiston.v1.ServerService\","
-                          "grpc_method=\"GetServerStatus\",grpc_type=\"unary\"}"),
+  EXPECT_EQ(metrics.count("grpc_server_started_total{grpc_method=\"GetServerStatus\","
+                          "grpc_service=\"ballpiston.v1.ServerService\",grpc_type=\"unary\"}"),
             1u);
+}
+
+TEST_F(MetricsTest, ReasonsOfRefusalsAreListedBeforeTheFirst) {
+  Start();
+  const auto metrics = Metrics();
+  for (const char* counter : {"ballpiston_failed_authentications_total{reason=\"ROLE_TOO_LOW\"}",
+                              "ballpiston_limit_refusals_total{reason=\"QUEUE_FULL\"}"}) {
+    ASSERT_EQ(metrics.count(counter), 1u) << counter;
+    EXPECT_EQ(metrics.at(counter), 0) << counter;
+  }
 }
 
 TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
@@ -146,8 +156,8 @@ TEST_F(MetricsTest, CountersCountCallsJobsAndBlocks) {
   EXPECT_GT(metrics.at("ballpiston_store_bytes"), 4096);
   EXPECT_EQ(metrics.at("ballpiston_store_failing"), 0);
   EXPECT_GT(metrics.at("ballpiston_processor_seconds_total"), 0);
-  EXPECT_EQ(metrics.at("grpc_server_handling_seconds_count{grpc_service=\"ballpiston.v1."
-                       "EnsembleService\",grpc_method=\"WatchEnsembleJob\",grpc_type="
+  EXPECT_EQ(metrics.at("grpc_server_handling_seconds_count{grpc_method=\"WatchEnsembleJob\","
+                       "grpc_service=\"ballpiston.v1.EnsembleService\",grpc_type="
                        "\"server_stream\"}"),
             3);
 }

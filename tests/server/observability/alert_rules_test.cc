@@ -1,0 +1,50 @@
+// Every metric in the alert rules is one that the server serves. `make test-alerts` tests the
+// rules.
+#include <regex>
+#include <set>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/observability/call_observer.h"
+#include "server/observability/metrics.h"
+#include "tests/support/files.h"
+#include "tests/support/paths.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+
+std::set<std::string> MetricsNamedIn(const std::string& rules) {
+  static const std::regex name("\\b(ballpiston|grpc_server)_\\w+");
+  return {std::sregex_token_iterator(rules.begin(), rules.end(), name),
+          std::sregex_token_iterator()};
+}
+
+// Of a server with TLS and a cluster.
+std::set<std::string> ServedMetrics() {
+  ServerSnapshot snapshot;
+  snapshot.slurm.emplace();
+  snapshot.certificate_expiry = absl::UnixEpoch();
+  std::set<std::string> names;
+  for (const auto& family : ServerMetrics(snapshot)) names.insert(family.name);
+  const CallObserver calls;
+  for (const auto& family : calls.metrics().Collect()) names.insert(family.name);
+  return names;
+}
+
+TEST(AlertRules, EveryMetricIsServed) {
+  const auto named = MetricsNamedIn(Contents(SourcePath("server/prometheus/alerts.yml")));
+  EXPECT_THAT(named, Contains("ballpiston_store_failing"));
+  EXPECT_THAT(ServedMetrics(), IsSupersetOf(named));
+}
+
+TEST(AlertRules, AMetricThatIsNotServedIsFound) {
+  EXPECT_THAT(ServedMetrics(), Not(IsSupersetOf(MetricsNamedIn("ballpiston_disk_failing == 1"))));
+}
+
+}  // namespace
+}  // namespace ballpiston::server
