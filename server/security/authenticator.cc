@@ -5,6 +5,7 @@
 #include "absl/strings/match.h"
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
+#include "server/security/unix_users.h"
 
 namespace ballpiston::server {
 namespace {
@@ -16,22 +17,35 @@ Credentials ShownBy(const grpc::ServerContextBase& context) {
     shown.authorization.emplace_back(header->second.data(), header->second.size());
   }
   const std::shared_ptr<const grpc::AuthContext> connection = context.auth_context();
-  if (connection != nullptr) shown.common_name = CommonNameOf(*connection);
+  if (connection != nullptr) {
+    shown.common_name = CommonNameOf(*connection);
+    shown.unix_user = UnixUserOf(*connection);
+  }
   return shown;
+}
+
+absl::StatusOr<Principal> OfUnixUser(const AccessList* list, const Principal& user,
+                                     absl::Time now) {
+  if (user.role == Role::kAdmin) return user;
+  if (list != nullptr) return list->OfUser(user.name, now);
+  if (CheckPrincipalName(user.name).ok()) return user;
+  return UserNotListed(user.name);  // LAB\ada, say: a list can give it a principal's name
 }
 
 }  // namespace
 
 absl::StatusOr<Principal> Authenticator::Authenticate(
     const grpc::ServerContextBase& context) const {
-  if (list() == nullptr) return LocalPrincipal();
+  if (everybody_) return *everybody_;
   return Authenticate(ShownBy(context), absl::Now());
 }
 
 absl::StatusOr<Principal> Authenticator::Authenticate(const Credentials& shown,
                                                       absl::Time now) const {
+  if (everybody_) return *everybody_;
   const std::shared_ptr<const AccessList> list = this->list();
-  if (list == nullptr) return LocalPrincipal();
+  if (shown.unix_user) return OfUnixUser(list.get(), *shown.unix_user, now);
+  if (list == nullptr) return CredentialsMissing();
   if (shown.authorization.size() == 1) {
     return list->OfToken(BearerToken(shown.authorization[0]), now);
   }
@@ -42,7 +56,7 @@ absl::StatusOr<Principal> Authenticator::Authenticate(const Credentials& shown,
 
 void Authenticator::Replace(std::shared_ptr<const AccessList> list) {
   const std::lock_guard lock(mutex_);
-  if (list_ != nullptr) list_ = std::move(list);
+  if (!everybody_) list_ = std::move(list);
 }
 
 std::shared_ptr<const AccessList> Authenticator::list() const {
