@@ -74,7 +74,8 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
       status.code(),
       absl::StrCat(
           "no answer from the server at ", connection.address, ": ", message,
-          IsSocket(connection.address) ? "" : ConnectionHint(connection.security, message)));
+          IsSocket(connection.address) ? SocketHint(message)
+                                       : ConnectionHint(connection.security, message)));
 }
 
 VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal& terminal,

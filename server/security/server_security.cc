@@ -53,7 +53,8 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
                                 address.Text()));
   }
   std::vector<std::string> given = Given(options);
-  if (IsOpenSocket(options) && given.front() == "--access-file") given.erase(given.begin());
+  const bool has_list = !options.access_file.empty();
+  if (IsOpenSocket(options) && has_list) given.erase(given.begin());  // the access file is first
   if (given.empty()) return CheckSocketMode(options);
   return Refused(absl::StrCat("--listen=", address.Text(),
                               ": over a Unix socket the kernel says who connects, by default only "
@@ -100,6 +101,10 @@ NamedFile AccessFile(const SecurityOptions& options) {
 
 std::string DateText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d", time, absl::UTCTimeZone());
+}
+
+std::string MinuteText(absl::Time time) {
+  return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
 
 // No list without an access file.
@@ -228,12 +233,20 @@ std::optional<absl::Time> ServerSecurity::CertificateExpiry() const {
 }
 
 void ServerSecurity::WarnOfExpiry() const {
-  if (tls_ == nullptr || tls_->expires() > absl::Now() + kExpiryWarning) return;
+  const absl::Time now = absl::Now();
+  if (tls_ == nullptr || (tls_->begins() <= now && now + kExpiryWarning < tls_->expires())) return;
+  if (!tls_->IsValidAt(now)) {
+    LogError(absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
+                          " is valid from ", MinuteText(tls_->begins()), " to ",
+                          MinuteText(tls_->expires()), " only, and now it is ", MinuteText(now),
+                          ": no client connects until it is valid. If the clock is right, get a "
+                          "new one, and send SIGHUP"));
+    return;
+  }
   Log(Severity::kWarning,
       absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
                    " is valid until ",
-                   absl::FormatTime("%Y-%m-%d %H:%M UTC", tls_->expires(), absl::UTCTimeZone()),
-                   " only: get a new one, and send SIGHUP"));
+                   MinuteText(tls_->expires()), " only: get a new one, and send SIGHUP"));
 }
 
 std::string ServerSecurity::Description() const {

@@ -32,10 +32,10 @@ namespace ballpiston::server {
 // The paths that the flags --access-file, --tls-certificate, --tls-key and --tls-client-ca give;
 // empty if a flag is absent.
 struct SecurityOptions {
-  std::string access_file;
-  std::string tls_certificate;
-  std::string tls_key;
-  std::string tls_client_ca;
+  std::string access_file = {};
+  std::string tls_certificate = {};
+  std::string tls_key = {};
+  std::string tls_client_ca = {};
   // The values of --socket-mode, --socket-group and --loopback-role; empty if a flag is absent.
   std::optional<mode_t> socket_mode = {};
   std::string socket_group = {};
@@ -52,7 +52,8 @@ inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);
 
 class ServerSecurity {
  public:
-  // Reads everything; a certificate that ends within kExpiryWarning is warned of in the log.
+  // Reads everything. The log warns of a certificate that ends within kExpiryWarning, and of one
+  // that is not valid now, which does not keep the server from starting.
   // INVALID_ARGUMENT names flag, file and what is permitted.
   static absl::StatusOr<std::unique_ptr<ServerSecurity>> Create(const SecurityOptions& options,
                                                                 const ListenAddress& address);

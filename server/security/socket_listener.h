@@ -6,7 +6,10 @@
 // the metrics need: whoever opens connections must not keep results from the disk. Both are logged:
 // the first at once, then their number at most every ten seconds.
 //
-// gRPC's own listener would not say who connects, and gives up for good at the first EMFILE.
+// gRPC's own listener, with SO_REUSEPORT off too, would not say who connects, would take every
+// descriptor, and gives up for good at the first EMFILE. Socket activation of systemd would replace
+// only bound_sockets.h, and only where systemd starts the server: a private server would still need
+// that file.
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 #define BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 
