@@ -8,9 +8,10 @@ namespace {
 
 std::string HintWithTls(const ChannelSecurity& security, absl::string_view message) {
   if (absl::StrContains(message, "certificate verify failed")) {
-    return absl::StrCat("the server's certificate is not valid now, or was not signed by an authority ",
-                        security.ca.empty() ? "that this system knows" : "in " + security.ca,
-                        ": name the right one with --ca FILE");
+    return absl::StrCat(
+        "the server's certificate is not valid now, or was not signed by an authority ",
+        security.ca.empty() ? "that this system knows" : "in " + security.ca,
+        ": name the right one with --ca FILE");
   }
   if (absl::StrContains(message, "is not in peer certificate")) {
     return "the server's certificate is for another host: write the host as it stands there";

@@ -70,10 +70,11 @@ void AddLocalAccessFlags(CLI::App& app, SecurityOptions& security) {
                  "group of the Unix socket, by name or number, with --socket-mode=0660. The "
                  "server's user belongs to it")
       ->type_name("GROUP");
-  AddChoice(app, "loopback-role", security.loopback_role,
-            {{RoleName(kLoopbackRole), kLoopbackRole}, {"read", Role::kRead}, {"admin", Role::kAdmin}},
-            "role of every user of this machine at a loopback HOST:PORT without --access-file: "
-            "read, submit or admin. All of them are the principal local");
+  AddChoice(
+      app, "loopback-role", security.loopback_role,
+      {{RoleName(kLoopbackRole), kLoopbackRole}, {"read", Role::kRead}, {"admin", Role::kAdmin}},
+      "role of every user of this machine at a loopback HOST:PORT without --access-file: "
+      "read, submit or admin. All of them are the principal local");
 }
 
 void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {

@@ -144,10 +144,10 @@ absl::Status CredentialsExpired() {
 }
 
 absl::Status UserNotListed(const std::string& user) {
-  return WithReason(
-      absl::UnauthenticatedError(absl::StrCat("this server has no principal for the Unix user ", user,
-                                              "; its operator can add a line to the access file")),
-      "CREDENTIALS_INVALID");
+  return WithReason(absl::UnauthenticatedError(
+                        absl::StrCat("this server has no principal for the Unix user ", user,
+                                     "; its operator can add a line to the access file")),
+                    "CREDENTIALS_INVALID");
 }
 
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
@@ -166,9 +166,9 @@ absl::Status RoleTooLow(const Principal& caller, Role least) {
   const char* const hint = caller.name == LocalPrincipal().name
                                ? "; the server's flag --loopback-role sets the role of local users"
                                : "";
-  return WithInfo(absl::PermissionDeniedError(absl::StrCat(
-                      caller.name, " has the role ", RoleName(caller.role),
-                      ", this call needs the role ", RoleName(least), hint)),
+  return WithInfo(absl::PermissionDeniedError(
+                      absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                   ", this call needs the role ", RoleName(least), hint)),
                   "ROLE_TOO_LOW", "role", RoleName(least));
 }
 

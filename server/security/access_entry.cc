@@ -67,12 +67,8 @@ absl::StatusOr<decltype(AccessEntry::credential)> ParseCredential(absl::string_v
   return CommonName{std::string(text)};
 }
 
-std::string Text(const TokenHash& hash) {
-  return absl::StrCat("token ", kHashPrefix, HexOf(hash));
-}
-std::string Text(const CommonName& name) {
-  return absl::StrCat("certificate \"", name.text, "\"");
-}
+std::string Text(const TokenHash& hash) { return absl::StrCat("token ", kHashPrefix, HexOf(hash)); }
+std::string Text(const CommonName& name) { return absl::StrCat("certificate \"", name.text, "\""); }
 std::string Text(const UnixUser& user) { return absl::StrCat("user \"", user.name, "\""); }
 
 // A time, or a date. Abseil would also take "infinite-future".
@@ -112,8 +108,8 @@ absl::StatusOr<std::optional<AccessEntry>> ParseAccessEntry(absl::string_view li
 }
 
 std::string FormatAccessEntry(const AccessEntry& entry) {
-  const std::string credential = std::visit([](const auto& one) { return Text(one); },
-                                            entry.credential);
+  const std::string credential =
+      std::visit([](const auto& one) { return Text(one); }, entry.credential);
   const std::string expiry =
       entry.expires == absl::InfiniteFuture()
           ? ""

@@ -27,8 +27,8 @@ namespace ballpiston::server {
 
 // What a call shows for itself.
 struct Credentials {
-  std::vector<std::string> authorization;  // every such header
-  std::optional<std::string> common_name;  // of a certificate that was verified
+  std::vector<std::string> authorization;   // every such header
+  std::optional<std::string> common_name;   // of a certificate that was verified
   std::optional<Principal> unix_user = {};  // with the role of one who is on no list
 };
 

@@ -48,9 +48,9 @@ absl::Status CheckSocketMode(const SecurityOptions& options) {
 
 absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& address) {
   if (options.loopback_role) {
-    return Refused(absl::StrCat("--loopback-role=", RoleName(*options.loopback_role),
-                                " needs --listen=HOST:PORT with a loopback host, not --listen=",
-                                address.Text()));
+    return Refused(absl::StrCat(
+        "--loopback-role=", RoleName(*options.loopback_role),
+        " needs --listen=HOST:PORT with a loopback host, not --listen=", address.Text()));
   }
   std::vector<std::string> given = Given(options);
   const bool has_list = !options.access_file.empty();
@@ -66,10 +66,10 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
 // The flags of a Unix socket, at another address.
 absl::Status CheckNoSocketFlags(const SecurityOptions& options, const ListenAddress& address) {
   if (!options.socket_mode && options.socket_group.empty()) return absl::OkStatus();
-  return Refused(absl::StrCat(
-      options.socket_mode ? absl::StrFormat("--socket-mode=%04o", *options.socket_mode)
-                          : absl::StrCat("--socket-group=", options.socket_group),
-      " needs --listen=unix:PATH, not --listen=", address.Text()));
+  return Refused(absl::StrCat(options.socket_mode
+                                  ? absl::StrFormat("--socket-mode=%04o", *options.socket_mode)
+                                  : absl::StrCat("--socket-group=", options.socket_group),
+                              " needs --listen=unix:PATH, not --listen=", address.Text()));
 }
 
 absl::Status CheckLoopbackRole(const SecurityOptions& options, const ListenAddress& address) {
@@ -79,8 +79,9 @@ absl::Status CheckLoopbackRole(const SecurityOptions& options, const ListenAddre
     return Refused(absl::StrCat(flag, " needs a loopback host, not --listen=", address.Text()));
   }
   if (options.access_file.empty()) return absl::OkStatus();
-  return Refused(absl::StrCat(flag, " cannot be combined with --access-file, which gives each "
-                                    "credential its role"));
+  return Refused(absl::StrCat(flag,
+                              " cannot be combined with --access-file, which gives each "
+                              "credential its role"));
 }
 
 absl::Status CheckReachable(const SecurityOptions& options, const ListenAddress& address) {
@@ -245,8 +246,8 @@ void ServerSecurity::WarnOfExpiry() const {
   }
   Log(Severity::kWarning,
       absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
-                   " is valid until ",
-                   MinuteText(tls_->expires()), " only: get a new one, and send SIGHUP"));
+                   " is valid until ", MinuteText(tls_->expires()),
+                   " only: get a new one, and send SIGHUP"));
 }
 
 std::string ServerSecurity::Description() const {

@@ -87,7 +87,7 @@ class ServerSecurity {
   const SecurityOptions options_;
   const SocketAccess socket_access_;
   const std::optional<Role> role_of_everybody_;  // none: each caller is asked who they are
-  size_t entries_;  // of the access file
+  size_t entries_;                               // of the access file
   Authenticator authenticator_;
   std::unique_ptr<ServerTls> tls_;  // none: without TLS
 };

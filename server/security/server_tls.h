@@ -25,8 +25,8 @@ namespace ballpiston::server {
 
 class ServerTls {
  public:
-  // Errors as ReadTlsIdentity's. A certificate that is not valid yet, or any more, is taken: after a
-  // boot the clock may be set only later. Clients refuse it in each handshake until it is valid.
+  // Errors as ReadTlsIdentity's. A certificate that is not valid yet, or any more, is taken: after
+  // a boot the clock may be set only later. Clients refuse it in each handshake until it is valid.
   static absl::StatusOr<std::unique_ptr<ServerTls>> Create(TlsFiles files);
 
   // With a client_ca: a client without a certificate that one of it signed is not let in. The

@@ -1,10 +1,11 @@
 // Accepts connections at an address and hands them on.
 //
 // At a Unix socket it asks the kernel whose they are: those of other than permitted users are
-// closed before a byte of theirs is read, and the others are handed on with their user. At either kind of address a connection is closed that
-// would leave the process fewer than ReservedDescriptors(), which the store, the certificates and
-// the metrics need: whoever opens connections must not keep results from the disk. Both are logged:
-// the first at once, then their number at most every ten seconds.
+// closed before a byte of theirs is read, and the others are handed on with their user. At either
+// kind of address a connection is closed that would leave the process fewer than
+// ReservedDescriptors(), which the store, the certificates and the metrics need: whoever opens
+// connections must not keep results from the disk. Both are logged: the first at once, then their
+// number at most every ten seconds.
 //
 // gRPC's own listener, with SO_REUSEPORT off too, would not say who connects, would take every
 // descriptor, and gives up for good at the first EMFILE. Socket activation of systemd would replace

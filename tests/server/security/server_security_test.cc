@@ -93,9 +93,10 @@ std::string RefusalOf(const std::string& listen, const SecurityOptions& options)
 
 TEST(SecurityCombination, FlagsOfAUnixSocketNeedOne) {
   for (const char* listen : {"127.0.0.1:1", "0.0.0.0:1"}) {
-    EXPECT_THAT(RefusalOf(listen, {.socket_mode = 0600}),
-                HasSubstr(std::string("--socket-mode=0600 needs --listen=unix:PATH, not --listen=") +
-                          listen));
+    EXPECT_THAT(
+        RefusalOf(listen, {.socket_mode = 0600}),
+        HasSubstr(std::string("--socket-mode=0600 needs --listen=unix:PATH, not --listen=") +
+                  listen));
     EXPECT_THAT(RefusalOf(listen, {.socket_group = "adm"}),
                 HasSubstr("--socket-group=adm needs --listen=unix:PATH"));
   }

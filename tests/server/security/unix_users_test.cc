@@ -9,13 +9,15 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -132,9 +134,8 @@ TEST_F(UnixUsersTest, EachCallKnowsTheUserOfItsConnection) {
   EXPECT_OK(Call(daemon));
   EXPECT_THAT(service_.callers(), ElementsAre("daemon submit"));
   for (const auto& channel : {bin, again, own}) EXPECT_OK(Call(channel));
-  EXPECT_THAT(service_.callers(),
-              ElementsAre("bin submit", "daemon submit",
-                          UserName(geteuid()).value_or("local") + " admin"));
+  EXPECT_THAT(service_.callers(), ElementsAre("bin submit", "daemon submit",
+                                              UserName(geteuid()).value_or("local") + " admin"));
 }
 
 TEST_F(UnixUsersTest, FirstCallsAtOnceAgreeOnTheUser) {
@@ -166,8 +167,8 @@ TEST(PeerUser, TheNumberOfAllUnmappedUsersStandsForNone) {
   EXPECT_TRUE(StandsForOneUser(kDaemon));
   EXPECT_TRUE(StandsForOneUser(0));
   EXPECT_FALSE(StandsForOneUser(std::nullopt));
-  EXPECT_FALSE(StandsForOneUser(
-      static_cast<uid_t>(std::stoul(Contents("/proc/sys/kernel/overflowuid")))));
+  EXPECT_FALSE(
+      StandsForOneUser(static_cast<uid_t>(std::stoul(Contents("/proc/sys/kernel/overflowuid")))));
   EXPECT_EQ(UserName(kDaemon), "daemon");
   EXPECT_EQ(UserName(kNameless), std::nullopt);
 }
@@ -258,12 +259,13 @@ class SharedSocket : public ::testing::Test {
   }
 
   void Start(SecurityOptions security) {
-    server_.emplace(
-        TestServerOptions{.listen = "unix:" + path_, .security = std::move(security)});
+    server_.emplace(TestServerOptions{.listen = "unix:" + path_, .security = std::move(security)});
   }
   int Connect(uid_t user) const { return ConnectAs(user, user, path_); }
   TestClient As(uid_t user) const {
-    return TestClient(grpc::CreateInsecureChannelFromFd("test", Connect(user)));
+    const int descriptor = Connect(user);
+    if (descriptor < 0) throw std::runtime_error(std::strerror(-descriptor));
+    return TestClient(grpc::CreateInsecureChannelFromFd("test", descriptor));
   }
   SecurityOptions WithList(const std::string& text) const {
     WriteFile(list_, text);
@@ -331,9 +333,9 @@ TEST_F(SharedSocket, AnAccessFileAdmitsItsUsersWithTheirRoles) {
 }
 
 TEST_F(SharedSocket, ATokenOrAFileWithTokensOnlyDoesNotReplaceTheUser) {
-  EXPECT_THAT(StartError({.listen = "unix:" + path_,
-                          .security = WithList("certificate box box read\n")}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("of the kind user only")));
+  EXPECT_THAT(
+      StartError({.listen = "unix:" + path_, .security = WithList("certificate box box read\n")}),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("of the kind user only")));
   Start(WithList("user daemon ada submit\n"));
   TestClient bin = As(kBin);
   EXPECT_EQ(ReasonOf(CallByName(bin.channel(), kListJobs, "", Bearer("token"))),
@@ -350,7 +352,8 @@ TEST(PrivateSocket, ItsPrincipalIsLocalAnAdministrator) {
                           .security = {.socket_mode = 0666}});
     job = shared.Submit(Equilibrium(1, 2));
   }
-  for (const SecurityOptions& security : {SecurityOptions(), SecurityOptions{.socket_mode = 0600}}) {
+  for (const SecurityOptions& security :
+       {SecurityOptions(), SecurityOptions{.socket_mode = 0600}}) {
     RunningServer server({.data_dir = data.path(), .security = security});
     EXPECT_EQ(server.Created(CreateRequest(Equilibrium(1, 2))).principal(), "local");
     EXPECT_EQ(server.Get(job).principal(), UserName(geteuid()).value_or("local"));
