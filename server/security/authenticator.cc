@@ -5,10 +5,13 @@
 #include "absl/strings/match.h"
 #include "absl/time/clock.h"
 #include "server/convert/errors.h"
-#include "server/security/unix_users.h"
 
 namespace ballpiston::server {
 namespace {
+
+// Of an auth context; no client can write them.
+constexpr char kNameProperty[] = "ballpiston_unix_user";
+constexpr char kAdminProperty[] = "ballpiston_unix_admin";
 
 Credentials ShownBy(const grpc::ServerContextBase& context) {
   Credentials shown;
@@ -68,6 +71,19 @@ std::optional<std::string> CommonNameOf(const grpc::AuthContext& context) {
   const auto names = context.FindPropertyValues("x509_common_name");
   if (names.size() != 1) return std::nullopt;
   return std::string(names[0].data(), names[0].size());
+}
+
+void SetUnixUser(grpc::AuthContext& context, const Principal& user) {
+  context.AddProperty(kNameProperty, user.name);
+  if (user.role == Role::kAdmin) context.AddProperty(kAdminProperty, "");
+}
+
+std::optional<Principal> UnixUserOf(const grpc::AuthContext& context) {
+  const auto names = context.FindPropertyValues(kNameProperty);
+  if (names.size() != 1) return std::nullopt;
+  const bool is_admin = !context.FindPropertyValues(kAdminProperty).empty();
+  return Principal{std::string(names[0].data(), names[0].size()),
+                   is_admin ? Role::kAdmin : Role::kSubmit};
 }
 
 absl::string_view BearerToken(absl::string_view authorization) {

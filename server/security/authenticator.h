@@ -59,6 +59,11 @@ class Authenticator {
 // The common name of the certificate that the connection was made with, if one was asked for.
 std::optional<std::string> CommonNameOf(const grpc::AuthContext& context);
 
+// The Unix user that a connection is written down as (unix_users.h): once, before its first call
+// goes on. With the role submit, or admin; none for other connections.
+void SetUnixUser(grpc::AuthContext& context, const Principal& user);
+std::optional<Principal> UnixUserOf(const grpc::AuthContext& context);
+
 // The token of a header's value, `Bearer TOKEN`; empty if it is something else.
 absl::string_view BearerToken(absl::string_view authorization);
 

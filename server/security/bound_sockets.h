@@ -3,7 +3,9 @@
 //
 // The file of a Unix socket has mode 0600 from the moment it exists until it gets the group and the
 // mode that are asked for. It is taken away at the end if it is still the one that was made here:
-// another server may have put its own there meanwhile. No other process can share the port.
+// another server may have put its own there meanwhile. No other process can share the port. gRPC
+// gives such a file the mode of the umask and removes it whosever it is (socket_listener.h tells
+// why gRPC and systemd do not listen here).
 #ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 #define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,13 +12,11 @@
 #include "grpcpp/security/auth_metadata_processor.h"
 #include "grpcpp/security/server_credentials.h"
 #include "server/observability/log.h"
+#include "server/security/authenticator.h"
 #include "server/security/peer_user.h"
 
 namespace ballpiston::server {
 namespace {
-
-constexpr char kNameProperty[] = "ballpiston_unix_user";
-constexpr char kAdminProperty[] = "ballpiston_unix_admin";
 
 // A user without a name could be one of the thousands that a rootless container has, or anybody
 // while the directory of users is away; a number in place of the name would not be the same
@@ -45,9 +44,7 @@ class UnixUsers::Stamp : public grpc::AuthMetadataProcessor {
   grpc::Status Process(const InputMetadata&, grpc::AuthContext* context, OutputMetadata*,
                        OutputMetadata*) override {
     const std::lock_guard lock(mutex_);
-    if (!context->FindPropertyValues(kNameProperty).empty()) return grpc::Status::OK;
-    context->AddProperty(kNameProperty, user_.name);
-    if (user_.role == Role::kAdmin) context->AddProperty(kAdminProperty, "");
+    if (!UnixUserOf(*context)) SetUnixUser(*context, user_);
     return grpc::Status::OK;
   }
 
@@ -101,14 +98,6 @@ grpc::experimental::ExternalConnectionAcceptor* UnixUsers::AcceptorOf(uid_t user
   taken_.emplace(user, taken_.size());
   entrance.stamp->Set(*std::move(principal));
   return entrance.acceptor.get();
-}
-
-std::optional<Principal> UnixUserOf(const grpc::AuthContext& context) {
-  const auto names = context.FindPropertyValues(kNameProperty);
-  if (names.size() != 1) return std::nullopt;
-  const bool is_admin = !context.FindPropertyValues(kAdminProperty).empty();
-  return Principal{std::string(names[0].data(), names[0].size()),
-                   is_admin ? Role::kAdmin : Role::kSubmit};
 }
 
 }  // namespace ballpiston::server

@@ -16,13 +16,10 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "grpcpp/security/auth_context.h"
 #include "grpcpp/server_builder.h"
 #include "server/observability/line_budget.h"
-#include "server/security/principal.h"
 
 namespace ballpiston::server {
 
@@ -35,9 +32,11 @@ class UnixUsers {
   explicit UnixUsers(grpc::ServerBuilder& builder, size_t most = kMostUnixUsers);
   ~UnixUsers();
 
-  // Hands a connection of this user to gRPC. Closes it, and logs why at most every ten seconds, if
-  // the system knows no name of the user, or if all acceptors are other users'. One thread at a
-  // time; the first connection of a user waits for the system's list of users.
+  // Hands a connection of this user to gRPC; UnixUserOf (authenticator.h) then gives its calls the
+  // user, with the role admin for the server's own user and root, submit for others. Closes it, and
+  // logs why at most every ten seconds, if the system knows no name of the user, or if all
+  // acceptors are other users'. One thread at a time. The first connection of a user waits for the
+  // system's list of users; the user keeps that name as long as the server runs.
   void Receive(int descriptor, uid_t user);
 
  private:
@@ -54,10 +53,6 @@ class UnixUsers {
   std::map<uid_t, size_t> taken_;
   LineBudget refusals_;
 };
-
-// The user that Receive was told, with the role of one who is on no list: admin for the server's
-// own user and root, submit for others. None for other connections.
-std::optional<Principal> UnixUserOf(const grpc::AuthContext& context);
 
 }  // namespace ballpiston::server
 

@@ -26,6 +26,7 @@
 #include "gmock/gmock.h"
 #include "grpcpp/create_channel_posix.h"
 #include "gtest/gtest.h"
+#include "server/security/authenticator.h"
 #include "server/security/peer_user.h"
 #include "tests/server/api/watch_stream.h"
 #include "tests/server/call_by_name.h"
