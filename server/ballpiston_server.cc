@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/time/clock.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
@@ -89,6 +90,12 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
 absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(ServerOptions options) {
   absl::StatusOr<DataDirectory> directory = DataDirectory::Open(options.data_dir);
   if (!directory.ok()) return directory.status();
+  if (options.listen.empty() && options.security.socket_mode.value_or(0600) != 0600) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "--socket-mode=%04o needs --listen=unix:PATH: the default socket is in the data folder, "
+        "which other users cannot enter",
+        *options.security.socket_mode));
+  }
   if (options.listen.empty()) {
     options.listen = absl::StrCat("unix:", directory->FilePath("server.socket"));
   }
@@ -172,11 +179,30 @@ void BallpistonServer::BoundConnections(grpc::ServerBuilder& builder) const {
   builder.SetMaxReceiveMessageSize(static_cast<int>(options_.limits.max_message_bytes));
 }
 
+SocketListener::Receive BallpistonServer::AddReceiver(grpc::ServerBuilder& builder) {
+  if (security_->socket_access().IsOpenToOthers()) {
+    unix_users_ = std::make_unique<UnixUsers>(builder);
+    return [this](int descriptor, std::optional<uid_t> user) {
+      unix_users_->Receive(descriptor, *user);
+    };
+  }
+  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
+      builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+          security_->Credentials());
+  return [connections](int descriptor, std::optional<uid_t>) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = descriptor;
+    connections->HandleNewConnection(&connection);
+  };
+}
+
 absl::Status BallpistonServer::Listen() {
   const absl::Status free =
       address_.socket_path.empty() ? absl::OkStatus() : ClearSocketPath(address_);
   if (!free.ok()) return free;
-  auto listener = SocketListener::Listen(address_, options_.socket_users);
+  auto listener =
+      SocketListener::Listen(address_, options_.socket_users, security_->socket_access());
   if (!listener.ok()) return listener.status();
   address_ = (*listener)->address();
   grpc::EnableDefaultHealthCheckService(true);
@@ -189,18 +215,11 @@ absl::Status BallpistonServer::Listen() {
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
-  const std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> connections =
-      builder.experimental().AddExternalConnectionAcceptor(
-          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
-          security_->Credentials());
+  SocketListener::Receive receive = AddReceiver(builder);
   grpc_ = builder.BuildAndStart();
   if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC does not start");
   listener_ = *std::move(listener);
-  listener_->Start([connections](int descriptor) {
-    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
-    connection.fd = descriptor;
-    connections->HandleNewConnection(&connection);
-  });
+  listener_->Start(std::move(receive));
   StartHealth();
   directory_.TellAddress(address());
   return absl::OkStatus();

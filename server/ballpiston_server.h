@@ -29,6 +29,7 @@
 #include "server/security/peer_user.h"
 #include "server/security/server_security.h"
 #include "server/security/socket_listener.h"
+#include "server/security/unix_users.h"
 #include "server/store/data_directory.h"
 #include "server/store/store.h"
 
@@ -52,7 +53,8 @@ struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
   SecurityOptions security;
-  std::set<uid_t> socket_users = OwnUserAndRoot();  // whom a Unix socket lets in
+  // Whom a Unix socket lets in that is not open to others.
+  std::set<uid_t> socket_users = OwnUserAndRoot();
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // a cluster beside the threads
   ExperimentFactory factory;               // empty: the core's, by the chosen model
@@ -97,6 +99,8 @@ class BallpistonServer {
   void StartExecutors();
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
+  // Who receives the connections of the server that is built.
+  SocketListener::Receive AddReceiver(grpc::ServerBuilder& builder);
   absl::Status StartMetrics();
   void StartHealth();
 
@@ -122,6 +126,7 @@ class BallpistonServer {
   EnsembleService ensemble_;
   AnalyticService analytic_;
   ServerService server_;
+  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<Health> health_;            // after grpc_, which has what it sets

@@ -72,9 +72,9 @@ absl::Status NameServer(const absl::Status& status, const Connection& connection
   const std::string message(status.message());
   return absl::Status(
       status.code(),
-      absl::StrCat(
-          "no answer from the server at ", connection.address, ": ", message,
-          IsSocket(connection.address) ? "" : ConnectionHint(connection.security, message)));
+      absl::StrCat("no answer from the server at ", connection.address, ": ", message,
+                   IsSocket(connection.address) ? SocketHint(message)
+                                                : ConnectionHint(connection.security, message)));
 }
 
 VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal& terminal,

@@ -8,9 +8,10 @@ namespace {
 
 std::string HintWithTls(const ChannelSecurity& security, absl::string_view message) {
   if (absl::StrContains(message, "certificate verify failed")) {
-    return absl::StrCat("the server's certificate has expired, or was not signed by an authority ",
-                        security.ca.empty() ? "that this system knows" : "in " + security.ca,
-                        ": name the right one with --ca FILE");
+    return absl::StrCat(
+        "the server's certificate is not valid now, or was not signed by an authority ",
+        security.ca.empty() ? "that this system knows" : "in " + security.ca,
+        ": name the right one with --ca FILE");
   }
   if (absl::StrContains(message, "is not in peer certificate")) {
     return "the server's certificate is for another host: write the host as it stands there";
@@ -30,11 +31,13 @@ std::string HintWithTls(const ChannelSecurity& security, absl::string_view messa
   return "";
 }
 
+bool WasClosed(absl::string_view message) {
+  return absl::StrContains(message, "Socket closed") ||
+         absl::StrContains(message, "Connection reset");
+}
+
 std::string HintWithoutTls(absl::string_view message) {
-  if (!absl::StrContains(message, "Socket closed") &&
-      !absl::StrContains(message, "Connection reset")) {
-    return "";
-  }
+  if (!WasClosed(message)) return "";
   return "if that server wants TLS: --ca FILE, or --tls if this system knows its authority";
 }
 
@@ -44,6 +47,12 @@ std::string ConnectionHint(const ChannelSecurity& security, absl::string_view me
   const std::string hint =
       security.HasTls() ? HintWithTls(security, message) : HintWithoutTls(message);
   return hint.empty() ? "" : absl::StrCat("\n  ", hint);
+}
+
+std::string SocketHint(absl::string_view message) {
+  if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
+  return "\n  that server may not serve your user: its operator can open the socket to others "
+         "with --socket-mode";
 }
 
 }  // namespace ballpiston::client

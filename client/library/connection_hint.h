@@ -14,6 +14,9 @@ namespace ballpiston::client {
 // empty if nothing is known. Pure.
 std::string ConnectionHint(const ChannelSecurity& security, absl::string_view message);
 
+// The same for a Unix socket.
+std::string SocketHint(absl::string_view message);
+
 }  // namespace ballpiston::client
 
 #endif  // BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_

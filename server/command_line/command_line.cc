@@ -57,6 +57,26 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
   AddFlagFile(app);
 }
 
+void AddLocalAccessFlags(CLI::App& app, SecurityOptions& security) {
+  BeginGroup(app, "Users of this machine");
+  AddChoice(app, "socket-mode", security.socket_mode,
+            {{"0600", mode_t{0600}}, {"0660", mode_t{0660}}, {"0666", mode_t{0666}}},
+            "mode of the Unix socket in --listen: 0600, only the server's user and root connect, "
+            "as principal local; 0660, also the members of --socket-group; 0666, every user. With "
+            "the last two each user is a principal of that name, with the role submit; an "
+            "--access-file with lines user UNIX_USER PRINCIPAL ROLE [EXPIRES] admits only its "
+            "users. The server's user and root are administrators");
+  app.add_option("--socket-group", security.socket_group,
+                 "group of the Unix socket, by name or number, with --socket-mode=0660. The "
+                 "server's user belongs to it")
+      ->type_name("GROUP");
+  AddChoice(
+      app, "loopback-role", security.loopback_role,
+      {{RoleName(kLoopbackRole), kLoopbackRole}, {"read", Role::kRead}, {"admin", Role::kAdmin}},
+      "role of every user of this machine at a loopback HOST:PORT without --access-file: "
+      "read, submit or admin. All of them are the principal local");
+}
+
 void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
   BeginGroup(app, "Security; SIGHUP makes the server read these files again");
   app.add_option("--tls-certificate", security.tls_certificate,
@@ -70,7 +90,8 @@ void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
                  "needs a certificate")
       ->type_name("FILE");
   app.add_option("--access-file", security.access_file,
-                 "who may call; needs TLS. A line for each credential: token sha256:HEX PRINCIPAL "
+                 "who may call; needs TLS, or a Unix socket with --socket-mode (see there). A line "
+                 "for each credential: token sha256:HEX PRINCIPAL "
                  "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
                  "read, submit or admin")
       ->type_name("FILE");
@@ -333,6 +354,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   app.set_help_flag();  // one of its own comes last
   SetHelpPage(app);
   AddServerFlags(app, line);
+  AddLocalAccessFlags(app, line.server.security);
   AddSecurityFlags(app, line.server.security);
   bool with_slurm = false;
   SlurmOptions slurm;

@@ -143,6 +143,13 @@ absl::Status CredentialsExpired() {
                     "CREDENTIALS_EXPIRED");
 }
 
+absl::Status UserNotListed(const std::string& user) {
+  return WithReason(absl::UnauthenticatedError(
+                        absl::StrCat("this server has no principal for the Unix user ", user,
+                                     "; its operator can add a line to the access file")),
+                    "CREDENTIALS_INVALID");
+}
+
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit) {
   absl::Status status = absl::ResourceExhaustedError(
@@ -154,11 +161,15 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
   return status;
 }
 
+// `local` with a role below admin comes over the loopback.
 absl::Status RoleTooLow(const Principal& caller, Role least) {
-  return WithInfo(
-      absl::PermissionDeniedError(absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
-                                               ", this call needs the role ", RoleName(least))),
-      "ROLE_TOO_LOW", "role", RoleName(least));
+  const char* const hint = caller.name == LocalPrincipal().name
+                               ? "; the server's flag --loopback-role sets the role of local users"
+                               : "";
+  return WithInfo(absl::PermissionDeniedError(
+                      absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                   ", this call needs the role ", RoleName(least), hint)),
+                  "ROLE_TOO_LOW", "role", RoleName(least));
 }
 
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {

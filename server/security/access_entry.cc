@@ -13,7 +13,7 @@ namespace ballpiston::server {
 namespace {
 
 constexpr size_t kLongestName = 64;
-constexpr size_t kLongestCommonName = 256;
+constexpr size_t kLongestCredential = 256;  // a common name, a user's name
 constexpr absl::string_view kHashPrefix = "sha256:";
 constexpr Role kRoles[] = {Role::kRead, Role::kSubmit, Role::kAdmin};
 
@@ -50,19 +50,26 @@ absl::StatusOr<std::vector<absl::string_view>> Words(absl::string_view line) {
   }
 }
 
-absl::StatusOr<std::variant<TokenHash, std::string>> ParseCredential(absl::string_view kind,
-                                                                     absl::string_view text) {
+absl::StatusOr<decltype(AccessEntry::credential)> ParseCredential(absl::string_view kind,
+                                                                  absl::string_view text) {
   if (kind == "token") {
     const auto hash = absl::ConsumePrefix(&text, kHashPrefix) ? ParseTokenHash(text) : std::nullopt;
     if (hash) return *hash;
     return Wrong("the token is not given as its SHA-256", "sha256: and 64 hexadecimal digits");
   }
-  if (kind != "certificate") {
-    return Wrong("the first word is not a kind of credential", "token, certificate");
+  if (kind != "certificate" && kind != "user") {
+    return Wrong("the first word is not a kind of credential", "token, certificate, user");
   }
-  if (text.size() <= kLongestCommonName) return std::string(text);
-  return Wrong("the common name is too long", absl::StrCat("at most ", kLongestCommonName));
+  if (text.size() > kLongestCredential) {
+    return Wrong("the second word is too long", absl::StrCat("at most ", kLongestCredential));
+  }
+  if (kind == "user") return UnixUser{std::string(text)};
+  return CommonName{std::string(text)};
 }
+
+std::string Text(const TokenHash& hash) { return absl::StrCat("token ", kHashPrefix, HexOf(hash)); }
+std::string Text(const CommonName& name) { return absl::StrCat("certificate \"", name.text, "\""); }
+std::string Text(const UnixUser& user) { return absl::StrCat("user \"", user.name, "\""); }
 
 // A time, or a date. Abseil would also take "infinite-future".
 absl::StatusOr<absl::Time> ParseExpiry(absl::string_view text) {
@@ -84,8 +91,8 @@ absl::StatusOr<std::optional<AccessEntry>> ParseAccessEntry(absl::string_view li
   if (words->empty()) return std::nullopt;
   if (words->size() < 4 || words->size() > 5) {
     return Wrong(absl::StrCat("there are ", words->size(), " words"),
-                 "token sha256:HEX PRINCIPAL ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL "
-                 "ROLE [EXPIRES]");
+                 "token sha256:HEX PRINCIPAL ROLE [EXPIRES], certificate COMMON_NAME PRINCIPAL "
+                 "ROLE [EXPIRES], or user UNIX_USER PRINCIPAL ROLE [EXPIRES]");
   }
   const auto credential = ParseCredential((*words)[0], (*words)[1]);
   if (!credential.ok()) return credential.status();
@@ -101,11 +108,8 @@ absl::StatusOr<std::optional<AccessEntry>> ParseAccessEntry(absl::string_view li
 }
 
 std::string FormatAccessEntry(const AccessEntry& entry) {
-  const auto* hash = std::get_if<TokenHash>(&entry.credential);
   const std::string credential =
-      hash != nullptr
-          ? absl::StrCat("token ", kHashPrefix, HexOf(*hash))
-          : absl::StrCat("certificate \"", std::get<std::string>(entry.credential), "\"");
+      std::visit([](const auto& one) { return Text(one); }, entry.credential);
   const std::string expiry =
       entry.expires == absl::InfiniteFuture()
           ? ""

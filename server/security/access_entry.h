@@ -2,9 +2,11 @@
 //
 //   token sha256:HEX PRINCIPAL ROLE [EXPIRES]
 //   certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]
+//   user UNIX_USER PRINCIPAL ROLE [EXPIRES]
 //
 //   HEX          64 hexadecimal digits: the SHA-256 of a token
 //   COMMON_NAME  of a client's certificate; in double quotes if it holds blanks
+//   UNIX_USER    the name of a user of this machine, at a Unix socket that is open to others
 //   PRINCIPAL    1 to 64 of a-z, A-Z, 0-9, '.', '_', '@' and '-', and not `local`, which is whoever
 //                comes over a Unix socket
 //   ROLE         read | submit | admin (principal.h)
@@ -28,8 +30,18 @@
 
 namespace ballpiston::server {
 
+struct CommonName {
+  std::string text;
+  bool operator==(const CommonName&) const = default;
+};
+
+struct UnixUser {
+  std::string name;
+  bool operator==(const UnixUser&) const = default;
+};
+
 struct AccessEntry {
-  std::variant<TokenHash, std::string> credential;  // of a token; or a certificate's common name
+  std::variant<TokenHash, CommonName, UnixUser> credential;
   Principal principal;
   absl::Time expires = absl::InfiniteFuture();
 };

@@ -15,14 +15,15 @@ absl::Status AtLine(const NamedFile& file, size_t line, absl::string_view what) 
       absl::StrCat(file.Text(), ", line ", line, ": ", std::string(what)));
 }
 
-// Whether one of them has this credential already.
-template <typename Credential, typename Holder>
-bool Holds(const std::vector<std::pair<Credential, Holder>>& held, const Credential& credential) {
-  return std::any_of(held.begin(), held.end(),
-                     [&](const auto& entry) { return entry.first == credential; });
-}
-
 }  // namespace
+
+template <typename Credential>
+const AccessList::Holder* AccessList::Find(const Held<Credential>& held,
+                                           const Credential& credential) {
+  const auto found = std::find_if(held.begin(), held.end(),
+                                  [&](const auto& entry) { return entry.first == credential; });
+  return found == held.end() ? nullptr : &found->second;
+}
 
 absl::StatusOr<AccessList> AccessList::Read(const NamedFile& file) {
   const absl::StatusOr<std::string> text = ReadPrivateFile(file);
@@ -45,16 +46,13 @@ absl::StatusOr<AccessList> AccessList::Parse(const NamedFile& file, absl::string
 }
 
 bool AccessList::Add(const AccessEntry& entry) {
-  const Holder holder{entry.principal, entry.expires};
-  if (const auto* hash = std::get_if<TokenHash>(&entry.credential)) {
-    if (Holds(tokens_, *hash)) return false;
-    tokens_.emplace_back(*hash, holder);
+  const auto add = [&](const auto& credential) {
+    auto& held = HeldAs(credential);
+    if (Find(held, credential) != nullptr) return false;
+    held.emplace_back(credential, Holder{entry.principal, entry.expires});
     return true;
-  }
-  const auto& name = std::get<std::string>(entry.credential);
-  if (Holds(certificates_, name)) return false;
-  certificates_.emplace_back(name, holder);
-  return true;
+  };
+  return std::visit(add, entry.credential);
 }
 
 absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Time now) const {
@@ -70,10 +68,13 @@ absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Tim
 
 absl::StatusOr<Principal> AccessList::OfCertificate(absl::string_view common_name,
                                                     absl::Time now) const {
-  for (const auto& [known, holder] : certificates_) {
-    if (known == common_name) return Unexpired(holder, now);
-  }
-  return CredentialsInvalid();
+  const Holder* const found = Find(certificates_, CommonName{std::string(common_name)});
+  return found == nullptr ? CredentialsInvalid() : Unexpired(*found, now);
+}
+
+absl::StatusOr<Principal> AccessList::OfUser(const std::string& name, absl::Time now) const {
+  const Holder* const found = Find(users_, UnixUser{name});
+  return found == nullptr ? UserNotListed(name) : Unexpired(*found, now);
 }
 
 absl::StatusOr<Principal> AccessList::Unexpired(const Holder& holder, absl::Time now) {

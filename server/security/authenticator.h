@@ -1,4 +1,5 @@
-// Who calls: a bearer token, else the client's certificate, looked up in the list of those who may.
+// Who calls: a bearer token, else the client's certificate, looked up in the list of those who may;
+// or the Unix user of the connection (unix_users.h), who needs no list.
 //
 //   authorization: Bearer TOKEN    in the call's metadata; once
 //
@@ -26,16 +27,21 @@ namespace ballpiston::server {
 
 // What a call shows for itself.
 struct Credentials {
-  std::vector<std::string> authorization;  // every such header
-  std::optional<std::string> common_name;  // of a certificate that was verified
+  std::vector<std::string> authorization;   // every such header
+  std::optional<std::string> common_name;   // of a certificate that was verified
+  std::optional<Principal> unix_user = {};  // with the role of one who is on no list
 };
 
 class Authenticator {
  public:
-  Authenticator() = default;  // the open door: everybody is LocalPrincipal
+  // The open door: everybody is this principal.
+  explicit Authenticator(Principal everybody = LocalPrincipal())
+      : everybody_(std::move(everybody)) {}
+  // Without a list every Unix user may call, by their name, and nobody else.
   explicit Authenticator(std::shared_ptr<const AccessList> list) : list_(std::move(list)) {}
 
-  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED.
+  // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. A Unix
+  // user whose role is admin, the server's own and root, is not looked up.
   absl::StatusOr<Principal> Authenticate(const grpc::ServerContextBase& context) const;
   absl::StatusOr<Principal> Authenticate(const Credentials& shown, absl::Time now) const;
 
@@ -45,12 +51,18 @@ class Authenticator {
  private:
   std::shared_ptr<const AccessList> list() const;
 
+  const std::optional<Principal> everybody_ = {};  // none: not open
   mutable std::mutex mutex_;
-  std::shared_ptr<const AccessList> list_;  // none: open
+  std::shared_ptr<const AccessList> list_;
 };
 
 // The common name of the certificate that the connection was made with, if one was asked for.
 std::optional<std::string> CommonNameOf(const grpc::AuthContext& context);
+
+// The Unix user that a connection is written down as (unix_users.h): once, before its first call
+// goes on. With the role submit, or admin; none for other connections.
+void SetUnixUser(grpc::AuthContext& context, const Principal& user);
+std::optional<Principal> UnixUserOf(const grpc::AuthContext& context);
 
 // The token of a header's value, `Bearer TOKEN`; empty if it is something else.
 absl::string_view BearerToken(absl::string_view authorization);

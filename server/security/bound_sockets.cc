@@ -28,14 +28,13 @@ absl::Status CannotListen(const ListenAddress& address, const std::string& why) 
 
 // ---- a Unix socket ----
 
-bool ListenAtPath(int descriptor, const std::string& path) {
+bool BindTo(int descriptor, const std::string& path) {
   sockaddr_un local{};
   local.sun_family = AF_UNIX;
   std::memcpy(local.sun_path, path.data(), std::min(path.size(), sizeof(local.sun_path) - 1));
   // Linux gives the file the mode that the socket has when it is bound: never open to others.
   return fchmod(descriptor, 0600) == 0 &&
-         bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) == 0 &&
-         listen(descriptor, kWaiting) == 0;
+         bind(descriptor, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) == 0;
 }
 
 // ---- a host ----
@@ -156,10 +155,11 @@ Listening ListenAtHost(int port, const std::vector<SocketAddress>& addresses) {
 
 }  // namespace
 
-absl::StatusOr<BoundSockets> BoundSockets::Bind(const ListenAddress& address) {
+absl::StatusOr<BoundSockets> BoundSockets::Bind(const ListenAddress& address,
+                                                const SocketAccess& access) {
   BoundSockets sockets;
   const absl::Status bound =
-      address.socket_path.empty() ? sockets.BindHost(address) : sockets.BindPath(address);
+      address.socket_path.empty() ? sockets.BindHost(address) : sockets.BindPath(address, access);
   if (!bound.ok()) return bound;
   return sockets;
 }
@@ -171,18 +171,21 @@ BoundSockets::BoundSockets(BoundSockets&& other) noexcept
       device_(other.device_),
       inode_(other.inode_) {}
 
-absl::Status BoundSockets::BindPath(const ListenAddress& address) {
+// Nobody connects before the file has its mode: the socket listens after that.
+absl::Status BoundSockets::BindPath(const ListenAddress& address, const SocketAccess& access) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   struct stat made {};
   if (descriptor >= 0) descriptors_ = {descriptor};
-  if (descriptor < 0 || !ListenAtPath(descriptor, address.socket_path) ||
+  if (descriptor < 0 || !BindTo(descriptor, address.socket_path) ||
       lstat(address.socket_path.c_str(), &made) != 0) {
     return CannotListen(address, std::strerror(errno));
   }
   path_ = address.socket_path;
   device_ = made.st_dev;
   inode_ = made.st_ino;
-  return absl::OkStatus();
+  const absl::Status set = SetSocketAccess(path_, access);
+  if (!set.ok() || listen(descriptor, kWaiting) == 0) return set;
+  return CannotListen(address, std::strerror(errno));
 }
 
 absl::Status BoundSockets::BindHost(const ListenAddress& address) {

@@ -1,9 +1,11 @@
 // Sockets that listen at an address: a Unix socket, or one for each address that a HOST stands for,
 // all at one port. Connections wait with the kernel until somebody accepts them.
 //
-// The file of a Unix socket has mode 0600 from the moment it exists, and is taken away at the end
-// if it is still the one that was made here: another server may have put its own there meanwhile.
-// No other process can share the port.
+// The file of a Unix socket has mode 0600 from the moment it exists until it gets the group and the
+// mode that are asked for. It is taken away at the end if it is still the one that was made here:
+// another server may have put its own there meanwhile. No other process can share the port. gRPC
+// gives such a file the mode of the umask and removes it whosever it is (socket_listener.h tells
+// why gRPC and systemd do not listen here).
 #ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 #define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 
@@ -14,14 +16,17 @@
 
 #include "absl/status/statusor.h"
 #include "server/listen_address.h"
+#include "server/security/socket_access.h"
 
 namespace ballpiston::server {
 
 class BoundSockets {
  public:
-  // FAILED_PRECONDITION if one cannot listen there, because the address is in use, say. Of the
-  // addresses that a name stands for, those this machine does not have are left out.
-  static absl::StatusOr<BoundSockets> Bind(const ListenAddress& address);
+  // FAILED_PRECONDITION if one cannot listen there, because the address is in use, say; errors of
+  // `access`, which only a Unix socket heeds, as SetSocketAccess's. Of the addresses that a name
+  // stands for, those this machine does not have are left out.
+  static absl::StatusOr<BoundSockets> Bind(const ListenAddress& address,
+                                           const SocketAccess& access = {});
 
   BoundSockets(BoundSockets&& other) noexcept;
   BoundSockets& operator=(BoundSockets&& other) = delete;
@@ -35,7 +40,7 @@ class BoundSockets {
  private:
   BoundSockets() = default;
 
-  absl::Status BindPath(const ListenAddress& address);
+  absl::Status BindPath(const ListenAddress& address, const SocketAccess& access);
   absl::Status BindHost(const ListenAddress& address);
 
   std::vector<int> descriptors_;

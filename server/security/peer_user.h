@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <set>
+#include <string>
 
 namespace ballpiston::server {
 
@@ -17,6 +18,15 @@ std::set<uid_t> OwnUserAndRoot();
 
 // A peer whose user is not known is nobody's.
 bool MayConnect(std::optional<uid_t> peer, const std::set<uid_t>& permitted);
+
+// Whether the number stands for one user. To a server in a user namespace (PrivateUsers= of
+// systemd, a container) the kernel gives all users of other namespaces one number, which is that of
+// `nobody`; they must not share their jobs.
+bool StandsForOneUser(std::optional<uid_t> peer);
+
+// As the system's list of users has it; none if it is not there, or cannot be read now. May wait
+// for a directory service.
+std::optional<std::string> UserName(uid_t user);
 
 }  // namespace ballpiston::server
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "grpcpp/security/tls_certificate_provider.h"
 #include "grpcpp/security/tls_credentials_options.h"
@@ -16,21 +17,33 @@ constexpr unsigned kLookSeconds = 1;
 
 absl::StatusOr<std::unique_ptr<ServerTls>> ServerTls::Create(TlsFiles files) {
   auto tls = absl::WrapUnique(new ServerTls(std::move(files)));
-  const absl::Status read = tls->Reload();
-  if (!read.ok()) return read;
+  const absl::StatusOr<TlsIdentity> identity = ReadTlsIdentity(tls->files_);
+  if (!identity.ok()) return identity.status();
+  const absl::Status loaded = tls->Load(*identity);
+  if (!loaded.ok()) return loaded;
   return tls;
 }
 
 absl::Status ServerTls::Reload() {
-  const absl::StatusOr<TlsIdentity> identity = ReadTlsIdentity(files_, absl::Now());
+  const absl::StatusOr<TlsIdentity> identity = ReadTlsIdentity(files_);
   if (!identity.ok()) return identity.status();
-  auto certificate_and_key = certificate_and_key_.Prepare(identity->certificate_and_key);
+  const absl::Time now = absl::Now();
+  const bool is_valid = identity->begins <= now && now < identity->expires;
+  if (is_valid || !IsValidAt(now)) return Load(*identity);
+  return Unusable(files_.certificate,
+                  absl::StrCat("the certificate is valid from ", absl::FormatTime(identity->begins),
+                               " to ", absl::FormatTime(identity->expires), " only"));
+}
+
+absl::Status ServerTls::Load(const TlsIdentity& identity) {
+  auto certificate_and_key = certificate_and_key_.Prepare(identity.certificate_and_key);
   if (!certificate_and_key.ok()) return certificate_and_key.status();
-  auto client_ca = client_ca_.Prepare(identity->client_ca);  // empty: nobody reads it
+  auto client_ca = client_ca_.Prepare(identity.client_ca);  // empty: nobody reads it
   if (!client_ca.ok()) return client_ca.status();
   certificate_and_key_.Exchange(*std::move(certificate_and_key));
   client_ca_.Exchange(*std::move(client_ca));
-  expires_ = absl::ToUnixSeconds(identity->expires);
+  begins_ = absl::ToUnixSeconds(identity.begins);
+  expires_ = absl::ToUnixSeconds(identity.expires);
   return absl::OkStatus();
 }
 

@@ -4,6 +4,9 @@
 // (published_file.h) that hold what has been tried out before. So a connection that is being made
 // sees the old pair or the new one, and connections that are there notice nothing. (gRPC has a
 // certificate callback for the purpose as well, but exchanges what it returns without a lock.)
+// Given the operator's own files, that provider would take a key that others can read, a key and a
+// certificate of two pairs while they are being copied, and a broken file as no certificate: it
+// looks at times of change, tries nothing out, and tells the operator nothing.
 #ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 #define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 
@@ -22,7 +25,8 @@ namespace ballpiston::server {
 
 class ServerTls {
  public:
-  // Errors as ReadTlsIdentity's.
+  // Errors as ReadTlsIdentity's. A certificate that is not valid yet, or any more, is taken: after
+  // a boot the clock may be set only later. Clients refuse it in each handshake until it is valid.
   static absl::StatusOr<std::unique_ptr<ServerTls>> Create(TlsFiles files);
 
   // With a client_ca: a client without a certificate that one of it signed is not let in. The
@@ -30,18 +34,24 @@ class ServerTls {
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
   // Reads the files again. What is wrong with one of them, or with the system, leaves all as they
-  // were; what is right serves new connections a second later. One thread at a time.
+  // were; what is right serves new connections a second later. A certificate that is not valid now
+  // replaces only one that is not, either. One thread at a time.
   absl::Status Reload();
 
   // The certificate in use. Any thread.
+  absl::Time begins() const { return absl::FromUnixSeconds(begins_); }
   absl::Time expires() const { return absl::FromUnixSeconds(expires_); }
+  bool IsValidAt(absl::Time time) const { return begins() <= time && time < expires(); }
 
  private:
   explicit ServerTls(TlsFiles files) : files_(std::move(files)) {}
 
+  absl::Status Load(const TlsIdentity& identity);
+
   const TlsFiles files_;
   PublishedFile certificate_and_key_;
   PublishedFile client_ca_;
+  std::atomic<int64_t> begins_ = 0;
   std::atomic<int64_t> expires_ = 0;  // seconds since 1970, which is all that a certificate tells
 };
 

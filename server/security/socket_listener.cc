@@ -59,8 +59,9 @@ void SendAtOnce(int descriptor) {
 uint64_t ReservedDescriptors(uint64_t limit) { return std::min(kReserved, limit / 4); }
 
 absl::StatusOr<std::unique_ptr<SocketListener>> SocketListener::Listen(const ListenAddress& address,
-                                                                       std::set<uid_t> permitted) {
-  absl::StatusOr<BoundSockets> sockets = BoundSockets::Bind(address);
+                                                                       std::set<uid_t> permitted,
+                                                                       const SocketAccess& access) {
+  absl::StatusOr<BoundSockets> sockets = BoundSockets::Bind(address, access);
   if (!sockets.ok()) return sockets.status();
   const int stop = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (stop < 0) {
@@ -69,12 +70,13 @@ absl::StatusOr<std::unique_ptr<SocketListener>> SocketListener::Listen(const Lis
   }
   ListenAddress chosen = address;
   chosen.port = sockets->port();
-  return absl::WrapUnique(
-      new SocketListener(std::move(chosen), *std::move(sockets), stop, std::move(permitted)));
+  return absl::WrapUnique(new SocketListener(
+      std::move(chosen), *std::move(sockets), stop,
+      access.IsOpenToOthers() ? std::nullopt : std::optional(std::move(permitted))));
 }
 
 SocketListener::SocketListener(ListenAddress address, BoundSockets sockets, int stop,
-                               std::set<uid_t> permitted)
+                               std::optional<std::set<uid_t>> permitted)
     : address_(std::move(address)),
       sockets_(std::move(sockets)),
       stop_(stop),
@@ -115,6 +117,10 @@ void SocketListener::Run(const Receive& receive) {
   LogClosed();
 }
 
+bool SocketListener::LetsIn(std::optional<uid_t> peer) const {
+  return permitted_ ? MayConnect(peer, *permitted_) : StandsForOneUser(peer);
+}
+
 void SocketListener::AcceptOne(int listening, const Receive& receive) {
   const int descriptor = accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (descriptor < 0) {
@@ -123,10 +129,10 @@ void SocketListener::AcceptOne(int listening, const Receive& receive) {
   }
   const bool is_local = !address_.socket_path.empty();
   const std::optional<uid_t> peer = is_local ? PeerUser(descriptor) : std::nullopt;
-  const bool is_stranger = is_local && !MayConnect(peer, permitted_);
+  const bool is_stranger = is_local && !LetsIn(peer);
   if (!is_stranger && !IsInReserve(descriptor)) {
     SendAtOnce(descriptor);
-    return receive(descriptor);
+    return receive(descriptor, peer);
   }
   close(descriptor);
   ++(is_stranger ? strangers_ : over_reserve_).count;
@@ -144,7 +150,10 @@ void SocketListener::PauseAfter(int error) {
 }
 
 void SocketListener::LogClosed() {
-  LogClosed(strangers_, absl::StrCat("of other users closed, the last of user ",
+  const char* const of_whom = permitted_
+                                  ? "of other users"
+                                  : "of users without a number here (see PrivateUsers= of systemd)";
+  LogClosed(strangers_, absl::StrCat(of_whom, " closed, the last of user ",
                                      last_stranger_ ? absl::StrCat(*last_stranger_) : "unknown"));
   LogClosed(over_reserve_,
             "closed: the process has nearly as many descriptors as it may (RLIMIT_NOFILE, the "

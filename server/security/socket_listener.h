@@ -1,12 +1,16 @@
 // Accepts connections at an address and hands them on.
 //
 // At a Unix socket it asks the kernel whose they are: those of other than permitted users are
-// closed before a byte of theirs is read. At either kind of address a connection is closed that
-// would leave the process fewer than ReservedDescriptors(), which the store, the certificates and
-// the metrics need: whoever opens connections must not keep results from the disk. Both are logged:
-// the first at once, then their number at most every ten seconds.
+// closed before a byte of theirs is read, and the others are handed on with their user. At either
+// kind of address a connection is closed that would leave the process fewer than
+// ReservedDescriptors(), which the store, the certificates and the metrics need: whoever opens
+// connections must not keep results from the disk. Both are logged: the first at once, then their
+// number at most every ten seconds.
 //
-// gRPC's own listener would not say who connects, and gives up for good at the first EMFILE.
+// gRPC's own listener, with SO_REUSEPORT off too, would not say who connects, would take every
+// descriptor, and gives up for good at the first EMFILE. Socket activation of systemd would replace
+// only bound_sockets.h, and only where systemd starts the server: a private server would still need
+// that file.
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 #define BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 
@@ -30,13 +34,15 @@ namespace ballpiston::server {
 
 class SocketListener {
  public:
-  // Takes over the descriptor, which does not block.
-  using Receive = std::function<void(int descriptor)>;
+  // Takes over the descriptor, which does not block. `user`: at a Unix socket.
+  using Receive = std::function<void(int descriptor, std::optional<uid_t> user)>;
 
-  // Connections wait until Start. `permitted` are the users whom a Unix socket lets in. Errors as
-  // BoundSockets::Bind's.
+  // Connections wait until Start. A Unix socket lets in the users that are `permitted`, or, if
+  // `access` opens it to others, every single user (StandsForOneUser) whom it lets connect. Errors
+  // as BoundSockets::Bind's.
   static absl::StatusOr<std::unique_ptr<SocketListener>> Listen(const ListenAddress& address,
-                                                                std::set<uid_t> permitted);
+                                                                std::set<uid_t> permitted,
+                                                                const SocketAccess& access = {});
   ~SocketListener();
 
   // With the port that was chosen, if any was free to be.
@@ -54,8 +60,11 @@ class SocketListener {
     std::optional<std::chrono::steady_clock::time_point> last_logged;
   };
 
-  SocketListener(ListenAddress address, BoundSockets sockets, int stop, std::set<uid_t> permitted);
+  // `permitted` empty: every single user.
+  SocketListener(ListenAddress address, BoundSockets sockets, int stop,
+                 std::optional<std::set<uid_t>> permitted);
 
+  bool LetsIn(std::optional<uid_t> peer) const;
   void Run(const Receive& receive);
   void AcceptOne(int listening, const Receive& receive);
   void PauseAfter(int error);
@@ -65,7 +74,7 @@ class SocketListener {
   const ListenAddress address_;
   BoundSockets sockets_;
   int stop_;  // an event: readable when it is time to stop
-  const std::set<uid_t> permitted_;
+  const std::optional<std::set<uid_t>> permitted_;
   Closed strangers_;
   std::optional<uid_t> last_stranger_;
   Closed over_reserve_;

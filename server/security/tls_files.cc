@@ -58,14 +58,6 @@ absl::Time TimeOf(const ASN1_TIME* time) {
   return absl::FromTM(parts, absl::UTCTimeZone());
 }
 
-absl::Status CheckDates(const NamedFile& file, const X509& certificate, absl::Time now) {
-  const absl::Time from = TimeOf(X509_get0_notBefore(&certificate));
-  const absl::Time until = TimeOf(X509_get0_notAfter(&certificate));
-  if (from <= now && now < until) return absl::OkStatus();
-  return Unusable(file, absl::StrCat("the certificate is valid from ", absl::FormatTime(from),
-                                     " to ", absl::FormatTime(until), " only"));
-}
-
 // As TLS itself would: certificate and key in a context of their own.
 absl::Status TryOut(const TlsFiles& files, X509* certificate, EVP_PKEY* key) {
   const Context context(SSL_CTX_new(TLS_server_method()));
@@ -111,15 +103,13 @@ absl::StatusOr<std::string> ReadClientCa(const NamedFile& file) {
 
 }  // namespace
 
-absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files, absl::Time now) {
+absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files) {
   const absl::StatusOr<std::string> chain = ReadPublicFile(files.certificate);
   if (!chain.ok()) return chain.status();
   const std::vector<Certificate> certificates = Certificates(*chain);
   if (certificates.empty()) {
     return Unusable(files.certificate, "has no certificate (PEM is wanted)");
   }
-  const absl::Status dates = CheckDates(files.certificate, *certificates.front(), now);
-  if (!dates.ok()) return dates;
   const absl::StatusOr<std::string> key_text = ReadPrivateFile(files.key);
   if (!key_text.ok()) return key_text.status();
   const Key key(PEM_read_bio_PrivateKey(Reading(*key_text).get(), nullptr, &NoPassphrase, nullptr));
@@ -131,8 +121,9 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files, absl::Time no
   if (!usable.ok()) return usable;
   const absl::StatusOr<std::string> client_ca = ReadClientCa(files.client_ca);
   if (!client_ca.ok()) return client_ca.status();
+  const X509* const own = certificates.front().get();
   return TlsIdentity{absl::StrCat(Pem(certificates), Pem(*key)), *client_ca,
-                     TimeOf(X509_get0_notAfter(certificates.front().get()))};
+                     TimeOf(X509_get0_notBefore(own)), TimeOf(X509_get0_notAfter(own))};
 }
 
 }  // namespace ballpiston::server

@@ -20,12 +20,14 @@ struct TlsFiles {
 struct TlsIdentity {
   std::string certificate_and_key;  // PEM, in one: they cannot be taken for two that do not belong
   std::string client_ca;            // PEM, or empty
-  absl::Time expires;               // the certificate
+  absl::Time begins;                // the certificate
+  absl::Time expires;
 };
 
 // INVALID_ARGUMENT names flag and file, and one of: cannot be read, open to others (the key), no
-// PEM, key and certificate do not belong together, not valid yet or any more, too weak.
-absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files, absl::Time now);
+// PEM, key and certificate do not belong together, too weak. The dates are not compared with the
+// clock, which may not be set yet.
+absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files);
 
 }  // namespace ballpiston::server
 

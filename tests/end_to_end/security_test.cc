@@ -145,6 +145,14 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   EXPECT_THAT(List({}), ExitsWith(0));
 }
 
+TEST_F(Security, TheRoleOfTheLoopbackIsAFlag) {
+  Start({"--loopback-role", "read"});
+  EXPECT_THAT(List({}), ExitsWith(0));
+  const ProcessResult refused = Client(Joined({{"submit"}, kQuickQuestion}));
+  EXPECT_THAT(refused, ExitsWith(6));
+  EXPECT_THAT(refused.err, HasSubstr("the server's flag --loopback-role"));
+}
+
 TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
   Write("access", "certificate Ada alice read\n");
   const KeyAndCertificate own = authority_.Issue("Ada");
@@ -186,6 +194,15 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
   expect({"--listen", "127.0.0.1:0", "--access-file", home_.File("access")},
          "others could read the tokens");
   expect(Joined({TlsFlags(), {"--listen", "unix:" + home_.File("s")}}), "over a Unix socket");
+  expect({"--socket-mode", "0666"}, "--socket-mode=0666 needs --listen=unix:PATH");
+  const std::string socket = "unix:" + home_.File("s");
+  expect({"--listen", socket, "--socket-mode", "0660"}, "--socket-mode=0660 needs --socket-group");
+  expect({"--listen", socket, "--socket-mode", "0660", "--socket-group", "no-such-group"},
+         "--socket-group=no-such-group: there is no such group");
+  expect({"--listen", "127.0.0.1:0", "--socket-mode", "0600"},
+         "--socket-mode=0600 needs --listen=unix:PATH, not --listen=127.0.0.1:0");
+  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0", "--loopback-role", "admin"}}),
+         "--loopback-role=admin cannot be combined with --access-file");
   expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
   expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to others");

@@ -100,6 +100,14 @@ TEST_F(SecurityFiles, ErrorsNameTheFileAndTheFault) {
   EXPECT_THAT(Check({.ca = Write("ca", kSecret)}).message(), HasSubstr("PEM is wanted"));
 }
 
+TEST(ConnectionHint, OfAUnixSocketNamesTheFlagOfItsServer) {
+  for (const char* message : {"last error: UNAVAILABLE: unix:/run/s: Socket closed",
+                              "last error: UNKNOWN: unix:/run/s: Permission denied"}) {
+    EXPECT_THAT(SocketHint(message), HasSubstr("--socket-mode"));
+  }
+  EXPECT_EQ(SocketHint("last error: UNKNOWN: unix:/run/s: No such file or directory"), "");
+}
+
 TEST(ConnectionHint, SaysWhatToTry) {
   const ChannelSecurity plain, with_ca{.ca = "ca.pem"}, with_tls{.tls = true};
   const ChannelSecurity with_certificate{.tls = true, .certificate = "c.pem", .key = "k"};

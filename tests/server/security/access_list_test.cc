@@ -109,7 +109,8 @@ TEST(AccessList, ACertificateIsKnownByItsWholeCommonName) {
 TEST(AccessList, AFormattedEntryIsReadBack) {
   const AccessEntry entries[] = {
       {HashOf("one"), {"alice", Role::kSubmit}, kNoon},
-      {std::string("Ada Lovelace"), {"ada", Role::kAdmin}, absl::InfiniteFuture()}};
+      {CommonName{"Ada Lovelace"}, {"ada", Role::kAdmin}, absl::InfiniteFuture()},
+      {UnixUser{"LAB\\ada"}, {"ada", Role::kRead}, absl::InfiniteFuture()}};
   for (const AccessEntry& entry : entries) {
     ASSERT_OK_AND_ASSIGN(const auto read, ParseAccessEntry(FormatAccessEntry(entry)));
     EXPECT_EQ(read->credential, entry.credential);

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -26,6 +27,7 @@
 #include "tests/server/error_details.h"
 #include "tests/server/http_get.h"
 #include "tests/server/own_channel.h"
+#include "tests/server/requests.h"
 #include "tests/server/running_server.h"
 #include "tests/server/secure_server.h"
 #include "tests/support/files.h"
@@ -85,6 +87,95 @@ TEST(SecurityCombination, ARefusalNamesWhatIsMissing) {
   EXPECT_THAT(Refusal("unix:x", "ck"), HasSubstr("--tls-certificate, --tls-key"));
 }
 
+std::string RefusalOf(const std::string& listen, const SecurityOptions& options) {
+  return std::string(CheckCombination(options, *ParseListenAddress(listen)).message());
+}
+
+TEST(SecurityCombination, FlagsOfAUnixSocketNeedOne) {
+  for (const char* listen : {"127.0.0.1:1", "0.0.0.0:1"}) {
+    EXPECT_THAT(
+        RefusalOf(listen, {.socket_mode = 0600}),
+        HasSubstr(std::string("--socket-mode=0600 needs --listen=unix:PATH, not --listen=") +
+                  listen));
+    EXPECT_THAT(RefusalOf(listen, {.socket_group = "adm"}),
+                HasSubstr("--socket-group=adm needs --listen=unix:PATH"));
+  }
+  SecurityOptions secure = Flags("cka");
+  secure.socket_mode = 0666;
+  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure), HasSubstr("--socket-mode=0666 needs"));
+  secure.tls_client_ca = "f";
+  EXPECT_THAT(RefusalOf("unix:x", secure),
+              HasSubstr("combined with --tls-certificate, --tls-key, --tls-client-ca"));
+}
+
+TEST(SecurityCombination, Mode0660AndAGroupNeedEachOther) {
+  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0660, .socket_group = "adm"}), "");
+  EXPECT_EQ(RefusalOf("unix:x", {.socket_mode = 0666}), "");
+  EXPECT_EQ(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0666}), "");
+  EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = 0660}),
+              HasSubstr("--socket-mode=0660 needs --socket-group"));
+  for (const std::optional<mode_t> mode : {std::optional<mode_t>(), {0600}, {0666}}) {
+    EXPECT_THAT(RefusalOf("unix:x", {.socket_mode = mode, .socket_group = "adm"}),
+                HasSubstr("--socket-group=adm needs --socket-mode=0660"));
+  }
+  EXPECT_THAT(RefusalOf("unix:x", {.access_file = "f", .socket_mode = 0600}),
+              HasSubstr("cannot be combined with --access-file"));
+}
+
+TEST(SecurityCombination, ARoleOfTheLoopbackNeedsAnOpenLoopback) {
+  for (const char* listen : {"127.0.0.1:1", "localhost:1", "[::1]:1"}) {
+    EXPECT_EQ(RefusalOf(listen, {.loopback_role = Role::kAdmin}), "");
+  }
+  EXPECT_THAT(RefusalOf("unix:x", {.loopback_role = Role::kAdmin}),
+              HasSubstr("--loopback-role=admin needs --listen=HOST:PORT with a loopback host"));
+  SecurityOptions secure = Flags("cka");
+  secure.loopback_role = Role::kRead;
+  EXPECT_THAT(RefusalOf("0.0.0.0:1", secure),
+              HasSubstr("--loopback-role=read needs a loopback host, not --listen=0.0.0.0:1"));
+  EXPECT_THAT(RefusalOf("127.0.0.1:1", secure), HasSubstr("combined with --access-file"));
+}
+
+TEST(SecurityCombination, LinesOfUnixUsersNeedASharedSocket) {
+  const LaboratoryFiles files;
+  files.WriteAccessFile("user ada ada read\n");
+  const auto security = ServerSecurity::Create(files.options(), *ParseListenAddress("0.0.0.0:1"));
+  EXPECT_THAT(std::string(security.status().message()), HasSubstr("--socket-mode=0660 or 0666"));
+}
+
+// ---- the loopback without credentials ----
+
+std::string JobOfAlice(const TemporaryFolder& data) {
+  const LaboratoryFiles files;
+  RunningServer server(Secure(files, {.data_dir = data.path()}));
+  return TestClient(server.NewChannel(files.Credentials(kAlice))).Submit(Equilibrium(1, 2));
+}
+
+TEST(Loopback, UsersOfThisMachineSubmitJobsAndDoNotSeeThoseOfOthers) {
+  const TemporaryFolder data;
+  const std::string job = JobOfAlice(data);
+  RunningServer server({.data_dir = data.path(), .listen = "127.0.0.1:0"});
+  const v1::EnsembleJob own = server.Created(CreateRequest(Equilibrium(1, 2)));
+  EXPECT_EQ(own.principal(), "local");
+  EXPECT_EQ(server.List().jobs_size(), 1);
+  EXPECT_EQ(ReasonOf(server.Delete(job)), "JOB_NOT_FOUND");
+}
+
+TEST(Loopback, TheFlagMakesUsersOfThisMachineAdministrators) {
+  const TemporaryFolder data;
+  const std::string job = JobOfAlice(data);
+  RunningServer server({.data_dir = data.path(),
+                        .listen = "127.0.0.1:0",
+                        .security = {.loopback_role = Role::kAdmin}});
+  EXPECT_EQ(server.Get(job).principal(), "alice");
+}
+
+TEST(Loopback, ARoleThatIsTooLowNamesTheFlag) {
+  RunningServer server({.listen = "127.0.0.1:0", .security = {.loopback_role = Role::kRead}});
+  EXPECT_EQ(server.List().jobs_size(), 0);
+  const grpc::Status status = server.Create(CreateRequest(Equilibrium(1, 2)));
+  EXPECT_THAT(status, StatusIs(grpc::StatusCode::PERMISSION_DENIED, HasSubstr("--loopback-role")));
+}
+
 TEST(SecurityCombination, CertificatesOnTheListNeedAnAuthorityOfClients) {
   const LaboratoryFiles files;
   files.WriteAccessFile("certificate box box read\n");
@@ -112,8 +203,7 @@ class TlsFilesTest : public ::testing::Test {
   std::string Error() const {
     const auto identity = ReadTlsIdentity({{"tls-certificate", files_.options().tls_certificate},
                                            {"tls-key", files_.options().tls_key},
-                                           {"tls-client-ca", files_.options().tls_client_ca}},
-                                          absl::Now());
+                                           {"tls-client-ca", files_.options().tls_client_ca}});
     if (identity.ok()) return "";
     EXPECT_THAT(identity, StatusIs(absl::StatusCode::kInvalidArgument, Not(HasSubstr("BEGIN"))));
     return std::string(identity.status().message());
@@ -131,12 +221,13 @@ TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
   EXPECT_THAT(Error(), HasSubstr("is not the key of the certificate in --tls-certificate="));
 }
 
-TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRefused) {
+// The clock may be set only later.
+TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRead) {
   using std::chrono::hours;
-  files_.WriteCertificate(files_.authority().Issue("old", {hours(-2), hours(-1)}));
-  EXPECT_THAT(Error(), HasSubstr("the certificate is valid from "));
-  files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
-  EXPECT_THAT(Error(), HasSubstr("the certificate is valid from "));
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_EQ(Error(), "");
+  }
 }
 
 TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
@@ -302,6 +393,65 @@ TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
   while (ServedCommonName() != "good") {
   }
   EXPECT_OK(List(Channel(), kAlice));
+}
+
+// Neither a certificate that has expired nor one that is early, as it is to a clock that is late.
+TEST_F(SecureServer, ACertificateOutOfItsTimeDoesNotReplaceOneThatIsValid) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    files_.WriteCertificate(files_.authority().Issue("x", validity));
+    EXPECT_THAT(std::string(Reload().message()), HasSubstr("the certificate is valid from "));
+    EXPECT_OK(List(Channel(), kAlice));
+  }
+}
+
+// ---- a start before the clock is set: to the server its certificate is early, or has expired ----
+
+class ClockNotSet : public ::testing::Test {
+ protected:
+  // Of a server with a certificate of this validity.
+  void Start(Validity validity) {
+    files_.WriteCertificate(files_.authority().Issue("out-of-time", validity));
+    ::testing::internal::CaptureStderr();
+    server_.emplace(Secure(files_));
+    log_ = ::testing::internal::GetCapturedStderr();
+  }
+  grpc::Status List() {
+    return CallByName(server_->NewChannel(files_.Credentials()), kListJobs, "", Bearer(kAlice));
+  }
+
+  const LaboratoryFiles files_;
+  std::optional<RunningServer> server_;
+  std::string log_;
+};
+
+TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
+  using std::chrono::hours;
+  for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
+    Start(validity);
+    EXPECT_THAT(log_, HasSubstr("error: the certificate in --tls-certificate="));
+    EXPECT_THAT(log_, HasSubstr("no client connects until it is valid"));
+    EXPECT_THAT(List(), StatusIs(grpc::StatusCode::UNAVAILABLE));
+  }
+}
+
+// Without a signal or a restart.
+TEST_F(ClockNotSet, ClientsConnectAsSoonAsTheCertificateIsValid) {
+  Start({.from = std::chrono::seconds(3)});
+  while (!List().ok()) {
+  }
+}
+
+TEST_F(ClockNotSet, ANewCertificateIsTakenEvenIfItIsNotValidYetEither) {
+  using std::chrono::hours;
+  Start({hours(-2), hours(-1)});
+  files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));
+  EXPECT_OK(server_->server().Reload());
+  EXPECT_GT(*server_->server().security().CertificateExpiry(), absl::Now() + absl::Hours(1));
+  files_.WriteCertificate(files_.authority().Issue("good"));
+  EXPECT_OK(server_->server().Reload());
+  while (!List().ok()) {
+  }
 }
 
 // Of 24 hours, as these are, and then of a year.

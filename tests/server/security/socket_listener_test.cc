@@ -83,7 +83,7 @@ class Socket : public ::testing::Test {
   void Listen(std::set<uid_t> permitted) {
     ASSERT_OK_AND_ASSIGN(listener_,
                          SocketListener::Listen(*ParseListenAddress("unix:" + path_), permitted));
-    listener_->Start([](int descriptor) {
+    listener_->Start([](int descriptor, std::optional<uid_t>) {
       EXPECT_EQ(fcntl(descriptor, F_GETFD) & FD_CLOEXEC, FD_CLOEXEC);
       EXPECT_EQ(fcntl(descriptor, F_GETFL) & O_NONBLOCK, O_NONBLOCK);
       [[maybe_unused]] const ssize_t written = write(descriptor, "x", 1);
@@ -136,7 +136,7 @@ TEST_F(Socket, AFileOfAnotherServerAtThePathStays) {
 TEST_F(Socket, ConnectionsBeforeTheStartWait) {
   auto listener = SocketListener::Listen(*ParseListenAddress("unix:" + path_), OwnUserAndRoot());
   const int early = ConnectTo(path_);
-  (*listener)->Start([](int descriptor) {
+  (*listener)->Start([](int descriptor, std::optional<uid_t>) {
     [[maybe_unused]] const ssize_t written = write(descriptor, "x", 1);
     close(descriptor);
   });
