@@ -136,8 +136,8 @@ class Store {
   using Clock = std::chrono::steady_clock;
 
   struct Write {
-    Change change;
-    Done done;
+    Change change = {};
+    Done done = {};
     bool urgent = false;
     bool lasting = true;   // retried after a failure
     bool ordered = false;  // a request that must follow all earlier writes
@@ -149,7 +149,7 @@ class Store {
     bool superseded = false;  // a checkpoint with a later one, or with the point's result, after it
 
     bool is_checkpoint() const { return point >= 0 && !is_result; }
-    Clock::time_point due;
+    Clock::time_point due = {};
     // Committed or refused; empty if the disk failed before.
     std::optional<absl::Status> outcome = {};
   };
