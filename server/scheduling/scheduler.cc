@@ -218,7 +218,8 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   return lease;
 }
 
-// Of the pilots first, then of the first point, so that points end in grid order.
+// Prefers a lease of a pilot, then the lease of the point with the smallest index: points end, as a
+// rule, in grid order.
 std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
   const Lease* first = nullptr;
   const auto end = held_.lower_bound({executor, run.key() + 1, 0});
