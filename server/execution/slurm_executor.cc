@@ -476,7 +476,7 @@ void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& re
   EndArray(name);
 }
 
-// Slurm does not have it, and its leases are free for others.
+// Ends an array that Slurm does not have: its leases go back to the scheduler.
 void SlurmExecutor::EndArray(const std::string& name) {
   {
     std::lock_guard lock(mutex_);
@@ -521,7 +521,7 @@ size_t SlurmExecutor::RoomForTasks() const {
   return options_.max_tasks - std::min(in_flight, options_.max_tasks);
 }
 
-// The server's threads can take them.
+// Gives the gathered leases back, so that the server's threads can take them.
 void SlurmExecutor::ReturnGathered() {
   for (const auto& [run, leases] : std::exchange(gathered_, {})) ReturnUntried({leases});
   looks_at_gathered_ = 0;

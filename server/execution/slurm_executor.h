@@ -83,7 +83,7 @@ class SlurmExecutor : public Executor {
     Clock::time_point submit_time = {};
   };
 
-  // Of some tasks, or, without `id`, of the whole array.
+  // What Slurm is asked to cancel: some tasks of an array, or the whole array if `id` is empty.
   struct Cancellation {
     std::string name;
     std::string id = {};

@@ -46,6 +46,13 @@ struct Lease {
   std::stop_token stop = {};
 
   bool OpensPoints() const { return !opens.empty(); }
+
+  // Of leases that have chunks of one run: pilots go first, and points end, as a rule, in grid
+  // order.
+  bool GoesBefore(const Lease& other) const {
+    if (pilot.has_value() != other.pilot.has_value()) return pilot.has_value();
+    return point < other.point;
+  }
 };
 
 // The work that an executor can take now, in seconds of one core at nominal speed.

@@ -45,27 +45,39 @@ void Run::SkipFinishedPoints() {
 std::optional<Lease> Run::NextLease(const Capacity& capacity, const ExecutorTraits& executor) {
   if (stopped_) return std::nullopt;
   if (!executor.local) {
-    std::optional<Lease> lease = IsLarge() ? NextChunks(capacity, executor) : std::nullopt;
+    std::optional<Lease> lease =
+        IsLarge() ? NextChunks(capacity, executor, finished_.size()) : std::nullopt;
     hungry_elsewhere_ = !lease.has_value();
     return lease;
   }
   if (IsWantedElsewhere()) return NextOpening();
-  std::optional<Lease> lease = NextChunks(capacity, executor);
+  std::optional<Lease> lease = NextChunksOfPilot(capacity);
+  if (!lease) lease = NextChunks(capacity, executor, finished_.size());
   return lease ? std::move(lease) : NextOpening();
 }
 
-std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTraits& executor) {
+std::optional<Lease> Run::NextLeaseBefore(const Lease& held, const Capacity& capacity,
+                                          const ExecutorTraits& executor) {
+  if (held.pilot) return std::nullopt;
+  std::optional<Lease> lease = NextChunksOfPilot(capacity);
+  return lease ? std::move(lease) : NextChunks(capacity, executor, held.point);
+}
+
+std::optional<Lease> Run::NextChunksOfPilot(const Capacity& capacity) {
+  for (const auto& [place, pilot] : pilots_) {
+    auto lease = pilot->NextChunks(capacity, ChunkLimits());
+    if (!lease) continue;
+    lease->pilot = place;
+    return Completed(*std::move(lease));
+  }
+  return std::nullopt;
+}
+
+std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
+                                     size_t end) {
   const ChunkLimits limits =
       executor.local ? ChunkLimits() : ChunkLimits{false, kMostAttemptsElsewhere};
-  if (executor.local) {
-    for (const auto& [place, pilot] : pilots_) {
-      auto lease = pilot->NextChunks(capacity, limits);
-      if (!lease) continue;
-      lease->pilot = place;
-      return Completed(*std::move(lease));
-    }
-  }
-  for (auto next = leasable_.begin(); next != leasable_.end();) {
+  for (auto next = leasable_.begin(); next != leasable_.end() && *next < end;) {
     auto lease = open_.at(*next)->NextChunks(capacity, limits);
     if (lease) {
       lease->point = *next;

@@ -63,6 +63,9 @@ class Run {
 
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
+  // Only one with chunks that go before those of `held`.
+  std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity,
+                                       const ExecutorTraits& executor);
 
   // Whether executors that are not local wait for points that nobody has opened: the next lease of
   // a local executor opens points.
@@ -120,7 +123,10 @@ class Run {
     std::vector<Lease> returned;  // of these; `attempt` is the next one
   };
 
-  std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor);
+  std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
+  // Of a point before `end`.
+  std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
+                                  size_t end);
   std::optional<Lease> NextOpening();
   bool HasPointsToOpen() const { return !reopen_.empty() || next_point_ < finished_.size(); }
   // What is left takes long enough for executors that are not local.

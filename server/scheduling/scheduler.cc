@@ -42,11 +42,6 @@ bool IsStopped(const Run& run, const Lease& lease) {
   return open != nullptr && open->fold().finished();
 }
 
-bool GoesBefore(const Lease& a, const Lease& b) {
-  if (a.pilot.has_value() != b.pilot.has_value()) return a.pilot.has_value();
-  return a.point < b.point;
-}
-
 double ShareOfPoint(const OpenPoint& open, uint64_t samples) {
   return static_cast<double>(samples) / static_cast<double>(open.experiment()->plan().samples());
 }
@@ -204,27 +199,29 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
 
 std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   const Member& member = executors_[capacity.executor];
-  std::optional<Lease> lease;
+  std::optional<Lease> held;
   const bool may_continue = member.traits.local && !run.stopped() && !run.IsWantedElsewhere();
-  if (may_continue) lease = HeldWithTurn(run, capacity.executor);
-  if (!lease) {
-    lease = run.NextLease(capacity, member.traits);
-    if (!lease) return std::nullopt;
+  if (may_continue) held = HeldWithTurn(run, capacity.executor);
+  std::optional<Lease> lease = held ? run.NextLeaseBefore(*held, capacity, member.traits)
+                                    : run.NextLease(capacity, member.traits);
+  if (lease) {
     lease->number = ++last_number_;
     lease->executor = capacity.executor;
     if (!lease->OpensPoints()) held_.emplace(KeyOf(*lease), Held{*lease});
+  } else {
+    lease = std::move(held);
   }
-  if (!lease->OpensPoints()) ++held_.at(KeyOf(*lease)).turns;
+  if (lease && !lease->OpensPoints()) ++held_.at(KeyOf(*lease)).turns;
   return lease;
 }
 
-// Of the pilots first, then of the first point, so that points end in grid order.
+// The first of them (Lease::GoesBefore).
 std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
   const Lease* first = nullptr;
   const auto end = held_.lower_bound({executor, run.key() + 1, 0});
   for (auto held = held_.lower_bound({executor, run.key(), 0}); held != end; ++held) {
     const Lease& lease = held->second.lease;
-    if (lease.stop.stop_requested() || (first != nullptr && !GoesBefore(lease, *first))) continue;
+    if (lease.stop.stop_requested() || (first != nullptr && !lease.GoesBefore(*first))) continue;
     if (executors_[executor].executor->HasTurn(lease.number)) first = &lease;
   }
   return first == nullptr ? std::nullopt : std::optional(*first);

@@ -281,7 +281,7 @@ bool Store::BatchIsDue(Clock::time_point now) const {
   const bool records_wait = failing_ && sweep_advances_;
   if (requests_ > (records_wait ? ordered_ : 0)) return true;
   if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
-  // Not only when all room is taken: AwaitRoom would wait while the store waits for the delay.
+  // A batch is also due when half of the room is taken: AwaitRoom must not wait for the delay.
   const bool half_full =
       pending_.size() > options_.max_pending / 2 || bytes_ > options_.max_pending_bytes / 2;
   return urgent_ > 0 || half_full || (!pending_.empty() && pending_.front().due <= now);

@@ -141,10 +141,9 @@ TEST(Restart, AStoppedServerResumesToTheSameBytes) {
     std::string name;
     {
       Gate gate;
-      // One worker, which finishes point 0 before it goes on.
-      RunningServer server(InFolder(folder, 1, StuckInTheMiddle(gate, spec)));
+      RunningServer server(InFolder(folder, 2, StuckInTheMiddle(gate, spec)));
       name = server.Submit(spec);
-      gate.AwaitWaiting(1);
+      gate.AwaitWaiting(2);
     }
     std::atomic<int> of_point_0 = 0;
     std::atomic<uint64_t> first_of_point_1 = std::numeric_limits<uint64_t>::max();

@@ -19,6 +19,7 @@
 #include "tests/server/fake_experiments.h"
 #include "tests/server/scheduling/recording_journal.h"
 #include "tests/server/scheduling/run_requests.h"
+#include "tests/server/scheduling/stepped_executor.h"
 #include "tests/server/thread_pool.h"
 #include "tests/support/status_matchers.h"
 
@@ -114,6 +115,27 @@ TEST(Scheduler, AShutdownWritesACheckpoint) {
   ASSERT_OK(later->AwaitEnd());
   ExpectAllPointsRight(spec, *later);
   EXPECT_EQ(later->restored[0], 50 * kFakeSamplesPerBlock);
+}
+
+// Another thread may have opened a later point and work on it.
+TEST(Scheduler, APointThatOpensLateGoesBeforeLaterOnes) {
+  FactoryOpener opener(FakeExperiments());
+  Scheduler scheduler(opener, 2);
+  SteppedExecutor executor(scheduler);
+  const auto journal = std::make_shared<RecordingJournal>();
+  scheduler.Add(RunOf(1, SixChunks(3), journal));
+  const auto opens_0 = executor.Begin(), opens_1 = executor.Begin();
+  ASSERT_TRUE(opens_0 && opens_1);
+  executor.End(*opens_1, 1);
+  const auto of_1 = executor.Begin();
+  ASSERT_EQ(of_1->point, 1u);
+  executor.End(*of_1, 1);
+  executor.End(*opens_0, 1);
+  const auto next = executor.Begin();
+  EXPECT_EQ(next->point, 0u);
+  executor.End(*next, 1);
+  executor.TakeAllTurns();
+  EXPECT_EQ(journal->ends, 1);
 }
 
 TEST(Scheduler, FinishedPointsAreNotComputedAgain) {
