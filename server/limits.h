@@ -7,6 +7,9 @@
 
 namespace ballpiston::server {
 
+// The days in which a principal's processor time counts.
+inline constexpr int kQuotaDays = 30;
+
 struct Limits {
   int64_t max_active_jobs = 10'000;  // neither succeeded nor failed nor cancelled
   int64_t max_active_jobs_per_principal = 1'000;
@@ -21,6 +24,13 @@ struct Limits {
   int64_t max_call_bytes_per_principal = int64_t{128} << 20;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
   int64_t max_transfer_mib = 512;                // of all requests that are being received
+  // What is stored.
+  double retain_days = 0;       // after the end of a job its results expire
+  int64_t max_store_bytes = 0;  // above it the oldest results expire
+  int64_t max_store_bytes_per_principal = 0;
+  // Processor time.
+  double max_processor_seconds_per_principal = 0;  // in kQuotaDays
+  double max_seconds_per_job = 0;
 };
 
 }  // namespace ballpiston::server
