@@ -30,6 +30,7 @@ constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may wa
 constexpr int kBlockingThreads = 32;
 // How long health may go on to say that a store takes jobs when it does not.
 constexpr std::chrono::milliseconds kHealthInterval(500);
+constexpr std::chrono::milliseconds kLimitsInterval(1000);
 
 // Seconds of one core of a lease of the threads. Without a cluster they take all chunks of a point
 // at once, which keeps their lanes full.
@@ -112,6 +113,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
                              *std::move(security), *std::move(store)));
     absl::Status status = server->book_.Resume();
     if (status.ok()) server->StartExecutors();
+    if (status.ok()) server->StartKeepingLimits();
     if (status.ok()) status = server->StartMetrics();
     if (status.ok()) status = server->Listen();
     if (!status.ok()) return status;
@@ -168,6 +170,11 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
 void BallpistonServer::StartExecutors() {
   if (slurm_ != nullptr) slurm_->Start();
   threads_.Start();
+}
+
+void BallpistonServer::StartKeepingLimits() {
+  limits_ =
+      std::make_unique<PeriodicThread>(kLimitsInterval, [this] { book_.KeepLimits(absl::Now()); });
 }
 
 BallpistonServer::~BallpistonServer() { Shutdown(std::chrono::milliseconds(0)); }
@@ -257,6 +264,7 @@ void BallpistonServer::Shutdown(std::chrono::milliseconds drain) {
   if (health_ != nullptr) health_->Drain();
   draining_ = true;
   watches_.LookNow();
+  limits_.reset();
   book_.Shutdown();
   Failpoint("stop.before_flush");
   store_->Flush().IgnoreError();

@@ -24,6 +24,7 @@
 #include "server/observability/call_observer.h"
 #include "server/observability/health.h"
 #include "server/observability/metrics_endpoint.h"
+#include "server/periodic_thread.h"
 #include "server/scheduling/model_ladder.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/peer_user.h"
@@ -97,6 +98,7 @@ class BallpistonServer {
                    std::unique_ptr<ServerSecurity> security, std::unique_ptr<Store> store);
 
   void StartExecutors();
+  void StartKeepingLimits();
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
   // Who receives the connections of the server that is built.
@@ -129,6 +131,7 @@ class BallpistonServer {
   std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
+  std::unique_ptr<PeriodicThread> limits_;    // keeps what the limits ask for
   std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };

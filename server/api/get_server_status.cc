@@ -42,6 +42,7 @@ v1::ServerStatus StatusMessage(const ServerSnapshot& now) {
   status.set_store_bytes(static_cast<double>(now.store_bytes));
   status.set_blocks_computed(now.blocks_computed);
   status.set_samples_computed(now.samples_computed);
+  status.set_expiring_jobs(static_cast<double>(now.expiring_jobs));
   status.set_processor_seconds(now.processor_seconds);
   if (now.slurm) *status.mutable_slurm() = SlurmMessage(*now.slurm);
   return status;
@@ -63,6 +64,12 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
   message.set_max_calls_per_principal(static_cast<double>(limits.max_calls_per_principal));
   message.set_max_call_bytes_per_principal(
       static_cast<double>(limits.max_call_bytes_per_principal));
+  message.set_retain_days(limits.retain_days);
+  message.set_max_store_bytes(static_cast<double>(limits.max_store_bytes));
+  message.set_max_store_bytes_per_principal(
+      static_cast<double>(limits.max_store_bytes_per_principal));
+  message.set_max_processor_seconds_per_principal(limits.max_processor_seconds_per_principal);
+  message.set_max_seconds_per_job(limits.max_seconds_per_job);
   return message;
 }
 
@@ -79,17 +86,20 @@ double StoredJobs(Store& store) {
   return jobs;
 }
 
-void AddPrincipals(const ServiceContext& service, const Principal& caller,
+void AddPrincipals(const ServerSnapshot& now, const WatchRegistry& watches, const Principal& caller,
                    v1::ServerStatus& status) {
-  const std::map<std::string, int64_t> streams = service.watches.StreamsByPrincipal();
-  for (const auto& [name, jobs] : service.book.ActiveByPrincipal()) {
-    if (!caller.MaySee(name)) continue;
+  const std::map<std::string, int64_t> streams = watches.StreamsByPrincipal();
+  for (const PrincipalSnapshot& of_one : now.principals) {
+    if (!caller.MaySee(of_one.principal)) continue;
     v1::PrincipalStatus& principal = *status.add_principals();
-    principal.set_principal(name);
-    principal.set_queued_jobs(static_cast<double>(jobs.queued));
-    principal.set_running_jobs(static_cast<double>(jobs.running + jobs.cancelling));
-    const auto own = streams.find(name);
+    principal.set_principal(of_one.principal);
+    principal.set_queued_jobs(static_cast<double>(of_one.queued_jobs));
+    principal.set_running_jobs(static_cast<double>(of_one.running_jobs));
+    const auto own = streams.find(of_one.principal);
     principal.set_streams(own == streams.end() ? 0 : static_cast<double>(own->second));
+    principal.set_stored_jobs(static_cast<double>(of_one.stored_jobs));
+    principal.set_stored_bytes(static_cast<double>(of_one.stored_bytes));
+    principal.set_processor_seconds(of_one.processor_seconds);
   }
 }
 
@@ -97,13 +107,14 @@ void AddPrincipals(const ServiceContext& service, const Principal& caller,
 
 absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
                                                  const v1::GetServerStatusRequest&) {
-  v1::ServerStatus status = StatusMessage(TakeSnapshot(service));
+  const ServerSnapshot now = TakeSnapshot(service);
+  v1::ServerStatus status = StatusMessage(now);
   status.set_stored_jobs(StoredJobs(service.store));
   *status.mutable_rates() = RatesMessage(service.ladder.machine().rates);
   *status.mutable_limits() = LimitsMessage(service.limits);
   status.set_principal(call.caller.name);
   status.set_role(RoleName(call.caller.role));
-  AddPrincipals(service, call.caller, status);
+  AddPrincipals(now, service.watches, call.caller, status);
   return status;
 }
 

@@ -14,9 +14,7 @@ absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, con
   query.first_point = check.PageStart(request.page_token(), list, 0);
   query.max_bytes = kMaxPageBytes;
   query.histograms = request.view() != v1::ListResultsRequest::BASIC;
-  if (!v1::ListResultsRequest::View_IsValid(request.view())) {
-    check.Add("view", absl::StrCat(int{request.view()}, " is not a view this server knows"));
-  }
+  check.View(request);
   if (!check.ok()) return check.status();
   absl::StatusOr<ResultsPage> page = service.book.Results(call.caller, id, query);
   if (!page.ok()) return page.status();

@@ -20,10 +20,14 @@ absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
     ServiceContext& service, const Call& call, const v1::ListEnsembleJobsRequest& request);
 absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service, const Call& call,
                                                   const v1::CancelEnsembleJobRequest& request);
+absl::StatusOr<v1::EnsembleJob> PinEnsembleJob(ServiceContext& service, const Call& call,
+                                               const v1::PinEnsembleJobRequest& request);
 absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
     ServiceContext& service, const Call& call, const v1::DeleteEnsembleJobRequest& request);
 absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, const Call& call,
                                                     const v1::ListResultsRequest& request);
+absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& call,
+                                          const v1::GetResultRequest& request);
 
 absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
     ServiceContext& service, const Call& call, const v1::PlanEnsembleJobRequest& request);

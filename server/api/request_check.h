@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {
@@ -33,6 +34,13 @@ class RequestCheck {
   // they were made for.
   int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
   static std::string PageToken(const std::string& list, int64_t start);
+
+  // A value of the request's enum View, which proto3 lets through unknown.
+  template <typename Request>
+  void View(const Request& request) {
+    if (Request::View_IsValid(request.view())) return;
+    Add("view", absl::StrCat(int{request.view()}, " is not a view this server knows"));
+  }
 
   void Add(std::string field, std::string description);
 

@@ -36,6 +36,12 @@ Unary* EnsembleService::CancelEnsembleJob(Context* context,
                   &server::CancelEnsembleJob);
 }
 
+Unary* EnsembleService::PinEnsembleJob(Context* context, const v1::PinEnsembleJobRequest* request,
+                                       v1::EnsembleJob* response) {
+  return RunUnary(service_, context, {"PinEnsembleJob", Role::kSubmit, true}, request, response,
+                  &server::PinEnsembleJob);
+}
+
 Unary* EnsembleService::DeleteEnsembleJob(Context* context,
                                           const v1::DeleteEnsembleJobRequest* request,
                                           google::protobuf::Empty* response) {
@@ -60,6 +66,12 @@ Unary* EnsembleService::ListResults(Context* context, const v1::ListResultsReque
                                     v1::ListResultsResponse* response) {
   return RunUnary(service_, context, {"ListResults", Role::kRead}, request, response,
                   &server::ListResults);
+}
+
+Unary* EnsembleService::GetResult(Context* context, const v1::GetResultRequest* request,
+                                  v1::PointResult* response) {
+  return RunUnary(service_, context, {"GetResult", Role::kRead}, request, response,
+                  &server::GetResult);
 }
 
 Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsRequest* request,

@@ -27,6 +27,9 @@ class EnsembleService : public v1::EnsembleService::CallbackService {
   grpc::ServerUnaryReactor* CancelEnsembleJob(grpc::CallbackServerContext* context,
                                               const v1::CancelEnsembleJobRequest* request,
                                               v1::EnsembleJob* response) override;
+  grpc::ServerUnaryReactor* PinEnsembleJob(grpc::CallbackServerContext* context,
+                                           const v1::PinEnsembleJobRequest* request,
+                                           v1::EnsembleJob* response) override;
   grpc::ServerUnaryReactor* DeleteEnsembleJob(grpc::CallbackServerContext* context,
                                               const v1::DeleteEnsembleJobRequest* request,
                                               google::protobuf::Empty* response) override;
@@ -38,6 +41,9 @@ class EnsembleService : public v1::EnsembleService::CallbackService {
   grpc::ServerUnaryReactor* ListResults(grpc::CallbackServerContext* context,
                                         const v1::ListResultsRequest* request,
                                         v1::ListResultsResponse* response) override;
+  grpc::ServerUnaryReactor* GetResult(grpc::CallbackServerContext* context,
+                                      const v1::GetResultRequest* request,
+                                      v1::PointResult* response) override;
 
  private:
   ServiceContext& service_;

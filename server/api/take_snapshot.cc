@@ -2,7 +2,10 @@
 
 #include <sys/stat.h>
 
+#include <map>
+
 #include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
 #include "server/convert/spec.h"
 #include "server/version.h"
 
@@ -15,12 +18,25 @@ int64_t FileBytes(const std::string& path) {
   return stat(path.c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
 }
 
-void AddJobs(const JobBook& book, ServerSnapshot& snapshot) {
-  for (const auto& [principal, jobs] : book.ActiveByPrincipal()) {
+void AddPrincipals(const JobBook& book, ServerSnapshot& snapshot) {
+  std::map<std::string, ActiveJobs> active = book.ActiveByPrincipal();
+  for (const auto& [principal, usage] : book.usage().All(absl::Now())) {
+    const ActiveJobs& jobs = active[principal];
+    snapshot.principals.push_back({.principal = principal,
+                                   .queued_jobs = jobs.queued,
+                                   .running_jobs = jobs.running + jobs.cancelling,
+                                   .stored_jobs = usage.jobs,
+                                   .stored_bytes = usage.bytes,
+                                   .processor_seconds = usage.seconds});
     snapshot.queued_jobs += jobs.queued;
     snapshot.running_jobs += jobs.running;
     snapshot.cancelling_jobs += jobs.cancelling;
   }
+}
+
+void AddJobs(JobBook& book, ServerSnapshot& snapshot) {
+  AddPrincipals(book, snapshot);
+  snapshot.expiring_jobs = book.CountExpiring(absl::Now());
   const EndedJobs ended = book.ended_jobs();
   snapshot.jobs_succeeded = ended.succeeded;
   snapshot.jobs_failed = ended.failed;

@@ -166,6 +166,18 @@ const LimitFlag kLimitFlags[] = {
     {"max-transfer-mib", &Limits::max_transfer_mib,
      "MiB for connections and for requests that are being received, of all clients; calls beyond "
      "it are refused. At least 16 and twice --max-message-bytes, at most 1048576"},
+    {"retain-days", &Limits::retain_days,
+     "days after its end a job's results expire, unless it is pinned; its specification stays"},
+    {"max-store-bytes", &Limits::max_store_bytes,
+     "bytes of the store; before it is that full, results expire, the oldest first. What active "
+     "and "
+     "pinned jobs store may exceed it; then no job is accepted"},
+    {"max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
+     "bytes of specifications and results of one principal; no further job is accepted"},
+    {"max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
+     "processor time of one principal's jobs in 30 days; no further job is accepted"},
+    {"max-seconds-per-job", &Limits::max_seconds_per_job,
+     "processor time of one job, after which it fails and keeps its finished points"},
 };
 
 void AddLimitFlags(CLI::App& app, Limits& limits) {

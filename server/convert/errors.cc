@@ -109,6 +109,18 @@ absl::Status JobNotFound(const std::string& name) {
                   name);
 }
 
+absl::Status ResultNotFound(const std::string& name) {
+  return WithInfo(absl::NotFoundError(absl::StrCat(
+                      "no such result: ", name, "; the point is not finished, or not in the grid")),
+                  "RESULT_NOT_FOUND", "name", name);
+}
+
+absl::Status ResultsExpired(const std::string& name) {
+  return WithInfo(absl::FailedPreconditionError(absl::StrCat(
+                      "the results of ", name, " have expired; submit its specification again")),
+                  "RESULTS_EXPIRED", "name", name);
+}
+
 absl::Status JobAlreadyEnded(const std::string& name, absl::string_view state) {
   return WithInfo(absl::FailedPreconditionError(
                       absl::StrCat(name, " has ended already: it is ", std::string(state))),

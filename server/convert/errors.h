@@ -30,7 +30,9 @@ absl::Status InvalidRequest(const std::vector<FieldViolation>& violations);
 absl::Status InvalidField(std::string field, std::string description);  // the same, of one
 absl::Status RequestIdReused(const std::string& request_id);
 
-absl::Status JobNotFound(const std::string& name);  // NOT_FOUND
+absl::Status JobNotFound(const std::string& name);     // NOT_FOUND
+absl::Status ResultNotFound(const std::string& name);  // NOT_FOUND
+absl::Status ResultsExpired(const std::string& name);  // FAILED_PRECONDITION
 absl::Status JobAlreadyEnded(const std::string& name,
                              absl::string_view state);  // FAILED_PRECONDITION
 absl::Status JobStillActive(const std::string& name,

@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 #include "server/store/job_table.h"
+#include "server/store/usage_table.h"
 
 namespace ballpiston::server {
 namespace {
@@ -28,6 +29,30 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
         "max-active-jobs-per-principal", static_cast<double>(limits.max_active_jobs_per_principal));
   }
   return absl::OkStatus();
+}
+
+// Results expire before the store is that full; what is pinned and what runs does not.
+absl::StatusOr<absl::Status> CheckStoreSize(Database& database, const Limits& limits) {
+  if (limits.max_store_bytes == 0) return absl::OkStatus();
+  const absl::StatusOr<int64_t> used = UsedBytes(database);
+  if (!used.ok()) return used.status();
+  if (*used <= limits.max_store_bytes) return absl::OkStatus();
+  return LimitExceeded("TOO_MANY_STORED_BYTES",
+                       absl::StrCat("the store holds ", *used, " bytes: unpin or delete some jobs"),
+                       "max-store-bytes", static_cast<double>(limits.max_store_bytes));
+}
+
+// The first reason why one more job is not accepted, if there is one.
+absl::StatusOr<absl::Status> CheckRoom(Database& database, const Limits& limits,
+                                       const ActivePoints& points, const Usage& usage,
+                                       const JobRecord& job) {
+  absl::StatusOr<absl::Status> queue = CheckQueue(database, limits, job.principal);
+  if (!queue.ok() || !queue->ok()) return queue;
+  const absl::Status grid = points.Check(job.principal, job.points, limits);
+  if (!grid.ok()) return absl::StatusOr<absl::Status>(grid);
+  const absl::Status quota = usage.Check(job.principal, job.create_time, limits);
+  if (!quota.ok()) return absl::StatusOr<absl::Status>(quota);
+  return CheckStoreSize(database, limits);
 }
 
 // Requests answered with one job of which each is remembered; there may be any number of them.
@@ -96,7 +121,7 @@ absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits) {
 }
 
 absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
-                   Acceptance& acceptance) {
+                   const Usage& usage, Acceptance& acceptance) {
   acceptance.earlier.reset();
   acceptance.replay = acceptance.answered_from_store = false;
   acceptance.refused = absl::OkStatus();
@@ -104,21 +129,17 @@ absl::Status Judge(Database& database, const Limits& limits, const ActivePoints&
   if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
   acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
-  absl::StatusOr<absl::Status> room = CheckQueue(database, limits, acceptance.record.principal);
+  absl::StatusOr<absl::Status> room = CheckRoom(database, limits, points, usage, acceptance.record);
   if (!room.ok()) return room.status();
   acceptance.refused = *std::move(room);
-  if (acceptance.refused.ok()) {
-    acceptance.refused =
-        points.Check(acceptance.record.principal, acceptance.record.points, limits);
-  }
   return absl::OkStatus();
 }
 
 absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
-                    Acceptance& acceptance) {
+                    const Usage& usage, Acceptance& acceptance) {
   const JobRecord& record = acceptance.record;
   points.Remove(record.id);  // of a transaction that was rolled back
-  const absl::Status judged = Judge(database, limits, points, acceptance);
+  const absl::Status judged = Judge(database, limits, points, usage, acceptance);
   if (!judged.ok() || !acceptance.refused.ok()) return judged;
   if (acceptance.earlier) return KeepRequest(database, acceptance, acceptance.earlier->sequence);
   points.Add(record.id, record.principal, record.points);

@@ -2,9 +2,9 @@
 //
 // A replay, the same request id with the same request, is answered with the job of the first time;
 // the same question as an earlier job's that succeeded with that one, unless a fresh answer is
-// wanted; then the limits on a job's size, on active jobs and on their points count. All of it is
-// decided inside one transaction of the store, where all writes pass in one order, so that of many
-// equal requests at once one makes a job.
+// wanted; then the limits on a job's size, on active jobs and their points, on what is stored and
+// on processor time count. All of it is decided inside one transaction of the store, where all
+// writes pass in one order, so that of many equal requests at once one makes a job.
 #ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 #define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 
@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "server/jobs/active_points.h"
+#include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/store/job_record.h"
 #include "server/store/request_table.h"
@@ -36,9 +37,9 @@ struct Acceptance {
 // Each sets the outcome anew; Accept then writes what it comes to, and counts the points of a new
 // job: whoever commits takes them back if that fails. Not OK: SQLite failed.
 absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
-                   Acceptance& acceptance);
+                   const Usage& usage, Acceptance& acceptance);
 absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,
-                    Acceptance& acceptance);
+                    const Usage& usage, Acceptance& acceptance);
 
 // RESOURCE_EXHAUSTED  TOO_MANY_POINTS, TOO_MANY_SAMPLES
 absl::Status CheckSize(const EnsembleSpec& spec, const Limits& limits);

@@ -125,6 +125,16 @@ void Job::AddWork(double seconds) {
   record_.work += seconds;
 }
 
+void Job::AddBytes(int64_t bytes) {
+  std::lock_guard lock(mutex_);
+  record_.bytes += bytes;
+}
+
+void Job::SetPinned(bool pinned) {
+  std::lock_guard lock(mutex_);
+  record_.pinned = pinned;
+}
+
 void Job::AddFinishedPoint(FinishedPoint point) {
   std::lock_guard lock(mutex_);
   ++record_.points_done;

@@ -68,6 +68,8 @@ class Job {
   // Returns the number of the change.
   uint64_t AddSamples(double samples, double share_of_point);
   void AddWork(double seconds);
+  void AddBytes(int64_t bytes);  // of results
+  void SetPinned(bool pinned);
   // A computed point is stored; in the order of their numbers.
   void AddFinishedPoint(FinishedPoint point);
   // Points that an earlier process stored, `last` the number of the last of them. Before any other.

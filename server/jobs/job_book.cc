@@ -20,6 +20,7 @@
 #include "server/security/sha256.h"
 #include "server/store/job_table.h"
 #include "server/store/point_tables.h"
+#include "server/store/usage_table.h"
 
 namespace ballpiston::server {
 namespace {
@@ -27,10 +28,16 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
+// Processor time is stored so often. What is lost with a kill is not counted for a quota.
+constexpr absl::Duration kBetweenWork = absl::Minutes(1);
+
+// The last one that a Timestamp can hold.
+constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
+
 // Of its message, an upper bound: names, times and numbers take less than what is added.
-size_t MostBytesOf(const JobRecord& record) {
-  return 512 + record.principal.size() + record.engine_version.size() + record.spec.size() +
-         record.error.size();
+size_t MostBytesOf(const JobRecord& record, bool grids) {
+  return 512 + record.principal.size() + record.engine_version.size() +
+         (grids ? record.spec.size() : 0) + record.error.size();
 }
 
 // Collects the records of one page, newest first, until one of the query's bounds is reached.
@@ -40,7 +47,7 @@ class PageOfRecords {
 
   // False: the page ends before this record.
   bool Take(JobRecord record) {
-    const size_t bytes = MostBytesOf(record);
+    const size_t bytes = MostBytesOf(record, query_.grids);
     if (HasReadEnough(bytes) || IsFull()) return End();
     const bool matches = query_.filter.Matches(record);
     if (matches && !HasRoom(bytes)) return End();
@@ -92,6 +99,7 @@ struct StoredPoints {
   std::vector<PointRow> rows;  // without results
   int64_t last = 0;            // the number of the last of them
   double samples = 0;
+  int64_t bytes = 0;
 
   int64_t count() const { return static_cast<int64_t>(rows.size()); }
 };
@@ -101,7 +109,10 @@ absl::Status ReadStoredPoints(Database& database, const JobRecord& record, Store
   if (!last.ok()) return last.status();
   auto rows = ListFinishedPoints(database, record.sequence);
   if (!rows.ok()) return rows.status();
+  const auto bytes = BytesOfResults(database, record.sequence);
+  if (!bytes.ok()) return bytes.status();
   points.last = *last;
+  points.bytes = *bytes;
   points.rows = *std::move(rows);
   for (const PointRow& row : points.rows) points.samples += row.samples;
   return absl::OkStatus();
@@ -173,7 +184,8 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
     : store_(store),
       limits_(limits),
       scheduler_(scheduler),
-      on_state_change_(std::move(on_state_change)) {}
+      on_state_change_(std::move(on_state_change)),
+      retention_(store, usage_, limits) {}
 
 JobBook::~JobBook() {
   Shutdown();
@@ -183,11 +195,14 @@ JobBook::~JobBook() {
 void JobBook::Shutdown() {
   store_.StopWaiting();
   scheduler_.Shutdown();
+  StoreNewWork(absl::Now());
 }
 
 // ---- what an earlier process left ----
 
 absl::Status JobBook::Resume() {
+  const absl::Status known = ReadUsage();
+  if (!known.ok()) return known;
   absl::StatusOr<std::vector<JobRecord>> unfinished;
   const absl::Status read = store_.Read([&](Database& database) {
     unfinished = ListUnfinishedJobs(database);
@@ -202,6 +217,20 @@ absl::Status JobBook::Resume() {
     if (!resumed.ok()) return resumed;
   }
   return store_.Flush();
+}
+
+absl::Status JobBook::ReadUsage() {
+  return store_.Read([&](Database& database) {
+    const auto stored = ReadStoredUsage(database);
+    if (!stored.ok()) return stored.status();
+    for (const StoredUsage& usage : *stored) {
+      usage_.AddStored(usage.principal, usage.jobs, usage.bytes);
+    }
+    const auto work = ReadWork(database, Usage::FirstDay(absl::Now()));
+    if (!work.ok()) return work.status();
+    for (const DayOfWork& day : *work) usage_.AddStoredWork(day);
+    return absl::OkStatus();
+  });
 }
 
 // Of another engine, and to be computed by this one: all in one commit, for there may be many.
@@ -249,7 +278,8 @@ absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status
   if (!read.ok()) return read;
   auto job = std::make_shared<Job>(record, nullptr);
   job->AddRestoredPoints(points.count(), points.samples, points.last);
-  JobJournal(job, store_, true, nullptr).Ended(why);
+  AddRestoredBytes(*job, points.bytes);
+  JobJournal(job, store_, usage_, true, nullptr).Ended(why);
   return absl::OkStatus();
 }
 
@@ -269,8 +299,14 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
   request.shortfall = std::move(restored.shortfall);
   std::shared_ptr<Job> job = Register(std::move(record));
   job->AddRestoredPoints(points.count(), points.samples, points.last);
+  AddRestoredBytes(*job, points.bytes);
   StartRun(std::move(job), std::move(request));
   return absl::OkStatus();
+}
+
+void JobBook::AddRestoredBytes(Job& job, int64_t bytes) {
+  job.AddBytes(bytes);
+  usage_.AddStored(job.principal(), 0, bytes);
 }
 
 std::shared_ptr<Job> JobBook::Register(JobRecord record) {
@@ -286,8 +322,9 @@ void JobBook::StartRun(std::shared_ptr<Job> job, RunRequest request) {
   request.generation = GenerationOf(*job);
   request.principal = job->principal();
   request.priority = job->Record().priority;
-  request.journal = std::make_shared<JobJournal>(std::move(job), store_, request.has_checkpoints,
-                                                 [this](const Job& ended) { Forget(ended); });
+  request.journal =
+      std::make_shared<JobJournal>(std::move(job), store_, usage_, request.has_checkpoints,
+                                   [this](const Job& ended) { Forget(ended); });
   scheduler_.Add(std::move(request));
 }
 
@@ -311,6 +348,7 @@ JobRecord JobBook::NewRecord(const Principal& caller, const v1::CreateEnsembleJo
   record.spec = SpecBytes(request.spec());
   record.engine_version = EngineVersion();
   record.question = QuestionOf(request.spec(), record.engine_version);
+  record.bytes = static_cast<int64_t>(record.spec.size());
   record.create_time = absl::Now();
   record.points = static_cast<int64_t>(PointCount(checked.spec));
   return record;
@@ -333,8 +371,9 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Preview(const Principal& caller,
                                                  const v1::CreateEnsembleJobRequest& request,
                                                  const CheckedSpec& checked) {
   Acceptance acceptance = NewAcceptance(caller, request, checked);
-  const absl::Status read = store_.Read(
-      [&](Database& database) { return Judge(database, limits_, active_points_, acceptance); });
+  const absl::Status read = store_.Read([&](Database& database) {
+    return Judge(database, limits_, active_points_, usage_, acceptance);
+  });
   if (!read.ok()) return StoreFailure(read);
   if (!acceptance.refused.ok()) return acceptance.refused;
   return acceptance.earlier ? EarlierJob(caller, acceptance) : JobMessage(acceptance.record);
@@ -346,7 +385,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   Acceptance acceptance = NewAcceptance(caller, request, checked);
   acceptance.record.id = RandomId();
   const auto accept = [&](Database& database) {
-    const absl::Status accepted = Accept(database, limits_, active_points_, acceptance);
+    const absl::Status accepted = Accept(database, limits_, active_points_, usage_, acceptance);
     Failpoint("create.in_transaction");
     return accepted;
   };
@@ -356,6 +395,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
     Failpoint("create.committed");
     if (!done.ok()) active_points_.Remove(acceptance.record.id);
     if (!done.ok() || acceptance.earlier || !acceptance.refused.ok()) return;
+    usage_.AddStored(caller.name, 1, acceptance.record.bytes);
     job = Register(acceptance.record);
     RunRequest run;
     run.spec = checked.spec;
@@ -372,7 +412,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
 absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
                                                     const Acceptance& acceptance) {
   absl::StatusOr<v1::EnsembleJob> job = Get(caller, acceptance.earlier->id);
-  if (absl::IsNotFound(job.status())) job = JobMessage(*acceptance.earlier);
+  if (absl::IsNotFound(job.status())) job = Message(*acceptance.earlier);
   if (job.ok()) job->set_answered_from_store(acceptance.answered_from_store);
   return job;
 }
@@ -401,7 +441,24 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
   if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return job->Message();
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
-  return JobMessage(*record);
+  return Message(*record);
+}
+
+v1::EnsembleJob JobBook::Message(const JobRecord& record) const {
+  v1::EnsembleJob job = JobMessage(record);
+  const bool may_expire = record.end_time && !record.expired_time && !record.pinned;
+  if (limits_.retain_days > 0 && may_expire) {
+    const absl::Time expires = *record.end_time + absl::Hours(24) * limits_.retain_days;
+    SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
+  }
+  return job;
+}
+
+absl::StatusOr<JobRecord> JobBook::ReadRecordWithResults(const Principal& caller,
+                                                         const std::string& id) {
+  absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+  if (record.ok() && record->expired_time) return ResultsExpired(JobName(id));
+  return record;
 }
 
 absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery& query) {
@@ -416,10 +473,11 @@ absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery&
   for (const JobRecord& record : records.records()) {
     // How far an active one has come, the store does not know.
     absl::StatusOr<v1::EnsembleJob> job =
-        HasEnded(record.state) ? JobMessage(record) : Get(caller, record.id);
+        HasEnded(record.state) ? Message(record) : Get(caller, record.id);
     if (absl::IsNotFound(job.status())) continue;  // it has ended and was deleted just now
     if (!job.ok()) return job.status();
     if (!query.filter.MatchesState(job->state())) continue;  // it has changed since the read
+    if (!query.grids) job->mutable_spec()->clear_grid();
     page.jobs.push_back(*std::move(job));
   }
   return page;
@@ -455,7 +513,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Cancel(const Principal& caller, const s
 
 absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   std::optional<JobRecord> record;
-  const absl::Status committed = store_.CommitDeletion([&](Database& database) -> absl::Status {
+  const auto drop = [&](Database& database) -> absl::Status {
     auto found = FindJobOf(database, caller, id);
     if (!found.ok()) return found.status();
     record = *std::move(found);
@@ -463,6 +521,10 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
     const absl::Status deleted = DeleteJob(database, record->sequence);
     Failpoint("delete.in_transaction");
     return deleted;
+  };
+  const absl::Status committed = store_.CommitDeletion(drop, [&](const absl::Status& done) {
+    const bool deleted = done.ok() && record && HasEnded(record->state);
+    if (deleted) usage_.AddStored(record->principal, -1, -record->bytes);
   });
   Failpoint("delete.committed");
   if (!committed.ok()) return StoreFailure(committed);
@@ -472,9 +534,40 @@ absl::Status JobBook::Delete(const Principal& caller, const std::string& id) {
   return JobStillActive(JobName(id), StateName(job ? job->state() : record->state));
 }
 
+absl::StatusOr<v1::EnsembleJob> JobBook::Pin(const Principal& caller, const std::string& id,
+                                             bool pinned) {
+  std::optional<JobRecord> record;
+  const auto pin = [&](Database& database) -> absl::Status {
+    auto found = FindJobOf(database, caller, id);
+    if (!found.ok()) return found.status();
+    record = *std::move(found);
+    if (!record || record->expired_time) return absl::OkStatus();
+    return PinJob(database, record->sequence, pinned);
+  };
+  const absl::Status committed = store_.Commit(pin, [&](const absl::Status& done) {
+    const std::shared_ptr<Job> job = ActiveOrNull(caller, id);
+    if (done.ok() && job) job->SetPinned(pinned);
+  });
+  if (!committed.ok()) return StoreFailure(committed);
+  if (!record) return JobNotFound(JobName(id));
+  if (record->expired_time) return ResultsExpired(JobName(id));
+  return Get(caller, id);
+}
+
+absl::StatusOr<v1::PointResult> JobBook::Result(const Principal& caller, const std::string& id,
+                                                int64_t point) {
+  absl::StatusOr<ResultsPage> page = Results(caller, id, {.first_point = point, .max_points = 1});
+  if (!page.ok()) return page.status();
+  if (page->points.empty() || page->points.front().index() != point) {
+    return ResultNotFound(ResultName(id, point));
+  }
+  return std::move(page->points.front());
+}
+
+// The results may be dropped while they are read: then the job has expired, or is gone, afterwards.
 absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std::string& id,
                                              const ResultsQuery& query) {
-  const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
+  const absl::StatusOr<JobRecord> record = ReadRecordWithResults(caller, id);
   if (!record.ok()) return record.status();
   const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(record->spec);
   if (!spec.ok()) return StoreFailure(spec.status());
@@ -505,6 +598,8 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   });
   if (!read.ok()) return StoreFailure(read);
   if (!parsed.ok()) return StoreFailure(parsed);
+  const absl::StatusOr<JobRecord> still = ReadRecordWithResults(caller, id);
+  if (!still.ok()) return still.status();
   return page;
 }
 
@@ -537,7 +632,7 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
   return WatchedJob{nullptr,
                     record->sequence,
                     record->restarts,
-                    *last,
+                    record->expired_time ? 0 : *last,
                     JobMessage(*record).progress(),
                     record->spec.size()};
 }
@@ -578,20 +673,73 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
   return points;
 }
 
+// ---- limits ----
+
+void JobBook::KeepLimits(absl::Time now) {
+  EndLongJobs();
+  if (now >= next_work_time_) StoreNewWork(now);
+  const absl::Status kept = retention_.Enforce(now);
+  if (!kept.ok() && !store_.failing()) {
+    LogError(absl::StrCat("results do not expire: ", kept.message()));
+  }
+}
+
+void JobBook::EndLongJobs() {
+  const double most = limits_.max_seconds_per_job;
+  if (most == 0) return;
+  for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
+    const double work = job->Record().work;
+    if (work < most) continue;
+    scheduler_.Stop(job->sequence(),
+                    LimitExceeded("JOB_TOO_LONG",
+                                  absl::StrCat("the job has taken ", work, " s of processor time"),
+                                  "max-seconds-per-job", most));
+  }
+}
+
+void JobBook::StoreNewWork(absl::Time now) {
+  next_work_time_ = now + kBetweenWork;
+  const auto work = std::make_shared<const std::vector<DayOfWork>>(usage_.TakeNewWork());
+  if (work->empty()) return;
+  store_.Record([work, first = Usage::FirstDay(now)](Database& database) {
+    for (const DayOfWork& day : *work) {
+      const absl::Status added = AddWork(database, day);
+      if (!added.ok()) return added;
+    }
+    return DropWorkBefore(database, first);
+  });
+}
+
+int64_t JobBook::CountExpiring(absl::Time now) {
+  if (limits_.retain_days == 0) return 0;
+  int64_t jobs = 0;
+  store_
+      .Read([&](Database& database) {
+        const absl::Time ended = now + kSoonToExpire - absl::Hours(24) * limits_.retain_days;
+        const absl::StatusOr<int64_t> count = CountExpirable(database, ended);
+        jobs = count.value_or(0);
+        return count.status();
+      })
+      .IgnoreError();
+  return jobs;
+}
+
 size_t JobBook::active_jobs() const {
   std::lock_guard lock(mutex_);
   return active_.size();
 }
 
-std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
+std::vector<std::shared_ptr<Job>> JobBook::ActiveJobsNow() const {
   std::vector<std::shared_ptr<Job>> active;
-  {
-    std::lock_guard lock(mutex_);
-    active.reserve(active_.size());
-    for (const auto& [id, job] : active_) active.push_back(job);
-  }
+  std::lock_guard lock(mutex_);
+  active.reserve(active_.size());
+  for (const auto& [id, job] : active_) active.push_back(job);
+  return active;
+}
+
+std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
   std::map<std::string, ActiveJobs> by_principal;
-  for (const std::shared_ptr<Job>& job : active) {
+  for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
     const JobState state = job->state();
     if (HasEnded(state)) continue;  // it is leaving just now
     ActiveJobs& jobs = by_principal[job->principal()];

@@ -27,6 +27,8 @@
 #include "server/jobs/active_points.h"
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
+#include "server/jobs/retention.h"
+#include "server/jobs/usage.h"
 #include "server/limits.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
@@ -39,8 +41,11 @@ namespace ballpiston::server {
 inline constexpr int kMaxJobsRead = 2000;
 inline constexpr size_t kMaxJobBytesRead = size_t{16} << 20;
 
+inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
+
 struct JobsQuery {
   JobFilter filter = {};
+  bool grids = true;   // in the specifications
   int64_t before = 0;  // newest first, those older than this sequence
   int max_jobs = 1;
   size_t max_bytes = 0;  // ends a page that has a job already
@@ -121,8 +126,11 @@ class JobBook {
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
                                          const std::string& request_id);
   absl::Status Delete(const Principal& caller, const std::string& id);
+  absl::StatusOr<v1::EnsembleJob> Pin(const Principal& caller, const std::string& id, bool pinned);
   absl::StatusOr<ResultsPage> Results(const Principal& caller, const std::string& id,
                                       const ResultsQuery& query);
+  absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
+                                         int64_t point);
 
   absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
@@ -135,6 +143,14 @@ class JobBook {
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
+  // What the limits on stored results and on processor time ask for at the time `now`: lets results
+  // expire, and ends jobs. To be called every second or so; one thread at a time.
+  void KeepLimits(absl::Time now);
+
+  // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
+  int64_t CountExpiring(absl::Time now);
+
+  const Usage& usage() const { return usage_; }
   size_t active_jobs() const;
   std::map<std::string, ActiveJobs> ActiveByPrincipal() const;
   EndedJobs ended_jobs() const;
@@ -146,9 +162,11 @@ class JobBook {
                            const CheckedSpec& checked) const;
   absl::StatusOr<v1::EnsembleJob> EarlierJob(const Principal& caller, const Acceptance& acceptance);
   absl::Status RestartOlder(std::vector<JobRecord>& unfinished);
+  absl::Status ReadUsage();
   absl::Status ResumeJob(JobRecord record);
   absl::Status EndUnresumable(const JobRecord& record, const absl::Status& why);
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
+  void AddRestoredBytes(Job& job, int64_t bytes);
   std::shared_ptr<Job> Register(JobRecord record);
   // Key and journal of the request are set here.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
@@ -158,6 +176,13 @@ class JobBook {
   // The active job; null if it has ended.
   absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
+  // One whose results have not expired.
+  absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
+  // Of a job that is not in the book, with the time when its results expire.
+  v1::EnsembleJob Message(const JobRecord& record) const;
+  std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;
+  void EndLongJobs();
+  void StoreNewWork(absl::Time now);
 
   Store& store_;
   const Limits limits_;
@@ -166,6 +191,9 @@ class JobBook {
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Job>> active_;  // by id
   ActivePoints active_points_;
+  Usage usage_;
+  Retention retention_;
+  absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and Shutdown
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;

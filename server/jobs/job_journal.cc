@@ -31,6 +31,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   end.time = absl::Now();
   end.samples = record.samples;
   end.work = record.work;
+  end.bytes = record.bytes;
   if (outcome.ok()) {
     end.state = v1::EnsembleJob::SUCCEEDED;
   } else if (absl::IsCancelled(outcome)) {
@@ -57,9 +58,13 @@ absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd&
 
 }  // namespace
 
-JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed,
+JobJournal::JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
                        std::function<void(const Job&)> on_ended)
-    : job_(std::move(job)), store_(store), resumed_(resumed), on_ended_(std::move(on_ended)) {}
+    : job_(std::move(job)),
+      store_(store),
+      usage_(usage),
+      resumed_(resumed),
+      on_ended_(std::move(on_ended)) {}
 
 void JobJournal::Began() {
   const absl::Time now = absl::Now();
@@ -119,7 +124,10 @@ void JobJournal::ChunkIsEarly(size_t point, const ChunkResult& chunk) {
                      ChunkRecordBytes(chunk));
 }
 
-void JobJournal::Worked(double seconds) { job_->AddWork(seconds); }
+void JobJournal::Worked(double seconds) {
+  job_->AddWork(seconds);
+  usage_.AddWork(job_->principal(), absl::Now(), seconds);
+}
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                                const BlockResult& merged) {
@@ -130,6 +138,9 @@ void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
                   RecordBytes(DetailsRecordOf(summary))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
+  const auto bytes = static_cast<int64_t>(row.result.size() + row.details.size());
+  job_->AddBytes(bytes);
+  usage_.AddStored(job_->principal(), 0, bytes);
   Failpoint("point.before_record");
   store_.RecordResult(job_->sequence(), std::move(row),
                       [job = job_, told = std::move(told)](int64_t number) {

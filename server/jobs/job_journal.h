@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "server/jobs/job.h"
+#include "server/jobs/usage.h"
 #include "server/scheduling/run_journal.h"
 #include "server/store/store.h"
 
@@ -19,8 +20,8 @@ namespace ballpiston::server {
 class JobJournal : public RunJournal {
  public:
   // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called, on the store's
-  // thread, when the job has ended for good. The store has to outlive this.
-  JobJournal(std::shared_ptr<Job> job, Store& store, bool resumed,
+  // thread, when the job has ended for good. Store and usage have to outlive this.
+  JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
              std::function<void(const Job&)> on_ended);
 
   void Began() override;
@@ -37,6 +38,7 @@ class JobJournal : public RunJournal {
  private:
   const std::shared_ptr<Job> job_;
   Store& store_;
+  Usage& usage_;
   const bool resumed_;
   const std::function<void(const Job&)> on_ended_;
 };

@@ -42,6 +42,9 @@ v1::EnsembleJob JobMessage(const JobRecord& record) {
   job.set_work(record.work);
   job.set_principal(record.principal);
   job.set_priority(record.priority);
+  job.set_pinned(record.pinned);
+  job.set_results_expired(record.expired_time.has_value());
+  job.set_stored_bytes(static_cast<double>(record.bytes));
   return job;
 }
 

@@ -1,16 +1,27 @@
-// Resource names: ensembleJobs/{id}, where an id is 1 to 63 of [a-z0-9-]. Pure functions.
+// Resource names: ensembleJobs/{id}, where an id is 1 to 63 of [a-z0-9-], and
+// ensembleJobs/{id}/results/{index}. Pure functions, but for RandomId.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_NAME_H_
 #define BALLPISTON_SERVER_JOBS_JOB_NAME_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
 namespace ballpiston::server {
 
 std::string JobName(const std::string& id);
+std::string ResultName(const std::string& job_id, int64_t point);
 
 // Empty unless `name` is a job's.
 std::optional<std::string> JobIdOf(const std::string& name);
+
+struct ResultId {
+  std::string job;
+  int64_t point = 0;
+};
+
+// Empty unless `name` is a result's.
+std::optional<ResultId> ResultIdOf(const std::string& name);
 
 // 16 hexadecimal digits that nobody had before.
 std::string RandomId();

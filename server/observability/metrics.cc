@@ -1,5 +1,6 @@
 #include "server/observability/metrics.h"
 
+#include <algorithm>
 #include <string>
 
 #include "prometheus/counter.h"
@@ -81,7 +82,24 @@ void AddStore(const ServerSnapshot& server, Page& page) {
                "Checkpoints of unfinished points on disk.", server.store_checkpoints_written);
   page.Gauge("ballpiston_store_pending_writes", "What waits to be written.",
              server.store_pending_writes);
+  page.Gauge("ballpiston_expiring_jobs", "Jobs whose results expire within a week.",
+             server.expiring_jobs);
   page.Gauge("ballpiston_store_failing", "1 while the disk refuses writes.", server.store_failing);
+}
+
+void AddPrincipals(const ServerSnapshot& server, Page& page) {
+  const size_t count = std::min(server.principals.size(), kMostPrincipals);
+  for (size_t i = 0; i < count; ++i) {
+    const PrincipalSnapshot& of_one = server.principals[i];
+    const Labels labels = {{"principal", of_one.principal}};
+    page.Gauge("ballpiston_principal_stored_jobs", "Jobs, ended ones included.", of_one.stored_jobs,
+               labels);
+    page.Gauge("ballpiston_principal_stored_bytes", "Of specifications and results.",
+               of_one.stored_bytes, labels);
+    page.Gauge("ballpiston_principal_processor_seconds",
+               "Processor time in the last 30 days, which counts for the quota.",
+               of_one.processor_seconds, labels);
+  }
 }
 
 void AddSlurm(const SlurmStatus& slurm, Page& page) {
@@ -107,6 +125,7 @@ std::vector<MetricFamily> ServerMetrics(const ServerSnapshot& server) {
   AddJobs(server, page);
   AddWork(server, page);
   AddStore(server, page);
+  AddPrincipals(server, page);
   if (server.slurm) AddSlurm(*server.slurm, page);
   return page.Families();
 }

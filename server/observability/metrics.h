@@ -1,5 +1,5 @@
-// The server's numbers as families of Prometheus: base units, totals that only grow, no job's id
-// and no principal in a label.
+// The server's numbers as families of Prometheus: base units, totals that only grow, no job's id in
+// a label, and principals only where usage is told: at most kMostPrincipals.
 //
 //   grpc_server_*   calls: the names and labels that other gRPC servers use; call_statistics.h
 //   ballpiston_*    everything else
@@ -10,12 +10,15 @@
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 
+#include <cstddef>
 #include <vector>
 
 #include "prometheus/metric_family.h"
 #include "server/observability/server_snapshot.h"
 
 namespace ballpiston::server {
+
+inline constexpr size_t kMostPrincipals = 1000;
 
 std::vector<prometheus::MetricFamily> ServerMetrics(const ServerSnapshot& server);
 

@@ -5,11 +5,21 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/time/time.h"
 #include "server/observability/slurm_status.h"
 
 namespace ballpiston::server {
+
+struct PrincipalSnapshot {
+  std::string principal;
+  int64_t queued_jobs = 0;
+  int64_t running_jobs = 0;  // and those that are being cancelled
+  int64_t stored_jobs = 0;
+  int64_t stored_bytes = 0;
+  double processor_seconds = 0;  // in the last 30 days
+};
 
 struct ServerSnapshot {
   std::string version;
@@ -38,6 +48,8 @@ struct ServerSnapshot {
   std::optional<SlurmStatus> slurm;  // none without a cluster
 
   int64_t streams = 0;
+  int64_t expiring_jobs = 0;                  // whose results expire soon
+  std::vector<PrincipalSnapshot> principals;  // those with jobs
 
   int64_t store_bytes = 0;  // on disk, the log included
   int64_t store_commits = 0;

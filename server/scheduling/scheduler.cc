@@ -86,11 +86,7 @@ void Scheduler::Add(RunRequest request) {
   Conclude(run);  // it may have nothing left to compute
 }
 
-void Scheduler::Cancel(int64_t key) {
-  StopAndConclude(key, absl::CancelledError("the job was cancelled"));
-}
-
-void Scheduler::StopAndConclude(int64_t key, absl::Status why) {
+void Scheduler::Stop(int64_t key, absl::Status why) {
   RunPointer run;
   {
     std::lock_guard lock(mutex_);
@@ -295,9 +291,7 @@ void Scheduler::AwaitRoom() {
   if (any != nullptr) any->journal().AwaitRoom();
 }
 
-void Scheduler::Fail(const Lease& lease, absl::Status why) {
-  StopAndConclude(lease.run, std::move(why));
-}
+void Scheduler::Fail(const Lease& lease, absl::Status why) { Stop(lease.run, std::move(why)); }
 
 // ---- opening points ----
 

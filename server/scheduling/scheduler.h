@@ -68,8 +68,9 @@ class Scheduler {
 
   void Add(RunRequest request);
 
-  // The run's journal then receives Ended(CANCELLED), unless the run is over already.
-  void Cancel(int64_t run);
+  // The run's journal then receives Ended with this status, unless the run is over already.
+  void Stop(int64_t run, absl::Status why);
+  void Cancel(int64_t run) { Stop(run, absl::CancelledError("the job was cancelled")); }
 
   // Gives no more leases, requests the stop of all, shuts the executors down, and writes the
   // checkpoints of unfinished points, so that a later process can resume them. May be called more
@@ -164,7 +165,6 @@ class Scheduler {
   absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
   void FinishPoint(const RunPointer& run, const Lease& lease);
-  void StopAndConclude(int64_t run, absl::Status why);
   void Conclude(const RunPointer& run);
   std::vector<Executor*> Executors() const;
   void WakeExecutors();

@@ -95,7 +95,7 @@ class StoreCheck {
   absl::Status CheckJobs() {
     return ForEach(
         "SELECT id, state, spec, error, end_time IS NULL, points, points_done,"
-        " (SELECT count(*) FROM results WHERE job = sequence) FROM jobs",
+        " (SELECT count(*) FROM results WHERE job = sequence), expired_time IS NOT NULL FROM jobs",
         [this](const Query& row) { CheckJob(row); });
   }
 
@@ -118,7 +118,8 @@ class StoreCheck {
     if ((row.Integer(4) == 0) != Ended(state)) {
       Found(absl::StrCat(job, Ended(state) ? " ended at no time" : " is active and has ended"));
     }
-    CheckPoints(job, state, row.Integer(5), row.Integer(6), row.Integer(7));
+    const bool has_expired = row.Integer(8) != 0;
+    if (!has_expired) CheckPoints(job, state, row.Integer(5), row.Integer(6), row.Integer(7));
   }
 
   void CheckPoints(const std::string& job, int64_t state, int64_t points, int64_t done,
@@ -142,14 +143,15 @@ class StoreCheck {
     };
     const absl::Status results = ForEach(
         "SELECT job, point FROM results LEFT JOIN jobs ON sequence = job"
-        " WHERE (sequence IS NULL AND job NOT IN (SELECT job FROM deleted))"
+        " WHERE ((sequence IS NULL OR expired_time IS NOT NULL)"
+        "  AND job NOT IN (SELECT job FROM dropped))"
         " OR point < 0 OR point >= points",
         report("a result of no point"));
     if (!results.ok()) return results;
     const absl::Status details = ForEach(
         "SELECT details.job, details.point FROM details LEFT JOIN results"
         " ON results.job = details.job AND results.point = details.point"
-        " WHERE results.job IS NULL AND details.job NOT IN (SELECT job FROM deleted)",
+        " WHERE results.job IS NULL AND details.job NOT IN (SELECT job FROM dropped)",
         report("details of no result"));
     if (!details.ok()) return details;
     const absl::Status checkpoints =

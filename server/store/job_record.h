@@ -18,13 +18,16 @@ struct JobRecord {
   std::string id;
   std::string principal;  // whose it is
   int32_t priority = 0;   // among the principal's; higher first
+  bool pinned = false;    // its results do not expire
+  int64_t bytes = 0;      // of its specification and, once it has ended, of its results
   std::string spec;       // serialized v1::EnsembleSpec
   std::string question;   // equal for equal answers (question.h); empty: never the same
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
   std::optional<absl::Time> end_time;
-  std::string error;  // serialized google.rpc.Status, empty unless FAILED
+  std::optional<absl::Time> expired_time;  // its results are gone
+  std::string error;                       // serialized google.rpc.Status, empty unless FAILED
   std::string engine_version;
   int64_t restarts = 0;           // how often another engine began anew
   std::string cancel_request_id;  // of the Cancel, or empty

@@ -8,7 +8,7 @@ namespace {
 constexpr char kColumns[] =
     "sequence, id, principal, priority, spec, question, state, create_time, start_time, end_time,"
     " error, engine_version, cancel_request_id, points, points_done, samples, work,"
-    " restarts";
+    " restarts, pinned, bytes, expired_time";
 
 // QUEUED, RUNNING, CANCELLING.
 constexpr char kActiveStates[] = "1, 2, 3";
@@ -40,6 +40,9 @@ JobRecord RecordOf(const Query& query) {
   record.samples = query.Real(15);
   record.work = query.Real(16);
   record.restarts = query.Integer(17);
+  record.pinned = query.Integer(18) != 0;
+  record.bytes = query.Integer(19);
+  record.expired_time = OptionalTime(query, 20);
   return record;
 }
 
@@ -77,6 +80,21 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
+// The jobs that end first, from an index alone.
+absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
+                                           absl::Time ended_before, int most) {
+  Query query = database.Prepare(absl::StrCat("SELECT sequence, bytes, principal FROM jobs WHERE ",
+                                              condition, " ORDER BY end_time LIMIT ?"));
+  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
+  std::vector<JobSize> sizes;
+  while (true) {
+    const absl::StatusOr<bool> row = query.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return sizes;
+    sizes.push_back({query.Integer(0), query.Integer(1), query.Bytes(2)});
+  }
+}
+
 // The rows of a job's unfinished points.
 constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = ?",
                                            "DELETE FROM chunks WHERE job = ?"};
@@ -86,12 +104,12 @@ constexpr const char* kDropUnfinished[] = {"DELETE FROM checkpoints WHERE job = 
 absl::Status InsertJob(Database& database, JobRecord& record) {
   Query query = database.Prepare(
       "INSERT INTO jobs (id, principal, priority, spec, question, state, create_time, error,"
-      " engine_version, restarts, points, points_done, samples, work)"
-      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0)");
+      " engine_version, restarts, points, points_done, samples, work, pinned, bytes)"
+      " VALUES (?, ?, ?, ?, ?, ?, ?, x'', ?, 0, ?, 0, 0, 0, 0, ?)");
   query.BindText(record.id).BindText(record.principal).Bind(int64_t{record.priority});
   query.BindBlob(record.spec).BindBlob(record.question).Bind(int64_t{record.state});
   query.Bind(absl::ToUnixNanos(record.create_time)).BindText(record.engine_version);
-  const absl::Status status = query.Bind(record.points).Run();
+  const absl::Status status = query.Bind(record.points).Bind(record.bytes).Run();
   record.sequence = database.LastInsertedRow();
   return status;
 }
@@ -114,7 +132,7 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
   if (question.empty()) return std::nullopt;
   Query query =
       database.Prepare(SelectWhere("principal = ? AND question = ? AND question <> x'' AND state = "
-                                   "? ORDER BY sequence LIMIT 1"));
+                                   "? AND expired_time IS NULL ORDER BY sequence LIMIT 1"));
   query.BindText(principal).BindBlob(question).Bind(int64_t{v1::EnsembleJob::SUCCEEDED});
   return FirstRow(query);
 }
@@ -180,12 +198,16 @@ absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
 absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end) {
   Query query = database.Prepare(
       "UPDATE jobs SET state = iif(state = ?, ?, ?), end_time = ?, error = iif(state = ?, x'', ?),"
-      " points_done = ?, samples = ?, work = ? WHERE sequence = ? RETURNING state");
+      " points_done = ?, samples = ?, work = ?, bytes = ? WHERE sequence = ? RETURNING state");
   query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).Bind(int64_t{v1::EnsembleJob::CANCELLED});
   query.Bind(int64_t{end.state}).Bind(absl::ToUnixNanos(end.time));
   query.Bind(int64_t{v1::EnsembleJob::CANCELLING}).BindBlob(end.error);
-  const absl::StatusOr<bool> row =
-      query.Bind(end.points_done).Bind(end.samples).Bind(end.work).Bind(sequence).Step();
+  const absl::StatusOr<bool> row = query.Bind(end.points_done)
+                                       .Bind(end.samples)
+                                       .Bind(end.work)
+                                       .Bind(end.bytes)
+                                       .Bind(sequence)
+                                       .Step();
   if (!row.ok()) return row.status();
   if (!*row) return absl::NotFoundError("the job is not in the store");
   const auto state = static_cast<JobState>(query.Integer(0));
@@ -216,9 +238,47 @@ absl::Status RestartJob(Database& database, int64_t sequence, const std::string&
       .Run();
 }
 
+absl::Status PinJob(Database& database, int64_t sequence, bool pinned) {
+  return database.Prepare("UPDATE jobs SET pinned = ? WHERE sequence = ?")
+      .Bind(int64_t{pinned})
+      .Bind(sequence)
+      .Run();
+}
+
+absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
+                                                   int most) {
+  return Sizes(database,
+               "end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0 AND end_time < ?",
+               ended_before, most);
+}
+
+absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most) {
+  return Sizes(database, "expired_time IS NOT NULL AND end_time < ?", absl::InfiniteFuture(), most);
+}
+
+absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before) {
+  Query query = database.Prepare(
+      "SELECT count(*) FROM jobs WHERE end_time IS NOT NULL AND expired_time IS NULL"
+      " AND pinned = 0 AND end_time < ?");
+  const absl::StatusOr<bool> row = query.Bind(absl::ToUnixNanos(ended_before)).Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
+}
+
+absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now) {
+  const absl::Status dropped =
+      RunFor(database, sequence, "INSERT OR IGNORE INTO dropped (job) VALUES (?)");
+  if (!dropped.ok()) return dropped;
+  return database
+      .Prepare("UPDATE jobs SET expired_time = ?, bytes = length(spec) WHERE sequence = ?")
+      .Bind(absl::ToUnixNanos(now))
+      .Bind(sequence)
+      .Run();
+}
+
 absl::Status DeleteJob(Database& database, int64_t sequence) {
   for (const char* sql :
-       {kDropUnfinished[0], kDropUnfinished[1], "INSERT INTO deleted (job) VALUES (?)",
+       {kDropUnfinished[0], kDropUnfinished[1], "INSERT OR IGNORE INTO dropped (job) VALUES (?)",
         "DELETE FROM requests WHERE job = ?", "DELETE FROM jobs WHERE sequence = ?"}) {
     const absl::Status status = RunFor(database, sequence, sql);
     if (!status.ok()) return status;

@@ -59,6 +59,7 @@ struct JobEnd {
   int64_t points_done = 0;
   double samples = 0;
   double work = 0;
+  int64_t bytes = 0;  // JobRecord::bytes
 };
 
 // Ends an active job and drops its checkpoints. A job that is CANCELLING becomes CANCELLED whatever
@@ -69,7 +70,26 @@ absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobE
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question);
 
-// With its requests. Its results go later (sweeper.h), and nobody can find them meanwhile.
+absl::Status PinJob(Database& database, int64_t sequence, bool pinned);
+
+struct JobSize {
+  int64_t sequence = 0;
+  int64_t bytes = 0;  // JobRecord::bytes
+  std::string principal;
+};
+
+// At most so many jobs whose results may expire: they ended before then, and are not pinned. Those
+// that ended first go first.
+absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
+                                                   int most);
+absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before);
+// The same of jobs whose results have expired.
+absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most);
+
+// Of these two: the results go later (sweeper.h), and nobody can find them meanwhile.
+// The specification stays, and requests are answered with the job.
+absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now);
+// With its requests.
 absl::Status DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

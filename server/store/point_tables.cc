@@ -162,4 +162,13 @@ absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int
   }
 }
 
+absl::StatusOr<int64_t> BytesOfResults(Database& database, int64_t job) {
+  Query query = database.Prepare(
+      "SELECT (SELECT ifnull(sum(length(result)), 0) FROM results WHERE job = ?1)"
+      " + (SELECT ifnull(sum(length(record)), 0) FROM details WHERE job = ?1)");
+  const absl::StatusOr<bool> row = query.Bind(job).Step();
+  if (!row.ok()) return row.status();
+  return query.Integer(0);
+}
+
 }  // namespace ballpiston::server

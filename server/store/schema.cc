@@ -22,12 +22,15 @@ CREATE TABLE jobs (
   id TEXT NOT NULL UNIQUE,
   principal TEXT NOT NULL,
   priority INTEGER NOT NULL,
+  pinned INTEGER NOT NULL,
+  bytes INTEGER NOT NULL,
   spec BLOB NOT NULL,
   question BLOB NOT NULL,
   state INTEGER NOT NULL,
   create_time INTEGER NOT NULL,
   start_time INTEGER,
   end_time INTEGER,
+  expired_time INTEGER,
   error BLOB NOT NULL,
   engine_version TEXT NOT NULL,
   restarts INTEGER NOT NULL,
@@ -38,7 +41,10 @@ CREATE TABLE jobs (
   work REAL NOT NULL
 ) STRICT;
 CREATE INDEX jobs_by_state ON jobs (state, principal);
-CREATE INDEX jobs_by_principal ON jobs (principal, sequence);
+CREATE INDEX jobs_by_principal ON jobs (principal, sequence, bytes);
+CREATE INDEX jobs_that_may_expire ON jobs (end_time, bytes)
+  WHERE end_time IS NOT NULL AND expired_time IS NULL AND pinned = 0;
+CREATE INDEX jobs_that_expired ON jobs (end_time, bytes) WHERE expired_time IS NOT NULL;
 CREATE INDEX jobs_by_question ON jobs (principal, question) WHERE question <> x'';
 CREATE TABLE requests (
   principal TEXT NOT NULL,
@@ -76,9 +82,15 @@ CREATE TABLE details (
   record BLOB NOT NULL,
   PRIMARY KEY (job, point)
 ) STRICT;
-CREATE TABLE deleted (
+CREATE TABLE dropped (
   job INTEGER PRIMARY KEY
 ) STRICT;
+CREATE TABLE work (
+  principal TEXT NOT NULL,
+  day INTEGER NOT NULL,
+  seconds REAL NOT NULL,
+  PRIMARY KEY (principal, day)
+) STRICT, WITHOUT ROWID;
 CREATE INDEX results_by_finish ON results (job, finish);
 CREATE TABLE server (
   identity TEXT NOT NULL

@@ -75,8 +75,8 @@ absl::Status Store::Commit(Change change, Done done) {
   return Await({.change = std::move(change), .done = std::move(done)});
 }
 
-absl::Status Store::CommitDeletion(Change change) {
-  return Await({.change = std::move(change), .frees_space = true});
+absl::Status Store::CommitDeletion(Change change, Done done) {
+  return Await({.change = std::move(change), .done = std::move(done), .frees_space = true});
 }
 
 absl::Status Store::Flush() {

@@ -84,7 +84,7 @@ class Store {
   // once and does not run the change.
   absl::Status Commit(Change change, Done done = nullptr);
   // As Commit, for a change after which there will be more room.
-  absl::Status CommitDeletion(Change change);
+  absl::Status CommitDeletion(Change change, Done done = nullptr);
 
   void Record(Change change, Done done = nullptr);
   // As Record, but without delay.

@@ -54,7 +54,7 @@ absl::Status DropSome(Database& database, int64_t job, int64_t most) {
     dropped += database.RowsChanged();
   }
   if (dropped > 0) return absl::OkStatus();
-  return database.Prepare("DELETE FROM deleted WHERE job = ?").Bind(job).Run();
+  return database.Prepare("DELETE FROM dropped WHERE job = ?").Bind(job).Run();
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ absl::StatusOr<bool> Sweeper::Step(Database& database) {
 }
 
 absl::StatusOr<bool> Sweeper::DropRows(Database& database) {
-  const auto job = database.Integer("SELECT min(job) FROM deleted");
+  const auto job = database.Integer("SELECT min(job) FROM dropped");
   if (!job.ok()) return job.status();
   if (*job == 0) return false;
   const absl::Status status =

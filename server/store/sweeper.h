@@ -1,6 +1,7 @@
-// Gives back the space of deleted jobs: removes their rows, then shortens the file by its free
-// pages. In short transactions, so that other writes need not wait. A job that is deleted is in the
-// table `deleted` until its last row is gone, so a restart goes on with the rest.
+// Gives back the space of results that are gone, of deleted jobs and expired ones: removes their
+// rows, then shortens the file by its free pages. In short transactions, so that other writes need
+// not wait. Such a job is in the table `dropped` until its last row is gone, so a restart goes on
+// with the rest.
 #ifndef BALLPISTON_SERVER_STORE_SWEEPER_H_
 #define BALLPISTON_SERVER_STORE_SWEEPER_H_
 

@@ -71,7 +71,7 @@ TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
   {
     const auto database = *OpenStoreFile(path_);
     const auto insert = [&](const char* sql) { return database->Execute(sql); };
-    ASSERT_OK(insert("INSERT INTO deleted (job) VALUES (7)"));
+    ASSERT_OK(insert("INSERT INTO dropped (job) VALUES (7)"));
     ASSERT_OK(insert("INSERT INTO details (job, point, record) VALUES (7, 3, x'00')"));
     ASSERT_OK(
         insert("INSERT INTO results (job, point, samples, result, finish)"
@@ -80,7 +80,7 @@ TEST_F(SweeperTest, ARestartGoesOnWithTheRest) {
   }
   const auto store = Open();
   ASSERT_OK(store->Flush());
-  while (Count(*store, "deleted") > 0) std::this_thread::yield();
+  while (Count(*store, "dropped") > 0) std::this_thread::yield();
   EXPECT_EQ(Count(*store, "details"), 1);
   EXPECT_EQ(Count(*store, "results"), 0);
 }
@@ -91,7 +91,7 @@ TEST_F(SweeperTest, AStepIsShort) {
   ASSERT_OK(database->Execute(
       "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 9999)"
       " INSERT INTO details (job, point, record) SELECT 7, i, zeroblob(1000) FROM n"));
-  ASSERT_OK(database->Execute("INSERT INTO deleted (job) VALUES (7)"));
+  ASSERT_OK(database->Execute("INSERT INTO dropped (job) VALUES (7)"));
   Sweeper sweeper;
   int steps = 0;
   while (*sweeper.Step(*database)) ++steps;

@@ -1,0 +1,17 @@
+#include "server/api/methods.h"
+#include "server/api/request_check.h"
+#include "server/jobs/job_name.h"
+
+namespace ballpiston::server {
+
+absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& call,
+                                          const v1::GetResultRequest& request) {
+  const std::optional<ResultId> id = ResultIdOf(request.name());
+  if (!id) {
+    return InvalidRequest(
+        {{"name", "is not the name of a result: ensembleJobs/{id}/results/{index}"}});
+  }
+  return service.book.Result(call.caller, id->job, id->point);
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,50 @@
+// Which stored results are kept how long: Limits::retain_days and Limits::max_store_bytes.
+//
+// Results of a job that is not pinned expire so many days after its end. If the store takes more
+// than kFullShare of its bound, results expire earlier, those of the jobs that ended first; when
+// none are left, expired jobs are deleted in the same order. What active and pinned jobs store is
+// never touched, so the store may grow beyond the bound; then no new job is accepted
+// (acceptance.h).
+#ifndef BALLPISTON_SERVER_JOBS_RETENTION_H_
+#define BALLPISTON_SERVER_JOBS_RETENTION_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "server/jobs/usage.h"
+#include "server/limits.h"
+#include "server/store/job_table.h"
+#include "server/store/store.h"
+
+namespace ballpiston::server {
+
+// Space is freed before the bound is reached, so that new jobs need not be refused meanwhile.
+inline constexpr double kFullShare = 0.95;
+
+class Retention {
+ public:
+  // Store and usage have to outlive this.
+  Retention(Store& store, Usage& usage, const Limits& limits)
+      : store_(store), usage_(usage), limits_(limits) {}
+
+  // Lets expire and deletes what has to go at the time `now`. To be called again and again: one
+  // call handles at most some hundred jobs.
+  absl::Status Enforce(absl::Time now);
+
+ private:
+  enum class Removal { kResults, kJob };
+
+  absl::Status EnforceAge(absl::Time now);
+  absl::Status EnforceSize(absl::Time now);
+  absl::Status Remove(const std::vector<JobSize>& jobs, Removal removal, absl::Time now);
+
+  Store& store_;
+  Usage& usage_;
+  const Limits limits_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_RETENTION_H_

@@ -1,0 +1,60 @@
+// What each principal uses, and the quotas: stored jobs, their bytes, and processor time. In
+// memory, because the store would have to add up all its jobs for every new one. Thread-safe.
+#ifndef BALLPISTON_SERVER_JOBS_USAGE_H_
+#define BALLPISTON_SERVER_JOBS_USAGE_H_
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "server/limits.h"
+#include "server/store/usage_table.h"
+
+namespace ballpiston::server {
+
+struct PrincipalUsage {
+  int64_t jobs = 0;
+  int64_t bytes = 0;   // of their specifications and results
+  double seconds = 0;  // of processor time in the last kQuotaDays
+};
+
+class Usage {
+ public:
+  // Jobs and bytes are stored, or are gone: then the numbers are negative.
+  void AddStored(const std::string& principal, int64_t jobs, int64_t bytes);
+  void AddWork(const std::string& principal, absl::Time now, double seconds);
+  // What an earlier process stored.
+  void AddStoredWork(const DayOfWork& work);
+
+  // RESOURCE_EXHAUSTED  TOO_MANY_STORED_BYTES, TOO_MANY_SECONDS: no new job is accepted
+  absl::Status Check(const std::string& principal, absl::Time now, const Limits& limits) const;
+
+  PrincipalUsage Of(const std::string& principal, absl::Time now) const;
+  // Those that use anything.
+  std::map<std::string, PrincipalUsage> All(absl::Time now) const;
+
+  // The work that was added since the previous call, which is to be stored.
+  std::vector<DayOfWork> TakeNewWork();
+
+  // The first of the days that count.
+  static int64_t FirstDay(absl::Time now);
+
+ private:
+  using Day = std::pair<std::string, int64_t>;  // principal, day
+
+  PrincipalUsage Locked(const std::string& principal, absl::Time now) const;
+
+  mutable std::mutex mutex_;
+  std::map<std::string, PrincipalUsage> stored_;  // without the seconds
+  std::map<Day, double> work_;
+  std::map<Day, double> new_work_;
+};
+
+}  // namespace ballpiston::server
+
+#endif  // BALLPISTON_SERVER_JOBS_USAGE_H_

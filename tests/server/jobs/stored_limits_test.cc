@@ -1,0 +1,312 @@
+// How long results are kept, and what principals may use. The time is the test's.
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/jobs/job_book.h"
+#include "server/jobs/job_name.h"
+#include "server/jobs/job_state.h"
+#include "server/store/check_store.h"
+#include "tests/server/error_details.h"
+#include "tests/server/fake_experiments.h"
+#include "tests/server/requests.h"
+#include "tests/server/store_access.h"
+#include "tests/server/thread_pool.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::HasSubstr;
+using v1::EnsembleJob;
+
+const Principal kAnn{"ann", Role::kSubmit};
+const Principal kBen{"ben", Role::kSubmit};
+
+MATCHER_P2(IsLimit, reason, flag, "") {
+  return absl::IsResourceExhausted(arg) && ReasonOf(arg) == reason &&
+         testing::ExplainMatchResult(HasSubstr(absl::StrCat("--", flag)),
+                                     std::string(arg.message()), result_listener);
+}
+
+constexpr absl::Duration kDay = absl::Hours(24);
+
+class StoredLimitsTest : public testing::Test {
+ protected:
+  ~StoredLimitsTest() override { Stop(); }
+
+  void Start(const Limits& limits, ExperimentFactory factory = FakeExperiments()) {
+    Stop();
+    ASSERT_OK_AND_ASSIGN(
+        store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1), .reserve_bytes = 0}));
+    pool_ = std::make_unique<ThreadPool>(2, std::move(factory));
+    book_ = std::make_unique<JobBook>(*store_, limits, pool_->scheduler(), nullptr);
+    ASSERT_OK(book_->Resume());
+  }
+
+  void Stop() {
+    book_.reset();
+    pool_.reset();
+    store_.reset();
+  }
+
+  absl::StatusOr<EnsembleJob> Create(const Principal& caller, uint64_t seed, int points = 3) {
+    const auto request = CreateRequest(Equilibrium(points, 5, seed));
+    return book_->Create(caller, request, CheckSpec(request.spec()));
+  }
+
+  EnsembleJob Get(const Principal& caller, const std::string& id) {
+    return book_->Get(caller, id).value();
+  }
+
+  // The id of a job that has succeeded.
+  std::string Done(const Principal& caller, uint64_t seed, int points = 3) {
+    const std::string id = *JobIdOf(Create(caller, seed, points).value().name());
+    while (!HasEnded(Get(caller, id).state())) std::this_thread::yield();
+    EXPECT_EQ(Get(caller, id).state(), EnsembleJob::SUCCEEDED);
+    return id;
+  }
+
+  size_t PointsOf(const Principal& caller, const std::string& id) {
+    return book_->Results(caller, id, {.max_points = 1000}).value().points.size();
+  }
+
+  std::string ResultsError(const std::string& id) {
+    return ReasonOf(book_->Results(kAnn, id, {.max_points = 10}).status());
+  }
+
+  void ExpectSound() {
+    Stop();
+    ASSERT_OK_AND_ASSIGN(const StoreSummary summary, CheckStore(path_));
+    EXPECT_THAT(summary.problems, testing::IsEmpty());
+  }
+
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.File("store.sqlite3");
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<ThreadPool> pool_;
+  std::unique_ptr<JobBook> book_;
+};
+
+TEST_F(StoredLimitsTest, ResultsExpireAndTheSpecificationStays) {
+  Start({.retain_days = 30});
+  const std::string id = Done(kAnn, 1);
+  const EnsembleJob before = Get(kAnn, id);
+  const absl::Time end = absl::FromUnixSeconds(before.end_time().seconds());
+  EXPECT_NEAR(static_cast<double>(before.expire_time().seconds() - before.end_time().seconds()),
+              30 * 86400, 1);
+  book_->KeepLimits(end + 29 * kDay);
+  EXPECT_EQ(PointsOf(kAnn, id), 3u);
+  book_->KeepLimits(end + 30 * kDay + absl::Seconds(2));
+  EXPECT_EQ(ResultsError(id), "RESULTS_EXPIRED");
+  const EnsembleJob after = Get(kAnn, id);
+  EXPECT_TRUE(after.results_expired());
+  EXPECT_FALSE(after.has_expire_time());
+  EXPECT_EQ(after.state(), EnsembleJob::SUCCEEDED);
+  EXPECT_EQ(after.spec().SerializeAsString(), before.spec().SerializeAsString());
+  EXPECT_LT(after.stored_bytes(), before.stored_bytes());
+  ExpectSound();
+}
+
+// The same question is computed again, to the same bytes.
+TEST_F(StoredLimitsTest, AnExpiredJobCanBeComputedAgain) {
+  Start({.retain_days = 1});
+  const std::string id = Done(kAnn, 1);
+  const std::string bytes =
+      book_->Results(kAnn, id, {.max_points = 1})->points.front().SerializeAsString();
+  book_->KeepLimits(absl::Now() + 2 * kDay);
+  const std::string again = Done(kAnn, 1);
+  EXPECT_NE(again, id);
+  EXPECT_EQ(book_->Results(kAnn, again, {.max_points = 1})->points.front().SerializeAsString(),
+            bytes);
+}
+
+TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
+  Start({.retain_days = 1});
+  const std::string pinned = Done(kAnn, 1), other = Done(kAnn, 2);
+  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Pin(kAnn, pinned, true));
+  EXPECT_TRUE(job.pinned());
+  EXPECT_FALSE(job.has_expire_time());
+  book_->KeepLimits(absl::Now() + 100 * kDay);
+  EXPECT_EQ(PointsOf(kAnn, pinned), 3u);
+  EXPECT_EQ(ResultsError(other), "RESULTS_EXPIRED");
+  EXPECT_OK(book_->Pin(kAnn, pinned, false));
+  book_->KeepLimits(absl::Now() + 100 * kDay);
+  EXPECT_EQ(ResultsError(pinned), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(book_->Pin(kAnn, pinned, true).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(book_->Pin(kAnn, "nosuchjob", true).status()), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Pin(kBen, other, true).status()), "JOB_NOT_FOUND");
+}
+
+TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
+  Gate gate;
+  Start({.retain_days = 1}, GatedExperiments(gate));
+  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
+  gate.AwaitWaiting(1);
+  EXPECT_TRUE(book_->Pin(kAnn, id, true)->pinned());
+  book_->KeepLimits(absl::Now() + 100 * kDay);
+  gate.Open();
+  while (!HasEnded(Get(kAnn, id).state())) std::this_thread::yield();
+  EXPECT_TRUE(Get(kAnn, id).pinned());
+  book_->KeepLimits(absl::Now() + 100 * kDay);
+  EXPECT_EQ(PointsOf(kAnn, id), 3u);
+}
+
+TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
+  Start({.retain_days = 30});
+  Done(kAnn, 1);
+  EXPECT_EQ(book_->CountExpiring(absl::Now() + 20 * kDay), 0);
+  EXPECT_EQ(book_->CountExpiring(absl::Now() + 24 * kDay), 1);
+}
+
+// The oldest results go first. Then expired jobs go; then, if what is pinned is too much, no job is
+// accepted.
+TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
+  constexpr int64_t kBound = 600'000;
+  Start({.max_store_bytes = kBound});
+  std::vector<std::string> ids;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    ids.push_back(Done(kAnn, seed, 300));
+    book_->KeepLimits(absl::Now());
+    while (ReadFrom(*store_, &IsSweeping)) std::this_thread::yield();
+    EXPECT_LT(ReadFrom(*store_, &UsedBytes), kBound);
+  }
+  EXPECT_TRUE(Get(kAnn, ids.front()).results_expired());
+  EXPECT_EQ(PointsOf(kAnn, ids.back()), 300u);
+  bool expired = true;
+  for (const std::string& id : ids) {
+    const bool now = Get(kAnn, id).results_expired();
+    EXPECT_TRUE(expired || !now) << "a newer job expired first";
+    expired = now;
+  }
+  ExpectSound();
+}
+
+TEST_F(StoredLimitsTest, WhatIsPinnedMayFillTheStoreAndThenNoJobIsAccepted) {
+  Start({.max_store_bytes = 200'000});
+  const std::string pinned = *JobIdOf(Create(kAnn, 1, 900)->name());
+  ASSERT_OK(book_->Pin(kAnn, pinned, true));
+  while (!HasEnded(Get(kAnn, pinned).state())) std::this_thread::yield();
+  book_->KeepLimits(absl::Now());
+  const absl::Status refused = Create(kBen, 2).status();
+  EXPECT_THAT(refused, IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes"));
+  EXPECT_EQ(PointsOf(kAnn, pinned), 900u);
+  ASSERT_OK(book_->Pin(kAnn, pinned, false));
+  while (!Create(kBen, 2).ok()) book_->KeepLimits(absl::Now());
+}
+
+TEST_F(StoredLimitsTest, APrincipalOverItsBytesIsRefusedAndOthersAreNot) {
+  Start({.max_store_bytes_per_principal = 20'000});
+  const std::string first = Done(kAnn, 1, 300);
+  EXPECT_EQ(static_cast<double>(book_->usage().Of("ann", absl::Now()).bytes),
+            Get(kAnn, first).stored_bytes());
+  EXPECT_THAT(Create(kAnn, 2).status(),
+              IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes-per-principal"));
+  Done(kBen, 2);
+  Start({.max_store_bytes_per_principal = 20'000});  // and after a restart
+  EXPECT_EQ(ReasonOf(Create(kAnn, 2).status()), "TOO_MANY_STORED_BYTES");
+  EXPECT_EQ(Create(kAnn, 1, 300)->name(), JobName(first));  // the answer is there
+  ASSERT_OK(book_->Delete(kAnn, first));
+  EXPECT_EQ(book_->usage().Of("ann", absl::Now()).bytes, 0);
+  Done(kAnn, 2);
+}
+
+// Bytes of a job in the middle are counted after a restart.
+TEST_F(StoredLimitsTest, AnUnfinishedJobCountsAfterARestart) {
+  Gate gate;
+  const auto stuck = [&gate](size_t point, uint64_t, std::stop_token stop) {
+    if (point == 2) gate.Pass(stop);
+  };
+  Start({}, FakeExperiments(stuck));
+  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
+  gate.AwaitWaiting(2);
+  ASSERT_OK(store_->Flush());
+  const int64_t bytes = book_->usage().Of("ann", absl::Now()).bytes;
+  Start({}, FakeExperiments(stuck));
+  EXPECT_EQ(book_->usage().Of("ann", absl::Now()).bytes, bytes);
+  gate.Open();
+  while (!HasEnded(Get(kAnn, id).state())) std::this_thread::yield();
+  EXPECT_EQ(static_cast<double>(book_->usage().Of("ann", absl::Now()).bytes),
+            Get(kAnn, id).stored_bytes());
+}
+
+TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
+  Gate gate;
+  const auto stuck = [&gate](size_t point, uint64_t, std::stop_token stop) {
+    if (point == 1) gate.Pass(stop);
+  };
+  Start({.max_seconds_per_job = 1e-9}, FakeExperiments(stuck));
+  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
+  while (Get(kAnn, id).progress().points_done() == 0) std::this_thread::yield();
+  while (!HasEnded(Get(kAnn, id).state())) book_->KeepLimits(absl::Now());
+  const EnsembleJob job = Get(kAnn, id);
+  EXPECT_EQ(job.state(), EnsembleJob::FAILED);
+  EXPECT_THAT(job.error().message(), HasSubstr("--max-seconds-per-job"));
+  EXPECT_GE(PointsOf(kAnn, id), 1u);
+}
+
+TEST_F(StoredLimitsTest, OneResultByItsName) {
+  Start({});
+  const std::string id = Done(kAnn, 1);
+  EXPECT_EQ(book_->Result(kAnn, id, 2)->index(), 2);
+  EXPECT_EQ(ReasonOf(book_->Result(kAnn, id, 3).status()), "RESULT_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Result(kBen, id, 2).status()), "JOB_NOT_FOUND");
+}
+
+TEST(ResultNameTest, NamesAJobAndAPoint) {
+  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->point, 7);
+  EXPECT_EQ(ResultIdOf("ensembleJobs/a-1/results/7")->job, "a-1");
+  for (const char* name : {"ensembleJobs/a/results/", "ensembleJobs/a/results/-1",
+                           "ensembleJobs/a/results/07", "ensembleJobs/A/results/7", "results/7",
+                           "ensembleJobs/a/results/99999999999", "ensembleJobs/a"}) {
+    EXPECT_FALSE(ResultIdOf(name)) << name;
+  }
+}
+
+// ---- processor time ----
+
+TEST(UsageTest, WorkCountsForThirtyDays) {
+  const Limits limits = {.max_processor_seconds_per_principal = 100};
+  const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
+  Usage usage;
+  usage.AddWork("ann", start, 60);
+  EXPECT_OK(usage.Check("ann", start, limits));
+  usage.AddWork("ann", start + 10 * kDay, 40);
+  EXPECT_THAT(usage.Check("ann", start + 10 * kDay, limits),
+              IsLimit("TOO_MANY_SECONDS", "max-processor-seconds-per-principal"));
+  EXPECT_OK(usage.Check("ben", start, limits));
+  EXPECT_EQ(usage.Of("ann", start + 29 * kDay).seconds, 100);
+  EXPECT_EQ(usage.Of("ann", start + 30 * kDay).seconds, 40);
+  EXPECT_OK(usage.Check("ann", start + 30 * kDay, limits));
+}
+
+TEST(UsageTest, NewWorkIsTakenOnce) {
+  const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
+  Usage usage;
+  usage.AddStoredWork({"ann", Usage::FirstDay(start) + kQuotaDays - 1, 5});
+  usage.AddWork("ann", start, 1);
+  usage.AddWork("ann", start, 2);
+  const std::vector<DayOfWork> work = usage.TakeNewWork();
+  ASSERT_EQ(work.size(), 1u);
+  EXPECT_EQ(work[0].seconds, 3);
+  EXPECT_TRUE(usage.TakeNewWork().empty());
+  EXPECT_EQ(usage.Of("ann", start).seconds, 8);
+}
+
+TEST_F(StoredLimitsTest, ProcessorTimeOutlivesTheServer) {
+  Start({});
+  Done(kAnn, 1);
+  const double seconds = book_->usage().Of("ann", absl::Now()).seconds;
+  EXPECT_GT(seconds, 0);
+  Start({});
+  EXPECT_DOUBLE_EQ(book_->usage().Of("ann", absl::Now()).seconds, seconds);
+}
+
+}  // namespace
+}  // namespace ballpiston::server
