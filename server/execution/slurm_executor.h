@@ -19,13 +19,11 @@
 
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <stop_token>
@@ -36,6 +34,7 @@
 #include "absl/functional/function_ref.h"
 #include "server/execution/shared_folder.h"
 #include "server/execution/slurm_tools.h"
+#include "server/mutex.h"
 #include "server/observability/slurm_status.h"
 #include "server/scheduling/scheduler.h"
 #include "server/worker/chunk_file.h"
@@ -142,9 +141,8 @@ class SlurmExecutor : public Executor {
   void ReturnUntried(const std::vector<std::vector<Lease>>& tasks);
   void RemoveEnded();
 
-  // These two require the lock.
-  Task* FindTask(const std::string& array, size_t task);
-  size_t TasksInFlight() const;
+  Task* FindTask(const std::string& array, size_t task) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  size_t TasksInFlight() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   bool AwaitNextLook();  // false: stopped
   void NoteOutcome(Activity activity, const absl::Status& outcome);
@@ -160,16 +158,18 @@ class SlurmExecutor : public Executor {
   const SharedFolder folder_;
   Capacity capacity_;
 
-  std::mutex collect_mutex_;  // for all of CollectArray; taken before the other
-  mutable std::mutex mutex_;  // never held while the scheduler is called, but for Needs
-  std::condition_variable changed_;
+  Mutex collect_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);  // for all of CollectArray
+  mutable Mutex mutex_;  // never held while the scheduler is called, but for Needs
+  Condition changed_;
   std::stop_source stop_;
-  std::map<std::string, Array> arrays_;  // by name
-  SlurmStatus counts_;
-  std::array<std::string, 3> problems_;  // by activity; empty: its last attempt succeeded
-  Clock::time_point last_query_;
-  Clock::time_point next_submission_;
-  std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
+  std::map<std::string, Array> arrays_ ABSL_GUARDED_BY(mutex_);  // by name
+  SlurmStatus counts_ ABSL_GUARDED_BY(mutex_);
+  // By activity; empty: its last attempt succeeded.
+  std::array<std::string, 3> problems_ ABSL_GUARDED_BY(mutex_);
+  Clock::time_point last_query_ ABSL_GUARDED_BY(mutex_);
+  Clock::time_point next_submission_ ABSL_GUARDED_BY(mutex_);
+  // 0: nothing has failed since a task left a file.
+  std::chrono::milliseconds backoff_ ABSL_GUARDED_BY(mutex_){0};
 
   // Used only by the thread that runs Slurm's tools.
   bool recovered_ = false;

@@ -7,17 +7,16 @@
 #define BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "server/mutex.h"
 #include "server/scheduling/scheduler.h"
 
 namespace ballpiston::server {
@@ -61,12 +60,12 @@ class ThreadExecutor : public Executor {
   std::atomic<int> busy_ = 0;
   std::atomic<uint64_t> blocks_ = 0;
 
-  mutable std::mutex mutex_;
-  std::condition_variable woken_;
-  uint64_t wakes_ = 0;
-  bool shutting_down_ = false;
-  std::map<int64_t, SharedPointer> leases_;  // by number
-  std::vector<std::thread> threads_;
+  mutable Mutex mutex_;
+  Condition woken_;
+  uint64_t wakes_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
+  std::map<int64_t, SharedPointer> leases_ ABSL_GUARDED_BY(mutex_);  // by number
+  std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

@@ -276,7 +276,7 @@ absl::Status JobBook::ResumeRun(JobRecord record, EnsembleSpec spec) {
 std::shared_ptr<Job> JobBook::Register(JobRecord record) {
   active_points_.Add(record.id, record.principal, record.points);
   auto job = std::make_shared<Job>(std::move(record), on_state_change_);
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   active_.emplace(job->id(), job);
   return job;
 }
@@ -297,7 +297,7 @@ void JobBook::Forget(const Job& ended) {
      : state == v1::EnsembleJob::FAILED  ? failed_
                                          : cancelled_);
   active_points_.Remove(ended.id());
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   active_.erase(ended.id());
 }
 
@@ -378,7 +378,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
 }
 
 std::shared_ptr<Job> JobBook::ActiveOrNull(const Principal& caller, const std::string& id) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto found = active_.find(id);
   const bool seen = found != active_.end() && caller.MaySee(found->second->principal());
   return seen ? found->second : nullptr;
@@ -579,14 +579,14 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
 }
 
 size_t JobBook::active_jobs() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return active_.size();
 }
 
 std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
   std::vector<std::shared_ptr<Job>> active;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     active.reserve(active_.size());
     for (const auto& [id, job] : active_) active.push_back(job);
   }

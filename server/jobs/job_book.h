@@ -14,7 +14,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +27,7 @@
 #include "server/jobs/job.h"
 #include "server/jobs/job_filter.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
 #include "server/store/store.h"
@@ -163,8 +163,8 @@ class JobBook {
   const Limits limits_;
   Scheduler& scheduler_;
   const std::function<void()> on_state_change_;
-  mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Job>> active_;  // by id
+  mutable Mutex mutex_;
+  std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
   ActivePoints active_points_;
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;

@@ -18,24 +18,25 @@ Health::~Health() { Drain(); }
 
 void Health::Drain() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (stopping_) return;
     stopping_ = true;
   }
-  stop_.notify_all();
+  stop_.NotifyAll();
   thread_.join();
   health_.Shutdown();
 }
 
 void Health::Look() {
   bool failed = false;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!stopping_) {
     const bool fails = store_fails_();
     if (std::exchange(failed, fails) != fails) {
       for (const std::string& name : services_.with_store) health_.SetServingStatus(name, !fails);
     }
-    stop_.wait_for(lock, interval_, [this] { return stopping_; });
+    const auto next = std::chrono::steady_clock::now() + interval_;
+    while (!stopping_ && stop_.WaitUntil(mutex_, next)) continue;
   }
 }
 

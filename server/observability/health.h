@@ -8,14 +8,13 @@
 #define BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "grpcpp/health_check_service_interface.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -41,9 +40,9 @@ class Health {
   const std::function<bool()> store_fails_;
   const std::chrono::milliseconds interval_;
 
-  std::mutex mutex_;
-  std::condition_variable stop_;
-  bool stopping_ = false;
+  Mutex mutex_;
+  Condition stop_;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 
