@@ -65,13 +65,13 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
   // writes and the end come from it.
-  void Schedule();
+  void Schedule() ABSL_LOCKS_EXCLUDED(mutex_);
   void Advance();
   absl::Status TellWhatIsNew();
 
   // OK while the caller may still watch the job, and while it is not yet time to ask again.
   absl::Status CheckCaller();
-  void AbandonWrite(const absl::Status& why);
+  void AbandonWrite(const absl::Status& why) ABSL_LOCKS_EXCLUDED(mutex_);
 
   absl::Status FindJob();
   // Each of these is one message, or false if there is nothing of the kind to tell now.
@@ -93,9 +93,9 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;
-  void Write();
-  void WriteLastAndEnd();
-  void End(const absl::Status& status);
+  void Write() ABSL_LOCKS_EXCLUDED(mutex_);
+  void WriteLastAndEnd() ABSL_LOCKS_EXCLUDED(mutex_);
+  void End(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   ServiceContext& service_;
   grpc::CallbackServerContext& context_;  // valid until the end is sent

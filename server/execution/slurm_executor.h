@@ -91,9 +91,9 @@ class SlurmExecutor : public Executor {
 
   // ---- files ----
   void CollectUntilStopped();
-  std::vector<std::string> ArrayNames() const;
-  bool HasArray(const std::string& name) const;
-  absl::Status CollectArray(const std::string& name);
+  std::vector<std::string> ArrayNames() const ABSL_LOCKS_EXCLUDED(mutex_);
+  bool HasArray(const std::string& name) const ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status CollectArray(const std::string& name) ABSL_LOCKS_EXCLUDED(collect_mutex_, mutex_);
   bool IsNew(const std::string& array, const ChunkFileName& file);
   void TakeFile(const std::string& array, const ChunkFileName& name);
   absl::Status CheckFile(const std::string& array, const ChunkFile& file,
@@ -112,10 +112,11 @@ class SlurmExecutor : public Executor {
   void SteerUntilStopped();
   void Steer();
   void Guarded(Activity activity, absl::FunctionRef<absl::Status()> round);
-  void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried);
+  void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   void EndFinalTasks();
   void EndUnneededTasks();
-  void EndArray(const std::string& name);
+  void EndArray(const std::string& name) ABSL_LOCKS_EXCLUDED(mutex_);
   bool IsNeeded(const Task& task) const;
   std::optional<Cancellation> CancellationOf(const std::string& name, const Array& array) const;
   void DropUnneededTasks();
@@ -125,11 +126,11 @@ class SlurmExecutor : public Executor {
   void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);
   void EndLostTasks(const std::string& name);
   void GiveUpWaiting(const std::string& name, const std::string& reason);
-  void BackOff(const absl::Status& problem);
+  void BackOff(const absl::Status& problem) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // ---- submission ----
   void SubmitNew();
-  size_t RoomForTasks() const;
+  size_t RoomForTasks() const ABSL_LOCKS_EXCLUDED(mutex_);
   void ReturnGathered();
   absl::StatusOr<std::string> PreparedWorker() const;
   bool Gather(double seconds);
@@ -145,7 +146,7 @@ class SlurmExecutor : public Executor {
   size_t TasksInFlight() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   bool AwaitNextLook();  // false: stopped
-  void NoteOutcome(Activity activity, const absl::Status& outcome);
+  void NoteOutcome(Activity activity, const absl::Status& outcome) ABSL_LOCKS_EXCLUDED(mutex_);
   std::string NewName();
   JobIdentity IdentityOf(const Lease& lease) const;
 

@@ -38,7 +38,7 @@ class ThreadExecutor : public Executor {
 
   ExecutorTraits traits() const override { return {.local = true}; }
   void Start() override;
-  void Wake() override;
+  void Wake() override ABSL_LOCKS_EXCLUDED(mutex_);
   bool HasTurn(int64_t lease) const override;
   void Shutdown() override;
 
@@ -50,9 +50,9 @@ class ThreadExecutor : public Executor {
 
   void Work();
   std::optional<Lease> AwaitLease();
-  void TakeTurn(const Lease& lease);
-  SharedPointer Find(const Lease& lease);
-  void DropStopped();
+  void TakeTurn(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  SharedPointer Find(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void DropStopped() ABSL_LOCKS_EXCLUDED(mutex_);
 
   Scheduler& scheduler_;
   const int workers_;

@@ -162,16 +162,17 @@ class Scheduler {
   // Leases whose stop was requested and at which no local turn is in progress.
   void DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  absl::Status OpenOne(Run& run, size_t index);
+  absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   // The adopted leases of a point that is finished.
-  void DropAdopted(Run& run, size_t index);
-  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
+  void DropAdopted(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
-  void FinishPoint(const RunPointer& run, const Lease& lease);
-  void StopAndConclude(int64_t run, absl::Status why);
-  void Conclude(const RunPointer& run);
-  std::vector<Executor*> Executors() const;
-  void WakeExecutors();
+  void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void StopAndConclude(int64_t run, absl::Status why) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
+  void WakeExecutors() ABSL_LOCKS_EXCLUDED(mutex_);
 
   PointOpener& opener_;
   const int workers_;

@@ -166,7 +166,7 @@ class Store {
   void GiveBack(std::unique_ptr<Database> reader);
   void CloseReaders();
 
-  void Post(Write write);
+  void Post(Write write) ABSL_LOCKS_EXCLUDED(mutex_);
   bool IsFull() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Await(Write write);
   void WriteUntilClosed();
@@ -190,10 +190,10 @@ class Store {
   static size_t GroupEnd(const Writes& batch, size_t first, size_t most);
   void WriteLogBack();
   void Sweep();
-  void NoteSweep(const absl::StatusOr<bool>& swept);
+  void NoteSweep(const absl::StatusOr<bool>& swept) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  void Settle(Batch batch, const absl::Status& status);
-  void Requeue(Writes again, size_t freed);
+  void Settle(Batch batch, const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Requeue(Writes again, size_t freed) ABSL_LOCKS_EXCLUDED(mutex_);
   void NoteHealth(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const Options options_;
