@@ -13,7 +13,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts asan tsan aarch64 fuzz nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -71,6 +71,10 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
+
+thread-safety: ## Check with Clang that the server holds the right mutexes, in their order (1 minute)
+	@scripts/setup.sh clang
+	@scripts/thread-safety.sh
 
 nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, test-alerts, stability, and ten minutes of each fuzz target
 	@status=0; for task in tsan aarch64 tidy torture test-slurm test-alerts stability "fuzz FUZZ_SECONDS=600"; do \

@@ -4,10 +4,8 @@
 #include <time.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -16,6 +14,7 @@
 #include "absl/time/clock.h"
 #include "server/ballpiston_server.h"
 #include "server/command_line/command_line.h"
+#include "server/mutex.h"
 #include "server/observability/failpoint.h"
 #include "server/observability/log.h"
 #include "server/security/new_token.h"
@@ -64,22 +63,39 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   LogInfo("stopping");
 }
 
-// Ends the process if stopping takes too long: all that was acknowledged is on disk by then.
-void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
-  std::mutex mutex;
-  std::condition_variable stopped_now;
-  bool stopped = false;
-  std::thread watchdog([&] {
-    std::unique_lock lock(mutex);
-    if (!stopped_now.wait_for(lock, drain + kGrace, [&] { return stopped; })) std::_Exit(0);
-  });
-  server.Shutdown(drain);
-  {
-    std::lock_guard lock(mutex);
-    stopped = true;
+// Ends the process if it lives longer than `limit`: all that was acknowledged is on disk by then.
+class Watchdog {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit Watchdog(Clock::duration limit)
+      : end_(Clock::now() + limit), thread_([this] { Watch(); }) {}
+  ~Watchdog() {
+    {
+      MutexLock lock(mutex_);
+      stopped_ = true;
+    }
+    changed_.NotifyAll();
+    thread_.join();
   }
-  stopped_now.notify_all();
-  watchdog.join();
+
+ private:
+  void Watch() {
+    MutexLock lock(mutex_);
+    while (!stopped_ && changed_.WaitUntil(mutex_, end_)) continue;
+    if (!stopped_) std::_Exit(0);
+  }
+
+  const Clock::time_point end_;
+  Mutex mutex_;
+  Condition changed_;
+  bool stopped_ ABSL_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
+void StopInTime(BallpistonServer& server, std::chrono::milliseconds drain) {
+  const Watchdog watchdog(drain + kGrace);
+  server.Shutdown(drain);
 }
 
 int Fail(const absl::Status& status) {

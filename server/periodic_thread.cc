@@ -9,20 +9,21 @@ PeriodicThread::PeriodicThread(std::chrono::milliseconds interval, std::function
 
 PeriodicThread::~PeriodicThread() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
   }
-  stop_.notify_all();
+  stop_.NotifyAll();
   thread_.join();
 }
 
 void PeriodicThread::CallUntilStopped() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!stopping_) {
-    lock.unlock();
+    lock.Unlock();
     call_();
-    lock.lock();
-    stop_.wait_for(lock, interval_, [this] { return stopping_; });
+    lock.Lock();
+    const auto next = std::chrono::steady_clock::now() + interval_;
+    while (!stopping_ && stop_.WaitUntil(mutex_, next)) continue;
   }
 }
 

@@ -3,16 +3,16 @@
 #define BALLPISTON_SERVER_PERIODIC_THREAD_H_
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <thread>
+
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
 class PeriodicThread {
  public:
-  // Calls it at once, and then `interval` after each return.
+  // Calls it at once, and then `interval` after each return, without a lock.
   PeriodicThread(std::chrono::milliseconds interval, std::function<void()> call);
   ~PeriodicThread();  // returns when the last call has returned
 
@@ -21,9 +21,9 @@ class PeriodicThread {
 
   const std::chrono::milliseconds interval_;
   const std::function<void()> call_;
-  std::mutex mutex_;
-  std::condition_variable stop_;
-  bool stopping_ = false;
+  Mutex mutex_;
+  Condition stop_;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

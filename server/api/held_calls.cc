@@ -19,7 +19,7 @@ absl::Status TooManyBytes(const std::string& principal, int64_t bytes, int64_t l
 }  // namespace
 
 absl::Status HeldCalls::Begin(const std::string& principal, int64_t bytes, const Limits& limits) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   Held& held = held_[principal];
   const int64_t most_calls = limits.max_calls_per_principal;
   const int64_t most_bytes = limits.max_call_bytes_per_principal;
@@ -36,7 +36,7 @@ absl::Status HeldCalls::Begin(const std::string& principal, int64_t bytes, const
 }
 
 absl::Status HeldCalls::CheckRoom(const std::string& principal, const Limits& limits) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto held = held_.find(principal);
   const int64_t most = limits.max_call_bytes_per_principal;
   const bool has_room =
@@ -45,12 +45,12 @@ absl::Status HeldCalls::CheckRoom(const std::string& principal, const Limits& li
 }
 
 void HeldCalls::AddBytes(const std::string& principal, int64_t bytes) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   held_[principal].bytes += bytes;
 }
 
 bool HeldCalls::TryBegin(const std::string& principal, int64_t bytes, int64_t limit) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto held = held_.try_emplace(principal).first;
   if (held->second.calls > 0 && held->second.bytes + bytes > limit) return false;
   ++held->second.calls;
@@ -59,7 +59,7 @@ bool HeldCalls::TryBegin(const std::string& principal, int64_t bytes, int64_t li
 }
 
 void HeldCalls::End(const std::string& principal, int64_t bytes) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto held = held_.find(principal);
   if (held == held_.end()) return;
   held->second.bytes -= bytes;

@@ -7,11 +7,11 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -38,8 +38,8 @@ class HeldCalls {
     int64_t bytes = 0;
   };
 
-  mutable std::mutex mutex_;
-  std::map<std::string, Held> held_;
+  mutable Mutex mutex_;
+  std::map<std::string, Held> held_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

@@ -28,22 +28,22 @@ RpcExecutor::Lane::Lane(int threads, int share) : share_(share) {
 }
 
 void RpcExecutor::Lane::Post(const std::string& principal, Task task) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (stopping_) return;
   const auto queue = queues_.try_emplace(principal).first;
   if (queue->second.tasks.empty()) turns_.push_back(queue);
   queue->second.tasks.push_back(std::move(task));
-  changed_.notify_one();
+  changed_.NotifyOne();
 }
 
 void RpcExecutor::Lane::Stop() {
   std::vector<std::thread> threads;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
     threads.swap(threads_);
   }
-  changed_.notify_all();
+  changed_.NotifyAll();
   for (std::thread& thread : threads) thread.join();
 }
 
@@ -67,21 +67,21 @@ RpcExecutor::Task RpcExecutor::Lane::Take(std::list<Queues::iterator>::iterator 
 }
 
 void RpcExecutor::Lane::Work() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
-    auto turn = turns_.end();
-    changed_.wait(lock, [&] { return (turn = NextTurn()) != turns_.end() || IsDone(); });
+    auto turn = NextTurn();
+    for (; turn == turns_.end() && !IsDone(); turn = NextTurn()) changed_.Wait(mutex_);
     if (turn == turns_.end()) return;
     const Queues::iterator queue = *turn;
     Task task = Take(turn);
-    lock.unlock();
+    lock.Unlock();
     task();
     task = nullptr;  // what it holds is let go without the lock
-    lock.lock();
+    lock.Lock();
     // A thread that found this principal's share taken may go on.
-    if (queue->second.running-- == share_ && !queue->second.tasks.empty()) changed_.notify_one();
+    if (queue->second.running-- == share_ && !queue->second.tasks.empty()) changed_.NotifyOne();
     if (queue->second.running == 0 && queue->second.tasks.empty()) queues_.erase(queue);
-    if (IsDone()) changed_.notify_all();
+    if (IsDone()) changed_.NotifyAll();
   }
 }
 

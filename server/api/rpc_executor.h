@@ -9,18 +9,17 @@
 #ifndef BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 #define BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <list>
 #include <map>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "server/api/held_calls.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -68,17 +67,20 @@ class RpcExecutor {
     using Queues = std::map<std::string, Queue>;
 
     void Work();
-    bool IsDone() const { return stopping_ && turns_.empty(); }
-    std::list<Queues::iterator>::iterator NextTurn();
-    Task Take(std::list<Queues::iterator>::iterator turn);
+    bool IsDone() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+      return stopping_ && turns_.empty();
+    }
+    std::list<Queues::iterator>::iterator NextTurn() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+    Task Take(std::list<Queues::iterator>::iterator turn) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
     const int share_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    Queues queues_;                      // of principals with tasks, waiting or running
-    std::list<Queues::iterator> turns_;  // of those with tasks that wait: the longest ago first
-    bool stopping_ = false;
-    std::vector<std::thread> threads_;
+    Mutex mutex_;
+    Condition changed_;
+    Queues queues_ ABSL_GUARDED_BY(mutex_);  // of principals with tasks, waiting or running
+    // Of those with tasks that wait: the longest ago first.
+    std::list<Queues::iterator> turns_ ABSL_GUARDED_BY(mutex_);
+    bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
+    std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);
   };
 
   HeldCalls held_calls_;

@@ -63,7 +63,7 @@ void WatchReactor::OnWriteDone(bool ok) {
   message_.Clear();  // that of a job may be large, and the next one far away
   LeaveRoom();
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     writing_ = false;
     cut_ = cut_ || !ok;
   }
@@ -72,7 +72,7 @@ void WatchReactor::OnWriteDone(bool ok) {
 
 void WatchReactor::OnCancel() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     cut_ = true;
   }
   Schedule();
@@ -88,7 +88,7 @@ void WatchReactor::OnDone() {
 
 void WatchReactor::Look(Clock::time_point now) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (ended_ || (writing_ && now < next_check_)) return;
     const bool may_have_room = waits_for_room_ && now >= next_try_;
     const bool has_news = may_have_room || now >= next_check_ || HasNews(now);
@@ -121,7 +121,7 @@ WatchReactor::Clock::duration WatchReactor::SnapshotInterval() const {
 
 void WatchReactor::Schedule() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (ended_) return;
     again_ = scheduled_;
     if (std::exchange(scheduled_, true)) return;
@@ -139,7 +139,7 @@ void WatchReactor::Advance() {
   if (!told.ok()) End(told);
   bool once_more = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     scheduled_ = false;
     once_more = std::exchange(again_, false);
   }
@@ -151,7 +151,7 @@ void WatchReactor::Advance() {
 absl::Status WatchReactor::TellWhatIsNew() {
   bool writing = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (ended_) return absl::OkStatus();
     writing = writing_;
     if (!writing && !abandoned_.ok()) return abandoned_;
@@ -180,7 +180,7 @@ absl::Status WatchReactor::CheckCaller() {
   const Clock::time_point now = Clock::now();
   if (now < next_check_) return absl::OkStatus();
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     next_check_ = now + service_.timing.heartbeat;
   }
   absl::StatusOr<Principal> caller = service_.authenticator.Authenticate(context_);
@@ -194,7 +194,7 @@ absl::Status WatchReactor::CheckCaller() {
 // The reader stalls, and would hold the stream open for ever.
 void WatchReactor::AbandonWrite(const absl::Status& why) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     abandoned_ = why;
   }
   context_.TryCancel();  // the write ends
@@ -207,7 +207,7 @@ bool WatchReactor::TakeRoom(size_t bytes) {
   HeldCalls& messages = service_.executor.held_messages();
   const bool large = bytes > kLargeSpec;
   const bool taken = !large || messages.TryBegin(caller_.name, held, kLargeMessages);
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   waits_for_room_ = !taken;
   next_try_ = now + kBetweenTries;
   if (large && taken) bytes_held_ = held;
@@ -217,7 +217,7 @@ bool WatchReactor::TakeRoom(size_t bytes) {
 void WatchReactor::LeaveRoom() {
   int64_t held = 0;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     held = std::exchange(bytes_held_, 0);
   }
   if (held > 0) service_.executor.held_messages().End(caller_.name, held);
@@ -231,7 +231,7 @@ absl::Status WatchReactor::FindJob() {
   if (!job.ok()) return job.status();
   id_ = id;
   job_ = *std::move(job);
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   watched_ = job_.active;
   ReadToken(request_.resume_token(), job_.last_finished);
   return absl::OkStatus();
@@ -253,7 +253,7 @@ absl::StatusOr<bool> WatchReactor::TellState() {
   }
   *message_.mutable_job() = std::move(view.job);
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     told_state_ = view.state_change;
   }
   has_ended ? WriteLastAndEnd() : Write();
@@ -273,14 +273,14 @@ absl::StatusOr<bool> WatchReactor::TellSnapshot() {
     for (const JobSnapshot::Point& point : shared->points) {
       if (point.change > told_) *snapshot.add_points() = point.result;
     }
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     told_ = std::max(told_, shared->change);
   }
   const absl::StatusOr<bool> finished = AddFinishedPoints();
   if (!finished.ok()) return finished;
   LeaveOutFinished(snapshot);
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     next_snapshot_ = now + SnapshotInterval();
   }
   const std::string progress = snapshot.progress().SerializeAsString();
@@ -307,7 +307,7 @@ absl::StatusOr<bool> WatchReactor::AddFinishedPoints() {
     if (!result.ok()) return StoreFailure(result.status());
     *message_.mutable_snapshot()->add_finished_points() = PointResultMessage(*result);
   }
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   told_finished_ = points->back().number;
   return true;
 }
@@ -361,7 +361,7 @@ void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
 void WatchReactor::Write() {
   message_.set_resume_token(Token());
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     writing_ = true;
     next_heartbeat_ = Clock::now() + service_.timing.heartbeat;
   }
@@ -371,7 +371,7 @@ void WatchReactor::Write() {
 void WatchReactor::WriteLastAndEnd() {
   message_.set_resume_token(Token());
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     ended_ = true;
   }
   StartWriteAndFinish(&message_, grpc::WriteOptions(), grpc::Status::OK);
@@ -379,7 +379,7 @@ void WatchReactor::WriteLastAndEnd() {
 
 void WatchReactor::End(const absl::Status& status) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (std::exchange(ended_, true)) return;
   }
   Finish(GrpcStatus(status));

@@ -28,7 +28,6 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -38,6 +37,7 @@
 #include "grpcpp/support/server_callback.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -65,13 +65,13 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
   // writes and the end come from it.
-  void Schedule();
+  void Schedule() ABSL_LOCKS_EXCLUDED(mutex_);
   void Advance();
   absl::Status TellWhatIsNew();
 
   // OK while the caller may still watch the job, and while it is not yet time to ask again.
   absl::Status CheckCaller();
-  void AbandonWrite(const absl::Status& why);
+  void AbandonWrite(const absl::Status& why) ABSL_LOCKS_EXCLUDED(mutex_);
 
   absl::Status FindJob();
   // Each of these is one message, or false if there is nothing of the kind to tell now.
@@ -93,9 +93,9 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;
-  void Write();
-  void WriteLastAndEnd();
-  void End(const absl::Status& status);
+  void Write() ABSL_LOCKS_EXCLUDED(mutex_);
+  void WriteLastAndEnd() ABSL_LOCKS_EXCLUDED(mutex_);
+  void End(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   ServiceContext& service_;
   grpc::CallbackServerContext& context_;  // valid until the end is sent
@@ -111,15 +111,18 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   std::string told_progress_;
   bool told_all_points_ = false;  // of a job that had ended before
 
-  std::mutex mutex_;  // never held while gRPC is called
-  bool scheduled_ = false;
-  bool again_ = false;
-  bool writing_ = false;
-  bool cut_ = false;  // the client is gone
+  Mutex mutex_;  // never held while gRPC is called
+  bool scheduled_ ABSL_GUARDED_BY(mutex_) = false;
+  bool again_ ABSL_GUARDED_BY(mutex_) = false;
+  bool writing_ ABSL_GUARDED_BY(mutex_) = false;
+  bool cut_ ABSL_GUARDED_BY(mutex_) = false;        // the client is gone
+  absl::Status abandoned_ ABSL_GUARDED_BY(mutex_);  // why the write is not waited for
+  int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // in TakeRoom
+  bool ended_ ABSL_GUARDED_BY(mutex_) = false;
+
+  // Only Advance changes these, with the lock. Therefore it reads them without; others need the
+  // lock.
   bool waits_for_room_ = false;
-  absl::Status abandoned_;  // why the write is not waited for
-  int64_t bytes_held_ = 0;  // in TakeRoom
-  bool ended_ = false;
   std::shared_ptr<Job> watched_;  // job_.active
   uint64_t told_state_ = 0;       // numbers of changes
   uint64_t told_ = 0;

@@ -26,7 +26,7 @@ WatchRegistry::WatchRegistry(std::chrono::milliseconds interval)
 WatchRegistry::~WatchRegistry() { Stop(); }
 
 absl::Status WatchRegistry::Add(Watch* watch, const std::string& principal, const Limits& limits) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto all = static_cast<int64_t>(watches_.size());
   if (IsFull(all, limits.max_streams)) {
     return TooManyStreams(absl::StrCat("there are ", all), "max-streams", limits.max_streams);
@@ -40,12 +40,12 @@ absl::Status WatchRegistry::Add(Watch* watch, const std::string& principal, cons
   watches_.emplace(watch, principal);
   streams_[principal] = own + 1;
   size_ = watches_.size();
-  wake_.notify_one();
+  wake_.NotifyOne();
   return absl::OkStatus();
 }
 
 void WatchRegistry::Remove(Watch* watch) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto found = watches_.find(watch);
   if (found == watches_.end()) return;
   const auto streams = streams_.find(found->second);
@@ -55,37 +55,37 @@ void WatchRegistry::Remove(Watch* watch) {
 }
 
 void WatchRegistry::LookNow() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   now_ = true;
-  wake_.notify_one();
+  wake_.NotifyOne();
 }
 
 void WatchRegistry::Stop() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     stopping_ = true;
-    wake_.notify_one();
+    wake_.NotifyOne();
   }
   if (thread_.joinable()) thread_.join();
 }
 
 std::map<std::string, int64_t> WatchRegistry::StreamsByPrincipal() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return streams_;
 }
 
-void WatchRegistry::AwaitLook(std::unique_lock<std::mutex>& lock, Clock::time_point last) {
-  wake_.wait_until(lock, last + std::min(kShortestInterval, interval_),
-                   [this] { return stopping_; });
-  wake_.wait(lock, [this] { return stopping_ || !watches_.empty(); });
-  wake_.wait_until(lock, last + interval_, [this] { return stopping_ || now_; });
+void WatchRegistry::AwaitLook(Clock::time_point last) {
+  const Clock::time_point earliest = last + std::min(kShortestInterval, interval_);
+  while (!stopping_ && wake_.WaitUntil(mutex_, earliest)) continue;
+  while (!stopping_ && watches_.empty()) wake_.Wait(mutex_);
+  while (!stopping_ && !now_ && wake_.WaitUntil(mutex_, last + interval_)) continue;
 }
 
 void WatchRegistry::Run() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   Clock::time_point last = Clock::now();
   while (!stopping_) {
-    AwaitLook(lock, last);
+    AwaitLook(last);
     now_ = false;
     last = Clock::now();
     for (const auto& [watch, whose] : watches_) watch->Look(last);

@@ -8,16 +8,15 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 #include <thread>
 
 #include "absl/status/status.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -51,16 +50,16 @@ class WatchRegistry {
   using Clock = std::chrono::steady_clock;
 
   void Run();
-  void AwaitLook(std::unique_lock<std::mutex>& lock, Clock::time_point last);
+  void AwaitLook(Clock::time_point last) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::chrono::milliseconds interval_;
-  mutable std::mutex mutex_;
-  std::condition_variable wake_;
-  std::map<Watch*, std::string> watches_;  // whose it is
-  std::map<std::string, int64_t> streams_;
+  mutable Mutex mutex_;
+  Condition wake_;
+  std::map<Watch*, std::string> watches_ ABSL_GUARDED_BY(mutex_);  // whose it is
+  std::map<std::string, int64_t> streams_ ABSL_GUARDED_BY(mutex_);
   std::atomic<size_t> size_ = 0;
-  bool now_ = false;
-  bool stopping_ = false;
+  bool now_ ABSL_GUARDED_BY(mutex_) = false;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

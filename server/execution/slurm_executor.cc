@@ -90,17 +90,18 @@ void SlurmExecutor::Wake() {}  // both threads look every second
 void SlurmExecutor::Shutdown() {
   stop_.request_stop();
   {
-    std::lock_guard lock(mutex_);
-    changed_.notify_all();
+    MutexLock lock(mutex_);
+    changed_.NotifyAll();
   }
   if (collector_.joinable()) collector_.join();
   if (steerer_.joinable()) steerer_.join();
 }
 
 bool SlurmExecutor::AwaitNextLook() {
-  std::unique_lock lock(mutex_);
-  return !changed_.wait_for(lock, options_.collect_interval,
-                            [this] { return stop_.stop_requested(); });
+  const Clock::time_point next = Clock::now() + options_.collect_interval;
+  MutexLock lock(mutex_);
+  while (!stop_.stop_requested() && changed_.WaitUntil(mutex_, next)) continue;
+  return !stop_.stop_requested();
 }
 
 JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
@@ -112,7 +113,7 @@ JobIdentity SlurmExecutor::IdentityOf(const Lease& lease) const {
 
 void SlurmExecutor::NoteOutcome(Activity activity, const absl::Status& outcome) {
   const std::string problem(outcome.message());
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   std::string& known = problems_[static_cast<size_t>(activity)];
   if (std::exchange(known, problem) == problem) return;
   if (outcome.ok()) return LogInfo("slurm: works again");
@@ -132,14 +133,14 @@ void SlurmExecutor::CollectUntilStopped() {
 }
 
 std::vector<std::string> SlurmExecutor::ArrayNames() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   std::vector<std::string> names;
   for (const auto& [name, array] : arrays_) names.push_back(name);
   return names;
 }
 
 absl::Status SlurmExecutor::CollectArray(const std::string& name) {
-  std::lock_guard one_at_a_time(collect_mutex_);
+  MutexLock one_at_a_time(collect_mutex_);
   if (!HasArray(name)) return absl::OkStatus();  // it was removed meanwhile
   const absl::StatusOr<std::vector<ChunkFileName>> files = ListChunkFiles(folder_.PathOf(name));
   if (!files.ok()) return files.status();
@@ -153,7 +154,7 @@ absl::Status SlurmExecutor::CollectArray(const std::string& name) {
 }
 
 bool SlurmExecutor::HasArray(const std::string& name) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return arrays_.contains(name);
 }
 
@@ -164,7 +165,7 @@ SlurmExecutor::Task* SlurmExecutor::FindTask(const std::string& array, size_t ta
 }
 
 bool SlurmExecutor::IsNew(const std::string& array, const ChunkFileName& file) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const Task* task = FindTask(array, file.task);
   return task != nullptr && task->state != TaskState::kOver &&
          !task->read_files.contains(file.sequence);
@@ -175,7 +176,7 @@ void SlurmExecutor::TakeFile(const std::string& array, const ChunkFileName& name
   if (absl::IsUnavailable(file.status()) || absl::IsNotFound(file.status())) return;
   std::vector<Lease> leases;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (const Task* task = FindTask(array, name.task)) leases = task->leases;
   }
   absl::Status taken = file.status();
@@ -222,13 +223,13 @@ absl::Status SlurmExecutor::ReportFile(const ChunkFile& file, const std::vector<
 }
 
 void SlurmExecutor::NoteUnread(const std::string& array, const ChunkFileName& name) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (Task* task = FindTask(array, name.task)) task->has_unread_file = true;
 }
 
 void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name,
                              const absl::StatusOr<ChunkFile>& file, const absl::Status& taken) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   Task* task = FindTask(array, name.task);
   if (task == nullptr) return;
   task->read_files.insert(name.sequence);
@@ -265,7 +266,7 @@ void SlurmExecutor::RecoverArray(const std::string& name) {
       array.tasks.push_back(RecoveredTask(of_task));
     }
   }
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   arrays_.emplace(name, std::move(array));
 }
 
@@ -321,7 +322,7 @@ void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()>
 void SlurmExecutor::EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried) {
   std::vector<Lease> returned;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     for (auto& [name, array] : arrays_) {
       for (Task& task : array.tasks) {
         if (task.state == TaskState::kOver || !has_ended(task)) continue;
@@ -366,7 +367,7 @@ std::optional<SlurmExecutor::Cancellation> SlurmExecutor::CancellationOf(const s
 void SlurmExecutor::DropUnneededTasks() {
   std::vector<Cancellation> cancellations;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     for (const auto& [name, array] : arrays_) {
       if (auto cancellation = CancellationOf(name, array)) {
         cancellations.push_back(*std::move(cancellation));
@@ -384,7 +385,7 @@ void SlurmExecutor::Cancel(const Cancellation& cancellation) {
                                      : tools_->CancelTasks(name, id, tasks, stop_.get_token());
   NoteOutcome(Activity::kQueue, cancelled);
   if (!cancelled.ok()) return;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   Array& array = arrays_.at(name);
   for (const size_t task : tasks) array.tasks[task].unneeded = true;
   if (tasks.empty()) array.submitted = false;
@@ -393,7 +394,7 @@ void SlurmExecutor::Cancel(const Cancellation& cancellation) {
 void SlurmExecutor::QueryIfDue() {
   const Clock::time_point now = Clock::now();
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (TasksInFlight() == 0 || now < last_query_ + options_.query_interval) return;
     last_query_ = now;
     ++counts_.queries;
@@ -422,7 +423,7 @@ void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued
   const QueuedArray& now = queued != nullptr ? *queued : kNone;
   bool some_are_missing = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     Array& array = arrays_.at(name);
     if (!array.submitted || array.submit_time >= asked) return;
     array.id = now.id;
@@ -447,7 +448,7 @@ void SlurmExecutor::EndLostTasks(const std::string& name) {
   EndFinalTasks();
   size_t lost = 0, without_file = 0;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     for (Task& task : arrays_.at(name).tasks) {
       const bool is_lost = task.state != TaskState::kOver && !task.has_unread_file &&
                            task.missing >= kMissingQueries;
@@ -479,7 +480,7 @@ void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& re
 // Ends an array that Slurm does not have: its leases go back to the scheduler.
 void SlurmExecutor::EndArray(const std::string& name) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     for (Task& task : arrays_.at(name).tasks) task.unneeded = true;
   }
   EndUnneededTasks();
@@ -487,7 +488,7 @@ void SlurmExecutor::EndArray(const std::string& name) {
 
 void SlurmExecutor::BackOff(const absl::Status& problem) {
   NoteOutcome(Activity::kSubmission, problem);
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto first = std::min<std::chrono::milliseconds>(kFirstBackoff, options_.query_interval);
   backoff_ = std::clamp<std::chrono::milliseconds>(2 * backoff_, first, kLongestBackoff);
   next_submission_ = Clock::now() + backoff_;
@@ -514,7 +515,7 @@ void SlurmExecutor::SubmitNew() {
 
 // 0 while nothing is to be submitted. After a failure one task alone.
 size_t SlurmExecutor::RoomForTasks() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (stop_.stop_requested() || Clock::now() < next_submission_) return 0;
   const size_t in_flight = TasksInFlight();
   if (backoff_.count() > 0) return in_flight == 0 ? 1 : 0;
@@ -579,7 +580,7 @@ void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vect
                                 .command = {worker, "--task-file", TaskFileIn(folder_.PathOf(name)),
                                             "--out", folder_.PathOf(name)}};
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     arrays_.emplace(name, std::move(array));
   }
   Failpoint("slurm.tasks_written");
@@ -601,7 +602,7 @@ absl::Status SlurmExecutor::WriteArray(const std::string& name,
 void SlurmExecutor::NoteSubmission(const std::string& name, const absl::Status& submitted) {
   if (submitted.ok() || absl::IsUnknown(submitted)) {
     NoteOutcome(Activity::kSubmission, submitted);
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     Array& array = arrays_.at(name);
     array.submitted = true;
     array.submit_time = Clock::now();
@@ -634,7 +635,7 @@ std::string SlurmExecutor::NewName() {
 void SlurmExecutor::RemoveEnded() {
   std::vector<std::string> ended;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     for (const auto& [name, array] : arrays_) {
       const bool over = std::ranges::all_of(
           array.tasks, [](const Task& task) { return task.state == TaskState::kOver; });
@@ -643,12 +644,12 @@ void SlurmExecutor::RemoveEnded() {
     }
   }
   if (ended.empty()) return;
-  { std::lock_guard files_being_reported(collect_mutex_); }  // are reported before the flush
+  { MutexLock files_being_reported(collect_mutex_); }  // are reported before the flush
   if (!flush_().ok()) return;
   for (const std::string& name : ended) {
-    std::lock_guard one_at_a_time(collect_mutex_);
+    MutexLock one_at_a_time(collect_mutex_);
     folder_.RemoveArray(name);
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     arrays_.erase(name);
   }
 }
@@ -665,7 +666,7 @@ size_t SlurmExecutor::TasksInFlight() const {
 }
 
 SlurmStatus SlurmExecutor::Status() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   SlurmStatus status = counts_;
   for (const std::string& problem : problems_) {
     if (problem.empty()) continue;

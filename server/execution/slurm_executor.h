@@ -19,13 +19,11 @@
 
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <stop_token>
@@ -36,6 +34,7 @@
 #include "absl/functional/function_ref.h"
 #include "server/execution/shared_folder.h"
 #include "server/execution/slurm_tools.h"
+#include "server/mutex.h"
 #include "server/observability/slurm_status.h"
 #include "server/scheduling/scheduler.h"
 #include "server/worker/chunk_file.h"
@@ -92,9 +91,9 @@ class SlurmExecutor : public Executor {
 
   // ---- files ----
   void CollectUntilStopped();
-  std::vector<std::string> ArrayNames() const;
-  bool HasArray(const std::string& name) const;
-  absl::Status CollectArray(const std::string& name);
+  std::vector<std::string> ArrayNames() const ABSL_LOCKS_EXCLUDED(mutex_);
+  bool HasArray(const std::string& name) const ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status CollectArray(const std::string& name) ABSL_LOCKS_EXCLUDED(collect_mutex_, mutex_);
   bool IsNew(const std::string& array, const ChunkFileName& file);
   void TakeFile(const std::string& array, const ChunkFileName& name);
   absl::Status CheckFile(const std::string& array, const ChunkFile& file,
@@ -113,10 +112,11 @@ class SlurmExecutor : public Executor {
   void SteerUntilStopped();
   void Steer();
   void Guarded(Activity activity, absl::FunctionRef<absl::Status()> round);
-  void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried);
+  void EndTasks(const std::function<bool(const Task&)>& has_ended, bool tried)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   void EndFinalTasks();
   void EndUnneededTasks();
-  void EndArray(const std::string& name);
+  void EndArray(const std::string& name) ABSL_LOCKS_EXCLUDED(mutex_);
   bool IsNeeded(const Task& task) const;
   std::optional<Cancellation> CancellationOf(const std::string& name, const Array& array) const;
   void DropUnneededTasks();
@@ -126,11 +126,11 @@ class SlurmExecutor : public Executor {
   void NoteTasks(const std::string& name, const QueuedArray* queued, Clock::time_point asked);
   void EndLostTasks(const std::string& name);
   void GiveUpWaiting(const std::string& name, const std::string& reason);
-  void BackOff(const absl::Status& problem);
+  void BackOff(const absl::Status& problem) ABSL_LOCKS_EXCLUDED(mutex_);
 
   // ---- submission ----
   void SubmitNew();
-  size_t RoomForTasks() const;
+  size_t RoomForTasks() const ABSL_LOCKS_EXCLUDED(mutex_);
   void ReturnGathered();
   absl::StatusOr<std::string> PreparedWorker() const;
   bool Gather(double seconds);
@@ -142,12 +142,11 @@ class SlurmExecutor : public Executor {
   void ReturnUntried(const std::vector<std::vector<Lease>>& tasks);
   void RemoveEnded();
 
-  // These two require the lock.
-  Task* FindTask(const std::string& array, size_t task);
-  size_t TasksInFlight() const;
+  Task* FindTask(const std::string& array, size_t task) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  size_t TasksInFlight() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   bool AwaitNextLook();  // false: stopped
-  void NoteOutcome(Activity activity, const absl::Status& outcome);
+  void NoteOutcome(Activity activity, const absl::Status& outcome) ABSL_LOCKS_EXCLUDED(mutex_);
   std::string NewName();
   JobIdentity IdentityOf(const Lease& lease) const;
 
@@ -160,16 +159,18 @@ class SlurmExecutor : public Executor {
   const SharedFolder folder_;
   Capacity capacity_;
 
-  std::mutex collect_mutex_;  // for all of CollectArray; taken before the other
-  mutable std::mutex mutex_;  // never held while the scheduler is called, but for Needs
-  std::condition_variable changed_;
+  Mutex collect_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);  // for all of CollectArray
+  mutable Mutex mutex_;  // never held while the scheduler is called, but for Needs
+  Condition changed_;
   std::stop_source stop_;
-  std::map<std::string, Array> arrays_;  // by name
-  SlurmStatus counts_;
-  std::array<std::string, 3> problems_;  // by activity; empty: its last attempt succeeded
-  Clock::time_point last_query_;
-  Clock::time_point next_submission_;
-  std::chrono::milliseconds backoff_{0};  // 0: nothing has failed since a task left a file
+  std::map<std::string, Array> arrays_ ABSL_GUARDED_BY(mutex_);  // by name
+  SlurmStatus counts_ ABSL_GUARDED_BY(mutex_);
+  // By activity; empty: its last attempt succeeded.
+  std::array<std::string, 3> problems_ ABSL_GUARDED_BY(mutex_);
+  Clock::time_point last_query_ ABSL_GUARDED_BY(mutex_);
+  Clock::time_point next_submission_ ABSL_GUARDED_BY(mutex_);
+  // 0: nothing has failed since a task left a file.
+  std::chrono::milliseconds backoff_ ABSL_GUARDED_BY(mutex_){0};
 
   // Used only by the thread that runs Slurm's tools.
   bool recovered_ = false;

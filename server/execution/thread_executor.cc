@@ -22,7 +22,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   bool IsStopped() const { return lease_.stop.stop_requested(); }
 
   bool HasTurn() const {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     return !resting_.empty() || fold_.HasNextBlock();
   }
 
@@ -30,13 +30,13 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   void Advance() {
     std::unique_ptr<BlockSession> session = TakeSession();
     if (!session->Advance()) return;
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     resting_.push_back(std::move(session));
   }
 
  private:
   std::unique_ptr<BlockSession> TakeSession() {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (resting_.empty()) {
       BlockExchange& blocks = *this;
       return std::make_unique<BlockSession>(blocks, lease_.experiment, lease_.stop);
@@ -47,7 +47,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   }
 
   std::optional<Block> NextBlock() override {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     return IsStopped() ? std::nullopt : fold_.NextBlock();
   }
 
@@ -56,7 +56,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
     LeaseReport report;
     bool has_room = false;
     {
-      std::lock_guard lock(mutex_);
+      MutexLock lock(mutex_);
       const bool was_full = !fold_.HasNextBlock();
       report = {fold_.Add(block, std::move(result)), fold_.partial(), seconds};
       has_room = was_full && fold_.HasNextBlock();
@@ -68,7 +68,7 @@ class ThreadExecutor::SharedLease : private BlockExchange {
   void TurnEnds(double seconds) override {
     LeaseReport report = {.seconds = seconds};
     {
-      std::lock_guard lock(mutex_);
+      MutexLock lock(mutex_);
       report.partial = fold_.partial();
     }
     executor_.scheduler_.Report(lease_, std::move(report)).IgnoreError();  // of chunks elsewhere
@@ -76,9 +76,9 @@ class ThreadExecutor::SharedLease : private BlockExchange {
 
   ThreadExecutor& executor_;
   const Lease lease_;
-  mutable std::mutex mutex_;
-  ChunkFold fold_;
-  std::deque<std::unique_ptr<BlockSession>> resting_;
+  mutable Mutex mutex_ ABSL_ACQUIRED_AFTER(executor_.mutex_);
+  ChunkFold fold_ ABSL_GUARDED_BY(mutex_);
+  std::deque<std::unique_ptr<BlockSession>> resting_ ABSL_GUARDED_BY(mutex_);
 };
 
 ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds)
@@ -87,6 +87,7 @@ ThreadExecutor::ThreadExecutor(Scheduler& scheduler, int threads, double seconds
 }
 
 void ThreadExecutor::Start() {
+  MutexLock lock(mutex_);
   for (int i = 0; i < workers_; ++i) threads_.emplace_back([this] { Work(); });
 }
 
@@ -97,14 +98,14 @@ ThreadExecutor::~ThreadExecutor() {
 
 void ThreadExecutor::Wake() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     ++wakes_;
   }
-  woken_.notify_all();
+  woken_.NotifyAll();
 }
 
 bool ThreadExecutor::HasTurn(int64_t lease) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto found = leases_.find(lease);
   return found != leases_.end() && found->second->HasTurn();
 }
@@ -112,11 +113,11 @@ bool ThreadExecutor::HasTurn(int64_t lease) const {
 void ThreadExecutor::Shutdown() {
   std::vector<std::thread> threads;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     shutting_down_ = true;
     threads.swap(threads_);
   }
-  woken_.notify_all();
+  woken_.NotifyAll();
   for (std::thread& thread : threads) thread.join();
 }
 
@@ -134,14 +135,14 @@ std::optional<Lease> ThreadExecutor::AwaitLease() {
   while (true) {
     uint64_t seen = 0;
     {
-      std::lock_guard lock(mutex_);
+      MutexLock lock(mutex_);
       if (shutting_down_) return std::nullopt;
       seen = wakes_;
     }
     DropStopped();
     if (std::optional<Lease> lease = scheduler_.Next(capacity_)) return lease;
-    std::unique_lock lock(mutex_);
-    woken_.wait(lock, [&] { return shutting_down_ || wakes_ != seen; });
+    MutexLock lock(mutex_);
+    while (!shutting_down_ && wakes_ == seen) woken_.Wait(mutex_);
   }
 }
 
@@ -160,14 +161,14 @@ void ThreadExecutor::TakeTurn(const Lease& lease) {
   const double seconds = ThreadSeconds() - start;
   busy_.fetch_sub(1, std::memory_order_relaxed);
   if (scheduler_.EndTurn(lease, seconds)) return;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   leases_.erase(lease.number);
 }
 
 ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {
   SharedPointer found;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     SharedPointer& shared = leases_[lease.number];
     if (shared != nullptr) return shared;
     found = shared = std::make_shared<SharedLease>(*this, lease);
@@ -179,7 +180,7 @@ ThreadExecutor::SharedPointer ThreadExecutor::Find(const Lease& lease) {
 // Destroys their sessions without the lock.
 void ThreadExecutor::DropStopped() {
   std::vector<SharedPointer> stopped;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   for (auto lease = leases_.begin(); lease != leases_.end();) {
     const bool is_stopped = lease->second->IsStopped();
     if (is_stopped) stopped.push_back(std::move(lease->second));

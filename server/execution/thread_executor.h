@@ -7,17 +7,16 @@
 #define BALLPISTON_SERVER_EXECUTION_THREAD_EXECUTOR_H_
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "server/mutex.h"
 #include "server/scheduling/scheduler.h"
 
 namespace ballpiston::server {
@@ -39,7 +38,7 @@ class ThreadExecutor : public Executor {
 
   ExecutorTraits traits() const override { return {.local = true}; }
   void Start() override;
-  void Wake() override;
+  void Wake() override ABSL_LOCKS_EXCLUDED(mutex_);
   bool HasTurn(int64_t lease) const override;
   void Shutdown() override;
 
@@ -51,9 +50,9 @@ class ThreadExecutor : public Executor {
 
   void Work();
   std::optional<Lease> AwaitLease();
-  void TakeTurn(const Lease& lease);
-  SharedPointer Find(const Lease& lease);
-  void DropStopped();
+  void TakeTurn(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  SharedPointer Find(const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void DropStopped() ABSL_LOCKS_EXCLUDED(mutex_);
 
   Scheduler& scheduler_;
   const int workers_;
@@ -61,12 +60,12 @@ class ThreadExecutor : public Executor {
   std::atomic<int> busy_ = 0;
   std::atomic<uint64_t> blocks_ = 0;
 
-  mutable std::mutex mutex_;
-  std::condition_variable woken_;
-  uint64_t wakes_ = 0;
-  bool shutting_down_ = false;
-  std::map<int64_t, SharedPointer> leases_;  // by number
-  std::vector<std::thread> threads_;
+  mutable Mutex mutex_;
+  Condition woken_;
+  uint64_t wakes_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
+  std::map<int64_t, SharedPointer> leases_ ABSL_GUARDED_BY(mutex_);  // by number
+  std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

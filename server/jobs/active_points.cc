@@ -14,7 +14,7 @@ absl::Status TooMany(const std::string& what, const std::string& flag, int64_t l
 
 absl::Status ActivePoints::Check(const std::string& principal, int64_t points,
                                  const Limits& limits) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (limits.max_active_points > 0 && all_ + points > limits.max_active_points) {
     return TooMany(absl::StrCat("active jobs would have ", all_ + points, " points with this one"),
                    "max-active-points", limits.max_active_points);
@@ -29,14 +29,14 @@ absl::Status ActivePoints::Check(const std::string& principal, int64_t points,
 }
 
 void ActivePoints::Add(const std::string& job, const std::string& principal, int64_t points) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (!grids_.try_emplace(job, Grid{principal, points}).second) return;
   of_principals_[principal] += points;
   all_ += points;
 }
 
 void ActivePoints::Remove(const std::string& job) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto grid = grids_.find(job);
   if (grid == grids_.end()) return;
   const auto own = of_principals_.find(grid->second.principal);

@@ -6,11 +6,11 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -30,10 +30,10 @@ class ActivePoints {
     int64_t points = 0;
   };
 
-  mutable std::mutex mutex_;
-  std::map<std::string, Grid> grids_;  // by job
-  std::map<std::string, int64_t> of_principals_;
-  int64_t all_ = 0;
+  mutable Mutex mutex_;
+  std::map<std::string, Grid> grids_ ABSL_GUARDED_BY(mutex_);  // by job
+  std::map<std::string, int64_t> of_principals_ ABSL_GUARDED_BY(mutex_);
+  int64_t all_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace ballpiston::server

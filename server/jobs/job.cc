@@ -57,21 +57,21 @@ Job::Job(JobRecord record, std::function<void()> on_state_change)
       record_(std::move(record)) {}
 
 JobState Job::state() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return record_.state;
 }
 
 JobRecord Job::Record() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return record_;
 }
 
 Job::View Job::Now() const {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const JobRecord record = record_;
   const v1::JobProgress progress = ProgressLocked();
   const uint64_t state_change = last_state_change_;
-  lock.unlock();
+  lock.Unlock();
   View view = {JobMessage(record), state_change};
   *view.job.mutable_spec() = SpecOf(spec_);
   *view.job.mutable_progress() = progress;
@@ -79,7 +79,7 @@ Job::View Job::Now() const {
 }
 
 v1::JobProgress Job::Progress() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return ProgressLocked();
 }
 
@@ -98,7 +98,7 @@ v1::JobProgress Job::ProgressLocked() const {
 bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
   JobRecord record;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (!MayFollow(record_.state, state)) return false;
     record_.state = state;
     record_.error = error;
@@ -114,29 +114,29 @@ bool Job::Enter(JobState state, absl::Time now, const std::string& error) {
 }
 
 uint64_t Job::AddSamples(double samples, double share_of_point) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   record_.samples += samples;
   work_done_ += share_of_point;
   return ++last_change_;
 }
 
 void Job::AddWork(double seconds) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   record_.work += seconds;
 }
 
 void Job::AddBytes(int64_t bytes) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   record_.bytes += bytes;
 }
 
 void Job::SetPinned(bool pinned) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   record_.pinned = pinned;
 }
 
 void Job::AddFinishedPoint(FinishedPoint point) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   ++record_.points_done;
   last_finished_ = point.number;
   recent_.push_back(std::move(point));
@@ -148,7 +148,7 @@ void Job::AddFinishedPoint(FinishedPoint point) {
 }
 
 void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   record_.points_done += points;
   record_.samples += samples;
   work_done_ += static_cast<double>(points);
@@ -157,7 +157,7 @@ void Job::AddRestoredPoints(int64_t points, double samples, int64_t last) {
 }
 
 std::optional<std::vector<FinishedPoint>> Job::FinishedAfter(int64_t after, size_t limit) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (after < last_forgotten_) return std::nullopt;
   const auto is_older = [](int64_t number, const FinishedPoint& p) { return number < p.number; };
   const auto first = std::upper_bound(recent_.begin(), recent_.end(), after, is_older);

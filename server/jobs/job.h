@@ -15,13 +15,13 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/jobs/job_snapshot.h"
+#include "server/mutex.h"
 #include "server/store/job_record.h"
 
 namespace ballpiston::server {
@@ -82,7 +82,7 @@ class Job {
   SharedSnapshot& snapshot() { return snapshot_; }
 
  private:
-  v1::JobProgress ProgressLocked() const;
+  v1::JobProgress ProgressLocked() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const int64_t sequence_;
   const std::string id_;
@@ -92,14 +92,15 @@ class Job {
   const bool open_ended_;   // how much there is to do is not known
   const std::function<void()> on_state_change_;
 
-  mutable std::mutex mutex_;
-  JobRecord record_;      // without the specification
-  double work_done_ = 0;  // in points
+  mutable Mutex mutex_;
+  JobRecord record_ ABSL_GUARDED_BY(mutex_);      // without the specification
+  double work_done_ ABSL_GUARDED_BY(mutex_) = 0;  // in points
   std::atomic<uint64_t> last_change_ = 1;
   std::atomic<uint64_t> last_state_change_ = 1;
   std::atomic<int64_t> last_finished_ = 0;
-  std::deque<FinishedPoint> recent_;  // oldest first
-  int64_t last_forgotten_ = 0;        // the number of the last point before these
+  std::deque<FinishedPoint> recent_ ABSL_GUARDED_BY(mutex_);  // oldest first
+  // The number of the last point before these.
+  int64_t last_forgotten_ ABSL_GUARDED_BY(mutex_) = 0;
 
   SharedSnapshot snapshot_;
 };

@@ -312,7 +312,7 @@ void JobBook::AddRestoredBytes(Job& job, int64_t bytes) {
 std::shared_ptr<Job> JobBook::Register(JobRecord record) {
   active_points_.Add(record.id, record.principal, record.points);
   auto job = std::make_shared<Job>(std::move(record), on_state_change_);
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   active_.emplace(job->id(), job);
   return job;
 }
@@ -334,7 +334,7 @@ void JobBook::Forget(const Job& ended) {
      : state == v1::EnsembleJob::FAILED  ? failed_
                                          : cancelled_);
   active_points_.Remove(ended.id());
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   active_.erase(ended.id());
 }
 
@@ -418,7 +418,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
 }
 
 std::shared_ptr<Job> JobBook::ActiveOrNull(const Principal& caller, const std::string& id) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto found = active_.find(id);
   const bool seen = found != active_.end() && caller.MaySee(found->second->principal());
   return seen ? found->second : nullptr;
@@ -725,13 +725,13 @@ int64_t JobBook::CountExpiring(absl::Time now) {
 }
 
 size_t JobBook::active_jobs() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return active_.size();
 }
 
 std::vector<std::shared_ptr<Job>> JobBook::ActiveJobsNow() const {
   std::vector<std::shared_ptr<Job>> active;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   active.reserve(active_.size());
   for (const auto& [id, job] : active_) active.push_back(job);
   return active;

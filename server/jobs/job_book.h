@@ -14,7 +14,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +29,7 @@
 #include "server/jobs/retention.h"
 #include "server/jobs/usage.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 #include "server/scheduling/scheduler.h"
 #include "server/security/principal.h"
 #include "server/store/store.h"
@@ -188,8 +188,8 @@ class JobBook {
   const Limits limits_;
   Scheduler& scheduler_;
   const std::function<void()> on_state_change_;
-  mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Job>> active_;  // by id
+  mutable Mutex mutex_;
+  std::map<std::string, std::shared_ptr<Job>> active_ ABSL_GUARDED_BY(mutex_);  // by id
   ActivePoints active_points_;
   Usage usage_;
   Retention retention_;

@@ -19,7 +19,7 @@ void LeaveOutFinished(v1::StatisticsSnapshot& message) {
 std::shared_ptr<const JobSnapshot> SharedSnapshot::Get(uint64_t change,
                                                        std::chrono::milliseconds max_age,
                                                        Make make) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
   const bool fits = last_ != nullptr && (last_->change >= change || now - made_ < max_age);
   if (!fits) {

@@ -8,12 +8,12 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "absl/functional/function_ref.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "ballpiston/v1/result.pb.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -45,9 +45,9 @@ class SharedSnapshot {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::mutex mutex_;
-  std::shared_ptr<const JobSnapshot> last_;
-  Clock::time_point made_;
+  Mutex mutex_;
+  std::shared_ptr<const JobSnapshot> last_ ABSL_GUARDED_BY(mutex_);
+  Clock::time_point made_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

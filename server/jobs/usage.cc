@@ -15,7 +15,7 @@ int64_t DayOf(absl::Time time) {
 int64_t Usage::FirstDay(absl::Time now) { return DayOf(now) - kQuotaDays + 1; }
 
 void Usage::AddStored(const std::string& principal, int64_t jobs, int64_t bytes) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   PrincipalUsage& stored = stored_[principal];
   stored.jobs += jobs;
   stored.bytes += bytes;
@@ -24,13 +24,13 @@ void Usage::AddStored(const std::string& principal, int64_t jobs, int64_t bytes)
 
 void Usage::AddWork(const std::string& principal, absl::Time now, double seconds) {
   const Day day = {principal, DayOf(now)};
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   work_[day] += seconds;
   new_work_[day] += seconds;
 }
 
 void Usage::AddStoredWork(const DayOfWork& work) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   work_[{work.principal, work.day}] += work.seconds;
 }
 
@@ -53,7 +53,7 @@ absl::Status Usage::Check(const std::string& principal, absl::Time now,
 }
 
 PrincipalUsage Usage::Of(const std::string& principal, absl::Time now) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return Locked(principal, now);
 }
 
@@ -68,7 +68,7 @@ PrincipalUsage Usage::Locked(const std::string& principal, absl::Time now) const
 }
 
 std::map<std::string, PrincipalUsage> Usage::All(absl::Time now) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   std::map<std::string, PrincipalUsage> all = stored_;
   for (const auto& [day, seconds] : work_) all.try_emplace(day.first);
   for (auto& [principal, usage] : all) usage = Locked(principal, now);
@@ -76,7 +76,7 @@ std::map<std::string, PrincipalUsage> Usage::All(absl::Time now) const {
 }
 
 std::vector<DayOfWork> Usage::TakeNewWork() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   std::vector<DayOfWork> work;
   for (const auto& [day, seconds] : new_work_) work.push_back({day.first, day.second, seconds});
   new_work_.clear();

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "server/limits.h"
+#include "server/mutex.h"
 #include "server/store/usage_table.h"
 
 namespace ballpiston::server {
@@ -47,12 +47,13 @@ class Usage {
  private:
   using Day = std::pair<std::string, int64_t>;  // principal, day
 
-  PrincipalUsage Locked(const std::string& principal, absl::Time now) const;
+  PrincipalUsage Locked(const std::string& principal, absl::Time now) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  mutable std::mutex mutex_;
-  std::map<std::string, PrincipalUsage> stored_;  // without the seconds
-  std::map<Day, double> work_;
-  std::map<Day, double> new_work_;
+  mutable Mutex mutex_;
+  std::map<std::string, PrincipalUsage> stored_ ABSL_GUARDED_BY(mutex_);  // without the seconds
+  std::map<Day, double> work_ ABSL_GUARDED_BY(mutex_);
+  std::map<Day, double> new_work_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace ballpiston::server

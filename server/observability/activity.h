@@ -5,7 +5,8 @@
 
 #include <chrono>
 #include <memory>
-#include <mutex>
+
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -25,9 +26,9 @@ class Activity {
  private:
   void End();
 
-  mutable std::mutex mutex_;
-  int calls_ = 0;
-  Clock::time_point last_ = Clock::now();
+  mutable Mutex mutex_;
+  int calls_ ABSL_GUARDED_BY(mutex_) = 0;
+  Clock::time_point last_ ABSL_GUARDED_BY(mutex_) = Clock::now();
 };
 
 }  // namespace ballpiston::server

@@ -160,12 +160,12 @@ CallObserver::InterceptorFactory() {
 // ---- who calls ----
 
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   callers_[&call] = principal;
 }
 
 std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto node = callers_.extract(&call);
   return node.empty() ? "" : std::move(node.mapped());
 }

@@ -11,7 +11,6 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
@@ -21,6 +20,7 @@
 #include "prometheus/counter.h"
 #include "prometheus/family.h"
 #include "prometheus/registry.h"
+#include "server/mutex.h"
 #include "server/observability/call_statistics.h"
 #include "server/observability/line_budget.h"
 
@@ -81,8 +81,9 @@ class CallObserver {
   LineBudget refusals_{10, std::chrono::seconds(1)};
   LineBudget failures_{10, std::chrono::seconds(1)};
 
-  std::mutex mutex_;
-  std::map<const grpc::ServerContextBase*, std::string> callers_;  // of calls in progress
+  Mutex mutex_;
+  std::map<const grpc::ServerContextBase*, std::string> callers_
+      ABSL_GUARDED_BY(mutex_);  // of calls in progress
 };
 
 }  // namespace ballpiston::server

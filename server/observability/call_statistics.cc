@@ -67,7 +67,7 @@ MethodCounts CallStatistics::NewCounts(const std::string& path, MethodType type)
 }
 
 const MethodCounts& CallStatistics::Of(const std::string& path, MethodType type) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const auto [method, added] = methods_.try_emplace(path);
   if (added) method->second = NewCounts(path, type);
   return method->second;

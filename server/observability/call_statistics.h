@@ -10,7 +10,6 @@
 
 #include <array>
 #include <map>
-#include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
@@ -19,6 +18,7 @@
 #include "prometheus/family.h"
 #include "prometheus/histogram.h"
 #include "prometheus/registry.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -50,8 +50,8 @@ class CallStatistics {
   prometheus::Family<prometheus::Counter>& began_;
   prometheus::Family<prometheus::Counter>& ended_;
   prometheus::Family<prometheus::Histogram>& seconds_;
-  std::mutex mutex_;
-  std::map<std::string, MethodCounts> methods_;  // by path
+  Mutex mutex_;
+  std::map<std::string, MethodCounts> methods_ ABSL_GUARDED_BY(mutex_);  // by path
 };
 
 }  // namespace ballpiston::server

@@ -6,37 +6,23 @@ namespace ballpiston::server {
 
 Health::Health(grpc::HealthCheckServiceInterface& health, Services services,
                std::function<bool()> store_fails, std::chrono::milliseconds interval)
-    : health_(health),
-      services_(std::move(services)),
-      store_fails_(std::move(store_fails)),
-      interval_(interval) {
+    : health_(health), services_(std::move(services)), store_fails_(std::move(store_fails)) {
   for (const std::string& name : services_.all) health_.SetServingStatus(name, true);
-  thread_ = std::thread([this] { Look(); });
+  looking_ = std::make_unique<PeriodicThread>(interval, [this] { Look(); });
 }
 
 Health::~Health() { Drain(); }
 
 void Health::Drain() {
-  {
-    std::lock_guard lock(mutex_);
-    if (stopping_) return;
-    stopping_ = true;
-  }
-  stop_.notify_all();
-  thread_.join();
+  if (looking_ == nullptr) return;
+  looking_.reset();
   health_.Shutdown();
 }
 
 void Health::Look() {
-  bool failed = false;
-  std::unique_lock lock(mutex_);
-  while (!stopping_) {
-    const bool fails = store_fails_();
-    if (std::exchange(failed, fails) != fails) {
-      for (const std::string& name : services_.with_store) health_.SetServingStatus(name, !fails);
-    }
-    stop_.wait_for(lock, interval_, [this] { return stopping_; });
-  }
+  const bool fails = store_fails_();
+  if (std::exchange(failed_, fails) == fails) return;
+  for (const std::string& name : services_.with_store) health_.SetServingStatus(name, !fails);
 }
 
 }  // namespace ballpiston::server

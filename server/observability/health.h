@@ -8,14 +8,13 @@
 #define BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "grpcpp/health_check_service_interface.h"
+#include "server/periodic_thread.h"
 
 namespace ballpiston::server {
 
@@ -31,7 +30,7 @@ class Health {
          std::function<bool()> store_fails, std::chrono::milliseconds interval);
   ~Health();
 
-  void Drain();
+  void Drain();  // not from two threads at once
 
  private:
   void Look();
@@ -39,12 +38,8 @@ class Health {
   grpc::HealthCheckServiceInterface& health_;
   const Services services_;
   const std::function<bool()> store_fails_;
-  const std::chrono::milliseconds interval_;
-
-  std::mutex mutex_;
-  std::condition_variable stop_;
-  bool stopping_ = false;
-  std::thread thread_;
+  bool failed_ = false;                      // at the last look
+  std::unique_ptr<PeriodicThread> looking_;  // null: drained
 };
 
 }  // namespace ballpiston::server

@@ -5,7 +5,7 @@
 namespace ballpiston::server {
 
 std::optional<int64_t> LineBudget::Take(Clock::time_point now) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (written_ == 0 || now - begin_ >= period_) {
     begin_ = now;
     written_ = 0;

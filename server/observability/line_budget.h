@@ -8,8 +8,9 @@
 
 #include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <optional>
+
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -25,10 +26,10 @@ class LineBudget {
  private:
   const int lines_;
   const Clock::duration period_;
-  std::mutex mutex_;
-  Clock::time_point begin_;
-  int written_ = 0;  // since begin_
-  int64_t left_out_ = 0;
+  Mutex mutex_;
+  Clock::time_point begin_ ABSL_GUARDED_BY(mutex_);
+  int written_ ABSL_GUARDED_BY(mutex_) = 0;  // since begin_
+  int64_t left_out_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace ballpiston::server

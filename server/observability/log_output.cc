@@ -21,7 +21,7 @@ ssize_t WriteSome(int descriptor, absl::string_view bytes) {
 }  // namespace
 
 void LogOutput::Write(absl::string_view line, absl::FunctionRef<std::string(int64_t lost)> loss) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (lost_ > 0 && Put(loss(lost_))) lost_ = 0;
   if (lost_ > 0 || !Put(line)) ++lost_;
 }

@@ -7,11 +7,11 @@
 #define BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_
 
 #include <cstdint>
-#include <mutex>
 #include <string>
 
 #include "absl/functional/function_ref.h"
 #include "absl/strings/string_view.h"
+#include "server/mutex.h"
 
 namespace ballpiston::server {
 
@@ -24,15 +24,15 @@ class LogOutput {
   void Write(absl::string_view line, absl::FunctionRef<std::string(int64_t lost)> loss);
 
  private:
-  bool Put(absl::string_view line);
-  bool PutWhole(absl::string_view text);
-  bool AwaitRoom();
+  bool Put(absl::string_view line) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool PutWhole(absl::string_view text) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool AwaitRoom() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const int descriptor_;
-  std::mutex mutex_;  // lines taken in pieces are not mixed
-  bool stalled_ = false;
-  bool torn_ = false;  // a line without its end was written
-  int64_t lost_ = 0;
+  Mutex mutex_;  // lines taken in pieces are not mixed
+  bool stalled_ ABSL_GUARDED_BY(mutex_) = false;
+  bool torn_ ABSL_GUARDED_BY(mutex_) = false;  // a line without its end was written
+  int64_t lost_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace ballpiston::server

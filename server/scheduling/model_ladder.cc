@@ -125,7 +125,7 @@ Ladder ModelLadder::LadderOf(const EnsembleSpec& spec, const PointParameters& po
 
 std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     const auto found = pilots_.find(place);
     if (found != pilots_.end()) return found->second;
   }
@@ -137,7 +137,7 @@ std::optional<Pilot> ModelLadder::Known(const PilotPlace& place) {
   });
   if (!read.ok()) LogError(absl::StrCat("a pilot's result cannot be read: ", read.message()));
   if (!stored) return std::nullopt;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return pilots_.emplace(place, *stored).first->second;
 }
 
@@ -145,7 +145,7 @@ void ModelLadder::KeepPilot(const PilotPlace& place, const Pilot& pilot) {
   store_.Record([place, pilot](Database& database) {
     return InsertPilot(database, EngineVersion(), place, pilot);
   });
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   pilots_.emplace(place, pilot);
 }
 

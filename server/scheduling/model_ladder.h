@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "core/model_choice/ladder.h"
+#include "server/mutex.h"
 #include "server/scheduling/point_opener.h"
 #include "server/store/store.h"
 
@@ -45,8 +46,8 @@ class ModelLadder : public PointOpener {
   std::once_flag measured_;
   Machine machine_;
 
-  std::mutex mutex_;
-  std::map<PilotPlace, Pilot> pilots_;  // a cache of the store
+  Mutex mutex_;
+  std::map<PilotPlace, Pilot> pilots_ ABSL_GUARDED_BY(mutex_);  // a cache of the store
 };
 
 }  // namespace ballpiston::server

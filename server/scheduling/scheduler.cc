@@ -52,18 +52,18 @@ Scheduler::Scheduler(PointOpener& opener, int workers, SchedulerOptions options)
     : opener_(opener), workers_(workers), options_(options) {}
 
 size_t Scheduler::AddExecutor(Executor& executor) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   executors_.push_back({&executor, executor.traits(), {}});
   return executors_.size() - 1;
 }
 
 void Scheduler::RemoveExecutor(size_t executor) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   executors_[executor].executor = nullptr;
 }
 
 std::vector<Executor*> Scheduler::Executors() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   std::vector<Executor*> executors;
   for (const Member& member : executors_) {
     if (member.executor != nullptr) executors.push_back(member.executor);
@@ -76,7 +76,7 @@ std::vector<Executor*> Scheduler::Executors() const {
 void Scheduler::Add(RunRequest request) {
   const auto run = std::make_shared<Run>(std::move(request), options_);
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     runs_.emplace(run->key(), run);
     for (Member& member : executors_) {
       member.shares.Add(run->key(), run->principal(), run->priority());
@@ -89,7 +89,7 @@ void Scheduler::Add(RunRequest request) {
 void Scheduler::Stop(int64_t key, absl::Status why) {
   RunPointer run;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     run = FindRun(key);
     if (run == nullptr) return;
     StopRun(*run, std::move(why));
@@ -100,12 +100,12 @@ void Scheduler::Stop(int64_t key, absl::Status why) {
 
 void Scheduler::Shutdown() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (std::exchange(shutting_down_, true)) return;
     for (const auto& [key, run] : runs_) run->Stop(absl::CancelledError("shutting down"));
   }
   for (Executor* executor : Executors()) executor->Shutdown();
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   for (const auto& [key, run] : runs_) WriteCheckpoints(*run);
 }
 
@@ -148,6 +148,7 @@ void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
 
 void Scheduler::DropStoppedLeases(const Run& run) {
   DropLeases(run, [&](const Held& held) {
+    mutex_.AssertHeld();
     const bool is_local = executors_[held.lease.executor].traits.local;
     return IsStopped(run, held.lease) && !(is_local && held.turns > 0);
   });
@@ -155,7 +156,7 @@ void Scheduler::DropStoppedLeases(const Run& run) {
 
 void Scheduler::Conclude(const RunPointer& run) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     const auto found = runs_.find(run->key());
     if (shutting_down_ || found == runs_.end() || !run->over()) return;
     for (Member& member : executors_) member.shares.Remove(run->key());
@@ -175,10 +176,11 @@ std::optional<Lease> Scheduler::Next(const Capacity& capacity) {
   RunPointer run;
   bool begins = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (shutting_down_) return std::nullopt;
     Member& member = executors_[capacity.executor];
     const auto key = member.shares.First([&](int64_t candidate) {
+      mutex_.AssertHeld();
       lease = NextOf(*runs_.at(candidate), capacity);
       return lease.has_value();
     });
@@ -228,7 +230,7 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
   RunPointer run;
   bool continues = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     run = FindRun(lease.run);
     run->journal().Worked(seconds);
     run->TurnEnds();
@@ -251,7 +253,7 @@ bool Scheduler::EndTurn(const Lease& lease, double seconds) {
 void Scheduler::Return(const Lease& lease, bool tried) {
   RunPointer run;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     run = FindRun(lease.run);
     if (run == nullptr || held_.erase(KeyOf(lease)) == 0) return;  // it was stopped
     executors_[lease.executor].shares.TurnEnds(lease.run, 0);
@@ -262,7 +264,7 @@ void Scheduler::Return(const Lease& lease, bool tried) {
 }
 
 std::optional<Lease> Scheduler::Adopt(Lease lease) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const RunPointer run = FindRun(lease.run);
   lease.number = ++last_number_;
   if (run == nullptr || !run->Adopt(lease)) return std::nullopt;
@@ -272,12 +274,12 @@ std::optional<Lease> Scheduler::Adopt(Lease lease) {
 }
 
 bool Scheduler::Needs(const Lease& lease) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return held_.contains(KeyOf(lease));
 }
 
 bool Scheduler::IsUnopened(const Lease& lease) const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const RunPointer run = FindRun(lease.run);
   return run != nullptr && run->IsUnopened(lease.point);
 }
@@ -285,7 +287,7 @@ bool Scheduler::IsUnopened(const Lease& lease) const {
 void Scheduler::AwaitRoom() {
   RunPointer any;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (!runs_.empty()) any = runs_.begin()->second;
   }
   if (any != nullptr) any->journal().AwaitRoom();
@@ -298,7 +300,7 @@ void Scheduler::Fail(const Lease& lease, absl::Status why) { Stop(lease.run, std
 void Scheduler::Open(const Lease& lease) {
   RunPointer run;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     run = FindRun(lease.run);
   }
   for (const size_t index : lease.opens) {
@@ -322,33 +324,33 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
     DropAdopted(run, index);
     return absl::OkStatus();
   }
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   run.PointOpened(index, std::move(open));
   return absl::OkStatus();
 }
 
 void Scheduler::DropAdopted(Run& run, size_t index) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   run.ForgetAdopted(index);
   DropLeases(run, [&](const Held& held) { return held.lease.point == index && !held.lease.pilot; });
 }
 
 absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& place) {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (run.stopped()) return absl::OkStatus();
     run.PointAwaits(index, place);
     if (!pilots_.emplace(place, run.key()).second) return absl::OkStatus();
   }
   absl::Cleanup give_up = [&] {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     EndPilot(run, place);
   };
   // It may have become known before this run took it on.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
   auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
   std::move(give_up).Cancel();
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (!run.stopped()) run.PilotOpened(place, std::move(pilot));
   return absl::OkStatus();
 }
@@ -384,9 +386,10 @@ absl::Status Scheduler::Report(const Lease& lease, LeaseReport report) {
   RunPointer run;
   absl::Status checked;
   bool is_finished = false;
-  const bool is_elsewhere = !executors_[lease.executor].traits.local;
+  bool is_elsewhere = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
+    is_elsewhere = !executors_[lease.executor].traits.local;
     run = FindRun(lease.run);
     if (run != nullptr && !lease.pilot && run->IsUnopened(lease.point)) {
       return absl::UnavailableError("the point is not open yet");
@@ -474,7 +477,7 @@ void Scheduler::WriteCheckpoints(Run& run) {
 void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   const OpenPoint* open = nullptr;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     open = run->Find(lease);
   }
   // A finished merge changes no more, and only this thread closes the point.
@@ -488,7 +491,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
     return absl::OkStatus();
   });
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     run->Close(lease);
     if (lease.pilot) EndPilot(*run, *lease.pilot);
     if (!told.ok()) StopRun(*run, std::move(told));
@@ -502,7 +505,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
 
 std::vector<LivePoint> Scheduler::ChangedSince(int64_t key, uint64_t version, size_t limit) const {
   std::vector<LivePoint> changed;
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const RunPointer run = FindRun(key);
   if (run == nullptr) return changed;
   std::vector<std::pair<uint64_t, size_t>> newest;

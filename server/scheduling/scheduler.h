@@ -19,12 +19,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <tuple>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/mutex.h"
 #include "server/scheduling/executor.h"
 #include "server/scheduling/fair_share.h"
 #include "server/scheduling/lease.h"
@@ -69,7 +69,7 @@ class Scheduler {
   void Add(RunRequest request);
 
   // The run's journal then receives Ended with this status, unless the run is over already.
-  void Stop(int64_t run, absl::Status why);
+  void Stop(int64_t run, absl::Status why) ABSL_LOCKS_EXCLUDED(mutex_);
   void Cancel(int64_t run) { Stop(run, absl::CancelledError("the job was cancelled")); }
 
   // Gives no more leases, requests the stop of all, shuts the executors down, and writes the
@@ -143,31 +143,36 @@ class Scheduler {
 
   static HeldKey KeyOf(const Lease& lease) { return {lease.executor, lease.run, lease.number}; }
 
-  // These require the lock.
-  RunPointer FindRun(int64_t key) const;
-  std::optional<Lease> NextOf(Run& run, const Capacity& capacity);
-  std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const;
-  void Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report);
-  void EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open);
-  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open);
-  void WriteCheckpoints(Run& run);
-  void StopRun(Run& run, absl::Status why);
-  void EndPilot(const Run& owner, const PilotPlace& place);
-  void Charge(Run& run, const Lease& lease, double seconds);
+  RunPointer FindRun(int64_t key) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Lease> NextOf(Run& run, const Capacity& capacity)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Lease> HeldWithTurn(const Run& run, size_t executor) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Merge(Run& run, const Lease& lease, OpenPoint& open, LeaseReport report)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void EndIfBudgetIsSpent(Run& run, const Lease& lease, OpenPoint& open)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void CheckpointIfDue(Run& run, const Lease& lease, OpenPoint& open)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void WriteCheckpoints(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void StopRun(Run& run, absl::Status why) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void EndPilot(const Run& owner, const PilotPlace& place) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Charge(Run& run, const Lease& lease, double seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   template <typename IsDropped>
-  void DropLeases(const Run& run, IsDropped is_dropped);
+  void DropLeases(const Run& run, IsDropped is_dropped) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Leases whose stop was requested and at which no local turn is in progress.
-  void DropStoppedLeases(const Run& run);
+  void DropStoppedLeases(const Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  absl::Status OpenOne(Run& run, size_t index);
+  absl::Status OpenOne(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
   // The adopted leases of a point that is finished.
-  void DropAdopted(Run& run, size_t index);
-  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place);
+  void DropAdopted(Run& run, size_t index) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status AwaitPilot(Run& run, size_t index, const PilotPlace& place)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   absl::Status Resume(Run& run, size_t index, OpenPoint& open);
-  void FinishPoint(const RunPointer& run, const Lease& lease);
-  void Conclude(const RunPointer& run);
-  std::vector<Executor*> Executors() const;
-  void WakeExecutors();
+  void FinishPoint(const RunPointer& run, const Lease& lease) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Conclude(const RunPointer& run) ABSL_LOCKS_EXCLUDED(mutex_);
+  std::vector<Executor*> Executors() const ABSL_LOCKS_EXCLUDED(mutex_);
+  void WakeExecutors() ABSL_LOCKS_EXCLUDED(mutex_);
 
   PointOpener& opener_;
   const int workers_;
@@ -175,13 +180,13 @@ class Scheduler {
   std::atomic<double> samples_ = 0;
   std::atomic<double> processor_seconds_ = 0;
 
-  mutable std::mutex mutex_;
-  bool shutting_down_ = false;
-  std::vector<Member> executors_;
-  std::map<int64_t, RunPointer> runs_;
-  std::map<HeldKey, Held> held_;
-  int64_t last_number_ = 0;
-  std::map<PilotPlace, int64_t> pilots_;  // in progress, and by which run
+  mutable Mutex mutex_;
+  bool shutting_down_ ABSL_GUARDED_BY(mutex_) = false;
+  std::vector<Member> executors_ ABSL_GUARDED_BY(mutex_);
+  std::map<int64_t, RunPointer> runs_ ABSL_GUARDED_BY(mutex_);
+  std::map<HeldKey, Held> held_ ABSL_GUARDED_BY(mutex_);
+  int64_t last_number_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::map<PilotPlace, int64_t> pilots_ ABSL_GUARDED_BY(mutex_);  // in progress, and by which run
 };
 
 }  // namespace ballpiston::server

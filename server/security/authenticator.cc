@@ -58,12 +58,12 @@ absl::StatusOr<Principal> Authenticator::Authenticate(const Credentials& shown,
 }
 
 void Authenticator::Replace(std::shared_ptr<const AccessList> list) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!everybody_) list_ = std::move(list);
 }
 
 std::shared_ptr<const AccessList> Authenticator::list() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return list_;
 }
 

@@ -10,7 +10,6 @@
 #define BALLPISTON_SERVER_SECURITY_AUTHENTICATOR_H_
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +19,7 @@
 #include "absl/time/time.h"
 #include "grpcpp/security/auth_context.h"
 #include "grpcpp/server_context.h"
+#include "server/mutex.h"
 #include "server/security/access_list.h"
 #include "server/security/principal.h"
 
@@ -52,8 +52,8 @@ class Authenticator {
   std::shared_ptr<const AccessList> list() const;
 
   const std::optional<Principal> everybody_ = {};  // none: not open
-  mutable std::mutex mutex_;
-  std::shared_ptr<const AccessList> list_;
+  mutable Mutex mutex_;
+  std::shared_ptr<const AccessList> list_ ABSL_GUARDED_BY(mutex_);
 };
 
 // The common name of the certificate that the connection was made with, if one was asked for.

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "grpcpp/security/auth_metadata_processor.h"
 #include "grpcpp/security/server_credentials.h"
+#include "server/mutex.h"
 #include "server/observability/log.h"
 #include "server/security/authenticator.h"
 #include "server/security/peer_user.h"
@@ -36,21 +36,21 @@ std::optional<Principal> PrincipalOf(uid_t user) {
 class UnixUsers::Stamp : public grpc::AuthMetadataProcessor {
  public:
   void Set(Principal user) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     user_ = std::move(user);
   }
 
   bool IsBlocking() const override { return false; }
   grpc::Status Process(const InputMetadata&, grpc::AuthContext* context, OutputMetadata*,
                        OutputMetadata*) override {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!UnixUserOf(*context)) SetUnixUser(*context, user_);
     return grpc::Status::OK;
   }
 
  private:
-  std::mutex mutex_;
-  Principal user_;
+  Mutex mutex_;
+  Principal user_ ABSL_GUARDED_BY(mutex_);
 };
 
 UnixUsers::UnixUsers(grpc::ServerBuilder& builder, size_t most)

@@ -44,7 +44,8 @@ DiskCalls::~DiskCalls() = default;
 
 void DiskCalls::Watch(sqlite3_file& file, const char* failpoint) {
   if (file.pMethods == nullptr) return;
-  methods_.push_back(std::make_unique<Methods>(*file.pMethods, file.pMethods, this, failpoint));
+  methods_.push_back(
+      std::make_unique<Methods>(Methods{*file.pMethods, file.pMethods, this, failpoint}));
   sqlite3_io_methods& watched = methods_.back()->watched;
   watched.xRead = [](sqlite3_file* from, void* bytes, int count, sqlite3_int64 offset) {
     return Call(*from)->xRead(from, bytes, count, offset);

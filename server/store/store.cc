@@ -159,7 +159,7 @@ void Store::RecordResult(int64_t job, PointRow row, std::function<void(int64_t n
 void Store::Post(Write write) {
   write.due = Clock::now() + options_.delay;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (!closing_) {
       urgent_ += write.urgent ? 1 : 0;
       requests_ += write.lasting ? 0 : 1;
@@ -167,7 +167,7 @@ void Store::Post(Write write) {
       bytes_ += write.bytes;
       pending_.push_back(std::move(write));
       // The store's thread knows already when the other writes are due.
-      if (pending_.size() == 1 || BatchIsDue(Clock::now())) posted_.notify_one();
+      if (pending_.size() == 1 || BatchIsDue(Clock::now())) posted_.NotifyOne();
       return;
     }
   }
@@ -182,8 +182,8 @@ absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
 }
 
 std::unique_ptr<Database> Store::TakeReader() {
-  std::unique_lock lock(readers_mutex_);
-  reader_is_free_.wait(lock, [this] { return readers_ == 0 || !free_readers_.empty(); });
+  MutexLock lock(readers_mutex_);
+  while (readers_ > 0 && free_readers_.empty()) reader_is_free_.Wait(readers_mutex_);
   if (readers_ == 0) return nullptr;
   std::unique_ptr<Database> reader = std::move(free_readers_.back());
   free_readers_.pop_back();
@@ -191,42 +191,42 @@ std::unique_ptr<Database> Store::TakeReader() {
 }
 
 void Store::GiveBack(std::unique_ptr<Database> reader) {
-  std::lock_guard lock(readers_mutex_);
+  MutexLock lock(readers_mutex_);
   free_readers_.push_back(std::move(reader));
-  reader_is_free_.notify_all();
+  reader_is_free_.NotifyAll();
 }
 
 // Waits for those in use.
 void Store::CloseReaders() {
-  std::unique_lock lock(readers_mutex_);
-  reader_is_free_.wait(lock, [this] { return free_readers_.size() == readers_; });
+  MutexLock lock(readers_mutex_);
+  while (free_readers_.size() < readers_) reader_is_free_.Wait(readers_mutex_);
   free_readers_.clear();
   readers_ = 0;
-  reader_is_free_.notify_all();
+  reader_is_free_.NotifyAll();
+}
+
+bool Store::IsFull() const {
+  return pending_.size() + in_batch_ > options_.max_pending || bytes_ > options_.max_pending_bytes;
 }
 
 void Store::AwaitRoom() {
-  std::unique_lock lock(mutex_);
-  written_.wait(lock, [this] {
-    return stop_waiting_ || closing_ ||
-           (pending_.size() + in_batch_ <= options_.max_pending &&
-            bytes_ <= options_.max_pending_bytes);
-  });
+  MutexLock lock(mutex_);
+  while (!stop_waiting_ && !closing_ && IsFull()) written_.Wait(mutex_);
 }
 
 void Store::StopWaiting() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   stop_waiting_ = true;
-  posted_.notify_all();
-  written_.notify_all();
+  posted_.NotifyAll();
+  written_.NotifyAll();
 }
 
 void Store::Close() {
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     closing_ = true;
-    posted_.notify_all();
-    written_.notify_all();
+    posted_.NotifyAll();
+    written_.NotifyAll();
   }
   if (!thread_.joinable()) return;
   thread_.join();
@@ -236,29 +236,29 @@ void Store::Close() {
 }
 
 bool Store::failing() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return failing_;
 }
 
 bool Store::stalled() const { return disk_calls_->Waiting() > options_.stall; }
 
 int64_t Store::commits() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return commits_;
 }
 
 int64_t Store::checkpoints_written() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return checkpoints_written_;
 }
 
 int64_t Store::failures() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return failures_;
 }
 
 int64_t Store::pending_writes() const {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   return static_cast<int64_t>(pending_.size() + in_batch_);
 }
 
@@ -301,19 +301,19 @@ std::optional<Store::Clock::time_point> Store::NextDue() const {
 }
 
 bool Store::AwaitWork() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   for (auto now = Clock::now(); !BatchIsDue(now) && !SweepIsDue(now); now = Clock::now()) {
     if (const std::optional<Clock::time_point> due = NextDue()) {
-      posted_.wait_until(lock, *due);
+      posted_.WaitUntil(mutex_, *due);
     } else {
-      posted_.wait(lock);
+      posted_.Wait(mutex_);
     }
   }
   return !closing_ || !pending_.empty();
 }
 
 std::optional<Store::Batch> Store::TakeBatch() {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
   if (!BatchIsDue(now)) return std::nullopt;
   const bool records_wait = failing_ && sweep_advances_ && !closing_;
@@ -413,7 +413,7 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
     refused.outcome = status;
     if (refused.lasting) LogError(absl::StrCat("a record is not kept: ", Text(status)));
   }
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   ++commits_;
   for (size_t i = first; i < last; ++i) {
     Write& write = batch[i];
@@ -456,7 +456,7 @@ void Store::WriteLogBack() { writer_->Execute("PRAGMA wal_checkpoint(PASSIVE)").
 void Store::Sweep() {
   bool swept_before = false, is_failing = false;
   {
-    std::lock_guard lock(mutex_);
+    MutexLock lock(mutex_);
     if (closing_ || sweep_is_damaged_ || Clock::now() < next_sweep_) return;
     swept_before = sweeping_;
     is_failing = failing_;
@@ -481,7 +481,7 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   } else if (!swept.ok()) {
     NoteHealth(swept.status());
   }
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   sweeping_ = swept.ok() ? *swept : sweeping_;
   sweep_advances_ = swept.ok() && *swept;
   sweep_is_damaged_ = is_damage;
@@ -507,7 +507,7 @@ void Store::Settle(Batch batch, const absl::Status& status) {
 }
 
 void Store::Requeue(Writes again, size_t freed) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   in_batch_ = 0;
   bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
@@ -519,12 +519,12 @@ void Store::Requeue(Writes again, size_t freed) {
     pending_.insert(pending_.begin(), std::make_move_iterator(again.begin()),
                     std::make_move_iterator(again.end()));
   }
-  written_.notify_all();
+  written_.NotifyAll();
 }
 
 // Logs a failure once, and again only if the failure changes.
 void Store::NoteHealth(const absl::Status& status) {
-  std::lock_guard lock(mutex_);
+  MutexLock lock(mutex_);
   if (!status.ok()) {
     ++failures_;
     retry_time_ = Clock::now() + options_.retry;

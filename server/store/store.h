@@ -32,13 +32,11 @@
 #define BALLPISTON_SERVER_STORE_STORE_H_
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -47,6 +45,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/mutex.h"
 #include "server/store/point_tables.h"
 #include "server/store/reserve.h"
 #include "server/store/sqlite.h"
@@ -167,16 +166,17 @@ class Store {
   void GiveBack(std::unique_ptr<Database> reader);
   void CloseReaders();
 
-  void Post(Write write);
+  void Post(Write write) ABSL_LOCKS_EXCLUDED(mutex_);
+  bool IsFull() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Await(Write write);
   void WriteUntilClosed();
   bool AwaitWork();  // false: closed, and nothing is left to write
   std::optional<Batch> TakeBatch();
-  bool BatchIsDue(Clock::time_point now) const;
-  bool SweepIsDue(Clock::time_point now) const;
-  std::optional<Clock::time_point> NextDue() const;
-  Batch TakePending(bool whole);
-  Writes TakeRequests();
+  bool BatchIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  bool SweepIsDue(Clock::time_point now) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  std::optional<Clock::time_point> NextDue() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Batch TakePending(bool whole) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Writes TakeRequests() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void MarkSuperseded(Writes& batch) const;
 
   // Sets the outcome of all writes that were committed or refused. Not OK: the disk failed.
@@ -190,48 +190,48 @@ class Store {
   static size_t GroupEnd(const Writes& batch, size_t first, size_t most);
   void WriteLogBack();
   void Sweep();
-  void NoteSweep(const absl::StatusOr<bool>& swept);
+  void NoteSweep(const absl::StatusOr<bool>& swept) ABSL_LOCKS_EXCLUDED(mutex_);
 
-  void Settle(Batch batch, const absl::Status& status);
-  void Requeue(Writes again, size_t freed);
-  void NoteHealth(const absl::Status& status);
+  void Settle(Batch batch, const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
+  void Requeue(Writes again, size_t freed) ABSL_LOCKS_EXCLUDED(mutex_);
+  void NoteHealth(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  // Only the store's thread uses these three.
+  // Only the store's thread uses these four.
   std::unique_ptr<Database> writer_;
   Sweeper sweeper_;
   Reserve reserve_;
+  Clock::time_point next_reserve_;
   const std::shared_ptr<const DiskCalls> disk_calls_;
 
-  std::mutex readers_mutex_;
-  std::condition_variable reader_is_free_;
-  std::vector<std::unique_ptr<Database>> free_readers_;
-  size_t readers_ = 0;  // free or in use; 0: closed
+  Mutex readers_mutex_;
+  Condition reader_is_free_;
+  std::vector<std::unique_ptr<Database>> free_readers_ ABSL_GUARDED_BY(readers_mutex_);
+  size_t readers_ ABSL_GUARDED_BY(readers_mutex_) = 0;  // free or in use; 0: closed
 
-  mutable std::mutex mutex_;
-  std::condition_variable posted_;
-  std::condition_variable written_;
-  Writes pending_;
-  size_t in_batch_ = 0;
-  size_t bytes_ = 0;     // of pending_ and of the batch
-  size_t urgent_ = 0;    // among pending_; requests are
-  size_t requests_ = 0;  // among pending_
-  size_t ordered_ = 0;   // among pending_
-  bool failing_ = false;
-  std::string failure_;  // the last failure that was logged
-  Clock::time_point retry_time_;
-  bool stop_waiting_ = false;
-  bool closing_ = false;
-  int64_t commits_ = 0;
-  int64_t checkpoints_written_ = 0;
-  int64_t failures_ = 0;
-  bool sweeping_ = false;          // the last step found something to do
-  bool sweep_advances_ = false;    // and has done it
-  bool sweep_is_damaged_ = false;  // until the next start
-  Clock::time_point next_sweep_;
-  Clock::time_point next_reserve_;
+  mutable Mutex mutex_;
+  Condition posted_;
+  Condition written_;
+  Writes pending_ ABSL_GUARDED_BY(mutex_);
+  size_t in_batch_ ABSL_GUARDED_BY(mutex_) = 0;
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;     // of pending_ and of the batch
+  size_t urgent_ ABSL_GUARDED_BY(mutex_) = 0;    // among pending_; requests are
+  size_t requests_ ABSL_GUARDED_BY(mutex_) = 0;  // among pending_
+  size_t ordered_ ABSL_GUARDED_BY(mutex_) = 0;   // among pending_
+  bool failing_ ABSL_GUARDED_BY(mutex_) = false;
+  std::string failure_ ABSL_GUARDED_BY(mutex_);  // the last failure that was logged
+  Clock::time_point retry_time_ ABSL_GUARDED_BY(mutex_);
+  bool stop_waiting_ ABSL_GUARDED_BY(mutex_) = false;
+  bool closing_ ABSL_GUARDED_BY(mutex_) = false;
+  int64_t commits_ ABSL_GUARDED_BY(mutex_) = 0;
+  int64_t checkpoints_written_ ABSL_GUARDED_BY(mutex_) = 0;
+  int64_t failures_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool sweeping_ ABSL_GUARDED_BY(mutex_) = false;          // the last step found something to do
+  bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // and has done it
+  bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start
+  Clock::time_point next_sweep_ ABSL_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

@@ -1,0 +1,41 @@
+#!/bin/bash
+# Checks the server's locks with Clang: which mutex guards what, and which is taken first
+# (server/mutex.h). Clang only parses: the sources of each folder that has a mutex, together. Before, it
+# has to report the seeded faults of tests/sanitizer/. Exits with 1 if anything is wrong.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+readonly GENERATED=build/thread-safety
+readonly CLANG=(clang++ -std=c++20 -fsyntax-only -I. -isystem "$GENERATED" -isystem /usr/include/eigen3
+                -Wno-everything -Wthread-safety -Wthread-safety-beta)
+
+generate_messages() {
+  mkdir -p "$GENERATED"
+  find proto -name '*.proto' -printf '%P\n' |
+    xargs protoc -Iproto --cpp_out="$GENERATED" --grpc_out="$GENERATED" \
+      --plugin=protoc-gen-grpc="$(command -v grpc_cpp_plugin)"
+}
+
+# The source says in comments which warnings are expected, and where; there may be no others.
+check_seeded() {
+  "${CLANG[@]}" -Xclang -verify "$1" && return
+  echo "thread-safety: $1: not reported as expected" >&2
+  return 1
+}
+
+# Prints the name of a file that includes all sources of the folder.
+together() {
+  local file=$GENERATED/${1//\//_}.cc
+  printf '#include "%s"\n' "$1"/*.cc >"$file"
+  echo "$file"
+}
+
+folders_with_mutexes() {
+  grep -rlw --include='*.h' --include='*.cc' Mutex server | xargs -n 1 dirname | sort -u
+}
+
+for fault in tests/sanitizer/seeded_missing_lock.cc tests/sanitizer/seeded_lock_order.cc; do
+  check_seeded "$fault"
+done
+generate_messages
+for folder in $(folders_with_mutexes); do together "$folder"; done |
+  xargs -n 1 -P "$(nproc)" "${CLANG[@]}" -Werror
