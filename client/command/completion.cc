@@ -113,10 +113,12 @@ Strings VerbOffers(Strings so_far) {
 Strings JobNames(const Options& options, const Terminal& terminal) {
   constexpr int kMost = 50;
   constexpr absl::Duration kTimeout = absl::Seconds(1);  // the user waits for the shell
+  v1::ListEnsembleJobsRequest request;
+  request.set_view(v1::ListEnsembleJobsRequest::BASIC);
   Strings names;
   const VerbResult ignored =
       WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-        const auto jobs = Client(connection.channel, kTimeout).List({}, kMost);
+        const auto jobs = Client(connection.channel, kTimeout).List(request, kMost);
         if (!jobs.ok()) return jobs.status();
         for (const v1::EnsembleJob& job : *jobs) names.push_back(job.name());
         return ExitCode::kDone;

@@ -4,10 +4,9 @@
 #include <utility>
 
 #include "absl/status/status.h"
-#include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
+#include "client/command/hint.h"
 #include "client/command/interrupts.h"
 #include "client/library/error_text.h"
 #include "client/library/request_id.h"
@@ -24,20 +23,15 @@ const char* HintOf(const std::string& reason) {
     return "Wait until some of them have ended, or cancel some: ballpiston list, ballpiston cancel "
            "JOB";
   }
-  if (reason == "STORE_FULL") {
+  if (reason == "TOO_MANY_STORED_BYTES" || reason == "STORE_FULL") {
     return "Delete jobs that are no longer needed: ballpiston list, ballpiston delete JOB";
   }
   return nullptr;
 }
 
-absl::Status WithHint(const absl::Status& status) {
+absl::Status HintIfLimit(const absl::Status& status) {
   const char* hint = absl::IsResourceExhausted(status) ? HintOf(ErrorReason(status)) : nullptr;
-  if (hint == nullptr) return status;
-  absl::Status with_hint(status.code(), absl::StrCat(status.message(), "\n", hint));
-  status.ForEachPayload([&](absl::string_view type, const absl::Cord& payload) {
-    with_hint.SetPayload(type, payload);
-  });
-  return with_hint;
+  return hint == nullptr ? status : WithHint(status, hint);
 }
 
 absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
@@ -49,7 +43,7 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
                  << " the same command returns this job.\n";
   });
   auto job = connection.Ask([&] { return connection.client.Create(spec, options); });
-  if (!job.ok()) return WithHint(job.status());
+  if (!job.ok()) return HintIfLimit(job.status());
   terminal.Detail(absl::StrCat("job ", job->name()));
   return job;
 }

@@ -11,7 +11,7 @@ enum class ExitCode {
   kUsage = 2,        // usage, or an argument that is not valid, or a job too large for the server
   kUnreachable = 3,  // no server answers, or the server is busy: retry later
   kFailed = 4,       // the job failed or was cancelled, or its state forbids what was asked
-  kNotFound = 5,     // no such job
+  kNotFound = 5,     // no such job, or no result of that point
   kNotPermitted = 6,
   kInterrupted = 130  // Ctrl-C
 };

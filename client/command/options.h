@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,13 +25,16 @@ enum class Completion { kBash, kZsh, kFish, kWords };
 struct Options {
   v1::EnsembleSpec spec;
   std::string spec_file;
+  std::string again;  // the job that asked the question before
   v1::EvaluatePairsRequest closed_forms;
 
   CreateOptions create;
   bool resume = false;
   std::vector<std::string> jobs;  // names, ensembleJobs/ID
+  bool undo = false;              // of pin
   v1::ListEnsembleJobsRequest which_jobs;
   int64_t limit = Client::kAllJobs;
+  std::optional<int64_t> point;  // absent: all points
 
   std::string server;
   ChannelSecurity security;

@@ -7,14 +7,14 @@
 namespace ballpiston::client {
 
 VerbResult Plan(const Options& options, Terminal& terminal) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = SpecOf(options);
-  if (!spec.ok()) return spec.status();
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto plan = connection.Ask([&] { return connection.client.Plan(*spec); });
-    if (!plan.ok()) return plan.status();
-    PrintPlan(*spec, *plan, options.format, terminal.out);
-    return ExitCode::kDone;
-  });
+  return WithQuestion(
+      options, terminal,
+      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
+        const auto plan = connection.Ask([&] { return connection.client.Plan(spec); });
+        if (!plan.ok()) return plan.status();
+        PrintPlan(spec, *plan, options.format, terminal.out);
+        return ExitCode::kDone;
+      });
 }
 
 }  // namespace ballpiston::client

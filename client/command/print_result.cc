@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/command/follow_job.h"
+#include "client/command/hint.h"
 #include "client/output/number_text.h"
 #include "client/output/result_writer.h"
 #include "client/output/spelling.h"
@@ -25,22 +26,33 @@ void NoteUnfinished(const v1::EnsembleJob& job, const Terminal& terminal) {
                              " points are finished"));
 }
 
+void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& err) {
+  writer.Add(point);
+  WarnOfEscapes(point, err);
+}
+
 // Each page may be asked for again, of a server that was started again: what came before it has
-// been printed already, and is not asked for twice.
-absl::Status PrintPoints(const Connection& connection, const std::string& name, Format format,
+// been printed already, and is not asked for twice. Begins with the first page.
+absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job, Format format,
                          ResultWriter& writer, std::ostream& err) {
   std::string token;
   do {
-    const auto page =
-        connection.Ask([&] { return connection.client.ResultsPage(name, ViewFor(format), token); });
-    if (!page.ok()) return page.status();
-    for (const v1::PointResult& point : page->points()) {
-      writer.Add(point);
-      WarnOfEscapes(point, err);
-    }
+    const auto page = connection.Ask(
+        [&] { return connection.client.ResultsPage(job.name(), ViewFor(format), token); });
+    if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
+    if (token.empty()) writer.Begin(job);
+    for (const v1::PointResult& point : page->points()) AddPoint(point, writer, err);
     token = page->next_page_token();
   } while (!token.empty());
   return absl::OkStatus();
+}
+
+VerbResult End(const v1::EnsembleJob& job, ResultWriter& writer, Terminal& terminal) {
+  writer.End();
+  terminal.out.flush();
+  if (HasEnded(job.state())) return ReportEnd(job, terminal);
+  NoteUnfinished(job, terminal);
+  return ExitCode::kDone;
 }
 
 }  // namespace
@@ -51,14 +63,21 @@ VerbResult PrintResult(const Connection& connection, const std::string& name, Fo
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
   const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
-  writer->Begin(*job);
-  const absl::Status status = PrintPoints(connection, name, format, *writer, terminal.err);
+  const absl::Status status = PrintPoints(connection, *job, format, *writer, terminal.err);
   if (!status.ok()) return status;
-  writer->End();
-  terminal.out.flush();
-  if (HasEnded(job->state())) return ReportEnd(*job, terminal);
-  NoteUnfinished(*job, terminal);
-  return ExitCode::kDone;
+  return End(*job, *writer, terminal);
+}
+
+VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
+                      Format format, Terminal& terminal) {
+  const auto point = connection.Ask([&] { return connection.client.Point(name, index); });
+  if (!point.ok()) return HintIfExpired(point.status(), connection, name);
+  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  if (!job.ok()) return job.status();
+  const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
+  writer->Begin(*job);
+  AddPoint(*point, *writer, terminal.err);
+  return End(*job, *writer, terminal);
 }
 
 }  // namespace ballpiston::client

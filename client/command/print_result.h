@@ -1,7 +1,8 @@
-// Fetches a job's finished points and prints them.
+// Fetches a job's finished points, or one of them, and prints them.
 #ifndef BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
 #define BALLPISTON_CLIENT_COMMAND_PRINT_RESULT_H_
 
+#include <cstdint>
 #include <string>
 
 #include "client/command/connection.h"
@@ -11,9 +12,14 @@
 namespace ballpiston::client {
 
 // kFailed for a job that failed or was cancelled; what it finished is printed all the same.
+// FAILED_PRECONDITION, with a hint, if the results have expired; then nothing is printed.
 // `answered_from_store`: Create said so, which the server does not remember.
 VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
                        Terminal& terminal, bool answered_from_store = false);
+
+// The same for the point at `index` of the grid.
+VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
+                      Format format, Terminal& terminal);
 
 }  // namespace ballpiston::client
 

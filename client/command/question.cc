@@ -26,32 +26,58 @@ absl::Status CheckOneTarget(const std::set<std::string>& flags) {
                    "--budget; only --tolerance and --budget may stand together"));
 }
 
-// Looks at flags on the command line only: with --spec, those of the config file are ignored.
-bool HasQuestionFlags(const Options& options) {
+// Looks at flags on the command line only: with --spec or --again, those of the config file are
+// ignored.
+bool HasQuestionFlagsBut(const std::string& whole, const Options& options) {
   for (const FlagGroup* group : QuestionFlags()) {
     for (const Flag& flag : group->flags) {
-      if (flag.name != "--spec" && options.given.contains(flag.name)) return true;
+      if (flag.name != whole && options.given.contains(flag.name)) return true;
     }
   }
   return options.spec.experiment() != v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
 }
 
+// `whole` is --spec or --again, `other` the other one.
+absl::Status CheckAlone(const std::string& whole, const std::string& other,
+                        const Options& options) {
+  if (!HasQuestionFlagsBut(whole, options)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(whole,
+                   " holds the whole specification: give no EXPERIMENT, grid, target, --seed, "
+                   "--model, --verify, --precision or ",
+                   other, " with it"));
+}
+
 }  // namespace
 
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options) {
+  if (!options.again.empty()) {
+    if (absl::Status bad = CheckAlone("--again", "--spec", options); !bad.ok()) return bad;
+    return v1::EnsembleSpec();
+  }
   if (!options.spec_file.empty()) {
-    if (!HasQuestionFlags(options)) return ReadSpecFile(options.spec_file);
-    return absl::InvalidArgumentError(
-        "--spec holds the whole specification: give no EXPERIMENT, grid, target, --seed, --model, "
-        "--verify or --precision with it");
+    if (absl::Status bad = CheckAlone("--spec", "--again", options); !bad.ok()) return bad;
+    return ReadSpecFile(options.spec_file);
   }
   if (options.spec.experiment() == v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED) {
     return absl::InvalidArgumentError(absl::StrCat(
         "name an EXPERIMENT (", absl::StrJoin(Spellings<v1::EnsembleSpec::Experiment>(), ", "),
-        ") or give --spec FILE"));
+        "), or give --spec FILE or --again JOB"));
   }
   if (absl::Status bad = CheckOneTarget(options.given); !bad.ok()) return bad;
   return options.spec;
+}
+
+VerbResult WithQuestion(const Options& options, const Terminal& terminal,
+                        const VerbOfQuestion& verb) {
+  const absl::StatusOr<v1::EnsembleSpec> spec = SpecOf(options);
+  if (!spec.ok()) return spec.status();
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    if (options.again.empty()) return verb(connection, *spec);
+    const auto job = connection.Ask([&] { return connection.client.Get(options.again); });
+    if (!job.ok()) return job.status();
+    return verb(connection, job->spec());
+  });
 }
 
 }  // namespace ballpiston::client

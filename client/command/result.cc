@@ -1,12 +1,20 @@
-// ballpiston result: prints a job's finished points.
+// ballpiston result: prints a job's finished points, or one of them.
+#include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/print_result.h"
 
 namespace ballpiston::client {
 
 VerbResult Result(const Options& options, Terminal& terminal) {
+  if (options.point.value_or(0) < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("--point: ", *options.point, " is below 0"));
+  }
   return WithServer(options, terminal, [&](const Connection& connection) {
-    return PrintResult(connection, options.jobs.front(), options.format, terminal);
+    const std::string& name = options.jobs.front();
+    if (options.point) {
+      return PrintPoint(connection, name, *options.point, options.format, terminal);
+    }
+    return PrintResult(connection, name, options.format, terminal);
   });
 }
 

@@ -8,20 +8,20 @@
 namespace ballpiston::client {
 
 VerbResult Run(const Options& options, Terminal& terminal) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = SpecOf(options);
-  if (!spec.ok()) return spec.status();
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto made = CreateJob(connection, *spec, options, terminal);
-    if (!made.ok()) return made.status();
-    const bool is_silent = options.quiet || options.progress == ProgressStyle::kNone;
-    if (made->answered_from_store() && !is_silent) {
-      ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(FromStoreText(*made));
-    }
-    const auto end = FollowJob(connection, made->name(), StyleOf(options), terminal);
-    if (!end.ok()) return end.status();
-    return PrintResult(connection, made->name(), options.format, terminal,
-                       made->answered_from_store());
-  });
+  return WithQuestion(
+      options, terminal,
+      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
+        const auto made = CreateJob(connection, spec, options, terminal);
+        if (!made.ok()) return made.status();
+        const bool is_silent = options.quiet || options.progress == ProgressStyle::kNone;
+        if (made->answered_from_store() && !is_silent) {
+          ProgressReporter(StyleOf(options), terminal.err, made->name()).Note(FromStoreText(*made));
+        }
+        const auto end = FollowJob(connection, made->name(), StyleOf(options), terminal);
+        if (!end.ok()) return end.status();
+        return PrintResult(connection, made->name(), options.format, terminal,
+                           made->answered_from_store());
+      });
 }
 
 }  // namespace ballpiston::client

@@ -7,15 +7,15 @@
 namespace ballpiston::client {
 
 VerbResult Submit(const Options& options, Terminal& terminal) {
-  const absl::StatusOr<v1::EnsembleSpec> spec = SpecOf(options);
-  if (!spec.ok()) return spec.status();
-  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
-    const auto job = CreateJob(connection, *spec, options, terminal);
-    if (!job.ok()) return job.status();
-    if (job->answered_from_store()) terminal.Note(FromStoreText(*job));
-    terminal.out << job->name() << '\n';
-    return ExitCode::kDone;
-  });
+  return WithQuestion(
+      options, terminal,
+      [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
+        const auto job = CreateJob(connection, spec, options, terminal);
+        if (!job.ok()) return job.status();
+        if (job->answered_from_store()) terminal.Note(FromStoreText(*job));
+        terminal.out << job->name() << '\n';
+        return ExitCode::kDone;
+      });
 }
 
 }  // namespace ballpiston::client

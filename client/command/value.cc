@@ -99,11 +99,8 @@ Value Words(std::string name, Store<std::string> store) {
 
 Value Date(Store<absl::Time> store) { return Parsed("DATE", ParseDate, std::move(store)); }
 
-Value Job() {
-  const Store<std::string> store = [](Options& options, std::string name) {
-    options.jobs.push_back(std::move(name));
-  };
-  return Parsed("JOB", ParseJobName, store, Offer::kJob);
+Value Job(Store<std::string> store) {
+  return Parsed("JOB", ParseJobName, std::move(store), Offer::kJob);
 }
 
 Value RequestId() {

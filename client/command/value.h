@@ -50,7 +50,7 @@ Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
-Value Job();                                             // into Options::jobs
+Value Job(Store<std::string> store);                     // ensembleJobs/ID
 Value RequestId();                                       // a UUID
 Value Variable(std::string name, std::string variable);  // of a figure's script
 Value Passed(std::string name, std::string flag);        // to ballpistond, with its flag

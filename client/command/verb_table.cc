@@ -131,7 +131,10 @@ const FlagGroup kMethod = {
       "exact values beside the simulated ones"},
      {"--spec", File(To(&Options::spec_file)),
       "JSON file with the whole question (- for standard input); it replaces EXPERIMENT and all "
-      "flags of grid, target and method"}}};
+      "flags of grid, target and method"},
+     {"--again", Job(To(&Options::again)),
+      "job whose whole question to ask again, for instance because its results have expired; it "
+      "replaces EXPERIMENT and all flags of grid, target and method"}}};
 
 const FlagGroup kJob = {
     "Job",
@@ -194,6 +197,14 @@ const FlagGroup kListFilter = {
       "only jobs submitted at this time (UTC) or later"},
      {"--limit", Count(To(&Options::limit)), "largest number of jobs to list, by default all"}}};
 
+const FlagGroup kPoint = {
+    "Which points",
+    {{"--point", Count([](Options& o, int64_t index) { o.point = index; }),
+      "only the point with this position in the grid, from 0; by default all finished points"}}};
+
+const FlagGroup kPin = {
+    "Pin", {{"--undo", Switch(To(&Options::undo)), "unpin: the results may expire again"}}};
+
 const FlagGroup kFigure = {
     "Figure",
     {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
@@ -246,13 +257,17 @@ const Store<std::string> kWords = [](Options& options, std::string word) {
   options.words.push_back(std::move(word));
 };
 
-// Optional, because --spec stands in its place.
+const Store<std::string> kJobs = [](Options& options, std::string name) {
+  options.jobs.push_back(std::move(name));
+};
+
+// Optional, because --spec or --again stands in its place.
 const Argument kExperiment = {
     OneOf<Spec::Experiment>("EXPERIMENT", EnumChoices<Spec::Experiment>(),
                             [](Options& o, Spec::Experiment x) { o.spec.set_experiment(x); }),
     "what to measure", Argument::kOptional};
-const Argument kOneJob = {Job(), "ensembleJobs/ID, or the ID alone"};
-const Argument kSomeJobs = {Job(), "ensembleJobs/ID, or the ID alone", Argument::kSeveral};
+const Argument kOneJob = {Job(kJobs), "ensembleJobs/ID, or the ID alone"};
+const Argument kSomeJobs = {Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kSeveral};
 
 // ---- verbs ----
 
@@ -283,7 +298,7 @@ std::vector<Verb> JobVerbs() {
        {kExperiment},
        With(kQuestion, {&kJob, &kServer}),
        {"submit equilibrium --rho 0.51:0.7:20 --delta 0.01 --model billiard --collisions 1e6",
-        "submit --spec question.json --priority 10"},
+        "submit --again ID --priority 10"},
        &Submit},
       {"watch",
        "show a job's progress until it ends",
@@ -296,12 +311,13 @@ std::vector<Verb> JobVerbs() {
        "print a job's result: the points that it has finished so far",
        "",
        {kOneJob},
-       With({&kFormat, &kServer}, {}),
-       {"result ensembleJobs/ID", "result ID --format json >result.json"},
+       With({&kPoint, &kFormat, &kServer}, {}),
+       {"result ensembleJobs/ID", "result ID --point 17 --format json >point.json"},
        &Result},
       {"list",
        "list the jobs, the newest first",
-       "",
+       "The column results says which jobs are pinned, and whose results have expired or will "
+       "expire within a week.",
        {},
        With({&kListFilter, &kFormat, &kServer}, {}),
        {"list --state running,queued", "list --experiment first-hit --since 2026-01-31 --limit 10"},
@@ -313,6 +329,13 @@ std::vector<Verb> JobVerbs() {
        With({&kServer}, {}),
        {"cancel ensembleJobs/ID", "cancel ID1 ID2"},
        &Cancel},
+      {"pin",
+       "keep the results of jobs: they do not expire",
+       "Prints each job's name, and whether it is pinned now.",
+       {kSomeJobs},
+       With({&kPin, &kServer}, {}),
+       {"pin ensembleJobs/ID", "pin --undo ID1 ID2"},
+       &Pin},
       {"delete",
        "delete ended jobs and their results",
        "Prints the name of each job that it deleted.",
@@ -460,7 +483,7 @@ const std::vector<Remark>& ExitCodes() {
       {"2", "wrong usage or an invalid argument, or a job too large for the server"},
       {"3", "no server answers, or the server is busy: retry later"},
       {"4", "the job failed or was cancelled, or its state does not permit the call"},
-      {"5", "no such job"},
+      {"5", "no such job, or no result of that point"},
       {"6", "not authenticated or not authorised"},
       {"130", "interrupted"}};
   return *codes;

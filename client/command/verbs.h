@@ -23,6 +23,7 @@ VerbResult Watch(const Options& options, Terminal& terminal);
 VerbResult Result(const Options& options, Terminal& terminal);
 VerbResult ListJobs(const Options& options, Terminal& terminal);
 VerbResult Cancel(const Options& options, Terminal& terminal);
+VerbResult Pin(const Options& options, Terminal& terminal);
 VerbResult Delete(const Options& options, Terminal& terminal);
 VerbResult Figure(const Options& options, Terminal& terminal);
 VerbResult ServerStart(const Options& options, Terminal& terminal);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "client/library/request_id.h"
 #include "client/library/unary_call.h"
@@ -79,6 +80,13 @@ absl::StatusOr<v1::EnsembleJob> Client::Cancel(const std::string& name,
   return CallUnary(*ensembles_, &Stub::CancelEnsembleJob, request, timeout_);
 }
 
+absl::StatusOr<v1::EnsembleJob> Client::Pin(const std::string& name, bool pinned) const {
+  v1::PinEnsembleJobRequest request;
+  request.set_name(name);
+  request.set_pinned(pinned);
+  return CallUnary(*ensembles_, &Stub::PinEnsembleJob, request, timeout_);
+}
+
 absl::Status Client::Delete(const std::string& name) const {
   v1::DeleteEnsembleJobRequest request;
   request.set_name(name);
@@ -107,6 +115,12 @@ absl::StatusOr<std::vector<v1::PointResult>> Client::Results(
     token = page->next_page_token();
   } while (!token.empty());
   return points;
+}
+
+absl::StatusOr<v1::PointResult> Client::Point(const std::string& name, int64_t index) const {
+  v1::GetResultRequest request;
+  request.set_name(absl::StrCat(name, "/results/", index));
+  return CallUnary(*ensembles_, &Stub::GetResult, request, timeout_);
 }
 
 absl::StatusOr<v1::EvaluatePairsResponse> Client::EvaluatePairs(

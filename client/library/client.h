@@ -1,5 +1,5 @@
-// A server's API: jobs (submit, look up, watch, cancel, delete, fetch results), closed forms, and
-// the server itself.
+// A server's API: jobs (submit, look up, watch, cancel, pin, delete, fetch results), closed forms,
+// and the server itself.
 //
 //   auto channel = OpenChannel("localhost:50051");
 //   Client client(*channel);
@@ -64,9 +64,15 @@ class Client {
   // that had ended.
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
                                          const std::string& request_id = {}) const;
+  // The results of a pinned job do not expire. `pinned` false: they may again.
+  //   FAILED_PRECONDITION  RESULTS_EXPIRED
+  absl::StatusOr<v1::EnsembleJob> Pin(const std::string& name, bool pinned) const;
   // Do not retry: if the first attempt succeeded, the second finds no such job.
   absl::Status Delete(const std::string& name) const;
 
+  // FAILED_PRECONDITION (RESULTS_EXPIRED) if the server keeps the specification alone: Create with
+  // the specification of the job computes the same results again.
+  //
   // The finished points in grid order, page by page, so that a large result need not fit into
   // memory. `page_token`: empty for the first page, else next_page_token of the page before.
   absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
@@ -76,6 +82,9 @@ class Client {
   absl::StatusOr<std::vector<v1::PointResult>> Results(
       const std::string& name,
       v1::ListResultsRequest::View view = v1::ListResultsRequest::FULL) const;
+  // One point, with histograms and curves. `index`: its position in the grid, from 0.
+  //   NOT_FOUND  RESULT_NOT_FOUND: not finished yet, or beyond the grid
+  absl::StatusOr<v1::PointResult> Point(const std::string& name, int64_t index) const;
 
   absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(
       const v1::EvaluatePairsRequest& request) const;

@@ -1,5 +1,6 @@
 #include "client/output/job_list.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -31,45 +32,70 @@ std::vector<std::string> CellsOf(const v1::EnsembleJob& job) {
           TimeText(job.has_end_time(), job.end_time())};
 }
 
-// Whether the jobs differ in whose they are, or in their priority.
+// expires in 3 days, expires in 5 hours: whole ones that are left.
+std::string ExpiryText(absl::Duration left) {
+  const double hours = std::floor(absl::ToDoubleHours(left));
+  if (hours < 1) return "expires within an hour";
+  if (hours < 24) return absl::StrCat("expires in ", Counted(hours, "hour"));
+  return absl::StrCat("expires in ", Counted(std::floor(hours / 24), "day"));
+}
+
+// What becomes of the results; empty if they stay for more than a week.
+std::string ResultsText(const v1::EnsembleJob& job, absl::Time now) {
+  constexpr absl::Duration kSoon = absl::Hours(7 * 24);
+  if (job.results_expired()) return "expired";
+  if (job.pinned()) return "pinned";
+  const absl::Duration left = absl::FromUnixSeconds(job.expire_time().seconds()) - now;
+  return job.has_expire_time() && left <= kSoon ? ExpiryText(left) : "";
+}
+
+// Whether the jobs differ in whose they are, in their priority, or in what becomes of their
+// results.
 struct Differences {
   bool principals = false;
   bool priorities = false;
+  bool results = false;
 };
 
-Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs) {
+Differences DifferencesOf(const std::vector<v1::EnsembleJob>& jobs, absl::Time now) {
   Differences differ;
   for (const v1::EnsembleJob& job : jobs) {
     differ.principals |= job.principal() != jobs.front().principal();
     differ.priorities |= job.priority() != 0;
+    differ.results |= !ResultsText(job, now).empty();
   }
   return differ;
 }
 
 void PrintCsv(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
   out << "name,experiment,state,points_done,points,samples,create_time,end_time,principal,"
-         "priority\n";
+         "priority,pinned,expire_time,results_expired,stored_bytes\n";
   for (const v1::EnsembleJob& job : jobs) {
     std::vector<std::string> cells = CellsOf(job);
     cells.push_back(job.principal());  // it may hold any character
-    cells.push_back(absl::StrCat(job.priority()));
+    const auto truth = [](bool holds) { return holds ? "true" : "false"; };
+    cells.insert(cells.end(), {absl::StrCat(job.priority()), truth(job.pinned()),
+                               TimeText(job.has_expire_time(), job.expire_time()),
+                               truth(job.results_expired()), ExactText(job.stored_bytes())});
     out << CsvRow(cells);
   }
 }
 
-void PrintTable(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
+void PrintTable(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, std::ostream& out) {
   constexpr auto kLeft = TextTable::Column::kLeft;
-  const Differences differ = DifferencesOf(jobs);
+  const Differences differ = DifferencesOf(jobs, now);
   std::vector<TextTable::Column> columns = {
       {"name", kLeft}, {"experiment", kLeft}, {"state", kLeft},   {"done"},
       {"points"},      {"samples"},           {"created", kLeft}, {"ended", kLeft}};
   if (differ.principals) columns.push_back({"principal", kLeft});
   if (differ.priorities) columns.push_back({"priority"});
+  if (differ.results) columns.push_back({"results", kLeft});
   TextTable table(std::move(columns));
   for (const v1::EnsembleJob& job : jobs) {
     std::vector<std::string> cells = CellsOf(job);
     if (differ.principals) cells.push_back(job.principal());
     if (differ.priorities) cells.push_back(absl::StrCat(job.priority()));
+    if (differ.results) cells.push_back(ResultsText(job, now));
     table.AddRow(std::move(cells));
   }
   table.Print(out);
@@ -77,10 +103,11 @@ void PrintTable(const std::vector<v1::EnsembleJob>& jobs, std::ostream& out) {
 
 }  // namespace
 
-void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, Format format, std::ostream& out) {
+void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format format,
+               std::ostream& out) {
   switch (format) {
     case Format::kTable:
-      return PrintTable(jobs, out);
+      return PrintTable(jobs, now, out);
     case Format::kJson:
       return PrintJsonDocument("jobs", jobs, out);
     case Format::kJsonl:
@@ -88,6 +115,11 @@ void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, Format format, std::ost
     case Format::kCsv:
       return PrintCsv(jobs, out);
   }
+}
+
+v1::ListEnsembleJobsRequest::View JobViewFor(Format format) {
+  const bool is_json = format == Format::kJson || format == Format::kJsonl;
+  return is_json ? v1::ListEnsembleJobsRequest::FULL : v1::ListEnsembleJobsRequest::BASIC;
 }
 
 }  // namespace ballpiston::client

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 
 namespace ballpiston::client {
@@ -78,6 +79,10 @@ std::string DurationText(double seconds) {
   }
   const double count = seconds / unit->seconds;
   return absl::StrFormat("%.*f %s", count < 9.95 ? 1 : 0, count, unit->name);
+}
+
+std::string Counted(double count, absl::string_view noun) {
+  return absl::StrCat(ExactText(count), " ", noun, count == 1 ? "" : "s");
 }
 
 std::string ClockText(absl::Duration time) {

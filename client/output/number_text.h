@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 
 namespace ballpiston::client {
@@ -29,6 +30,9 @@ std::string TwoDigits(double error);
 // A computing time with the unit that suits it, from ns to years, to two significant digits or
 // three: 4.8 ns, 120 µs, 59 s, 3.2 min.
 std::string DurationText(double seconds);
+
+// 1 day, 3 days.
+std::string Counted(double count, absl::string_view noun);
 
 // 0:35, 12:04, 3:25:10; whole seconds, rounded up, so that it ends with 0:00 at the end only.
 std::string ClockText(absl::Duration time);

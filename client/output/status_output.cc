@@ -14,6 +14,7 @@ namespace ballpiston::client {
 namespace {
 
 constexpr auto kLeft = TextTable::Column::kLeft;
+constexpr char kProcessorTime[] = "processor time, 30 days";
 
 // 68 KiB, 1.2 GiB.
 std::string BytesText(double bytes) {
@@ -29,6 +30,12 @@ std::string CountText(double count) {
 }
 
 std::string LimitText(double limit) { return limit == 0 ? "no limit" : CountText(limit); }
+
+std::string TimeLimitText(double seconds) {
+  return seconds == 0 ? "no limit" : DurationText(seconds);
+}
+
+std::string DayLimitText(double days) { return days == 0 ? "no limit" : Counted(days, "day"); }
 
 std::string ByteLimitText(double limit) { return limit == 0 ? "no limit" : BytesText(limit); }
 
@@ -50,6 +57,10 @@ std::string Computed(const v1::ServerStatus& status) {
   return absl::StrCat(CountText(status.samples_computed()), " samples in ",
                       CountText(status.blocks_computed()), " blocks, ",
                       DurationText(status.processor_seconds()), " of processor time");
+}
+
+std::string Expiring(double jobs) {
+  return absl::StrCat("results of ", Counted(jobs, "job"), " expire within a week");
 }
 
 std::string Speed(const v1::ComputingRates& rates) {
@@ -79,6 +90,7 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
   if (status.has_rates()) table.AddRow({"speed", Speed(status.rates())});
   table.AddRow({"streams", CountText(status.streams())});
   table.AddRow({"store", BytesText(status.store_bytes())});
+  if (status.expiring_jobs() > 0) table.AddRow({"expiry", Expiring(status.expiring_jobs())});
   table.Print(out);
 }
 
@@ -92,10 +104,16 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
       {"streams", LimitText(limits.max_streams()), LimitText(limits.max_streams_per_principal())});
   table.AddRow({"calls", "no limit", LimitText(limits.max_calls_per_principal())});
   table.AddRow({"their bytes", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
+  table.AddRow({"stored bytes", ByteLimitText(limits.max_store_bytes()),
+                ByteLimitText(limits.max_store_bytes_per_principal())});
+  table.AddRow(
+      {kProcessorTime, "no limit", TimeLimitText(limits.max_processor_seconds_per_principal())});
   TextTable requests({{"limit", kLeft}, {"a job"}});
   requests.AddRow({"points", LimitText(limits.max_points_per_job())});
   requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
+  requests.AddRow({"processor time", TimeLimitText(limits.max_seconds_per_job())});
   requests.AddRow({"message", ByteLimitText(limits.max_message_bytes())});
+  requests.AddRow({"results kept", DayLimitText(limits.retain_days())});
   out << '\n';
   table.Print(out);
   out << '\n';
@@ -104,10 +122,18 @@ void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
 
 void PrintPrincipals(const v1::ServerStatus& status, std::ostream& out) {
   if (status.principals().empty()) return;
-  TextTable table({{"principal", kLeft}, {"queued"}, {"running"}, {"streams"}});
+  TextTable table({{"principal", kLeft},
+                   {"queued"},
+                   {"running"},
+                   {"streams"},
+                   {"stored"},
+                   {"stored bytes"},
+                   {kProcessorTime}});
   for (const v1::PrincipalStatus& principal : status.principals()) {
     table.AddRow({principal.principal(), CountText(principal.queued_jobs()),
-                  CountText(principal.running_jobs()), CountText(principal.streams())});
+                  CountText(principal.running_jobs()), CountText(principal.streams()),
+                  CountText(principal.stored_jobs()), BytesText(principal.stored_bytes()),
+                  DurationText(principal.processor_seconds())});
   }
   out << '\n';
   table.Print(out);

@@ -1,6 +1,7 @@
 #include "tests/client/fake_server.h"
 
 #include <algorithm>
+#include <string>
 
 #include "client/library/channel.h"
 #include "google/rpc/error_details.pb.h"
@@ -32,6 +33,11 @@ const v1::EnsembleJob* FakeEnsembleService::Find(const std::string& name) const 
   const auto found = std::find_if(jobs.begin(), jobs.end(),
                                   [&](const v1::EnsembleJob& job) { return job.name() == name; });
   return found == jobs.end() ? nullptr : &*found;
+}
+
+bool FakeEnsembleService::HasExpired(const std::string& name) const {
+  const v1::EnsembleJob* const job = Find(name);
+  return job != nullptr && job->results_expired();
 }
 
 grpc::Status FakeEnsembleService::GetEnsembleJob(grpc::ServerContext*,
@@ -69,6 +75,19 @@ grpc::Status FakeEnsembleService::CancelEnsembleJob(grpc::ServerContext*,
       [&](const v1::CancelEnsembleJobRequest& asked) { return asked.name() == request->name(); });
   if (first->request_id() == request->request_id()) return grpc::Status::OK;
   return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, "has ended already");
+}
+
+grpc::Status FakeEnsembleService::PinEnsembleJob(grpc::ServerContext*,
+                                                 const v1::PinEnsembleJobRequest* request,
+                                                 v1::EnsembleJob* job) {
+  const std::lock_guard lock(mutex_);
+  asked_.pin.push_back(*request);
+  if (unavailable_attempts-- > 0) return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
+  if (Find(request->name()) == nullptr) return JobNotFound(request->name());
+  if (HasExpired(request->name())) return ResultsExpired(request->name());
+  *job = *Find(request->name());
+  job->set_pinned(request->pinned());
+  return grpc::Status::OK;
 }
 
 grpc::Status FakeEnsembleService::DeleteEnsembleJob(grpc::ServerContext*,
@@ -109,6 +128,7 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
                                               v1::ListResultsResponse* page) {
   const std::lock_guard lock(mutex_);
   asked_.results.push_back(*request);
+  if (HasExpired(request->parent())) return ResultsExpired(request->parent());
   if (!request->page_token().empty() && unavailable_later_pages-- > 0) {
     return grpc::Status(grpc::StatusCode::UNAVAILABLE, "not yet");
   }
@@ -117,6 +137,22 @@ grpc::Status FakeEnsembleService::ListResults(grpc::ServerContext*,
   for (size_t i = from; i < to; ++i) *page->add_points() = points[i];
   if (to < points.size()) page->set_next_page_token(std::to_string(to));
   return grpc::Status::OK;
+}
+
+grpc::Status FakeEnsembleService::GetResult(grpc::ServerContext*,
+                                            const v1::GetResultRequest* request,
+                                            v1::PointResult* point) {
+  const std::lock_guard lock(mutex_);
+  asked_.result.push_back(*request);
+  const std::string job = request->name().substr(0, request->name().find("/results/"));
+  if (Find(job) == nullptr) return JobNotFound(job);
+  if (HasExpired(job)) return ResultsExpired(job);
+  for (const v1::PointResult& each : points) {
+    if (request->name() != job + "/results/" + std::to_string(each.index())) continue;
+    *point = each;
+    return grpc::Status::OK;
+  }
+  return ResultNotFound(request->name());
 }
 
 FakeServer::~FakeServer() {
@@ -168,6 +204,16 @@ grpc::Status LimitExceeded(const std::string& reason, const std::string& message
 grpc::Status JobNotFound(const std::string& name) {
   return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such job: " + name,
                       DetailsWithReason("JOB_NOT_FOUND").SerializeAsString());
+}
+
+grpc::Status ResultNotFound(const std::string& name) {
+  return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such result: " + name,
+                      DetailsWithReason("RESULT_NOT_FOUND").SerializeAsString());
+}
+
+grpc::Status ResultsExpired(const std::string& name) {
+  return grpc::Status(grpc::StatusCode::FAILED_PRECONDITION, name + ": its results have expired",
+                      DetailsWithReason("RESULTS_EXPIRED").SerializeAsString());
 }
 
 v1::WatchEnsembleJobResponse JobMessage(const v1::EnsembleJob& job, const std::string& token) {

@@ -33,7 +33,7 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_attempts = 0;  // of create, cancel and delete, this many fail first
+  int unavailable_attempts = 0;  // of create, cancel, pin and delete, this many fail first
   grpc::Status create_end;
   std::vector<v1::EnsembleJob::State> created_states;  // of the jobs that Create makes, in order
   bool answers_from_store = false;  // Create answers with this value of answered_from_store
@@ -46,9 +46,11 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
     std::vector<v1::CreateEnsembleJobRequest> create;
     std::vector<v1::ListEnsembleJobsRequest> list;
     std::vector<v1::CancelEnsembleJobRequest> cancel;
+    std::vector<v1::PinEnsembleJobRequest> pin;
     std::vector<v1::DeleteEnsembleJobRequest> remove;
     std::vector<v1::PlanEnsembleJobRequest> plan;
     std::vector<v1::ListResultsRequest> results;
+    std::vector<v1::GetResultRequest> result;
   };
   Requests Asked() const;
 
@@ -60,6 +62,8 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                 v1::ListEnsembleJobsResponse* page) override;
   grpc::Status CancelEnsembleJob(grpc::ServerContext*, const v1::CancelEnsembleJobRequest* request,
                                  v1::EnsembleJob* job) override;
+  grpc::Status PinEnsembleJob(grpc::ServerContext*, const v1::PinEnsembleJobRequest* request,
+                              v1::EnsembleJob* job) override;
   grpc::Status DeleteEnsembleJob(grpc::ServerContext*, const v1::DeleteEnsembleJobRequest* request,
                                  google::protobuf::Empty*) override;
   grpc::Status WatchEnsembleJob(grpc::ServerContext*, const v1::WatchEnsembleJobRequest* request,
@@ -68,12 +72,15 @@ class FakeEnsembleService final : public v1::EnsembleService::Service {
                                v1::PlanEnsembleJobResponse* response) override;
   grpc::Status ListResults(grpc::ServerContext*, const v1::ListResultsRequest* request,
                            v1::ListResultsResponse* page) override;
+  grpc::Status GetResult(grpc::ServerContext*, const v1::GetResultRequest* request,
+                         v1::PointResult* point) override;
 
   void Release() { released_.count_down(); }  // ends watches that hang
 
  private:
   WatchScript NextScript(const v1::WatchEnsembleJobRequest& request);
   const v1::EnsembleJob* Find(const std::string& name) const;
+  bool HasExpired(const std::string& name) const;
 
   mutable std::mutex mutex_;
   Requests asked_;
@@ -132,6 +139,13 @@ grpc::Status LimitExceeded(const std::string& reason, const std::string& message
 
 // NOT_FOUND with the details a server attaches.
 grpc::Status JobNotFound(const std::string& name);
+
+// NOT_FOUND with the details a server attaches.
+grpc::Status ResultNotFound(const std::string& name);
+
+// FAILED_PRECONDITION with the details a server attaches. The server's answer if a test sets
+// results_expired of the job.
+grpc::Status ResultsExpired(const std::string& name);
 
 inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives
 

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "absl/strings/str_split.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "tests/client/program.h"
 #include "tests/support/scoped_variable.h"
 
@@ -78,6 +80,13 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
                             {"cancel"},
                             {"cancel", "ABC"},
                             {"delete", "a", std::string(64, 'a')},
+                            {"pin"},
+                            {"pin", "--undo"},
+                            {"pin", "a", "B"},
+                            {"result", "a", "--point", "-1"},
+                            {"result", "a", "--point", "first"},
+                            {"submit", "--again", "A"},
+                            {"submit", "--again", "a", "first-hit"},
                             {"plan"},
                             {"plan", "equilibrium", "--progress", "bar"},
                             {"list", "--state", "sleeping"},
@@ -274,7 +283,7 @@ TEST_F(CommandLineTest, AFailedJobExitsWithFourItsReasonAndWhatItFinished) {
 TEST_F(CommandLineTest, AnUnknownJobExitsWithFive) {
   server_.ensemble.watches = {{{}, JobNotFound("ensembleJobs/none")}};
   server_.Start();
-  for (const char* verb : {"watch", "result", "delete"}) {
+  for (const char* verb : {"watch", "result", "pin", "delete"}) {
     const Outcome outcome = WithServer({verb, "none"});
     EXPECT_EQ(outcome.code, 5) << verb;
     EXPECT_EQ(outcome.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
@@ -300,6 +309,40 @@ TEST_F(CommandLineTest, CancelOfAnEndedJobExitsWithFourAfterAllJobs) {
   EXPECT_EQ(again.err, "ballpiston: has ended already\n");
 }
 
+TEST_F(CommandLineTest, PinPrintsEachJobOnceItIsPinned) {
+  server_.ensemble.jobs.push_back(job());
+  job().set_name("ensembleJobs/d");
+  server_.Start();
+  for (int i = 0; i < 2; ++i) {  // again: nothing changes
+    const Outcome pinned = WithServer({"pin", "abc", "none", "d"});
+    EXPECT_EQ(pinned.code, 5);
+    EXPECT_EQ(pinned.out, "ensembleJobs/abc pinned\nensembleJobs/d pinned\n");
+    EXPECT_EQ(pinned.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+  }
+  const Outcome unpinned = WithServer({"pin", "--undo", "abc"});
+  EXPECT_EQ(unpinned.code, 0) << unpinned.err;
+  EXPECT_EQ(unpinned.out, "ensembleJobs/abc unpinned\n");
+  EXPECT_FALSE(server_.ensemble.Asked().pin.back().pinned());
+}
+
+TEST_F(CommandLineTest, ExpiredResultsExitWithFourAndTheCommandThatComputesThemAgain) {
+  job().set_results_expired(true);
+  server_.Start();
+  const std::string error =
+      "ballpiston: ensembleJobs/abc: its results have expired (RESULTS_EXPIRED)\n"
+      "To compute them again: ballpiston submit --again ensembleJobs/abc --server " +
+      server_.Address() + "\n";
+  for (const Words& words : {Words{"result", "abc"},
+                             {"result", "abc", "--format", "json"},
+                             {"result", "abc", "--point", "0"},
+                             {"pin", "abc"}}) {
+    const Outcome outcome = WithServer(words);
+    EXPECT_EQ(outcome.code, 4);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, error);
+  }
+}
+
 TEST_F(CommandLineTest, DeletePrintsEachDeletedJob) {
   server_.ensemble.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
@@ -307,6 +350,25 @@ TEST_F(CommandLineTest, DeletePrintsEachDeletedJob) {
   const Outcome outcome = WithServer({"delete", "abc", "d", "none"});
   EXPECT_EQ(outcome.code, 5);
   EXPECT_EQ(outcome.out, "ensembleJobs/abc deleted\nensembleJobs/d deleted\n");
+}
+
+TEST_F(CommandLineTest, ListRequestsGridsForJsonOnly) {
+  server_.Start();
+  WithServer({"list"});
+  WithServer({"list", "--format", "csv"});
+  WithServer({"list", "--format", "json"});
+  const auto asked = server_.ensemble.Asked().list;
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_EQ(asked[0].view(), v1::ListEnsembleJobsRequest::BASIC);
+  EXPECT_EQ(asked[1].view(), v1::ListEnsembleJobsRequest::BASIC);
+  EXPECT_EQ(asked[2].view(), v1::ListEnsembleJobsRequest::FULL);
+}
+
+TEST_F(CommandLineTest, ListSaysWhenResultsExpire) {
+  const absl::Time expiry = absl::Now() + absl::Hours(3 * 24 + 12);
+  job().mutable_expire_time()->set_seconds(absl::ToUnixSeconds(expiry));
+  server_.Start();
+  EXPECT_THAT(WithServer({"list"}).out, EndsWith("  expires in 3 days\n"));
 }
 
 TEST_F(CommandLineTest, ListSendsItsFilters) {

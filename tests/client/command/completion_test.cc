@@ -90,7 +90,16 @@ TEST_F(CompletionTest, OffersTheJobsOfARunningServer) {
   server_.Start();
   EXPECT_THAT(Offers({"watch", ""}), ElementsAre("ensembleJobs/d", "ensembleJobs/abc"));
   EXPECT_EQ(Offers({"cancel", "abc", "--verbose", ""}), Offers({"watch", ""}));
+  EXPECT_EQ(Offers({"pin", "--undo", "abc", ""}), Offers({"watch", ""}));
+  EXPECT_EQ(Offers({"submit", "--again", ""}), Offers({"watch", ""}));
   EXPECT_THAT(Offers({"watch", "abc", ""}), Contains(StartsWith("--progress\t")));
+}
+
+TEST_F(CompletionTest, RequestsJobsWithoutGrids) {
+  home_.UseAsPrivateServer(server_.Address());
+  server_.Start();
+  Offers({"watch", ""});
+  EXPECT_EQ(server_.ensemble.Asked().list.at(0).view(), v1::ListEnsembleJobsRequest::BASIC);
 }
 
 TEST_F(CompletionTest, StartsNoServer) {

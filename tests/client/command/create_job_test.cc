@@ -142,6 +142,16 @@ TEST_F(CreateJobTest, ATooLargeJobExitsWithTwoAndAHint) {
             "Split the grid between several jobs.\n");
 }
 
+TEST_F(CreateJobTest, AFullShareOfTheStoreHasAHint) {
+  server_.ensemble.create_end = LimitExceeded("TOO_MANY_STORED_BYTES", "9 bytes are stored");
+  server_.Start();
+  const Outcome outcome = WithServer({"submit", "equilibrium"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.err,
+            "ballpiston: 9 bytes are stored (TOO_MANY_STORED_BYTES)\n"
+            "Delete jobs that are no longer needed: ballpiston list, ballpiston delete JOB\n");
+}
+
 // Such a request has more than gRPC's usual limit of 4 MiB; the server has one of its own.
 TEST_F(CreateJobTest, LargeRequestsAreSent) {
   server_.largest_request = -1;

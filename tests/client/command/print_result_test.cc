@@ -8,11 +8,15 @@
 #include <vector>
 
 #include "absl/strings/str_split.h"
-#include "tests/client/fake_server.h"
+#include "tests/client/program.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::client {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 // The channel itself attempts a call up to this many times.
 constexpr int kAttemptsOfChannel = 4;
@@ -50,8 +54,56 @@ TEST_F(PrintResultTest, RepeatsAPageAfterAPrivateServerWasRevived) {
   const std::vector<std::string> lines = absl::StrSplit(out_.str(), '\n', absl::SkipEmpty());
   ASSERT_EQ(lines.size(), 5u) << out_.str();  // each point once
   for (size_t i = 0; i < lines.size(); ++i) {
-    EXPECT_THAT(lines[i], testing::HasSubstr("\"index\":" + std::to_string(i)));
+    EXPECT_THAT(lines[i], HasSubstr("\"index\":" + std::to_string(i)));
   }
+}
+
+class PrintPointTest : public ProgramTest {
+ protected:
+  PrintPointTest() {
+    v1::PointResult second = server_.ensemble.points[0];
+    second.set_index(1);
+    second.mutable_estimates(0)->set_value(2.5);
+    server_.ensemble.points.push_back(second);
+    server_.Start();
+  }
+};
+
+TEST_F(PrintPointTest, EachFormatHasTheOnePoint) {
+  for (const std::string format : {"table", "csv", "json", "jsonl"}) {
+    const Outcome one = WithServer({"result", "abc", "--point", "1", "--format", format});
+    EXPECT_EQ(one.code, 0) << one.err;
+    EXPECT_EQ(one.err, "");
+    EXPECT_THAT(one.out, AllOf(HasSubstr("mean_hit_time"), HasSubstr("2.5"))) << format;
+    EXPECT_THAT(one.out, Not(HasSubstr("1.5"))) << format;
+  }
+  EXPECT_THAT(server_.ensemble.Asked().results, testing::IsEmpty());
+}
+
+TEST_F(PrintPointTest, APointOfSeveralReadsAsAllDo) {
+  server_.ensemble.points.erase(server_.ensemble.points.begin());
+  for (const std::string format : {"table", "csv", "json", "jsonl"}) {
+    EXPECT_EQ(WithServer({"result", "abc", "--point", "1", "--format", format}).out,
+              WithServer({"result", "abc", "--format", format}).out);
+  }
+}
+
+TEST_F(PrintPointTest, WithoutThePointOrTheJobExitsWithFiveAndNoOutput) {
+  const Outcome beyond = WithServer({"result", "abc", "--point", "2", "--format", "json"});
+  EXPECT_EQ(beyond.code, 5);
+  EXPECT_EQ(beyond.out, "");
+  EXPECT_EQ(beyond.err,
+            "ballpiston: no such result: ensembleJobs/abc/results/2 (RESULT_NOT_FOUND)\n");
+  const Outcome unknown = WithServer({"result", "none", "--point", "0"});
+  EXPECT_EQ(unknown.code, 5);
+  EXPECT_EQ(unknown.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+}
+
+TEST_F(PrintPointTest, APointBelowZeroIsNotRequested) {
+  const Outcome outcome = WithServer({"result", "abc", "--point", "-1"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "ballpiston: --point: -1 is below 0\n");
+  EXPECT_THAT(server_.ensemble.Asked().result, testing::IsEmpty());
 }
 
 TEST_F(PrintResultTest, DoesNotRepeatAPageOfANamedServer) {

@@ -105,5 +105,60 @@ TEST_F(QuestionTest, AFileExcludesExperimentGridTargetAndMethod) {
   }
 }
 
+class QuestionOfJobTest : public ProgramTest {
+ protected:
+  QuestionOfJobTest() {
+    *job().mutable_spec() = FromText<v1::EnsembleSpec>(
+        "experiment: FIRST_HIT seed: 7 grid { rho: 0.53 delta: 0.1 } target { samples: 9 }");
+  }
+};
+
+TEST_F(QuestionOfJobTest, TheSpecificationOfAJobIsSubmittedAgain) {
+  server_.Start();
+  for (const char* verb : {"submit", "run"}) {
+    const Outcome outcome = WithServer({verb, "--again", "abc", "--priority", "3"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const v1::CreateEnsembleJobRequest asked = server_.ensemble.Asked().create.back();
+    EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(asked.spec(), job().spec()));
+    EXPECT_EQ(asked.priority(), 3);
+    EXPECT_FALSE(asked.fresh());
+  }
+}
+
+TEST_F(QuestionOfJobTest, TheSpecificationOfAJobIsPlanned) {
+  server_.Start();
+  EXPECT_EQ(WithServer({"plan", "--again", "ensembleJobs/abc"}).code, 0);
+  EXPECT_EQ(server_.ensemble.Asked().plan.at(0).spec().seed(), 7u);
+}
+
+TEST_F(QuestionOfJobTest, AJobExcludesExperimentGridTargetAndMethod) {
+  server_.Start();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"first-hit"},
+                                                {"--rho", "0.53"},
+                                                {"--samples", "9"},
+                                                {"--seed", "1"},
+                                                {"--verify"},
+                                                {"--spec", "question.json"}}) {
+    std::vector<std::string> all = {"submit", "--again", "abc"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = WithServer(all);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err,
+              "ballpiston: --again holds the whole specification: give no EXPERIMENT, grid, "
+              "target, --seed, --model, --verify, --precision or --spec with it\n");
+  }
+  EXPECT_EQ(WithServer({"submit", "--again", "a/b"}).code, 2);
+  EXPECT_THAT(server_.ensemble.Asked().create, testing::IsEmpty());
+}
+
+TEST_F(QuestionOfJobTest, WithAnUnknownJobNothingIsSubmitted) {
+  server_.Start();
+  const Outcome outcome = WithServer({"submit", "--again", "none"});
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
+  EXPECT_THAT(server_.ensemble.Asked().create, testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace ballpiston::client

@@ -143,6 +143,31 @@ TEST_F(ClientTest, ListStopsAtItsLimit) {
   EXPECT_EQ(asked[1].page_size(), 1);
 }
 
+TEST_F(ClientTest, APinIsRepeated) {
+  server_.ensemble.unavailable_attempts = 2;
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, true));
+  EXPECT_TRUE(job.pinned());
+  const auto asked = server_.ensemble.Asked().pin;
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_EQ(asked[2].name(), kJobName);
+  EXPECT_TRUE(asked[2].pinned());
+}
+
+TEST_F(ClientTest, APinCanBeUndone) {
+  ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, StartServer().Pin(kJobName, false));
+  EXPECT_FALSE(job.pinned());
+  EXPECT_FALSE(server_.ensemble.Asked().pin.at(0).pinned());
+}
+
+TEST_F(ClientTest, APointIsNamedByItsIndex) {
+  for (int i = 0; i < 3; ++i) server_.ensemble.points.emplace_back().set_index(i);
+  const Client client = StartServer();
+  ASSERT_OK_AND_ASSIGN(const v1::PointResult point, client.Point(kJobName, 2));
+  EXPECT_EQ(point.index(), 2);
+  EXPECT_EQ(server_.ensemble.Asked().result.at(0).name(), "ensembleJobs/abc/results/2");
+  EXPECT_EQ(ErrorReason(client.Point(kJobName, 3).status()), "RESULT_NOT_FOUND");
+}
+
 // The second of two would find no job.
 TEST_F(ClientTest, ADeleteIsSentOnce) {
   server_.ensemble.unavailable_attempts = 1;

@@ -100,5 +100,11 @@ TEST(ClockText, CountsMinutesThenHours) {
   EXPECT_EQ(ClockText(absl::Seconds(12310)), "3:25:10");
 }
 
+TEST(Counted, OneIsSingular) {
+  EXPECT_EQ(Counted(1, "day"), "1 day");
+  EXPECT_EQ(Counted(0, "job"), "0 jobs");
+  EXPECT_EQ(Counted(2.5, "day"), "2.5 days");
+}
+
 }  // namespace
 }  // namespace ballpiston::client
