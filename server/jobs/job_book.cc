@@ -438,7 +438,11 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
   // In this order: a job leaves the book only when its end is in the store.
-  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return job->Message();
+  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) {
+    v1::EnsembleJob message = job->Message();
+    AddExpireTime(job->Record(), message);
+    return message;
+  }
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   return Message(*record);
@@ -446,12 +450,15 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std:
 
 v1::EnsembleJob JobBook::Message(const JobRecord& record) const {
   v1::EnsembleJob job = JobMessage(record);
-  const bool may_expire = record.end_time && !record.expired_time && !record.pinned;
-  if (limits_.retain_days > 0 && may_expire) {
-    const absl::Time expires = *record.end_time + absl::Hours(24) * limits_.retain_days;
-    SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
-  }
+  AddExpireTime(record, job);
   return job;
+}
+
+void JobBook::AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const {
+  const bool may_expire = record.end_time && !record.expired_time && !record.pinned;
+  if (limits_.retain_days == 0 || !may_expire) return;
+  const absl::Time expires = *record.end_time + absl::Hours(24) * limits_.retain_days;
+  SetTime(std::min(expires, kLastTime), job.mutable_expire_time());
 }
 
 absl::StatusOr<JobRecord> JobBook::ReadRecordWithResults(const Principal& caller,

@@ -180,6 +180,7 @@ class JobBook {
   absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
   // Of a job that is not in the book, with the time when its results expire.
   v1::EnsembleJob Message(const JobRecord& record) const;
+  void AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const;
   std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;
   void EndLongJobs();
   void StoreNewWork(absl::Time now);

@@ -36,6 +36,7 @@ const std::map<std::string, Role>& LeastRoles() {
       {"ListEnsembleJobs", Role::kRead},    {"CancelEnsembleJob", Role::kSubmit},
       {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
       {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
+      {"PinEnsembleJob", Role::kSubmit},    {"GetResult", Role::kRead},
       {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead}};
   return *roles;
 }
@@ -66,13 +67,14 @@ const google::protobuf::FieldDescriptor* JobField(const MethodDescriptor& method
   return name != nullptr ? name : method.input_type()->FindFieldByName("parent");
 }
 
-// Empty but for the job's name, where there is one.
+// Empty but for the name of the job, or of its first result, where there is one.
 std::string RequestFor(const MethodDescriptor& method, const std::string& job) {
   google::protobuf::DynamicMessageFactory factory;
   const std::unique_ptr<google::protobuf::Message> request(
       factory.GetPrototype(method.input_type())->New());
   const auto* field = JobField(method);
-  if (field != nullptr) request->GetReflection()->SetString(request.get(), field, job);
+  const std::string name = method.name() == "GetResult" ? job + "/results/0" : job;
+  if (field != nullptr) request->GetReflection()->SetString(request.get(), field, name);
   return request->SerializeAsString();
 }
 

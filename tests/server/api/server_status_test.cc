@@ -158,7 +158,12 @@ TEST(ServerStatus, IsServedToAnybodyWithAccess) {
   EXPECT_EQ(status.blocks_computed(), 10);
   EXPECT_EQ(status.samples_computed(), 10 * kFakeSamplesPerBlock);
   EXPECT_EQ(status.limits().max_active_jobs(), Limits().max_active_jobs);
-  EXPECT_EQ(status.principals_size(), 0);
+  ASSERT_EQ(status.principals_size(), 1);
+  EXPECT_EQ(status.principals(0).principal(), "local");
+  EXPECT_EQ(status.principals(0).running_jobs(), 0);
+  EXPECT_EQ(status.principals(0).stored_jobs(), 1);
+  EXPECT_GT(status.principals(0).stored_bytes(), 100);
+  EXPECT_GT(status.principals(0).processor_seconds(), 0);
 }
 
 class HangingDiskTest : public ServerStatusTest {

@@ -163,7 +163,7 @@ class JobJournalTest : public testing::Test {
     record_ = JobWithPoints(3);
     ASSERT_OK(store_->Commit([this](Database& database) { return InsertJob(database, record_); }));
     job_ = std::make_shared<Job>(record_, nullptr);
-    journal_.emplace(job_, *store_, false, nullptr);
+    journal_.emplace(job_, *store_, usage_, false, nullptr);
   }
 
   void Finish(size_t point) {
@@ -174,6 +174,7 @@ class JobJournalTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<Store> store_;
+  Usage usage_;
   JobRecord record_;
   std::shared_ptr<Job> job_;
   std::optional<JobJournal> journal_;

@@ -26,8 +26,8 @@ namespace {
 using ::testing::HasSubstr;
 using v1::EnsembleJob;
 
-const Principal kAnn{"ann", Role::kSubmit};
-const Principal kBen{"ben", Role::kSubmit};
+const Principal kAlice{"alice", Role::kSubmit};
+const Principal kBob{"bob", Role::kSubmit};
 
 MATCHER_P2(IsLimit, reason, flag, "") {
   return absl::IsResourceExhausted(arg) && ReasonOf(arg) == reason &&
@@ -74,11 +74,13 @@ class StoredLimitsTest : public testing::Test {
   }
 
   size_t PointsOf(const Principal& caller, const std::string& id) {
-    return book_->Results(caller, id, {.max_points = 1000}).value().points.size();
+    return book_->Results(caller, id, {.max_points = 1000, .max_bytes = 1 << 20})
+        .value()
+        .points.size();
   }
 
   std::string ResultsError(const std::string& id) {
-    return ReasonOf(book_->Results(kAnn, id, {.max_points = 10}).status());
+    return ReasonOf(book_->Results(kAlice, id, {.max_points = 10}).status());
   }
 
   void ExpectSound() {
@@ -96,16 +98,16 @@ class StoredLimitsTest : public testing::Test {
 
 TEST_F(StoredLimitsTest, ResultsExpireAndTheSpecificationStays) {
   Start({.retain_days = 30});
-  const std::string id = Done(kAnn, 1);
-  const EnsembleJob before = Get(kAnn, id);
+  const std::string id = Done(kAlice, 1);
+  const EnsembleJob before = Get(kAlice, id);
   const absl::Time end = absl::FromUnixSeconds(before.end_time().seconds());
   EXPECT_NEAR(static_cast<double>(before.expire_time().seconds() - before.end_time().seconds()),
               30 * 86400, 1);
   book_->KeepLimits(end + 29 * kDay);
-  EXPECT_EQ(PointsOf(kAnn, id), 3u);
+  EXPECT_EQ(PointsOf(kAlice, id), 3u);
   book_->KeepLimits(end + 30 * kDay + absl::Seconds(2));
   EXPECT_EQ(ResultsError(id), "RESULTS_EXPIRED");
-  const EnsembleJob after = Get(kAnn, id);
+  const EnsembleJob after = Get(kAlice, id);
   EXPECT_TRUE(after.results_expired());
   EXPECT_FALSE(after.has_expire_time());
   EXPECT_EQ(after.state(), EnsembleJob::SUCCEEDED);
@@ -117,50 +119,50 @@ TEST_F(StoredLimitsTest, ResultsExpireAndTheSpecificationStays) {
 // The same question is computed again, to the same bytes.
 TEST_F(StoredLimitsTest, AnExpiredJobCanBeComputedAgain) {
   Start({.retain_days = 1});
-  const std::string id = Done(kAnn, 1);
+  const std::string id = Done(kAlice, 1);
   const std::string bytes =
-      book_->Results(kAnn, id, {.max_points = 1})->points.front().SerializeAsString();
+      book_->Results(kAlice, id, {.max_points = 1})->points.front().SerializeAsString();
   book_->KeepLimits(absl::Now() + 2 * kDay);
-  const std::string again = Done(kAnn, 1);
+  const std::string again = Done(kAlice, 1);
   EXPECT_NE(again, id);
-  EXPECT_EQ(book_->Results(kAnn, again, {.max_points = 1})->points.front().SerializeAsString(),
+  EXPECT_EQ(book_->Results(kAlice, again, {.max_points = 1})->points.front().SerializeAsString(),
             bytes);
 }
 
 TEST_F(StoredLimitsTest, APinnedJobDoesNotExpire) {
   Start({.retain_days = 1});
-  const std::string pinned = Done(kAnn, 1), other = Done(kAnn, 2);
-  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Pin(kAnn, pinned, true));
+  const std::string pinned = Done(kAlice, 1), other = Done(kAlice, 2);
+  ASSERT_OK_AND_ASSIGN(const EnsembleJob job, book_->Pin(kAlice, pinned, true));
   EXPECT_TRUE(job.pinned());
   EXPECT_FALSE(job.has_expire_time());
   book_->KeepLimits(absl::Now() + 100 * kDay);
-  EXPECT_EQ(PointsOf(kAnn, pinned), 3u);
+  EXPECT_EQ(PointsOf(kAlice, pinned), 3u);
   EXPECT_EQ(ResultsError(other), "RESULTS_EXPIRED");
-  EXPECT_OK(book_->Pin(kAnn, pinned, false));
+  EXPECT_OK(book_->Pin(kAlice, pinned, false));
   book_->KeepLimits(absl::Now() + 100 * kDay);
   EXPECT_EQ(ResultsError(pinned), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Pin(kAnn, pinned, true).status()), "RESULTS_EXPIRED");
-  EXPECT_EQ(ReasonOf(book_->Pin(kAnn, "nosuchjob", true).status()), "JOB_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(book_->Pin(kBen, other, true).status()), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Pin(kAlice, pinned, true).status()), "RESULTS_EXPIRED");
+  EXPECT_EQ(ReasonOf(book_->Pin(kAlice, "nosuchjob", true).status()), "JOB_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Pin(kBob, other, true).status()), "JOB_NOT_FOUND");
 }
 
 TEST_F(StoredLimitsTest, AnActiveJobDoesNotExpireAndCanBePinned) {
   Gate gate;
   Start({.retain_days = 1}, GatedExperiments(gate));
-  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
+  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
   gate.AwaitWaiting(1);
-  EXPECT_TRUE(book_->Pin(kAnn, id, true)->pinned());
+  EXPECT_TRUE(book_->Pin(kAlice, id, true)->pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
   gate.Open();
-  while (!HasEnded(Get(kAnn, id).state())) std::this_thread::yield();
-  EXPECT_TRUE(Get(kAnn, id).pinned());
+  while (!HasEnded(Get(kAlice, id).state())) std::this_thread::yield();
+  EXPECT_TRUE(Get(kAlice, id).pinned());
   book_->KeepLimits(absl::Now() + 100 * kDay);
-  EXPECT_EQ(PointsOf(kAnn, id), 3u);
+  EXPECT_EQ(PointsOf(kAlice, id), 3u);
 }
 
 TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
   Start({.retain_days = 30});
-  Done(kAnn, 1);
+  Done(kAlice, 1);
   EXPECT_EQ(book_->CountExpiring(absl::Now() + 20 * kDay), 0);
   EXPECT_EQ(book_->CountExpiring(absl::Now() + 24 * kDay), 1);
 }
@@ -172,16 +174,16 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   Start({.max_store_bytes = kBound});
   std::vector<std::string> ids;
   for (uint64_t seed = 1; seed <= 30; ++seed) {
-    ids.push_back(Done(kAnn, seed, 300));
+    ids.push_back(Done(kAlice, seed, 300));
     book_->KeepLimits(absl::Now());
     while (ReadFrom(*store_, &IsSweeping)) std::this_thread::yield();
     EXPECT_LT(ReadFrom(*store_, &UsedBytes), kBound);
   }
-  EXPECT_TRUE(Get(kAnn, ids.front()).results_expired());
-  EXPECT_EQ(PointsOf(kAnn, ids.back()), 300u);
+  EXPECT_TRUE(Get(kAlice, ids.front()).results_expired());
+  EXPECT_EQ(PointsOf(kAlice, ids.back()), 300u);
   bool expired = true;
   for (const std::string& id : ids) {
-    const bool now = Get(kAnn, id).results_expired();
+    const bool now = Get(kAlice, id).results_expired();
     EXPECT_TRUE(expired || !now) << "a newer job expired first";
     expired = now;
   }
@@ -190,31 +192,31 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
 
 TEST_F(StoredLimitsTest, WhatIsPinnedMayFillTheStoreAndThenNoJobIsAccepted) {
   Start({.max_store_bytes = 200'000});
-  const std::string pinned = *JobIdOf(Create(kAnn, 1, 900)->name());
-  ASSERT_OK(book_->Pin(kAnn, pinned, true));
-  while (!HasEnded(Get(kAnn, pinned).state())) std::this_thread::yield();
+  const std::string pinned = *JobIdOf(Create(kAlice, 1, 900)->name());
+  ASSERT_OK(book_->Pin(kAlice, pinned, true));
+  while (!HasEnded(Get(kAlice, pinned).state())) std::this_thread::yield();
   book_->KeepLimits(absl::Now());
-  const absl::Status refused = Create(kBen, 2).status();
+  const absl::Status refused = Create(kBob, 2).status();
   EXPECT_THAT(refused, IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes"));
-  EXPECT_EQ(PointsOf(kAnn, pinned), 900u);
-  ASSERT_OK(book_->Pin(kAnn, pinned, false));
-  while (!Create(kBen, 2).ok()) book_->KeepLimits(absl::Now());
+  EXPECT_EQ(PointsOf(kAlice, pinned), 900u);
+  ASSERT_OK(book_->Pin(kAlice, pinned, false));
+  while (!Create(kBob, 2).ok()) book_->KeepLimits(absl::Now());
 }
 
 TEST_F(StoredLimitsTest, APrincipalOverItsBytesIsRefusedAndOthersAreNot) {
   Start({.max_store_bytes_per_principal = 20'000});
-  const std::string first = Done(kAnn, 1, 300);
-  EXPECT_EQ(static_cast<double>(book_->usage().Of("ann", absl::Now()).bytes),
-            Get(kAnn, first).stored_bytes());
-  EXPECT_THAT(Create(kAnn, 2).status(),
+  const std::string first = Done(kAlice, 1, 300);
+  EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
+            Get(kAlice, first).stored_bytes());
+  EXPECT_THAT(Create(kAlice, 2).status(),
               IsLimit("TOO_MANY_STORED_BYTES", "max-store-bytes-per-principal"));
-  Done(kBen, 2);
+  Done(kBob, 2);
   Start({.max_store_bytes_per_principal = 20'000});  // and after a restart
-  EXPECT_EQ(ReasonOf(Create(kAnn, 2).status()), "TOO_MANY_STORED_BYTES");
-  EXPECT_EQ(Create(kAnn, 1, 300)->name(), JobName(first));  // the answer is there
-  ASSERT_OK(book_->Delete(kAnn, first));
-  EXPECT_EQ(book_->usage().Of("ann", absl::Now()).bytes, 0);
-  Done(kAnn, 2);
+  EXPECT_EQ(ReasonOf(Create(kAlice, 2).status()), "TOO_MANY_STORED_BYTES");
+  EXPECT_EQ(Create(kAlice, 1, 300)->name(), JobName(first));  // the answer is there
+  ASSERT_OK(book_->Delete(kAlice, first));
+  EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, 0);
+  Done(kAlice, 2);
 }
 
 // Bytes of a job in the middle are counted after a restart.
@@ -224,16 +226,16 @@ TEST_F(StoredLimitsTest, AnUnfinishedJobCountsAfterARestart) {
     if (point == 2) gate.Pass(stop);
   };
   Start({}, FakeExperiments(stuck));
-  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
+  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
   gate.AwaitWaiting(2);
   ASSERT_OK(store_->Flush());
-  const int64_t bytes = book_->usage().Of("ann", absl::Now()).bytes;
+  const int64_t bytes = book_->usage().Of("alice", absl::Now()).bytes;
   Start({}, FakeExperiments(stuck));
-  EXPECT_EQ(book_->usage().Of("ann", absl::Now()).bytes, bytes);
+  EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, bytes);
   gate.Open();
-  while (!HasEnded(Get(kAnn, id).state())) std::this_thread::yield();
-  EXPECT_EQ(static_cast<double>(book_->usage().Of("ann", absl::Now()).bytes),
-            Get(kAnn, id).stored_bytes());
+  while (!HasEnded(Get(kAlice, id).state())) std::this_thread::yield();
+  EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
+            Get(kAlice, id).stored_bytes());
 }
 
 TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
@@ -242,21 +244,21 @@ TEST_F(StoredLimitsTest, AJobThatTakesTooLongFailsAndKeepsItsPoints) {
     if (point == 1) gate.Pass(stop);
   };
   Start({.max_seconds_per_job = 1e-9}, FakeExperiments(stuck));
-  const std::string id = *JobIdOf(Create(kAnn, 1)->name());
-  while (Get(kAnn, id).progress().points_done() == 0) std::this_thread::yield();
-  while (!HasEnded(Get(kAnn, id).state())) book_->KeepLimits(absl::Now());
-  const EnsembleJob job = Get(kAnn, id);
+  const std::string id = *JobIdOf(Create(kAlice, 1)->name());
+  while (Get(kAlice, id).progress().points_done() == 0) std::this_thread::yield();
+  while (!HasEnded(Get(kAlice, id).state())) book_->KeepLimits(absl::Now());
+  const EnsembleJob job = Get(kAlice, id);
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), HasSubstr("--max-seconds-per-job"));
-  EXPECT_GE(PointsOf(kAnn, id), 1u);
+  EXPECT_GE(PointsOf(kAlice, id), 1u);
 }
 
 TEST_F(StoredLimitsTest, OneResultByItsName) {
   Start({});
-  const std::string id = Done(kAnn, 1);
-  EXPECT_EQ(book_->Result(kAnn, id, 2)->index(), 2);
-  EXPECT_EQ(ReasonOf(book_->Result(kAnn, id, 3).status()), "RESULT_NOT_FOUND");
-  EXPECT_EQ(ReasonOf(book_->Result(kBen, id, 2).status()), "JOB_NOT_FOUND");
+  const std::string id = Done(kAlice, 1);
+  EXPECT_EQ(book_->Result(kAlice, id, 2)->index(), 2);
+  EXPECT_EQ(ReasonOf(book_->Result(kAlice, id, 3).status()), "RESULT_NOT_FOUND");
+  EXPECT_EQ(ReasonOf(book_->Result(kBob, id, 2).status()), "JOB_NOT_FOUND");
 }
 
 TEST(ResultNameTest, NamesAJobAndAPoint) {
@@ -275,37 +277,37 @@ TEST(UsageTest, WorkCountsForThirtyDays) {
   const Limits limits = {.max_processor_seconds_per_principal = 100};
   const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
   Usage usage;
-  usage.AddWork("ann", start, 60);
-  EXPECT_OK(usage.Check("ann", start, limits));
-  usage.AddWork("ann", start + 10 * kDay, 40);
-  EXPECT_THAT(usage.Check("ann", start + 10 * kDay, limits),
+  usage.AddWork("alice", start, 60);
+  EXPECT_OK(usage.Check("alice", start, limits));
+  usage.AddWork("alice", start + 10 * kDay, 40);
+  EXPECT_THAT(usage.Check("alice", start + 10 * kDay, limits),
               IsLimit("TOO_MANY_SECONDS", "max-processor-seconds-per-principal"));
-  EXPECT_OK(usage.Check("ben", start, limits));
-  EXPECT_EQ(usage.Of("ann", start + 29 * kDay).seconds, 100);
-  EXPECT_EQ(usage.Of("ann", start + 30 * kDay).seconds, 40);
-  EXPECT_OK(usage.Check("ann", start + 30 * kDay, limits));
+  EXPECT_OK(usage.Check("bob", start, limits));
+  EXPECT_EQ(usage.Of("alice", start + 29 * kDay).seconds, 100);
+  EXPECT_EQ(usage.Of("alice", start + 30 * kDay).seconds, 40);
+  EXPECT_OK(usage.Check("alice", start + 30 * kDay, limits));
 }
 
 TEST(UsageTest, NewWorkIsTakenOnce) {
   const absl::Time start = absl::FromUnixSeconds(1'700'000'000);
   Usage usage;
-  usage.AddStoredWork({"ann", Usage::FirstDay(start) + kQuotaDays - 1, 5});
-  usage.AddWork("ann", start, 1);
-  usage.AddWork("ann", start, 2);
+  usage.AddStoredWork({"alice", Usage::FirstDay(start) + kQuotaDays - 1, 5});
+  usage.AddWork("alice", start, 1);
+  usage.AddWork("alice", start, 2);
   const std::vector<DayOfWork> work = usage.TakeNewWork();
   ASSERT_EQ(work.size(), 1u);
   EXPECT_EQ(work[0].seconds, 3);
   EXPECT_TRUE(usage.TakeNewWork().empty());
-  EXPECT_EQ(usage.Of("ann", start).seconds, 8);
+  EXPECT_EQ(usage.Of("alice", start).seconds, 8);
 }
 
 TEST_F(StoredLimitsTest, ProcessorTimeOutlivesTheServer) {
   Start({});
-  Done(kAnn, 1);
-  const double seconds = book_->usage().Of("ann", absl::Now()).seconds;
+  Done(kAlice, 1);
+  const double seconds = book_->usage().Of("alice", absl::Now()).seconds;
   EXPECT_GT(seconds, 0);
   Start({});
-  EXPECT_DOUBLE_EQ(book_->usage().Of("ann", absl::Now()).seconds, seconds);
+  EXPECT_DOUBLE_EQ(book_->usage().Of("alice", absl::Now()).seconds, seconds);
 }
 
 }  // namespace
