@@ -71,6 +71,7 @@ std::vector<EnsembleSpec> Questions() {
           WithSamples(Question(returns, billiard, {0.2}, {0.1, 0.4}), 100'000),
           WithSamples(Question(returns, billiard, {0.2, 0.15, 0.1}, {0.1, 0.2, 0.3, 0.4}), 10'000),
           WithTolerance(Question(returns, billiard, {0.2}, {0.25}), 0.005),
+          WithSamples(Question(returns, billiard, {0.2}, {0.3}), 10'000'000),  // for checkpoints
           WithSamples(FirstHit({0.1, 0.4}), 50'000),
           WithTolerance(FirstHit({0.2}), 0.01),
           WithSamples(Question(relaxation, markov, {0.1}), 1'000),

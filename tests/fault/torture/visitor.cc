@@ -101,7 +101,7 @@ void Visitor::Create() {
   if (!made.ok()) return Wrong(job, absl::StrCat("Create: ", made.status().ToString()));
   findings_.Count("jobs acknowledged");
   job.name = made->name();
-  Learn(job, *made);
+  Learn(job, *made, "Create");
   jobs_.push_back(std::move(job));
 }
 
@@ -121,7 +121,7 @@ void Visitor::Get(OwnJob& job) {
   request.set_name(job.name);
   const auto seen = UntilAnswered([&] { return Ask(*stub_, &Stub::GetEnsembleJob, request); });
   if (!seen.ok()) return Wrong(job, absl::StrCat("Get: ", seen.status().ToString()));
-  Learn(job, *seen);
+  Learn(job, *seen, "Get");
 }
 
 void Visitor::Watch(OwnJob& job) {
@@ -133,7 +133,7 @@ void Visitor::Watch(OwnJob& job) {
   const auto reader = stub_->WatchEnsembleJob(&context, request);
   v1::WatchEnsembleJobResponse message;
   while (reader->Read(&message)) {
-    if (message.has_job()) Learn(job, message.job());
+    if (message.has_job()) Learn(job, message.job(), "Watch");
   }
   const absl::Status end = client::FromGrpc(reader->Finish());
   if (end.ok() && !HasEnded(job.end)) Wrong(job, "a watch was OK before the end");
@@ -148,7 +148,7 @@ void Visitor::Cancel(OwnJob& job) {
   if (seen.ok()) {
     findings_.Count("cancellations acknowledged");
     job.cancelled = true;
-    return Learn(job, *seen);
+    return Learn(job, *seen, "Cancel");
   }
   if (client::ErrorReason(seen.status()) == "JOB_ALREADY_ENDED") return Get(job);
   Wrong(job, absl::StrCat("Cancel: ", seen.status().ToString()));
@@ -176,7 +176,8 @@ void Visitor::List() {
   std::map<std::string, const v1::EnsembleJob*> listed;
   for (const v1::EnsembleJob& job : page->jobs()) listed[job.name()] = &job;
   for (OwnJob& job : jobs_) {
-    if (const auto found = listed.find(job.name); found != listed.end()) Learn(job, *found->second);
+    if (const auto found = listed.find(job.name); found != listed.end())
+      Learn(job, *found->second, "List");
   }
 }
 
@@ -201,11 +202,11 @@ void Visitor::Fetch(const OwnJob& job) {
   }
 }
 
-void Visitor::Learn(OwnJob& job, const v1::EnsembleJob& seen) {
+void Visitor::Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from) {
   if (seen.name() != job.name) Wrong(job, absl::StrCat("is answered as ", seen.name()));
   if (HasEnded(job.end) && seen.state() != job.end) {
-    Wrong(job, absl::StrCat("ended as ", v1::EnsembleJob::State_Name(job.end), ", now ",
-                            v1::EnsembleJob::State_Name(seen.state())));
+    Wrong(job, absl::StrCat("ended as ", v1::EnsembleJob::State_Name(job.end), " by ", job.end_from,
+                            ", now ", v1::EnsembleJob::State_Name(seen.state()), " by ", from));
   }
   const bool given_up =
       seen.state() == v1::EnsembleJob::CANCELLED || seen.state() == v1::EnsembleJob::CANCELLING;
@@ -216,6 +217,7 @@ void Visitor::Learn(OwnJob& job, const v1::EnsembleJob& seen) {
   if (!HasEnded(seen.state())) return;
   if (!HasEnded(job.end)) CheckSamples(job, seen);
   job.end = seen.state();
+  job.end_from = from;
 }
 
 // What the job says it computed is what its points say.
@@ -240,7 +242,7 @@ void Visitor::CheckAll() {
       Wrong(job, absl::StrCat("at the end: ", ended.status().ToString()));
       continue;
     }
-    Learn(job, *ended);
+    Learn(job, *ended, "the library's watch");
     Get(job);
     Fetch(job);
     AskAgain(job);

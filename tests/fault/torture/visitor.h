@@ -50,6 +50,7 @@ class Visitor {
     std::string name;
     bool cancelled = false;  // and acknowledged
     v1::EnsembleJob::State end = v1::EnsembleJob::STATE_UNSPECIFIED;
+    const char* end_from = "";  // the call that told it
   };
 
   template <typename Call>
@@ -67,7 +68,8 @@ class Visitor {
   void List();
   void Fetch(const OwnJob& job);
 
-  void Learn(OwnJob& job, const v1::EnsembleJob& seen);
+  // `from`: the call that was answered.
+  void Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from);
   void CheckSamples(const OwnJob& job, const v1::EnsembleJob& seen);
   bool Chance(double probability);
   size_t Pick(size_t count);
