@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/call_observer.h"
@@ -25,6 +26,16 @@ std::string RequestIdOf(const grpc::CallbackServerContext& context) {
   if (found == context.client_metadata().end()) return RandomId();
   const std::string id(found->second.data(), found->second.size());
   return IsRequestId(id) ? id : RandomId();
+}
+
+absl::Status RoleTooLow(const Principal& caller, Role least) {
+  const char* const hint = caller.name == LocalPrincipal().name
+                               ? "; the server's flag --loopback-role sets the role of local users"
+                               : "";
+  return WithReason(absl::PermissionDeniedError(
+                        absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
+                                     ", this call needs the role ", RoleName(least), hint)),
+                    "ROLE_TOO_LOW", "role", RoleName(least));
 }
 
 }  // namespace

@@ -40,14 +40,6 @@ google::rpc::ErrorInfo Info(const std::string& reason) {
   return info;
 }
 
-absl::Status WithInfo(absl::Status status, const std::string& reason, const std::string& key,
-                      const std::string& value) {
-  google::rpc::ErrorInfo info = Info(reason);
-  (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
-  SetDetail(status, info);
-  return status;
-}
-
 google::rpc::BadRequest AsManyAsFit(const std::vector<FieldViolation>& violations) {
   google::rpc::BadRequest fitting;
   for (const FieldViolation& violation : violations) {
@@ -99,38 +91,40 @@ absl::Status InvalidField(std::string field, std::string description) {
 }
 
 absl::Status RequestIdReused(const std::string& request_id) {
-  return WithInfo(absl::InvalidArgumentError(absl::StrCat(
-                      "request_id ", request_id, " was used before, with another request")),
-                  "REQUEST_ID_REUSED", "request_id", request_id);
+  return WithReason(absl::InvalidArgumentError(absl::StrCat(
+                        "request_id ", request_id, " was used before, with another request")),
+                    "REQUEST_ID_REUSED", "request_id", request_id);
 }
 
 absl::Status JobNotFound(const std::string& name) {
-  return WithInfo(absl::NotFoundError(absl::StrCat("no such job: ", name)), "JOB_NOT_FOUND", "name",
-                  name);
+  return WithReason(absl::NotFoundError(absl::StrCat("no such job: ", name)), "JOB_NOT_FOUND",
+                    "name", name);
 }
 
 absl::Status ResultNotFound(const std::string& name) {
-  return WithInfo(absl::NotFoundError(absl::StrCat(
-                      "no such result: ", name, "; the point is not finished, or not in the grid")),
-                  "RESULT_NOT_FOUND", "name", name);
+  return WithReason(
+      absl::NotFoundError(absl::StrCat("no such result: ", name,
+                                       "; the point is not finished, or not in the grid")),
+      "RESULT_NOT_FOUND", "name", name);
 }
 
 absl::Status ResultsExpired(const std::string& name) {
-  return WithInfo(absl::FailedPreconditionError(absl::StrCat(
-                      "the results of ", name, " have expired; submit its specification again")),
-                  "RESULTS_EXPIRED", "name", name);
+  return WithReason(absl::FailedPreconditionError(absl::StrCat(
+                        "the results of ", name, " have expired; submit its specification again")),
+                    "RESULTS_EXPIRED", "name", name);
 }
 
 absl::Status JobAlreadyEnded(const std::string& name, absl::string_view state) {
-  return WithInfo(absl::FailedPreconditionError(
-                      absl::StrCat(name, " has ended already: it is ", std::string(state))),
-                  "JOB_ALREADY_ENDED", "state", std::string(state));
+  return WithReason(absl::FailedPreconditionError(
+                        absl::StrCat(name, " has ended already: it is ", std::string(state))),
+                    "JOB_ALREADY_ENDED", "state", std::string(state));
 }
 
 absl::Status JobStillActive(const std::string& name, absl::string_view state) {
-  return WithInfo(absl::FailedPreconditionError(absl::StrCat(
-                      name, " is ", std::string(state), ": cancel it, or wait until it has ended")),
-                  "JOB_STILL_ACTIVE", "state", std::string(state));
+  return WithReason(
+      absl::FailedPreconditionError(absl::StrCat(name, " is ", std::string(state),
+                                                 ": cancel it, or wait until it has ended")),
+      "JOB_STILL_ACTIVE", "state", std::string(state));
 }
 
 absl::Status ShuttingDown() {
@@ -174,22 +168,12 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
 }
 
 // `local` with a role below admin comes over the loopback.
-absl::Status RoleTooLow(const Principal& caller, Role least) {
-  const char* const hint = caller.name == LocalPrincipal().name
-                               ? "; the server's flag --loopback-role sets the role of local users"
-                               : "";
-  return WithInfo(absl::PermissionDeniedError(
-                      absl::StrCat(caller.name, " has the role ", RoleName(caller.role),
-                                   ", this call needs the role ", RoleName(least), hint)),
-                  "ROLE_TOO_LOW", "role", RoleName(least));
-}
-
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {
   const std::string error =
       reached.standard_error
           ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
           : "no error that could be told";
-  return WithInfo(
+  return WithReason(
       absl::DeadlineExceededError(absl::StrFormat(
           "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,
           *spec.target.tolerance, *spec.target.budget_seconds, error)),
@@ -206,6 +190,14 @@ absl::Status StoreFailure(const absl::Status& status) {
 
 absl::Status WithReason(absl::Status status, const std::string& reason) {
   SetDetail(status, Info(reason));
+  return status;
+}
+
+absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
+                        const std::string& value) {
+  google::rpc::ErrorInfo info = Info(reason);
+  (*info.mutable_metadata())[key] = Shortened(value, kMaxMetadataValue);
+  SetDetail(status, info);
   return status;
 }
 

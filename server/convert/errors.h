@@ -18,7 +18,6 @@
 #include "core/ensemble/point_summary.h"
 #include "google/rpc/status.pb.h"
 #include "grpcpp/support/status.h"
-#include "server/security/principal.h"
 
 namespace ballpiston::server {
 
@@ -49,8 +48,6 @@ absl::Status UserNotListed(const std::string& user);  // a Unix user; reason CRE
 absl::Status LimitExceeded(const std::string& reason, const std::string& what,
                            const std::string& flag, double limit);
 
-absl::Status RoleTooLow(const Principal& caller, Role least);  // PERMISSION_DENIED
-
 // DEADLINE_EXCEEDED: a point's budget was spent before the tolerance was reached. The message gives
 // the error that was reached.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
@@ -61,8 +58,10 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
 // reason already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
 
-// Any status, with the reason and domain that clients look for.
+// Any status, with the reason and domain that clients look for, and with one of the metadata.
 absl::Status WithReason(absl::Status status, const std::string& reason);
+absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
+                        const std::string& value);
 // The same, unless it has one.
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston::server {
 namespace {

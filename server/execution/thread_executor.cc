@@ -6,7 +6,7 @@
 #include "absl/status/status.h"
 #include "core/ensemble/chunk_fold.h"
 #include "server/execution/block_session.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 #include "server/scheduling/guarded.h"
 
 namespace ballpiston::server {

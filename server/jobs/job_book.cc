@@ -190,12 +190,12 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
 JobBook::~JobBook() {
   Shutdown();
   store_.Flush().IgnoreError();  // what tells this book of jobs that have ended was told then
+  StoreNewWork(absl::Now());
 }
 
 void JobBook::Shutdown() {
   store_.StopWaiting();
   scheduler_.Shutdown();
-  StoreNewWork(absl::Now());
 }
 
 // ---- what an earlier process left ----

@@ -109,6 +109,9 @@ class JobBook {
   // Stops computing; what is unfinished stays so in the store.
   void Shutdown();
 
+  // Records the processor time that was not stored yet.
+  void StoreNewWork(absl::Time now);
+
   // What Create would answer now.
   absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
                                           const v1::CreateEnsembleJobRequest& request,
@@ -183,7 +186,6 @@ class JobBook {
   void AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const;
   std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;
   void EndLongJobs();
-  void StoreNewWork(absl::Time now);
 
   Store& store_;
   const Limits limits_;
@@ -194,7 +196,7 @@ class JobBook {
   ActivePoints active_points_;
   Usage usage_;
   Retention retention_;
-  absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and Shutdown
+  absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and at the end
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;

@@ -15,9 +15,9 @@
 #include "core/markov/relaxation_spectrum.h"
 #include "server/convert/result_record.h"
 #include "server/convert/spec.h"
-#include "server/execution/machine_rates.h"
-#include "server/execution/processor_time.h"
 #include "server/observability/log.h"
+#include "server/processor_time.h"
+#include "server/scheduling/machine_rates.h"
 #include "server/store/pilot_table.h"
 
 namespace ballpiston::server {

@@ -17,7 +17,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "core/ensemble/chunk_fold.h"
-#include "server/convert/lease_record.h"
+#include "server/worker/lease_record.h"
 
 namespace ballpiston::server {
 

@@ -7,7 +7,7 @@
 
 #include "core/ensemble/block_run.h"
 #include "core/ensemble/point_fold.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston::server {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/convert/lease_record.h"
+#include "server/worker/lease_record.h"
 
 namespace ballpiston::server {
 

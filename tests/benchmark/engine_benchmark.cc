@@ -28,7 +28,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/direction.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston {
 namespace {

@@ -17,7 +17,7 @@
 #include "core/markov/jump_process.h"
 #include "core/sampling/counter_random.h"
 #include "core/sampling/invariant_measure.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston {
 namespace {

@@ -111,7 +111,8 @@ TEST(IncludeRules, DownwardIncludesAreRight) {
                             "#include \"core/geometry/pair_geometry.h\"\n#include <Eigen/Core>\n"),
               IsEmpty());
   EXPECT_THAT(WrongIncludes("server/jobs/x.cc",
-                            "#include <thread>\n#include <sys/stat.h>\n#include <sqlite3.h>\n"
+                            "#include <thread>\n#include <sys/stat.h>\n"
+                            "#include \"server/store/store.h\"\n"
                             "#include \"core/ensemble/chunk_plan.h\"\n"),
               IsEmpty());
 }
@@ -119,6 +120,14 @@ TEST(IncludeRules, DownwardIncludesAreRight) {
 TEST(IncludeRules, GeometryIncludesNothingAboveIt) {
   ExpectWrong("core/geometry/x.h", "\"core/closed_form/kernel.h\"");
   ExpectWrong("core/geometry/x.h", "\"core/sampling/direction.h\"");
+}
+
+TEST(IncludeRules, NoTwoFoldersOfTheServerIncludeEachOther) {
+  ExpectWrong("server/convert/x.h", "\"server/security/principal.h\"");
+  ExpectWrong("server/convert/x.h", "\"server/scheduling/lease.h\"");
+  ExpectWrong("server/scheduling/x.cc", "\"server/execution/thread_executor.h\"");
+  ExpectWrong("server/store/x.cc", "\"server/jobs/job.h\"");
+  ExpectWrong("server/security/x.cc", "\"server/api/call.h\"");
 }
 
 TEST(IncludeRules, ClosedFormAndSamplingAreSeparate) {
@@ -204,7 +213,7 @@ TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
 TEST(IncludeRules, TheWorkerKnowsFilesAndNoService) {
   EXPECT_THAT(WrongIncludes("server/worker/x.cc",
                             "#include <fcntl.h>\n#include \"core/ensemble/chunk_fold.h\"\n"
-                            "#include \"server/convert/lease_record.h\"\n"
+                            "#include \"server/worker/lease_record.h\"\n"
                             "#include \"ballpiston/storage/records.pb.h\"\n"),
               IsEmpty());
   for (const char* include : {"\"ballpiston/v1/spec.pb.h\"", "\"server/convert/spec.h\"",

@@ -8,7 +8,7 @@
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/predicted_hits.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston::method_comparison {
 namespace {

@@ -21,7 +21,7 @@
 #include "core/geometry/pair_geometry.h"
 #include "core/statistics/kl_divergence.h"
 #include "core/statistics/told_error.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
 #include "tools/method_comparison/ingoing_divergence.h"
 #include "tools/method_comparison/limit_floor.h"

@@ -5,7 +5,7 @@
 #include "core/closed_form/conditional_rate.h"
 #include "core/experiment/predicted_hits.h"
 #include "core/experiment/return_orbits.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 #include "tools/method_comparison/method_orbits.h"
 
 namespace ballpiston::method_comparison {

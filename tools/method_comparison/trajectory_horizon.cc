@@ -6,7 +6,7 @@
 
 #include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 #include "tools/flows/fixed_step_flow.h"
 
 namespace ballpiston::method_comparison {

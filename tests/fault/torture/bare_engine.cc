@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "server/convert/spec.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston::torture {
 namespace {

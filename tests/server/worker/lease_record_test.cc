@@ -1,4 +1,4 @@
-#include "server/convert/lease_record.h"
+#include "server/worker/lease_record.h"
 
 #include <cmath>
 #include <functional>

@@ -10,7 +10,7 @@
 #include "core/ensemble/chunk_fold.h"
 #include "core/ensemble/ensemble_spec.h"
 #include "core/ensemble/point_experiment.h"
-#include "server/convert/lease_record.h"
+#include "server/worker/lease_record.h"
 
 namespace ballpiston::server {
 

@@ -1,4 +1,4 @@
-#include "server/execution/machine_rates.h"
+#include "server/scheduling/machine_rates.h"
 
 #include <gtest/gtest.h>
 

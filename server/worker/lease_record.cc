@@ -1,4 +1,4 @@
-#include "server/convert/lease_record.h"
+#include "server/worker/lease_record.h"
 
 #include <cassert>
 #include <memory>
@@ -16,7 +16,7 @@
 namespace ballpiston::server {
 namespace {
 
-absl::Status Damaged(absl::string_view field, absl::string_view why) {
+absl::Status DamagedRecord(absl::string_view field, absl::string_view why) {
   return absl::DataLossError(absl::StrCat("field ", field, " of a lease ", why));
 }
 
@@ -86,11 +86,11 @@ absl::StatusOr<Grid> PointOf(const storage::Question& record) {
   Grid grid;
   for (const storage::Value& value : record.point()) {
     if (value.parameter() >= kParameters.size()) {
-      return Damaged("question.point.parameter",
-                     absl::StrCat("is ", value.parameter(), ", an unknown parameter"));
+      return DamagedRecord("question.point.parameter",
+                           absl::StrCat("is ", value.parameter(), ", an unknown parameter"));
     }
     std::vector<double>& list = grid[*kParameters[value.parameter()]];
-    if (!list.empty()) return Damaged("question.point", "has a parameter twice");
+    if (!list.empty()) return DamagedRecord("question.point", "has a parameter twice");
     list.push_back(value.value());
   }
   return grid;
@@ -103,16 +103,18 @@ absl::Status CheckRest(EnsembleSpec spec) {
   spec.verify = true;
   const std::vector<FieldViolation> found = Violations(spec);
   if (found.empty()) return absl::OkStatus();
-  return Damaged(absl::StrCat("question.", found[0].field), found[0].description);
+  return DamagedRecord(absl::StrCat("question.", found[0].field), found[0].description);
 }
 
 absl::Status CheckModel(const EnsembleSpec& spec) {
   if (!spec.experiment->IsAnsweredBy(spec.model)) {
-    return Damaged("question.model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
-                                                  spec.experiment->name));
+    return DamagedRecord(
+        "question.model",
+        absl::StrCat("is ", Name(spec.model), ", which cannot answer ", spec.experiment->name));
   }
   if (spec.model == Model::kBilliardReference && spec.precision == Precision::kSingle) {
-    return Damaged("question.single_precision", "is set although the model has double precision");
+    return DamagedRecord("question.single_precision",
+                         "is set although the model has double precision");
   }
   return absl::OkStatus();
 }
@@ -121,17 +123,20 @@ absl::Status CheckModel(const EnsembleSpec& spec) {
 
 absl::Status CheckChunks(const storage::Lease& record, const ChunkPlan& plan) {
   if (record.first_chunk() >= plan.chunks()) {
-    return Damaged("first_chunk", absl::StrCat("is ", record.first_chunk(), ", but the plan has ",
-                                               plan.chunks(), " chunks"));
+    return DamagedRecord(
+        "first_chunk",
+        absl::StrCat("is ", record.first_chunk(), ", but the plan has ", plan.chunks(), " chunks"));
   }
   if (record.end_chunk() <= record.first_chunk() || record.end_chunk() > plan.chunks()) {
-    return Damaged("end_chunk", absl::StrCat("is ", record.end_chunk(), "; permitted: ",
-                                             record.first_chunk() + 1, " to ", plan.chunks()));
+    return DamagedRecord("end_chunk", absl::StrCat("is ", record.end_chunk(),
+                                                   "; permitted: ", record.first_chunk() + 1,
+                                                   " to ", plan.chunks()));
   }
   const uint64_t blocks = plan.BlocksIn(record.first_chunk());
   if (record.blocks() < blocks) return absl::OkStatus();
-  return Damaged("blocks", absl::StrCat("is ", record.blocks(), ", but the chunk has ", blocks,
-                                        " blocks, and one or more is to be computed"));
+  return DamagedRecord("blocks",
+                       absl::StrCat("is ", record.blocks(), ", but the chunk has ", blocks,
+                                    " blocks, and one or more is to be computed"));
 }
 
 // The blocks are those of a fold whose complete chunks are possible.
@@ -141,7 +146,7 @@ absl::Status CheckPartial(const PointExperiment& experiment, const PartialChunk&
   const bool is_possible =
       start.blocks == 0 ? start.merged == BlockResult() : CheckFoldState(experiment, state).ok();
   if (is_possible) return absl::OkStatus();
-  return Damaged("partial", "is not a result of the lease's experiment");
+  return DamagedRecord("partial", "is not a result of the lease's experiment");
 }
 
 double PredictedSeconds(const ChunkPlan& plan, const Lease& lease) {
@@ -173,11 +178,12 @@ absl::Status CheckIdentity(const storage::Lease& record) {
                      "; this program has engine version ", kEngineVersion));
   }
   if (record.point() < 0 || record.point() >= kMaxPoints) {
-    return Damaged("point",
-                   absl::StrCat("is ", record.point(), "; permitted: 0 to ", kMaxPoints - 1));
+    return DamagedRecord("point",
+                         absl::StrCat("is ", record.point(), "; permitted: 0 to ", kMaxPoints - 1));
   }
   if (record.attempt() >= 1) return absl::OkStatus();
-  return Damaged("attempt", absl::StrCat("is ", record.attempt(), "; permitted: 1 or greater"));
+  return DamagedRecord("attempt",
+                       absl::StrCat("is ", record.attempt(), "; permitted: 1 or greater"));
 }
 
 }  // namespace
@@ -201,13 +207,13 @@ absl::StatusOr<EnsembleSpec> SpecOfQuestion(const storage::Question& question) {
       .seed = question.seed(),
       .precision = question.single_precision() ? Precision::kSingle : Precision::kDouble};
   if (spec.experiment == nullptr) {
-    return Damaged("question.experiment",
-                   absl::StrCat("is ", question.experiment(), ", an unknown experiment"));
+    return DamagedRecord("question.experiment",
+                         absl::StrCat("is ", question.experiment(), ", an unknown experiment"));
   }
   const std::optional<Model> model = ModelOf(question.model());
   if (!model) {
-    return Damaged("question.model", absl::StrCat("is ", static_cast<int>(question.model()),
-                                                  ", not a model that samples"));
+    return DamagedRecord("question.model", absl::StrCat("is ", static_cast<int>(question.model()),
+                                                        ", not a model that samples"));
   }
   spec.model = *model;
   absl::StatusOr<Grid> grid = PointOf(question);

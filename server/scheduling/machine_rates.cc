@@ -1,4 +1,4 @@
-#include "server/execution/machine_rates.h"
+#include "server/scheduling/machine_rates.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/predicted_hits.h"
-#include "server/execution/processor_time.h"
+#include "server/processor_time.h"
 
 namespace ballpiston::server {
 namespace {

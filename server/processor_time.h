@@ -1,7 +1,7 @@
 // Processor time of the calling thread, in seconds. It does not include the time of other threads
 // and programs.
-#ifndef BALLPISTON_SERVER_EXECUTION_PROCESSOR_TIME_H_
-#define BALLPISTON_SERVER_EXECUTION_PROCESSOR_TIME_H_
+#ifndef BALLPISTON_SERVER_PROCESSOR_TIME_H_
+#define BALLPISTON_SERVER_PROCESSOR_TIME_H_
 
 #include <ctime>
 
@@ -30,4 +30,4 @@ double SecondsOf(const Run& run) {
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_SERVER_EXECUTION_PROCESSOR_TIME_H_
+#endif  // BALLPISTON_SERVER_PROCESSOR_TIME_H_

@@ -1,6 +1,6 @@
 // Measures the sampling rates of this machine, for the core's predictions of cost.
-#ifndef BALLPISTON_SERVER_EXECUTION_MACHINE_RATES_H_
-#define BALLPISTON_SERVER_EXECUTION_MACHINE_RATES_H_
+#ifndef BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_
+#define BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_
 
 #include "core/model_choice/machine_rates.h"
 
@@ -13,4 +13,4 @@ MachineRates MeasureSamplingRates();
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_SERVER_EXECUTION_MACHINE_RATES_H_
+#endif  // BALLPISTON_SERVER_SCHEDULING_MACHINE_RATES_H_

@@ -6,8 +6,8 @@
 //
 // A record that can be parsed may still be damaged, or be written by a foreign program. So reading
 // checks everything that creating the experiment and merging the blocks require.
-#ifndef BALLPISTON_SERVER_CONVERT_LEASE_RECORD_H_
-#define BALLPISTON_SERVER_CONVERT_LEASE_RECORD_H_
+#ifndef BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_
+#define BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_
 
 #include <cstdint>
 #include <string>
@@ -52,4 +52,4 @@ absl::StatusOr<IdentifiedLease> LeaseOfRecord(const storage::Lease& record);
 
 }  // namespace ballpiston::server
 
-#endif  // BALLPISTON_SERVER_CONVERT_LEASE_RECORD_H_
+#endif  // BALLPISTON_SERVER_WORKER_LEASE_RECORD_H_
