@@ -77,7 +77,10 @@ class YearTest : public testing::Test {
     storage::Details details;
     auto* histogram = details.add_histograms();
     for (uint64_t i = 0; i < 750; ++i) histogram->add_counts(1000 + i);
-    return {point, 1e6, std::string(200, 'r'), RecordBytes(details), false};
+    storage::Result result;
+    result.set_index(static_cast<int32_t>(point));
+    result.set_reason(std::string(200, 'r'));
+    return {point, 1e6, RecordBytes(result), RecordBytes(details), false};
   }
 
   void AddJob(absl::Time end) {
