@@ -47,8 +47,8 @@ struct Lease {
 
   bool OpensPoints() const { return !opens.empty(); }
 
-  // Of leases that have chunks of one run: pilots go first, and points end, as a rule, in grid
-  // order.
+  // Both leases have chunks of the same run. A pilot goes before a point, and a point before the
+  // points after it in the grid.
   bool GoesBefore(const Lease& other) const {
     if (pilot.has_value() != other.pilot.has_value()) return pilot.has_value();
     return point < other.point;

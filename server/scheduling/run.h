@@ -63,7 +63,7 @@ class Run {
 
   // A new lease for an executor of this kind; empty if there is none now.
   std::optional<Lease> NextLease(const Capacity& capacity, const ExecutorTraits& executor);
-  // Only one with chunks that go before those of `held`.
+  // A new lease that goes before `held` (Lease::GoesBefore); empty if there is none.
   std::optional<Lease> NextLeaseBefore(const Lease& held, const Capacity& capacity,
                                        const ExecutorTraits& executor);
 
@@ -124,7 +124,7 @@ class Run {
   };
 
   std::optional<Lease> NextChunksOfPilot(const Capacity& capacity);
-  // Of a point before `end`.
+  // The lease has chunks of a point whose index is less than `end`.
   std::optional<Lease> NextChunks(const Capacity& capacity, const ExecutorTraits& executor,
                                   size_t end);
   std::optional<Lease> NextOpening();

@@ -213,7 +213,7 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   return lease;
 }
 
-// The first of them (Lease::GoesBefore).
+// Of the executor's leases with a turn, the one that goes before the others (Lease::GoesBefore).
 std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
   const Lease* first = nullptr;
   const auto end = held_.lower_bound({executor, run.key() + 1, 0});
