@@ -83,6 +83,11 @@ absl::Status Store::Flush() {
   return Await({.change = [](Database&) { return absl::OkStatus(); }, .ordered = true});
 }
 
+void Store::AwaitSwept() {
+  MutexLock lock(mutex_);
+  while (!swept_ && !sweep_is_damaged_ && !closing_) written_.Wait(mutex_);
+}
+
 absl::Status Store::Await(Write write) {
   if (stalled()) {
     if (write.done) write.done(Stalled());
@@ -265,6 +270,7 @@ int64_t Store::pending_writes() const {
 // ---- which writes are next ----
 
 void Store::WriteUntilClosed() {
+  Sweep();  // goes on where the last process stopped
   while (AwaitWork()) {
     if (std::optional<Batch> batch = TakeBatch()) {
       MarkSuperseded(batch->writes);
@@ -482,10 +488,12 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
     NoteHealth(swept.status());
   }
   MutexLock lock(mutex_);
+  swept_ = swept.ok() && !*swept;
   sweeping_ = swept.ok() ? *swept : sweeping_;
   sweep_advances_ = swept.ok() && *swept;
   sweep_is_damaged_ = is_damage;
   next_sweep_ = swept.ok() ? Clock::now() : Clock::now() + options_.retry;
+  written_.NotifyAll();
 }
 
 // ---- what became of them ----
@@ -509,6 +517,7 @@ void Store::Settle(Batch batch, const absl::Status& status) {
 void Store::Requeue(Writes again, size_t freed) {
   MutexLock lock(mutex_);
   in_batch_ = 0;
+  swept_ = false;
   bytes_ -= freed;
   const bool dropped = closing_ || stop_waiting_;
   for (const Write& write : again) {

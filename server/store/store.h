@@ -109,6 +109,9 @@ class Store {
   // When this returns OK, all records posted before the call are on disk.
   absl::Status Flush();
 
+  // For tests: returns when nothing is left to free after the writes so far.
+  void AwaitSwept();
+
   // The last write failed because of the disk.
   bool failing() const;
 
@@ -228,6 +231,7 @@ class Store {
   int64_t commits_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t checkpoints_written_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t failures_ ABSL_GUARDED_BY(mutex_) = 0;
+  bool swept_ ABSL_GUARDED_BY(mutex_) = false;  // the last step was after the last batch, and ended
   bool sweeping_ ABSL_GUARDED_BY(mutex_) = false;          // the last step found something to do
   bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // and has done it
   bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start

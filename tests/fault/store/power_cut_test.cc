@@ -73,6 +73,7 @@ class Client {
     job.remove.made = disk_.operation_count();
     ASSERT_OK(service.Delete(job.id));
     job.remove.answered = disk_.operation_count();
+    service.store().AwaitSwept();  // what a later request writes comes after it
   }
 
   void SeeSuccess(ServiceOnDisk& service, uint64_t seed) {
