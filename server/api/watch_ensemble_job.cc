@@ -245,7 +245,7 @@ absl::StatusOr<bool> WatchReactor::TellState() {
     if (!told.ok() || *told) return told;
   }
   if (!TakeRoom(job_.active->spec_bytes())) return false;
-  Job::View view = job_.active->Now();
+  Job::View view = service_.book.Now(*job_.active);
   // One that has ended just now may have more points to tell.
   if (!has_ended && HasEnded(view.job.state())) {
     LeaveRoom();

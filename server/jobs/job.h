@@ -51,7 +51,6 @@ class Job {
 
   JobState state() const;
   View Now() const;
-  v1::EnsembleJob Message() const { return Now().job; }
   v1::JobProgress Progress() const;
   JobRecord Record() const;  // without the specification, which may be large
   size_t spec_bytes() const { return spec_.size(); }

@@ -405,7 +405,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   if (!committed.ok()) return StoreFailure(committed);
   Failpoint("create.before_answer");
   if (!acceptance.refused.ok()) return acceptance.refused;
-  return acceptance.earlier ? EarlierJob(caller, acceptance) : job->Message();
+  return acceptance.earlier ? EarlierJob(caller, acceptance) : Now(*job).job;
 }
 
 // As it is now; if somebody has deleted it since, as it was when it was found.
@@ -438,14 +438,17 @@ absl::StatusOr<JobRecord> JobBook::ReadRecord(const Principal& caller, const std
 
 absl::StatusOr<v1::EnsembleJob> JobBook::Get(const Principal& caller, const std::string& id) {
   // In this order: a job leaves the book only when its end is in the store.
-  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) {
-    v1::EnsembleJob message = job->Message();
-    AddExpireTime(job->Record(), message);
-    return message;
-  }
+  if (const std::shared_ptr<Job> job = ActiveOrNull(caller, id)) return Now(*job).job;
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   return Message(*record);
+}
+
+Job::View JobBook::Now(const Job& job) const {
+  const JobRecord before = job.Record();
+  Job::View view = job.Now();
+  AddExpireTime(before, view.job);
+  return view;
 }
 
 v1::EnsembleJob JobBook::Message(const JobRecord& record) const {

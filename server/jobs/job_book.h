@@ -135,6 +135,9 @@ class JobBook {
   absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
                                          int64_t point);
 
+  // An active job, or one that was active a moment ago, with the time when its results expire.
+  Job::View Now(const Job& job) const;
+
   absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
   // The job's unfinished points, the newest `limit`, as they are or were at most `max_age` ago.

@@ -269,6 +269,20 @@ TEST_F(WatchTest, TheTerminalStateIsToldOnce) {
   EXPECT_OK(rest.reader->Finish());
 }
 
+// To a watch from before the end, which is told by the job itself, as to a later one.
+TEST_F(WatchTest, TheEndSaysWhenTheResultsExpire) {
+  RunningServer& server =
+      StartWith({.factory = GatedExperiments(gate_, 3), .limits = {.retain_days = 3}});
+  const std::string name = server.Submit(Equilibrium(1, 5));
+  WatchStream stream(server, name);
+  EXPECT_FALSE(stream.Next()->job().has_expire_time());
+  gate_.Open();
+  for (const EnsembleJob& job :
+       {stream.ToTheEnd().back().job(), WatchStream(server, name).ToTheEnd().back().job()}) {
+    EXPECT_EQ(job.expire_time().seconds() - job.end_time().seconds(), 3 * 86400);
+  }
+}
+
 TEST_F(WatchTest, WithTheLastTokenOnlyTheEndIsSent) {
   RunningServer& server = Start();
   const std::string name = server.Submit(Equilibrium(1, 5));

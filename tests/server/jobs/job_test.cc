@@ -73,7 +73,7 @@ TEST(Job, AnIllegalTransitionChangesNothing) {
   EXPECT_TRUE(job.Enter(EnsembleJob::CANCELLING, absl::Now()));
   EXPECT_FALSE(job.Enter(EnsembleJob::RUNNING, absl::Now()));
   EXPECT_EQ(job.state(), EnsembleJob::CANCELLING);
-  EXPECT_FALSE(job.Message().has_start_time());
+  EXPECT_FALSE(job.Now().job.has_start_time());
   EXPECT_EQ(told, 1);
 }
 
@@ -81,8 +81,8 @@ TEST(Job, TimesAreThoseOfTheTransitions) {
   Job job(JobWithPoints(4), nullptr);
   job.Enter(EnsembleJob::RUNNING, absl::FromUnixSeconds(10));
   job.Enter(EnsembleJob::SUCCEEDED, absl::FromUnixSeconds(20));
-  EXPECT_EQ(job.Message().start_time().seconds(), 10);
-  EXPECT_EQ(job.Message().end_time().seconds(), 20);
+  EXPECT_EQ(job.Now().job.start_time().seconds(), 10);
+  EXPECT_EQ(job.Now().job.end_time().seconds(), 20);
 }
 
 TEST(Job, ProgressIsTheShareOfWorkDone) {
@@ -226,7 +226,7 @@ TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());
-  const EnsembleJob job = job_->Message();
+  const EnsembleJob job = job_->Now().job;
   EXPECT_EQ(job.state(), EnsembleJob::FAILED);
   EXPECT_THAT(job.error().message(), testing::HasSubstr("of 3 computed points the store keeps 2"));
 }
