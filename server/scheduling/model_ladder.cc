@@ -53,7 +53,8 @@ double SecondsToStore(const std::string& path, PointRow row) {
   constexpr int64_t kResults = 3000;
   RemoveStore(path);
   const absl::Cleanup remove = [&] { RemoveStore(path); };
-  auto store = Store::Open(path, {.delay = std::chrono::milliseconds(0), .readers = 1});
+  auto store =
+      Store::Open(path, {.delay = std::chrono::milliseconds(0), .readers = 1, .reserve_bytes = 0});
   if (!store.ok()) return 0;
   const Clock::time_point begin = Clock::now();
   for (row.point = 0; row.point < kResults; ++row.point) {

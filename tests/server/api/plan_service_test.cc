@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <map>
 #include <set>
 #include <vector>
@@ -7,20 +8,28 @@
 #include "tests/server/error_details.h"
 #include "tests/server/running_server.h"
 #include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ballpiston::server {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
+using ::testing::Not;
 
 // One server for all: measuring its rates takes some 0.3 s.
 class PlanServiceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    server_ = new RunningServer({.factory = nullptr});  // the core's experiments
+    folder_ = new TemporaryFolder;
+    // The core's experiments.
+    server_ = new RunningServer({.data_dir = folder_->path(), .factory = nullptr});
   }
-  static void TearDownTestSuite() { delete server_; }
+  static void TearDownTestSuite() {
+    delete server_;
+    delete folder_;
+  }
 
   static grpc::Status Plan(const v1::EnsembleSpec& spec, v1::PlanEnsembleJobResponse* plan) {
     grpc::ClientContext context;
@@ -35,6 +44,7 @@ class PlanServiceTest : public testing::Test {
     return plan;
   }
 
+  static inline TemporaryFolder* folder_ = nullptr;
   static inline RunningServer* server_ = nullptr;
 };
 
@@ -127,6 +137,14 @@ TEST_F(PlanServiceTest, RatesAreMeasuredAndPositive) {
   EXPECT_GT(rates.wall_hit_single(), 0);
   EXPECT_GT(rates.event_reference(), 0);
   EXPECT_LT(rates.wall_hit(), rates.event_reference());
+}
+
+// To measure what storing takes, the server makes a store for a moment.
+TEST_F(PlanServiceTest, MeasuringLeavesNoFilesBehind) {
+  PlanOf(PlanQuestion(v1::EnsembleSpec::EQUILIBRIUM));
+  for (const auto& file : std::filesystem::directory_iterator(folder_->path())) {
+    EXPECT_THAT(file.path().filename().string(), Not(HasSubstr("rates")));
+  }
 }
 
 TEST_F(PlanServiceTest, AnInvalidSpecIsRefusedAsByCreate) {
