@@ -1,7 +1,8 @@
 #!/bin/bash
 # Checks the server's locks with Clang: which mutex guards what, and which is taken first
-# (server/mutex.h). Clang only parses: the sources of each folder that has a mutex, together. Before, it
-# has to report the seeded faults of tests/sanitizer/. Exits with 1 if anything is wrong.
+# (server/mutex.h). Clang only parses, all sources of a folder together, if the folder has a
+# mutex. First it has to report the seeded faults of tests/sanitizer/. Exits with 1 if anything is
+# wrong.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly GENERATED=build/thread-safety

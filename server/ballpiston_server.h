@@ -54,7 +54,7 @@ struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
   SecurityOptions security;
-  // Whom a Unix socket lets in that is not open to others.
+  // The users who can connect to a Unix socket that is not open to others.
   std::set<uid_t> socket_users = OwnUserAndRoot();
   int workers = 1;
   std::optional<SlurmOptions> slurm = {};  // a cluster beside the threads
@@ -101,7 +101,7 @@ class BallpistonServer {
   void StartKeepingLimits();
   absl::Status Listen();
   void BoundConnections(grpc::ServerBuilder& builder) const;
-  // Who receives the connections of the server that is built.
+  // Returns the function that receives the connections of the server that is being built.
   SocketListener::Receive AddReceiver(grpc::ServerBuilder& builder);
   absl::Status StartMetrics();
   void StartHealth();
@@ -131,7 +131,7 @@ class BallpistonServer {
   std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
-  std::unique_ptr<PeriodicThread> limits_;    // keeps what the limits ask for
+  std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
   std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
   std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
 };

@@ -25,7 +25,7 @@ struct Limits {
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
   int64_t max_transfer_mib = 512;                // of all requests that are being received
   // What is stored.
-  double retain_days = 0;       // after the end of a job its results expire
+  double retain_days = 0;       // from the end of a job until its results expire
   int64_t max_store_bytes = 0;  // above it the oldest results expire
   int64_t max_store_bytes_per_principal = 0;
   // Processor time.

@@ -63,7 +63,8 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
   LogInfo("stopping");
 }
 
-// Ends the process if it lives longer than `limit`: all that was acknowledged is on disk by then.
+// Ends the process if this object lives longer than `limit`. Everything that was acknowledged is on
+// disk by then.
 class Watchdog {
  public:
   using Clock = std::chrono::steady_clock;

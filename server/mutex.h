@@ -1,12 +1,15 @@
-// A mutex, its lock in a scope and its condition variable, which Clang checks: a member says with
-// ABSL_GUARDED_BY which mutex guards it, a function with ABSL_EXCLUSIVE_LOCKS_REQUIRED that the
-// caller holds it, with ABSL_LOCKS_EXCLUDED that the function takes it, and a mutex with
-// ABSL_ACQUIRED_BEFORE which other comes later. `make thread-safety` fails if the code does
-// otherwise. The analysis looks at one function at a time, so it sees no order between mutexes of
-// classes that call each other.
+// A mutex, its lock in a scope and its condition variable. Clang checks their use:
+//
+//   ABSL_GUARDED_BY                which mutex guards a member
+//   ABSL_EXCLUSIVE_LOCKS_REQUIRED  the caller of a function has to hold the mutex
+//   ABSL_LOCKS_EXCLUDED            the function takes the mutex; its caller must not hold it
+//   ABSL_ACQUIRED_BEFORE           which other mutex is taken later
+//
+// `make thread-safety` fails if the code does otherwise. The analysis looks at one function at a
+// time, so it sees no order between mutexes of classes that call each other.
 //
 // absl::Mutex has these annotations too, but Debian's library of it is not instrumented: the thread
-// sanitizer would not see what it orders, as it does of std::mutex.
+// sanitizer would not see the order that it enforces. It sees that of std::mutex.
 #ifndef BALLPISTON_SERVER_MUTEX_H_
 #define BALLPISTON_SERVER_MUTEX_H_
 
@@ -23,8 +26,8 @@ class ABSL_LOCKABLE Mutex {
   void Lock() ABSL_EXCLUSIVE_LOCK_FUNCTION() { mutex_.lock(); }
   void Unlock() ABSL_UNLOCK_FUNCTION() { mutex_.unlock(); }
 
-  // Tells the analysis, and does nothing. For a lambda that runs while its maker holds the mutex:
-  // the analysis takes it for a function of its own.
+  // Tells the analysis that the mutex is held, and does nothing. For a lambda that runs while its
+  // creator holds the mutex: the analysis treats the lambda as a function of its own.
   void AssertHeld() const ABSL_ASSERT_EXCLUSIVE_LOCK() {}
 
  private:
@@ -43,7 +46,7 @@ class ABSL_SCOPED_LOCKABLE MutexLock {
     if (held_) mutex_.Unlock();
   }
 
-  // Within the scope, by turns.
+  // Releases the mutex within the scope, and takes it again.
   void Unlock() ABSL_UNLOCK_FUNCTION() {
     held_ = false;
     mutex_.Unlock();
@@ -58,8 +61,8 @@ class ABSL_SCOPED_LOCKABLE MutexLock {
   bool held_ = true;
 };
 
-// Wakes without cause too, so a wait belongs into a loop. There are no predicates, because the
-// analysis would not know that they run with the mutex held.
+// A wait may end without a notification, so it belongs in a loop. There are no predicates, because
+// the analysis would not know that they run with the mutex held.
 class Condition {
  public:
   void Wait(Mutex& mutex) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex) {
@@ -68,7 +71,7 @@ class Condition {
     lock.release();
   }
 
-  // False: it is `end` or later.
+  // False: the time `end` has come.
   bool WaitUntil(Mutex& mutex, std::chrono::steady_clock::time_point end)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex) {
     std::unique_lock lock(mutex.mutex_, std::adopt_lock);

@@ -12,7 +12,7 @@ namespace ballpiston::server {
 
 class PeriodicThread {
  public:
-  // Calls it at once, and then `interval` after each return, without a lock.
+  // Calls `call` at once, and again `interval` after each return. No lock is held during a call.
   PeriodicThread(std::chrono::milliseconds interval, std::function<void()> call);
   ~PeriodicThread();  // returns when the last call has returned
 

@@ -25,7 +25,7 @@ enum class Completion { kBash, kZsh, kFish, kWords };
 struct Options {
   v1::EnsembleSpec spec;
   std::string spec_file;
-  std::string again;  // the job that asked the question before
+  std::string again;  // the job whose question is asked again
   v1::EvaluatePairsRequest closed_forms;
 
   CreateOptions create;

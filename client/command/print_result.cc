@@ -31,8 +31,8 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
   WarnOfEscapes(point, err);
 }
 
-// Each page may be asked for again, of a server that was started again: what came before it has
-// been printed already, and is not asked for twice. Begins with the first page.
+// If the server restarts, only the page in progress is requested again: the pages before it have
+// been printed. Calls writer.Begin when the first page has arrived.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job, Format format,
                          ResultWriter& writer, std::ostream& err) {
   std::string token;

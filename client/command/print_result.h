@@ -11,9 +11,9 @@
 
 namespace ballpiston::client {
 
-// kFailed for a job that failed or was cancelled; what it finished is printed all the same.
+// kFailed for a job that failed or was cancelled; its finished points are printed too.
 // FAILED_PRECONDITION, with a hint, if the results have expired; then nothing is printed.
-// `answered_from_store`: Create said so, which the server does not remember.
+// `answered_from_store`: from the answer of Create, because the server does not store it.
 VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
                        Terminal& terminal, bool answered_from_store = false);
 

@@ -1,5 +1,6 @@
 // An ensemble's specification from the command line: EXPERIMENT with the flags of grid, target and
-// method, or --spec FILE with all of it as proto JSON, or --again JOB, a job that asked it before.
+// method, or --spec FILE with all of it as proto JSON, or --again JOB with the specification of an
+// earlier job.
 //
 // Only the form is checked here. The server knows the physics: it checks the values, and reports
 // every violation at once.
@@ -17,13 +18,13 @@
 namespace ballpiston::client {
 
 // INVALID_ARGUMENT if there is no experiment, if targets exclude each other, or if the file cannot
-// be used. With --again the specification is empty: the server has it.
+// be used. With --again the specification is empty, because the server has it.
 absl::StatusOr<v1::EnsembleSpec> SpecOf(const Options& options);
 
 using VerbOfQuestion = std::function<VerbResult(const Connection&, const v1::EnsembleSpec&)>;
 
-// Connects and runs `verb` with the specification, which with --again is the job's. The command
-// line is checked before the server is asked anything.
+// Connects and runs `verb` with the specification; with --again it is read from the job. The
+// command line is checked before any call.
 VerbResult WithQuestion(const Options& options, const Terminal& terminal,
                         const VerbOfQuestion& verb);
 

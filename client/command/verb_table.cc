@@ -133,7 +133,7 @@ const FlagGroup kMethod = {
       "JSON file with the whole question (- for standard input); it replaces EXPERIMENT and all "
       "flags of grid, target and method"},
      {"--again", Job(To(&Options::again)),
-      "job whose whole question to ask again, for instance because its results have expired; it "
+      "job whose question is asked again, for instance because its results have expired; it "
       "replaces EXPERIMENT and all flags of grid, target and method"}}};
 
 const FlagGroup kJob = {

@@ -64,14 +64,14 @@ class Client {
   // that had ended.
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
                                          const std::string& request_id = {}) const;
-  // The results of a pinned job do not expire. `pinned` false: they may again.
+  // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
   absl::StatusOr<v1::EnsembleJob> Pin(const std::string& name, bool pinned) const;
   // Do not retry: if the first attempt succeeded, the second finds no such job.
   absl::Status Delete(const std::string& name) const;
 
-  // FAILED_PRECONDITION (RESULTS_EXPIRED) if the server keeps the specification alone: Create with
-  // the specification of the job computes the same results again.
+  // FAILED_PRECONDITION (RESULTS_EXPIRED) if the server keeps only the specification: Create with
+  // this specification computes the same results again.
   //
   // The finished points in grid order, page by page, so that a large result need not fit into
   // memory. `page_token`: empty for the first page, else next_page_token of the page before.

@@ -51,8 +51,8 @@ std::string ConnectionHint(const ChannelSecurity& security, absl::string_view me
 
 std::string SocketHint(absl::string_view message) {
   if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
-  return "\n  that server may not serve your user: its operator can open the socket to others "
-         "with --socket-mode";
+  return "\n  perhaps that server does not accept your user: its operator can open the socket to "
+         "other users with --socket-mode";
 }
 
 }  // namespace ballpiston::client

@@ -1,7 +1,7 @@
-// Prints jobs: a table, {"jobs": [...]}, one job a line, or CSV. The table has a column for whose a
-// job is if there is more than one principal, one for priorities if there is any but 0, and one for
-// results that are pinned, have expired or will expire within a week, if there are any; CSV has
-// them always.
+// Prints jobs: a table, {"jobs": [...]}, one job a line, or CSV. The table has a column for the
+// principal if there is more than one, a column for the priority if any job has one other than 0,
+// and a column for results if any are pinned, have expired or will expire within a week. CSV always
+// has these columns.
 #ifndef BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 #define BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 
@@ -14,11 +14,11 @@
 
 namespace ballpiston::client {
 
-// `now` is for how long results are still kept.
+// `now`: the table shows how long results are still kept.
 void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format format,
                std::ostream& out);
 
-// What has to be fetched: with grids where the format shows them.
+// The view to request: with grids if the format shows them.
 v1::ListEnsembleJobsRequest::View JobViewFor(Format format);
 
 }  // namespace ballpiston::client

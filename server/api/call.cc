@@ -28,6 +28,7 @@ std::string RequestIdOf(const grpc::CallbackServerContext& context) {
   return IsRequestId(id) ? id : RandomId();
 }
 
+// The hint is for the principal `local`, which has a role below admin only over the loopback.
 absl::Status RoleTooLow(const Principal& caller, Role least) {
   const char* const hint = caller.name == LocalPrincipal().name
                                ? "; the server's flag --loopback-role sets the role of local users"

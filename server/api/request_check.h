@@ -35,7 +35,7 @@ class RequestCheck {
   int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
   static std::string PageToken(const std::string& list, int64_t start);
 
-  // A value of the request's enum View, which proto3 lets through unknown.
+  // Checks the view of the request, because proto3 accepts values that its enum View does not have.
   template <typename Request>
   void View(const Request& request) {
     if (Request::View_IsValid(request.view())) return;

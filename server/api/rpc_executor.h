@@ -77,7 +77,7 @@ class RpcExecutor {
     Mutex mutex_;
     Condition changed_;
     Queues queues_ ABSL_GUARDED_BY(mutex_);  // of principals with tasks, waiting or running
-    // Of those with tasks that wait: the longest ago first.
+    // Principals with tasks that wait; first the one whose last turn was the longest ago.
     std::list<Queues::iterator> turns_ ABSL_GUARDED_BY(mutex_);
     bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
     std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);

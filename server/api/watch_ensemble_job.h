@@ -120,8 +120,8 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // in TakeRoom
   bool ended_ ABSL_GUARDED_BY(mutex_) = false;
 
-  // Only Advance changes these, with the lock. Therefore it reads them without; others need the
-  // lock.
+  // Only Advance changes these, and it holds the lock then. So Advance may read them without the
+  // lock; other functions need it.
   bool waits_for_room_ = false;
   std::shared_ptr<Job> watched_;  // job_.active
   uint64_t told_state_ = 0;       // numbers of changes

@@ -55,7 +55,7 @@ class WatchRegistry {
   const std::chrono::milliseconds interval_;
   mutable Mutex mutex_;
   Condition wake_;
-  std::map<Watch*, std::string> watches_ ABSL_GUARDED_BY(mutex_);  // whose it is
+  std::map<Watch*, std::string> watches_ ABSL_GUARDED_BY(mutex_);  // the principal of each
   std::map<std::string, int64_t> streams_ ABSL_GUARDED_BY(mutex_);
   std::atomic<size_t> size_ = 0;
   bool now_ ABSL_GUARDED_BY(mutex_) = false;

@@ -61,14 +61,14 @@ void AddLocalAccessFlags(CLI::App& app, SecurityOptions& security) {
   BeginGroup(app, "Users of this machine");
   AddChoice(app, "socket-mode", security.socket_mode,
             {{"0600", mode_t{0600}}, {"0660", mode_t{0660}}, {"0666", mode_t{0666}}},
-            "mode of the Unix socket in --listen: 0600, only the server's user and root connect, "
-            "as principal local; 0660, also the members of --socket-group; 0666, every user. With "
-            "the last two each user is a principal of that name, with the role submit; an "
-            "--access-file with lines user UNIX_USER PRINCIPAL ROLE [EXPIRES] admits only its "
-            "users. The server's user and root are administrators");
+            "mode of the Unix socket in --listen. 0600: only the server's user and root connect, "
+            "as principal local. 0660: also the members of --socket-group. 0666: every user. With "
+            "0660 and 0666 each user is a principal of that name, with the role submit; if an "
+            "--access-file has lines user UNIX_USER PRINCIPAL ROLE [EXPIRES], only its users are "
+            "accepted. The server's user and root are administrators");
   app.add_option("--socket-group", security.socket_group,
                  "group of the Unix socket, by name or number, with --socket-mode=0660. The "
-                 "server's user belongs to it")
+                 "server's user must belong to it")
       ->type_name("GROUP");
   AddChoice(
       app, "loopback-role", security.loopback_role,
@@ -167,15 +167,15 @@ const LimitFlag kLimitFlags[] = {
      "MiB for connections and for requests that are being received, of all clients; calls beyond "
      "it are refused. At least 16 and twice --max-message-bytes, at most 1048576"},
     {"retain-days", &Limits::retain_days,
-     "days after its end a job's results expire, unless it is pinned; its specification stays"},
+     "days from the end of a job until its results expire, unless it is pinned; its "
+     "specification stays"},
     {"max-store-bytes", &Limits::max_store_bytes,
-     "bytes of the store; before it is that full, results expire, the oldest first. What active "
-     "and "
-     "pinned jobs store may exceed it; then no job is accepted"},
+     "bytes of the store; shortly before it is full, results expire, the oldest first. Active and "
+     "pinned jobs may store more than that; then no further job is accepted"},
     {"max-store-bytes-per-principal", &Limits::max_store_bytes_per_principal,
-     "bytes of specifications and results of one principal; no further job is accepted"},
+     "bytes of specifications and results of one principal; beyond it no further job is accepted"},
     {"max-processor-seconds-per-principal", &Limits::max_processor_seconds_per_principal,
-     "processor time of one principal's jobs in 30 days; no further job is accepted"},
+     "processor time of one principal's jobs in 30 days; beyond it no further job is accepted"},
     {"max-seconds-per-job", &Limits::max_seconds_per_job,
      "processor time of one job, after which it fails and keeps its finished points"},
 };

@@ -167,7 +167,6 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
   return status;
 }
 
-// `local` with a role below admin comes over the loopback.
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached) {
   const std::string error =
       reached.standard_error

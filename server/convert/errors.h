@@ -53,12 +53,13 @@ absl::Status LimitExceeded(const std::string& reason, const std::string& what,
 absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const Estimate& reached);
 
 // The status of a call when a write to the store or a read from it failed. RESOURCE_EXHAUSTED,
-// STORE_FULL: the disk is full. DATA_LOSS, STORE_DAMAGED: what is in it cannot be read; it is no
-// use to try again. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has a
-// reason already keeps it.
+// STORE_FULL: the disk is full. DATA_LOSS, STORE_DAMAGED: the stored data cannot be read, and a
+// retry does not help. UNAVAILABLE, STORE_FAILED: anything else. OK stays OK, and a status that has
+// a reason already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
 
-// Any status, with the reason and domain that clients look for, and with one of the metadata.
+// Any status, with the reason and domain that clients look for; the second form adds one entry of
+// metadata.
 absl::Status WithReason(absl::Status status, const std::string& reason);
 absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
                         const std::string& value);

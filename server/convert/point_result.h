@@ -9,7 +9,7 @@
 namespace ballpiston::server {
 
 v1::PointResult PointResultMessage(const storage::Result& record);  // without details
-// `experiment`: that of the result's job.
+// `experiment`: of the result's job.
 v1::PointResult PointResultMessage(const storage::Result& record, const storage::Details& details,
                                    const ExperimentKind& experiment);
 

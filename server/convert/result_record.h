@@ -12,7 +12,7 @@
 
 namespace ballpiston::server {
 
-// All but the details. Requires at least one merged block in the summary, if the experiment has
+// Without the details. Requires at least one merged block in the summary, if the experiment has
 // any.
 storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
                                const PointSummary& summary);

@@ -644,7 +644,7 @@ void SlurmExecutor::RemoveEnded() {
     }
   }
   if (ended.empty()) return;
-  { MutexLock files_being_reported(collect_mutex_); }  // are reported before the flush
+  { MutexLock files_being_reported(collect_mutex_); }  // waits for them before the flush
   if (!flush_().ok()) return;
   for (const std::string& name : ended) {
     MutexLock one_at_a_time(collect_mutex_);

@@ -159,8 +159,8 @@ class SlurmExecutor : public Executor {
   const SharedFolder folder_;
   Capacity capacity_;
 
-  Mutex collect_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);  // for all of CollectArray
-  mutable Mutex mutex_;  // never held while the scheduler is called, but for Needs
+  Mutex collect_mutex_ ABSL_ACQUIRED_BEFORE(mutex_);  // held during all of CollectArray
+  mutable Mutex mutex_;  // never held during a call of the scheduler, except Needs
   Condition changed_;
   std::stop_source stop_;
   std::map<std::string, Array> arrays_ ABSL_GUARDED_BY(mutex_);  // by name

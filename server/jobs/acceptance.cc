@@ -31,7 +31,7 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
   return absl::OkStatus();
 }
 
-// Results expire before the store is that full; what is pinned and what runs does not.
+// Results expire before the store is full, but those of pinned and active jobs do not.
 absl::StatusOr<absl::Status> CheckStoreSize(Database& database, const Limits& limits) {
   if (limits.max_store_bytes == 0) return absl::OkStatus();
   const absl::StatusOr<int64_t> used = UsedBytes(database);
@@ -42,7 +42,7 @@ absl::StatusOr<absl::Status> CheckStoreSize(Database& database, const Limits& li
                        "max-store-bytes", static_cast<double>(limits.max_store_bytes));
 }
 
-// The first reason why one more job is not accepted, if there is one.
+// The first reason why one more job is not accepted; OK if there is none.
 absl::StatusOr<absl::Status> CheckRoom(Database& database, const Limits& limits,
                                        const ActivePoints& points, const Usage& usage,
                                        const JobRecord& job) {

@@ -1,10 +1,11 @@
 // What one Create comes to: an earlier job, a refusal, or a new job.
 //
-// A replay, the same request id with the same request, is answered with the job of the first time;
-// the same question as an earlier job's that succeeded with that one, unless a fresh answer is
-// wanted; then the limits on a job's size, on active jobs and their points, on what is stored and
-// on processor time count. All of it is decided inside one transaction of the store, where all
-// writes pass in one order, so that of many equal requests at once one makes a job.
+// A retry (the same request id with the same request) is answered with the original job. The
+// question of an earlier job that succeeded is answered with that job, unless a fresh answer is
+// wanted. Any other request has to keep the limits: on a job's size, on active jobs and their
+// points, on what is stored and on processor time. All of this is decided inside one transaction of
+// the store. The store runs its transactions one after the other, so of many equal requests at the
+// same time only one makes a job.
 #ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 #define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 

@@ -28,13 +28,15 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
-// Processor time is stored so often. What is lost with a kill is not counted for a quota.
+// How often processor time is stored. If the server is killed, the time since it was last stored
+// does not count for the quota.
 constexpr absl::Duration kBetweenWork = absl::Minutes(1);
 
-// The last one that a Timestamp can hold.
+// The latest time that a Timestamp can hold.
 constexpr absl::Time kLastTime = absl::FromUnixSeconds(253'402'300'799);
 
-// Of its message, an upper bound: names, times and numbers take less than what is added.
+// Upper bound of the encoded size of the job's message: names, times and numbers take less than
+// the constant.
 size_t MostBytesOf(const JobRecord& record, bool grids) {
   return 512 + record.principal.size() + record.engine_version.size() +
          (grids ? record.spec.size() : 0) + record.error.size();
@@ -189,7 +191,7 @@ JobBook::JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
 
 JobBook::~JobBook() {
   Shutdown();
-  store_.Flush().IgnoreError();  // what tells this book of jobs that have ended was told then
+  store_.Flush().IgnoreError();  // after this, this book knows every ended job
   StoreNewWork(absl::Now());
 }
 
@@ -574,7 +576,8 @@ absl::StatusOr<v1::PointResult> JobBook::Result(const Principal& caller, const s
   return std::move(page->points.front());
 }
 
-// The results may be dropped while they are read: then the job has expired, or is gone, afterwards.
+// The results may be removed while they are read. Then the job has expired or is gone when its
+// record is read again.
 absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std::string& id,
                                              const ResultsQuery& query) {
   const absl::StatusOr<JobRecord> record = ReadRecordWithResults(caller, id);
@@ -583,7 +586,7 @@ absl::StatusOr<ResultsPage> JobBook::Results(const Principal& caller, const std:
   if (!spec.ok()) return StoreFailure(spec.status());
   const ExperimentKind* const experiment =
       FindExperiment(static_cast<uint64_t>(spec->experiment()));
-  if (experiment == nullptr) return StoreFailure(absl::DataLossError("a job of no experiment"));
+  if (experiment == nullptr) return StoreFailure(absl::DataLossError("the experiment is unknown"));
   ResultsPage page;
   size_t bytes = 0;
   absl::Status parsed;
@@ -690,7 +693,7 @@ void JobBook::KeepLimits(absl::Time now) {
   if (now >= next_work_time_) StoreNewWork(now);
   const absl::Status kept = retention_.Enforce(now);
   if (!kept.ok() && !store_.failing()) {
-    LogError(absl::StrCat("results do not expire: ", kept.message()));
+    LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
   }
 }
 

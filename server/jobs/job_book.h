@@ -149,8 +149,8 @@ class JobBook {
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
-  // What the limits on stored results and on processor time ask for at the time `now`: lets results
-  // expire, and ends jobs. To be called every second or so; one thread at a time.
+  // Enforces the limits on stored results and on processor time at the time `now`: lets results
+  // expire, and ends jobs. To be called about once a second; one thread at a time.
   void KeepLimits(absl::Time now);
 
   // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
@@ -182,9 +182,9 @@ class JobBook {
   // The active job; null if it has ended.
   absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);
   absl::StatusOr<JobRecord> ReadRecord(const Principal& caller, const std::string& id);
-  // One whose results have not expired.
+  // The record of a job whose results have not expired.
   absl::StatusOr<JobRecord> ReadRecordWithResults(const Principal& caller, const std::string& id);
-  // Of a job that is not in the book, with the time when its results expire.
+  // The message of a job that is not in the book, with the time when its results expire.
   v1::EnsembleJob Message(const JobRecord& record) const;
   void AddExpireTime(const JobRecord& record, v1::EnsembleJob& job) const;
   std::vector<std::shared_ptr<Job>> ActiveJobsNow() const;

@@ -1,5 +1,5 @@
 // Resource names: ensembleJobs/{id}, where an id is 1 to 63 of [a-z0-9-], and
-// ensembleJobs/{id}/results/{index}. Pure functions, but for RandomId.
+// ensembleJobs/{id}/results/{index}. Pure functions, except RandomId.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_NAME_H_
 #define BALLPISTON_SERVER_JOBS_JOB_NAME_H_
 
@@ -20,7 +20,7 @@ struct ResultId {
   int64_t point = 0;
 };
 
-// Empty unless `name` is a result's.
+// Empty unless `name` is the name of a result.
 std::optional<ResultId> ResultIdOf(const std::string& name);
 
 // 16 hexadecimal digits that nobody had before.

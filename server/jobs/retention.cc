@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMostAtOnce = 256;
 
-// Those at the front that take `bytes` together, or all.
+// The first jobs that together take `bytes` or more; all jobs if they take less.
 std::vector<JobSize> EnoughOf(std::vector<JobSize> jobs, int64_t bytes) {
   size_t count = 0;
   while (count < jobs.size() && bytes > 0) bytes -= jobs[count++].bytes;
@@ -36,7 +36,7 @@ absl::Status Retention::EnforceAge(absl::Time now) {
   return read.ok() ? Remove(*old, Removal::kResults, now) : read;
 }
 
-// What the sweeper has not removed yet still takes pages: it goes first.
+// Rows that the sweeper has still to remove take pages, so nothing more expires meanwhile.
 absl::Status Retention::EnforceSize(absl::Time now) {
   if (limits_.max_store_bytes == 0) return absl::OkStatus();
   std::vector<JobSize> jobs;

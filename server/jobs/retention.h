@@ -1,9 +1,9 @@
-// Which stored results are kept how long: Limits::retain_days and Limits::max_store_bytes.
+// How long results are kept: Limits::retain_days and Limits::max_store_bytes.
 //
-// Results of a job that is not pinned expire so many days after its end. If the store takes more
-// than kFullShare of its bound, results expire earlier, those of the jobs that ended first; when
-// none are left, expired jobs are deleted in the same order. What active and pinned jobs store is
-// never touched, so the store may grow beyond the bound; then no new job is accepted
+// The results of a job that is not pinned expire `retain_days` after its end. If the store takes
+// more than kFullShare of its bound, results expire earlier, those of the jobs that ended first;
+// when none are left, expired jobs are deleted in the same order. The data of active and pinned
+// jobs are never removed here, so the store may grow beyond the bound; then no new job is accepted
 // (acceptance.h).
 #ifndef BALLPISTON_SERVER_JOBS_RETENTION_H_
 #define BALLPISTON_SERVER_JOBS_RETENTION_H_
@@ -29,8 +29,8 @@ class Retention {
   Retention(Store& store, Usage& usage, const Limits& limits)
       : store_(store), usage_(usage), limits_(limits) {}
 
-  // Lets expire and deletes what has to go at the time `now`. To be called again and again: one
-  // call handles at most some hundred jobs.
+  // Lets results expire and deletes expired jobs, as the limits require at the time `now`. One call
+  // handles at most a few hundred jobs, so it is to be called again and again.
   absl::Status Enforce(absl::Time now);
 
  private:

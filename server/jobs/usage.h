@@ -1,5 +1,5 @@
-// What each principal uses, and the quotas: stored jobs, their bytes, and processor time. In
-// memory, because the store would have to add up all its jobs for every new one. Thread-safe.
+// What each principal uses, and the quotas: stored jobs, their bytes, and processor time. Kept in
+// memory, because the store would have to add up all its jobs for every new job. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_USAGE_H_
 #define BALLPISTON_SERVER_JOBS_USAGE_H_
 
@@ -25,7 +25,7 @@ struct PrincipalUsage {
 
 class Usage {
  public:
-  // Jobs and bytes are stored, or are gone: then the numbers are negative.
+  // Jobs and bytes that are stored. The numbers are negative for those that are removed.
   void AddStored(const std::string& principal, int64_t jobs, int64_t bytes);
   void AddWork(const std::string& principal, absl::Time now, double seconds);
   // What an earlier process stored.
@@ -35,10 +35,10 @@ class Usage {
   absl::Status Check(const std::string& principal, absl::Time now, const Limits& limits) const;
 
   PrincipalUsage Of(const std::string& principal, absl::Time now) const;
-  // Those that use anything.
+  // All principals that use anything.
   std::map<std::string, PrincipalUsage> All(absl::Time now) const;
 
-  // The work that was added since the previous call, which is to be stored.
+  // The work that was added since the previous call. The caller stores it.
   std::vector<DayOfWork> TakeNewWork();
 
   // The first of the days that count.

@@ -54,8 +54,8 @@ Verdict VerdictOn(const FailedCall& call) {
   }
 }
 
-// The reasons that are known are counted from zero: Prometheus does not see the first step of a
-// counter that appears with 1.
+// The known reasons start at zero, because Prometheus does not see the first increase of a counter
+// that appears with 1.
 CallObserver::CallObserver()
     : statistics_(registry_),
       not_let_in_(prometheus::BuildCounter()

@@ -4,8 +4,8 @@
 // It sits inside gRPC (an interceptor), so it also sees calls that never reach their method: a
 // message that is malformed, health, reflection. A call counts as ended just before its status is
 // sent: whoever has the answer finds it counted. A method that no service offers is not counted:
-// anybody could invent any number of them. The counters are prometheus-cpp's; no library ties them
-// to gRPC's C++ server. Thread-safe.
+// anybody could invent any number of them. The counters are prometheus-cpp's; no library connects
+// them to gRPC's C++ server. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 
@@ -61,7 +61,8 @@ class CallObserver {
 
   CallStatistics& statistics() { return statistics_; }
 
-  // Of the calls, and of those that were not let in or refused because a limit was reached.
+  // The counts of all calls, of those that failed authentication or authorisation, and of those
+  // that were refused because a limit was reached.
   const prometheus::Collectable& metrics() const { return registry_; }
 
   // Counts and logs. For the interceptors, and for tests.

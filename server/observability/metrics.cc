@@ -13,7 +13,7 @@ namespace {
 using prometheus::Labels;
 using prometheus::MetricFamily;
 
-// The numbers of one scrape. A name that comes again adds to its family.
+// The numbers of one scrape. A name that is used again adds to the same family.
 class Page {
  public:
   template <typename Number>

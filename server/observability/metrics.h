@@ -1,12 +1,12 @@
-// The server's numbers as families of Prometheus: base units, totals that only grow, no job's id in
-// a label, and principals only where usage is told: at most kMostPrincipals.
+// The server's numbers as metric families of Prometheus: base units, totals that only grow, no
+// job's id in a label. Only the metrics of usage name principals, at most kMostPrincipals.
 //
 //   grpc_server_*   calls: the names and labels that other gRPC servers use; call_statistics.h
 //   ballpiston_*    everything else
 //
 // The numbers here belong to the scheduler, the store and others, which the API's status reads too.
-// A scrape therefore copies one snapshot into a registry of its own; counters that the registry
-// keeps would need a second place where each is counted.
+// A scrape therefore copies one snapshot into a registry of its own. With a permanent registry each
+// number would have to be counted in a second place.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_METRICS_H_
 

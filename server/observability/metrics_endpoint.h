@@ -2,9 +2,10 @@
 //
 // prometheus-cpp's Exposer is the HTTP server. It answers GET of /metrics and nothing else, ends a
 // request that is not complete after kRequestTimeout, and serves at most kHttpThreads requests at a
-// time; a further one waits. Ours are the check of the address, because the page is neither
-// encrypted nor authenticated, errors instead of exceptions, and a stop that does not wait for the
-// 2 s in which the Exposer looks once whether it should stop.
+// time; a further one waits. This class adds three things. It permits loopback addresses only,
+// because the page is neither encrypted nor authenticated. It returns errors instead of throwing
+// exceptions. To stop, it wakes the Exposer, which otherwise looks only every 2 s whether it should
+// stop.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_METRICS_ENDPOINT_H_
 

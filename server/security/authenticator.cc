@@ -9,7 +9,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Of an auth context; no client can write them.
+// Properties of an auth context. No client can write them.
 constexpr char kNameProperty[] = "ballpiston_unix_user";
 constexpr char kAdminProperty[] = "ballpiston_unix_admin";
 
@@ -32,7 +32,7 @@ absl::StatusOr<Principal> OfUnixUser(const AccessList* list, const Principal& us
   if (user.role == Role::kAdmin) return user;
   if (list != nullptr) return list->OfUser(user.name, now);
   if (CheckPrincipalName(user.name).ok()) return user;
-  return UserNotListed(user.name);  // LAB\ada, say: a list can give it a principal's name
+  return UserNotListed(user.name);  // LAB\ada, for instance: a list can give it a principal
 }
 
 }  // namespace

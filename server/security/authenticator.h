@@ -1,5 +1,5 @@
-// Who calls: a bearer token, else the client's certificate, looked up in the list of those who may;
-// or the Unix user of the connection (unix_users.h), who needs no list.
+// Finds the principal of a call. Its bearer token, or else the client's certificate, is looked up
+// in the access list. The Unix user of a connection (unix_users.h) needs no list.
 //
 //   authorization: Bearer TOKEN    in the call's metadata; once
 //
@@ -29,15 +29,15 @@ namespace ballpiston::server {
 struct Credentials {
   std::vector<std::string> authorization;   // every such header
   std::optional<std::string> common_name;   // of a certificate that was verified
-  std::optional<Principal> unix_user = {};  // with the role of one who is on no list
+  std::optional<Principal> unix_user = {};  // with the role that it has without a list
 };
 
 class Authenticator {
  public:
-  // The open door: everybody is this principal.
+  // Without authentication: every caller is this principal.
   explicit Authenticator(Principal everybody = LocalPrincipal())
       : everybody_(std::move(everybody)) {}
-  // Without a list every Unix user may call, by their name, and nobody else.
+  // Without a list every Unix user may call, as the principal of that name, and nobody else.
   explicit Authenticator(std::shared_ptr<const AccessList> list) : list_(std::move(list)) {}
 
   // UNAUTHENTICATED, reason CREDENTIALS_MISSING, CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. A Unix
@@ -51,7 +51,7 @@ class Authenticator {
  private:
   std::shared_ptr<const AccessList> list() const;
 
-  const std::optional<Principal> everybody_ = {};  // none: not open
+  const std::optional<Principal> everybody_ = {};  // none: callers are authenticated
   mutable Mutex mutex_;
   std::shared_ptr<const AccessList> list_ ABSL_GUARDED_BY(mutex_);
 };
@@ -59,8 +59,8 @@ class Authenticator {
 // The common name of the certificate that the connection was made with, if one was asked for.
 std::optional<std::string> CommonNameOf(const grpc::AuthContext& context);
 
-// The Unix user that a connection is written down as (unix_users.h): once, before its first call
-// goes on. With the role submit, or admin; none for other connections.
+// The Unix user of a connection, with the role submit or admin (unix_users.h). It is set once,
+// before the first call goes on. Other connections have none.
 void SetUnixUser(grpc::AuthContext& context, const Principal& user);
 std::optional<Principal> UnixUserOf(const grpc::AuthContext& context);
 

@@ -171,7 +171,7 @@ BoundSockets::BoundSockets(BoundSockets&& other) noexcept
       device_(other.device_),
       inode_(other.inode_) {}
 
-// Nobody connects before the file has its mode: the socket listens after that.
+// Nobody can connect before the file has its mode, because the socket listens only after that.
 absl::Status BoundSockets::BindPath(const ListenAddress& address, const SocketAccess& access) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   struct stat made {};

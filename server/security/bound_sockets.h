@@ -2,10 +2,10 @@
 // all at one port. Connections wait with the kernel until somebody accepts them.
 //
 // The file of a Unix socket has mode 0600 from the moment it exists until it gets the group and the
-// mode that are asked for. It is taken away at the end if it is still the one that was made here:
-// another server may have put its own there meanwhile. No other process can share the port. gRPC
-// gives such a file the mode of the umask and removes it whosever it is (socket_listener.h tells
-// why gRPC and systemd do not listen here).
+// mode that are asked for. It is removed at the end if it is still the one that was made here,
+// because another server may have put its own there meanwhile. No other process can share the port.
+// gRPC gives such a file the mode of the umask, and removes it even if it is another server's
+// (socket_listener.h tells why gRPC and systemd do not listen here).
 #ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 #define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 
@@ -22,9 +22,9 @@ namespace ballpiston::server {
 
 class BoundSockets {
  public:
-  // FAILED_PRECONDITION if one cannot listen there, because the address is in use, say; errors of
-  // `access`, which only a Unix socket heeds, as SetSocketAccess's. Of the addresses that a name
-  // stands for, those this machine does not have are left out.
+  // FAILED_PRECONDITION if the sockets cannot listen there, for instance because the address is in
+  // use. Only a Unix socket uses `access`, with the errors of SetSocketAccess. Of the addresses
+  // that a name stands for, those that this machine does not have are left out.
   static absl::StatusOr<BoundSockets> Bind(const ListenAddress& address,
                                            const SocketAccess& access = {});
 

@@ -11,7 +11,7 @@
 namespace ballpiston::server {
 namespace {
 
-// What the kernel says unless it was told otherwise.
+// The kernel's default for users that are not mapped.
 constexpr uid_t kNobody = 65534;
 
 uid_t NumberOfUnmappedUsers() {

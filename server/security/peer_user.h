@@ -19,13 +19,13 @@ std::set<uid_t> OwnUserAndRoot();
 // A peer whose user is not known is nobody's.
 bool MayConnect(std::optional<uid_t> peer, const std::set<uid_t>& permitted);
 
-// Whether the number stands for one user. To a server in a user namespace (PrivateUsers= of
-// systemd, a container) the kernel gives all users of other namespaces one number, which is that of
-// `nobody`; they must not share their jobs.
+// Whether the number stands for one user. If the server runs in a user namespace (PrivateUsers= of
+// systemd, a container), the kernel reports one number for all users of other namespaces, that of
+// `nobody`. They must not share their jobs.
 bool StandsForOneUser(std::optional<uid_t> peer);
 
-// As the system's list of users has it; none if it is not there, or cannot be read now. May wait
-// for a directory service.
+// The name in the system's list of users; none if the user is not in the list, or if the list
+// cannot be read now. May wait for a directory service.
 std::optional<std::string> UserName(uid_t user);
 
 }  // namespace ballpiston::server

@@ -22,8 +22,9 @@ inline const char* RoleName(Role role) {
   return role == Role::kRead ? "read" : role == Role::kSubmit ? "submit" : "admin";
 }
 
-// Whoever comes over a Unix socket that only the server's user and root can open. Over the loopback
-// of a server without credentials it is everybody, with the role of --loopback-role.
+// The principal of all who connect over a Unix socket that only the server's user and root can
+// open. It is also the principal of all who connect over the loopback of a server without
+// credentials, with the role of --loopback-role.
 inline Principal LocalPrincipal(Role role = Role::kAdmin) { return {"local", role}; }
 
 }  // namespace ballpiston::server

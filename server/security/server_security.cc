@@ -58,7 +58,7 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
   if (given.empty()) return CheckSocketMode(options);
   return Refused(absl::StrCat("--listen=", address.Text(),
                               ": over a Unix socket the kernel says who connects, by default only "
-                              "this server's user and root; it cannot be combined with ",
+                              "this server's user and root; a Unix socket cannot be combined with ",
                               absl::StrJoin(given, ", "),
                               " (an access file goes with --socket-mode=0660 or 0666)"));
 }
@@ -147,7 +147,7 @@ absl::StatusOr<SocketAccess> FindSocketAccess(const SecurityOptions& options) {
   return access;
 }
 
-// Of all who connect without being asked who they are; none if they are asked.
+// The role of all callers if they are not authenticated; none if they are.
 std::optional<Role> RoleOfEverybody(const SecurityOptions& options, const ListenAddress& address) {
   if (IsOpenSocket(options) || !options.access_file.empty()) return std::nullopt;
   return address.socket_path.empty() ? options.loopback_role.value_or(kLoopbackRole) : Role::kAdmin;
@@ -256,11 +256,11 @@ std::string ServerSecurity::Description() const {
     parts.push_back(absl::StrCat("TLS, certificate valid until ", DateText(tls_->expires())));
   }
   if (role_of_everybody_) {
-    parts.push_back(absl::StrCat("no credentials wanted, everybody who can connect has the role ",
+    parts.push_back(absl::StrCat("no credentials required, everybody who can connect has the role ",
                                  RoleName(*role_of_everybody_)));
   }
   if (socket_access_.IsOpenToOthers()) {
-    parts.push_back(absl::StrFormat("a Unix socket with mode %04o, the kernel names its users",
+    parts.push_back(absl::StrFormat("a Unix socket with mode %04o, the kernel identifies its users",
                                     socket_access_.mode));
   }
   if (!options_.access_file.empty()) {

@@ -1,9 +1,10 @@
 // What stands between the network and the services: which combinations of address and credentials
 // are safe, and the credentials themselves.
 //
-//   unix:PATH               the kernel says who comes: the server's own user and root, who may all;
-//                           others by their name, if --socket-mode opens the socket to them, and
-//                           if they are on the access file's list or there is none
+//   unix:PATH               the kernel says who connects: the server's own user and root, who are
+//                           administrators; others by their name, if --socket-mode opens the
+//                           socket to them, and if they are on the access file's list or there is
+//                           no list
 //   loopback, no TLS        whoever is on this machine, with the role of --loopback-role
 //   any HOST:PORT with TLS  who is on the access file's list; everybody without one, which is for
 //                           the loopback only
@@ -53,8 +54,8 @@ inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);
 class ServerSecurity {
  public:
   // Reads everything. The log warns of a certificate that ends within kExpiryWarning, and of one
-  // that is not valid now, which does not keep the server from starting.
-  // INVALID_ARGUMENT names flag, file and what is permitted.
+  // that is not valid now. The server starts with such a certificate. INVALID_ARGUMENT names flag,
+  // file and what is permitted.
   static absl::StatusOr<std::unique_ptr<ServerSecurity>> Create(const SecurityOptions& options,
                                                                 const ListenAddress& address);
 
@@ -86,7 +87,7 @@ class ServerSecurity {
 
   const SecurityOptions options_;
   const SocketAccess socket_access_;
-  const std::optional<Role> role_of_everybody_;  // none: each caller is asked who they are
+  const std::optional<Role> role_of_everybody_;  // none: callers are authenticated
   size_t entries_;                               // of the access file
   Authenticator authenticator_;
   std::unique_ptr<ServerTls> tls_;  // none: without TLS

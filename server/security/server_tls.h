@@ -3,10 +3,11 @@
 // gRPC's certificate provider looks at files every second; here these are files in memory
 // (published_file.h) that hold what has been tried out before. So a connection that is being made
 // sees the old pair or the new one, and connections that are there notice nothing. (gRPC has a
-// certificate callback for the purpose as well, but exchanges what it returns without a lock.)
-// Given the operator's own files, that provider would take a key that others can read, a key and a
-// certificate of two pairs while they are being copied, and a broken file as no certificate: it
-// looks at times of change, tries nothing out, and tells the operator nothing.
+// certificate callback for the purpose as well, but exchanges what it returns without a lock.) If
+// that provider read the operator's own files, it would accept a key that other users can read.
+// While files are being copied, it would accept a key and a certificate of different pairs. It
+// would take a broken file for no certificate. It looks only at the times of change, does not test
+// the files, and reports nothing to the operator.
 #ifndef BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 #define BALLPISTON_SERVER_SECURITY_SERVER_TLS_H_
 
@@ -25,8 +26,9 @@ namespace ballpiston::server {
 
 class ServerTls {
  public:
-  // Errors as ReadTlsIdentity's. A certificate that is not valid yet, or any more, is taken: after
-  // a boot the clock may be set only later. Clients refuse it in each handshake until it is valid.
+  // Errors as ReadTlsIdentity's. A certificate that is not valid yet, or no longer, is accepted,
+  // because the clock may be set some time after a boot. Clients refuse it in each handshake until
+  // it is valid.
   static absl::StatusOr<std::unique_ptr<ServerTls>> Create(TlsFiles files);
 
   // With a client_ca: a client without a certificate that one of it signed is not let in. The
@@ -35,7 +37,7 @@ class ServerTls {
 
   // Reads the files again. What is wrong with one of them, or with the system, leaves all as they
   // were; what is right serves new connections a second later. A certificate that is not valid now
-  // replaces only one that is not, either. One thread at a time.
+  // replaces only one that is not valid either. One thread at a time.
   absl::Status Reload();
 
   // The certificate in use. Any thread.

@@ -38,8 +38,9 @@ absl::Status SetSocketAccess(const std::string& path, const SocketAccess& access
   }
   if (access.IsOpenToOthers() &&
       fchmodat(AT_FDCWD, path.c_str(), access.mode, AT_SYMLINK_NOFOLLOW) != 0) {
-    return absl::InvalidArgumentError(absl::StrFormat("--socket-mode=%04o: %s cannot have it (%s)",
-                                                      access.mode, path, std::strerror(errno)));
+    return absl::InvalidArgumentError(
+        absl::StrFormat("--socket-mode=%04o: %s cannot get this mode (%s)", access.mode, path,
+                        std::strerror(errno)));
   }
   return absl::OkStatus();
 }

@@ -1,11 +1,11 @@
 // Who may open a Unix socket: the mode and the group of its file.
 //
-//   0600  the server's own user; root, whom no mode keeps out
+//   0600  the server's own user, and root, who may open every file
 //   0660  the members of the group, too
 //   0666  every user of this machine
 //
-// The folders of the path have to let them pass. Who connects is told by the kernel (peer_user.h),
-// whatever the mode.
+// They also need access to the folders of the path. With every mode the kernel tells who connects
+// (peer_user.h).
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_ACCESS_H_
 #define BALLPISTON_SERVER_SECURITY_SOCKET_ACCESS_H_
 
@@ -29,8 +29,9 @@ struct SocketAccess {
 // The value of --socket-group: a group's name or its number. INVALID_ARGUMENT if there is none.
 absl::StatusOr<gid_t> FindGroup(const std::string& group);
 
-// Gives the file of a socket, which has mode 0600, its group, then its mode: so nobody gets in by
-// the mode before the group is right. Does not follow links. INVALID_ARGUMENT names the flag.
+// Sets the group of the file of a socket, which has mode 0600, and then its mode. In this order
+// nobody can connect before the group is right. Does not follow links. INVALID_ARGUMENT names the
+// flag.
 absl::Status SetSocketAccess(const std::string& path, const SocketAccess& access);
 
 }  // namespace ballpiston::server

@@ -150,9 +150,9 @@ void SocketListener::PauseAfter(int error) {
 }
 
 void SocketListener::LogClosed() {
-  const char* const of_whom = permitted_
-                                  ? "of other users"
-                                  : "of users without a number here (see PrivateUsers= of systemd)";
+  const char* const of_whom =
+      permitted_ ? "of other users"
+                 : "of users outside this user namespace (see PrivateUsers= of systemd)";
   LogClosed(strangers_, absl::StrCat(of_whom, " closed, the last of user ",
                                      last_stranger_ ? absl::StrCat(*last_stranger_) : "unknown"));
   LogClosed(over_reserve_,

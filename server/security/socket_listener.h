@@ -1,14 +1,14 @@
 // Accepts connections at an address and hands them on.
 //
-// At a Unix socket it asks the kernel whose they are: those of other than permitted users are
-// closed before a byte of theirs is read, and the others are handed on with their user. At either
-// kind of address a connection is closed that would leave the process fewer than
-// ReservedDescriptors(), which the store, the certificates and the metrics need: whoever opens
-// connections must not keep results from the disk. Both are logged: the first at once, then their
-// number at most every ten seconds.
+// At a Unix socket it asks the kernel for the user of each connection. It closes the connections of
+// users who are not permitted before it reads a byte of theirs, and hands the others on with their
+// user. At either kind of address it closes a connection that would leave the process fewer than
+// ReservedDescriptors(). The store, the certificates and the metrics need these: a client that
+// opens connections must not keep results from the disk. Both are logged: the first at once, then
+// their number at most every ten seconds.
 //
-// gRPC's own listener, with SO_REUSEPORT off too, would not say who connects, would take every
-// descriptor, and gives up for good at the first EMFILE. Socket activation of systemd would replace
+// gRPC's own listener, even with SO_REUSEPORT off, does not say who connects. It uses every
+// descriptor, and stops for good at the first EMFILE. Socket activation of systemd would replace
 // only bound_sockets.h, and only where systemd starts the server: a private server would still need
 // that file.
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
@@ -34,12 +34,12 @@ namespace ballpiston::server {
 
 class SocketListener {
  public:
-  // Takes over the descriptor, which does not block. `user`: at a Unix socket.
+  // Takes over the descriptor, which does not block. `user`: only at a Unix socket.
   using Receive = std::function<void(int descriptor, std::optional<uid_t> user)>;
 
   // Connections wait until Start. A Unix socket lets in the users that are `permitted`, or, if
-  // `access` opens it to others, every single user (StandsForOneUser) whom it lets connect. Errors
-  // as BoundSockets::Bind's.
+  // `access` opens it to others, every user who can open it and whom StandsForOneUser accepts.
+  // Errors as BoundSockets::Bind's.
   static absl::StatusOr<std::unique_ptr<SocketListener>> Listen(const ListenAddress& address,
                                                                 std::set<uid_t> permitted,
                                                                 const SocketAccess& access = {});
@@ -60,7 +60,7 @@ class SocketListener {
     std::optional<std::chrono::steady_clock::time_point> last_logged;
   };
 
-  // `permitted` empty: every single user.
+  // `permitted` empty: every user whom StandsForOneUser accepts.
   SocketListener(ListenAddress address, BoundSockets sockets, int stop,
                  std::optional<std::set<uid_t>> permitted);
 

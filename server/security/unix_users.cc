@@ -18,9 +18,10 @@
 namespace ballpiston::server {
 namespace {
 
-// A user without a name could be one of the thousands that a rootless container has, or anybody
-// while the directory of users is away; a number in place of the name would not be the same
-// principal once it is back. Only the server's own user needs none.
+// A user without a name is not accepted. It could be one of the thousands that a rootless container
+// has, or any user while the directory service does not answer. With a number in place of the name,
+// such a user would be another principal once the service answers again. Only the server's own user
+// and root need no name.
 std::optional<Principal> PrincipalOf(uid_t user) {
   const bool is_admin = MayConnect(user, OwnUserAndRoot());
   std::optional<std::string> name = UserName(user);
@@ -88,7 +89,7 @@ grpc::experimental::ExternalConnectionAcceptor* UnixUsers::AcceptorOf(uid_t user
   if (!principal) {
     const char* const why = is_full
                                 ? "more users have connected than this server serves; restart it"
-                                : "the system knows no name of this user";
+                                : "the system knows no name for this user";
     if (refusals_.Take(std::chrono::steady_clock::now())) {
       LogError(absl::StrCat("connection of user ", user, " closed: ", why));
     }

@@ -1,14 +1,14 @@
 // Which Unix user calls, at a socket that several users may open.
 //
-// gRPC tells a call nothing of its connection's descriptor: at a Unix socket every peer is "unix:".
-// So each user has an acceptor of gRPC of their own. Its credentials are gRPC's for local
-// connections, which encrypt nothing and which a client without credentials does not notice; their
-// processor writes the user into what the calls of a connection know of it, the auth context. A
-// client cannot write there. (AddInsecureChannelFromFd would name the descriptor to the calls. But
-// a call can outlive its connection, and the descriptor is another user's then.)
+// gRPC does not tell a call the descriptor of its connection: at a Unix socket every peer is
+// "unix:". Therefore each user has a gRPC acceptor of their own. Its credentials are those of gRPC
+// for local connections: they encrypt nothing, and the client needs none. Their processor writes
+// the user into the auth context, which all calls of a connection share. A client cannot write
+// there. (With AddInsecureChannelFromFd a call would know the descriptor. But a call can outlive
+// its connection, and then the descriptor may be another user's.)
 //
-// gRPC takes acceptors only before it starts, so there are kMostUnixUsers. An unused one costs some
-// 5 KiB and 40 us.
+// Acceptors can be added only before gRPC starts, so there are always kMostUnixUsers. An unused one
+// costs some 5 KiB and 40 us.
 #ifndef BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
 #define BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
 
@@ -23,20 +23,20 @@
 
 namespace ballpiston::server {
 
-// Users that can connect in the life of a server.
+// The number of users who can connect before the server restarts.
 inline constexpr size_t kMostUnixUsers = 1024;
 
 class UnixUsers {
  public:
-  // Adds the acceptors, whose server has to end before this object.
+  // Adds the acceptors. The server that is built has to end before this object.
   explicit UnixUsers(grpc::ServerBuilder& builder, size_t most = kMostUnixUsers);
   ~UnixUsers();
 
-  // Hands a connection of this user to gRPC; UnixUserOf (authenticator.h) then gives its calls the
-  // user, with the role admin for the server's own user and root, submit for others. Closes it, and
-  // logs why at most every ten seconds, if the system knows no name of the user, or if all
-  // acceptors are other users'. One thread at a time. The first connection of a user waits for the
-  // system's list of users; the user keeps that name as long as the server runs.
+  // Hands a connection of this user to gRPC. UnixUserOf (authenticator.h) then gives its calls the
+  // user, with the role admin for the server's own user and root, and submit for others. If the
+  // system knows no name for the user, or if other users have all acceptors, closes the connection
+  // and logs why, at most every ten seconds. One thread at a time. The first connection of a user
+  // waits for the system's list of users; the user keeps that name as long as the server runs.
   void Receive(int descriptor, uid_t user);
 
  private:
@@ -46,7 +46,7 @@ class UnixUsers {
     std::shared_ptr<Stamp> stamp;
   };
 
-  // Null, and logged, as Receive says.
+  // Null, with a line in the log, if Receive has to close the connection.
   grpc::experimental::ExternalConnectionAcceptor* AcceptorOf(uid_t user);
 
   std::vector<Entrance> entrances_;

@@ -6,7 +6,7 @@
 
 namespace ballpiston::server {
 
-// SQLite has a pointer to the first member, and so to the whole.
+// SQLite has a pointer to the first member, which is also a pointer to the whole.
 struct DiskCalls::Methods {
   sqlite3_io_methods watched;
   const sqlite3_io_methods* original;
@@ -18,7 +18,7 @@ struct DiskCalls::Methods {
   }
 };
 
-// For its duration the file has its own functions, which may look at them.
+// During a call the file has its own functions again, because these may look at pMethods.
 class DiskCalls::Call {
  public:
   explicit Call(sqlite3_file& file) : file_(file), methods_(Methods::Of(file)) {

@@ -1,7 +1,8 @@
 // Watches how long the disk takes to answer a connection that writes.
 //
-// A transaction may take long. A single call of the disk that takes seconds means that it hangs.
-// SQLite itself tells nothing of the calls, so their functions are replaced in its files.
+// A transaction may take long. But if a single disk call (a read, a write, a flush) takes seconds,
+// the disk hangs. SQLite does not report its disk calls, so this class replaces their functions in
+// its files.
 #ifndef BALLPISTON_SERVER_STORE_DISK_CALLS_H_
 #define BALLPISTON_SERVER_STORE_DISK_CALLS_H_
 
@@ -26,7 +27,7 @@ class DiskCalls {
   // This must outlive the file's connection. The file's writes pass `failpoint`, if there is one.
   void Watch(sqlite3_file& file, const char* failpoint = nullptr);
 
-  // How long the present call has taken; 0 between calls. Thread-safe.
+  // How long the current disk call has taken; 0 between calls. Thread-safe.
   Clock::duration Waiting() const;
 
  private:
@@ -34,7 +35,7 @@ class DiskCalls {
   class Call;
 
   std::vector<std::unique_ptr<Methods>> methods_;  // of the watched files
-  std::atomic<Clock::rep> begin_ = 0;              // of the present call; 0: none
+  std::atomic<Clock::rep> begin_ = 0;              // of the current call; 0: none
 };
 
 }  // namespace ballpiston::server

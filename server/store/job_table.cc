@@ -80,7 +80,7 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
-// The jobs that end first, from an index alone.
+// The jobs that ended first; an index has their order.
 absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
                                            absl::Time ended_before, int most) {
   Query query = database.Prepare(absl::StrCat("SELECT sequence, bytes, principal FROM jobs WHERE ",

@@ -78,18 +78,18 @@ struct JobSize {
   std::string principal;
 };
 
-// At most so many jobs whose results may expire: they ended before then, and are not pinned. Those
-// that ended first go first.
+// At most `most` jobs whose results may expire: they ended before `ended_before`, and are not
+// pinned. Those that ended first come first.
 absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
                                                    int most);
 absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before);
 // The same of jobs whose results have expired.
 absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most);
 
-// Of these two: the results go later (sweeper.h), and nobody can find them meanwhile.
-// The specification stays, and requests are answered with the job.
+// After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.
+// ExpireJob keeps the specification and the requests, which are still answered with the job.
 absl::Status ExpireJob(Database& database, int64_t sequence, absl::Time now);
-// With its requests.
+// Also deletes its requests.
 absl::Status DeleteJob(Database& database, int64_t sequence);
 
 }  // namespace ballpiston::server

@@ -64,7 +64,7 @@ absl::StatusOr<int64_t> CountResults(Database& database, int64_t job);
 // All finished points without their results, in grid order.
 absl::StatusOr<std::vector<PointRow>> ListFinishedPoints(Database& database, int64_t job);
 
-// Of the job's results and details together.
+// The bytes of the job's results and details together.
 absl::StatusOr<int64_t> BytesOfResults(Database& database, int64_t job);
 
 }  // namespace ballpiston::server

@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kPieceBytes = size_t{64} << 10;
 
 bool WriteZeros(sqlite3_vfs& files, const std::string& path, size_t bytes) {
-  // SQLite reads the path again later, and wants two zeros at its end.
+  // SQLite reads the path again later, and needs two zeros at its end.
   const std::string name = path + std::string(2, '\0');
   const auto memory = std::make_unique<std::max_align_t[]>(
       static_cast<size_t>(files.szOsFile) / sizeof(std::max_align_t) + 1);
@@ -25,7 +25,7 @@ bool WriteZeros(sqlite3_vfs& files, const std::string& path, size_t bytes) {
   const absl::Cleanup close = [&] { file.pMethods->xClose(&file); };
   sqlite3_int64 present = 0;
   file.pMethods->xFileSize(&file, &present);
-  if (present >= static_cast<sqlite3_int64>(bytes)) return true;  // of an earlier process
+  if (present >= static_cast<sqlite3_int64>(bytes)) return true;  // an earlier process wrote it
   const std::vector<char> zeros(std::min(bytes, kPieceBytes), '\0');
   for (size_t written = 0; written < bytes; written += zeros.size()) {
     const int count = static_cast<int>(std::min(zeros.size(), bytes - written));

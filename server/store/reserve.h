@@ -2,7 +2,7 @@
 // some room in the log before it can free any.
 //
 // It is a file of zeros beside the store. Errors are not reported: without the reserve the store
-// works, and a deletion on a full disk may fail.
+// works, but a deletion on a full disk may fail.
 #ifndef BALLPISTON_SERVER_STORE_RESERVE_H_
 #define BALLPISTON_SERVER_STORE_RESERVE_H_
 
@@ -13,7 +13,7 @@ namespace ballpiston::server {
 
 class Reserve {
  public:
-  // `vfs` as in Database::Open. Makes nothing yet.
+  // `vfs` as in Database::Open. Does not write the file yet.
   Reserve(const std::string& store, size_t bytes, std::string vfs);
 
   bool held() const { return held_; }

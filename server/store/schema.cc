@@ -243,9 +243,10 @@ absl::Status MakeTables(Database& database) {
 }
 
 absl::Status Prepare(Database& database) {
-  // Before the first page is written: the file can give free pages back. Debian's SQLite would
-  // overwrite deleted rows with zeros, which would take as much room in the log as the rows had.
-  // EXTRA: no power cut brings back the journal of this write beside the log, which comes next.
+  // These settings come before the first page is written. auto_vacuum: the file can give free pages
+  // back. secure_delete: Debian's SQLite would overwrite deleted rows with zeros, which would take
+  // as much room in the log as the rows did. synchronous: with EXTRA no power cut brings back the
+  // journal of this write beside the log, which is made next.
   const absl::Status frees = database.Execute(
       "PRAGMA synchronous = EXTRA; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA secure_delete = OFF;");
   if (!frees.ok()) return frees;

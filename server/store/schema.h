@@ -6,7 +6,8 @@
 //   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> storage Result, of finished points
 //   details   (job, point) -> storage Details, of those that have any
-//   deleted   jobs whose results and details are still being removed (sweeper.h)
+//   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
+//   work      (principal, day) -> processor time (usage_table.h)
 //   server    one row: a random name of this store, by which a cluster's jobs are told apart
 //   pilots    what pilot runs found of the limit's error, by place and engine
 //

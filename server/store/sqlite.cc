@@ -221,7 +221,7 @@ absl::Status Database::CopyTo(const std::string& path) {
 std::shared_ptr<const DiskCalls> Database::WatchDisk() {
   disk_calls_ = std::make_shared<DiskCalls>();
   sqlite3_file* file = nullptr;
-  // In WAL mode the file itself is written to by checkpoints alone.
+  // In WAL mode only checkpoints write to the file itself.
   sqlite3_file_control(connection_, "main", SQLITE_FCNTL_FILE_POINTER, &file);
   if (file != nullptr) disk_calls_->Watch(*file, "checkpoint.page");
   sqlite3_file* log = nullptr;

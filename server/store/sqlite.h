@@ -1,12 +1,12 @@
 // SQLite with owners: a connection and its statements, errors as absl::Status.
 //
-// A status carries SQLite's own message, and says whose fault it was. Of the disk, so that the same
-// may succeed later (IsOfTheDisk):
+// A status carries SQLite's own message, and says what failed. The disk, so a retry may succeed
+// (IsOfTheDisk):
 //   RESOURCE_EXHAUSTED  it is full, or the user's quota is
 //   UNAVAILABLE         input/output error, cannot open, locked, out of memory, ...
-// Of the file, so that it will not:
+// The file, so a retry fails too:
 //   DATA_LOSS           it is damaged, or no database
-// Of the statement or what was bound to it, so that it will never succeed:
+// The statement or a value that was bound to it, so it can never succeed:
 //   INVALID_ARGUMENT    a constraint, a type, a value too big
 //   INTERNAL            anything else
 // A connection and its statements belong to one thread at a time.
@@ -93,11 +93,11 @@ class Database {
   absl::StatusOr<int64_t> FileBytes() const;
   absl::StatusOr<std::string> FileStart(int bytes) const;
 
-  // Writes a copy of this database, as it is at one moment, to an empty or missing file: not in WAL
-  // mode, and without free pages.
+  // Writes a copy of this database, as it is at one moment, to an empty or missing file. The copy
+  // is not in WAL mode and has no free pages.
   absl::Status CopyTo(const std::string& path);
 
-  // From now on, of the open file and its log. Lives as long as somebody holds it.
+  // Watches the disk calls of the open file and of its log from now on.
   std::shared_ptr<const DiskCalls> WatchDisk();
 
   int64_t LastInsertedRow() const;

@@ -20,8 +20,8 @@ namespace {
 // not fit leaves some room for requests.
 constexpr size_t kSmallestGroup = 32;
 
-// Bounds how long a transaction holds the writer, and what the log can have that the file has no
-// room for.
+// Limits how long a transaction holds the writer, and how much the log can hold that the file has
+// no room for.
 constexpr size_t kMostGroupBytes = 2 << 20;
 
 constexpr std::chrono::seconds kBetweenReserves(60);
@@ -283,7 +283,7 @@ void Store::WriteUntilClosed() {
 
 bool Store::BatchIsDue(Clock::time_point now) const {
   if (closing_) return true;
-  // While space is being freed, records on a full disk would take it at once.
+  // On a full disk, records wait while space is being freed: they would take it at once.
   const bool records_wait = failing_ && sweep_advances_;
   if (requests_ > (records_wait ? ordered_ : 0)) return true;
   if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
@@ -327,7 +327,7 @@ std::optional<Store::Batch> Store::TakeBatch() {
   return TakePending(!records_wait && (!failing_ || retry));
 }
 
-// While the disk fails and it is not yet time to retry, only requests: they are few and small.
+// Takes only requests while the disk fails and it is not yet time to retry: they are few and small.
 Store::Batch Store::TakePending(bool whole) {
   Batch batch;
   batch.whole = whole;
@@ -404,7 +404,7 @@ absl::Status Store::CommitRequest(Writes& batch, size_t request) {
       absl::IsResourceExhausted(status) && batch[request].frees_space && reserve_.held();
   if (!needs_room) return status;
   reserve_.Release();
-  WriteLogBack();  // the file may grow now, and the log begins anew
+  WriteLogBack();  // the file may grow now, and the log starts from its beginning
   return CommitGroup(batch, request, request + 1);
 }
 
@@ -479,7 +479,7 @@ void Store::Sweep() {
   NoteSweep(swept);
 }
 
-// A step that fails is tried again later. Damage is not: it would be found each time.
+// A step that fails is tried again later, unless the store is damaged: each step would find that.
 void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   const bool is_damage = absl::IsDataLoss(swept.status());
   if (is_damage) {

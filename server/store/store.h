@@ -20,12 +20,12 @@
 //   - If the disk is full, the store writes the log back into the file, so that the log's space can
 //     be used again. It writes records in smaller and smaller groups. It tries requests alone and
 //     before earlier records, because requests may free space. They succeed while the log has room.
-//     The log has no room left when the file has no room for the log's contents either; then a
+//     The log has no room left when the file has no room for the log's contents either. Then a
 //     request that frees space gets the room of a reserve (reserve.h), and records wait until the
 //     space is free.
 // If the disk hangs (`stalled`), the store refuses new requests until the disk answers; earlier
 // requests wait.
-// What deleted jobs held is freed a little at a time, between other writes (sweeper.h).
+// The space of deleted jobs is freed a little at a time, between other writes (sweeper.h).
 // A write that can never succeed (a violated constraint, too big) is refused alone, and the other
 // writes of its group are committed.
 #ifndef BALLPISTON_SERVER_STORE_STORE_H_
@@ -66,11 +66,11 @@ class Store {
   struct Options {
     std::chrono::milliseconds delay{100};
     std::chrono::milliseconds retry{1000};  // after a failure of the disk
-    std::chrono::milliseconds stall{5000};  // a call of the disk that takes longer: it hangs
+    std::chrono::milliseconds stall{5000};  // a disk call that takes longer: the disk hangs
     int readers = 4;                        // read-only connections
     size_t max_pending = 10'000;            // AwaitRoom waits above it,
     size_t max_pending_bytes = 64 << 20;    // and above this
-    // Of disk space, for deletions: more than the log can hold that the file has no room for.
+    // Disk space for deletions. It is more than the log can hold that the file has no room for.
     size_t reserve_bytes = 16 << 20;
     std::string vfs = {};  // of SQLite; empty: the operating system's
   };
@@ -82,7 +82,7 @@ class Store {
   // Returns when the change is on disk, after `done`. If the disk hangs, returns UNAVAILABLE at
   // once and does not run the change.
   absl::Status Commit(Change change, Done done = nullptr);
-  // As Commit, for a change after which there will be more room.
+  // As Commit, for a change that frees space.
   absl::Status CommitDeletion(Change change, Done done = nullptr);
 
   void Record(Change change, Done done = nullptr);
@@ -109,13 +109,13 @@ class Store {
   // When this returns OK, all records posted before the call are on disk.
   absl::Status Flush();
 
-  // For tests: returns when nothing is left to free after the writes so far.
+  // For tests: returns when the space of all deletions so far is free.
   void AwaitSwept();
 
   // The last write failed because of the disk.
   bool failing() const;
 
-  // A call of the disk has been in progress for longer than Options::stall: the disk hangs.
+  // A disk call has been in progress for longer than Options::stall: the disk hangs.
   bool stalled() const;
 
   // For a shutdown: AwaitRoom no longer waits, and failed writes are not retried.
@@ -231,7 +231,7 @@ class Store {
   int64_t commits_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t checkpoints_written_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t failures_ ABSL_GUARDED_BY(mutex_) = 0;
-  bool swept_ ABSL_GUARDED_BY(mutex_) = false;  // the last step was after the last batch, and ended
+  bool swept_ ABSL_GUARDED_BY(mutex_) = false;             // nothing to free since the last batch
   bool sweeping_ ABSL_GUARDED_BY(mutex_) = false;          // the last step found something to do
   bool sweep_advances_ ABSL_GUARDED_BY(mutex_) = false;    // and has done it
   bool sweep_is_damaged_ ABSL_GUARDED_BY(mutex_) = false;  // until the next start

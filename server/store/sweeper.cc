@@ -11,10 +11,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A step is made shorter or longer towards this.
+// The size of a step is adapted so that it takes this long.
 constexpr std::chrono::milliseconds kShortStep(10), kLongStep(20);
 constexpr int64_t kLeast = 8, kMost = 1 << 14;
-// Checkpoints that are replaced leave free pages, which the next ones use.
+// Checkpoints that are replaced leave free pages, which the next checkpoints use.
 constexpr int64_t kKeptPages = 256;
 
 absl::Status InTransaction(Database& database, absl::FunctionRef<absl::Status()> change) {

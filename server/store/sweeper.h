@@ -1,7 +1,7 @@
-// Gives back the space of results that are gone, of deleted jobs and expired ones: removes their
-// rows, then shortens the file by its free pages. In short transactions, so that other writes need
-// not wait. Such a job is in the table `dropped` until its last row is gone, so a restart goes on
-// with the rest.
+// Frees the space of the results of deleted and expired jobs: removes their rows, then shortens the
+// file by its free pages. Its transactions are short, so that other writes need not wait long. Such
+// a job is in the table `dropped` until its last row is removed, so a restart goes on with the
+// rest.
 #ifndef BALLPISTON_SERVER_STORE_SWEEPER_H_
 #define BALLPISTON_SERVER_STORE_SWEEPER_H_
 
@@ -22,7 +22,7 @@ class Sweeper {
   absl::StatusOr<bool> DropRows(Database& database);
   absl::StatusOr<bool> ShortenFile(Database& database);
 
-  // In one step; adapted to the time that steps take.
+  // What one step removes; adapted to the time that steps take.
   int64_t rows_ = 64;
   int64_t pages_ = 64;
 };

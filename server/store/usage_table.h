@@ -31,14 +31,14 @@ struct DayOfWork {
 
 absl::StatusOr<std::vector<DayOfWork>> ReadWork(Database& database, int64_t first_day);
 
-// Adds to what is stored of the day.
+// Adds to the stored time of the day.
 absl::Status AddWork(Database& database, const DayOfWork& work);
 absl::Status DropWorkBefore(Database& database, int64_t day);
 
-// Of the store's pages that are not free. The log beside the file is not counted.
+// The bytes of the store's pages that are not free. The log beside the file is not counted.
 absl::StatusOr<int64_t> UsedBytes(Database& database);
 
-// Whether results that are gone still wait to be removed (sweeper.h).
+// Whether rows of deleted or expired jobs still have to be removed (sweeper.h).
 absl::StatusOr<bool> IsSweeping(Database& database);
 
 }  // namespace ballpiston::server

@@ -15,7 +15,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The server looks at its bounds once a second. Until it has made room, it refuses new jobs.
+// The server enforces its limits once a second. Until it has made room, it refuses new jobs.
 ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question) {
   while (true) {
     ProcessResult run = server.Client(Joined({{"run", "--format", "json"}, question}));

@@ -1,4 +1,4 @@
-// A fault on purpose: two mutexes are taken in the order that is not theirs. Clang has to report it
+// A fault on purpose: two mutexes are taken in the wrong order. Clang has to report it
 // (scripts/thread-safety.sh).
 #include "server/mutex.h"
 

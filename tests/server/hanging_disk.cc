@@ -6,7 +6,7 @@
 
 namespace ballpiston::server {
 
-// SQLite's own, with other functions for writing. SQLite has pointers to the bases.
+// SQLite's own structs, with other functions for writing. SQLite has pointers to the bases.
 struct HangingDisk::Vfs : sqlite3_vfs {
   struct Methods : sqlite3_io_methods {
     const sqlite3_io_methods* original = nullptr;

@@ -1,4 +1,4 @@
-// A file system of SQLite's that stops to answer when the test says so: writes to logs wait.
+// A file system for SQLite that stops answering when the test says so: writes to logs wait.
 #ifndef BALLPISTON_TESTS_SERVER_HANGING_DISK_H_
 #define BALLPISTON_TESTS_SERVER_HANGING_DISK_H_
 

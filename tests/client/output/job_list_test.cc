@@ -38,7 +38,7 @@ std::string PrintedJobs(Format format, const std::string& principal = "", int pr
   return out.str();
 }
 
-// The text below results in the table of this job and of one whose results stay.
+// The text in the column results, in a table of this job and of one whose results stay.
 std::string ResultsColumn(const std::string& job) {
   std::ostringstream out;
   PrintJobs({FromText<v1::EnsembleJob>("name: 'ensembleJobs/a' state: SUCCEEDED " + job),

@@ -105,7 +105,7 @@ class YearTest : public testing::Test {
     });
   }
 
-  // All jobs of the day, then what a server does about its bounds once in a second.
+  // All jobs of the day. Then enforces the limits, as a server does once a second.
   void Live(absl::Time day, int jobs) {
     for (int i = 0; i < jobs; ++i) AddJob(day);
     ASSERT_OK(store_->Flush());

@@ -269,7 +269,7 @@ TEST_F(WatchTest, TheTerminalStateIsToldOnce) {
   EXPECT_OK(rest.reader->Finish());
 }
 
-// To a watch from before the end, which is told by the job itself, as to a later one.
+// Both to a watch that began before the end, when the job was active, and to a later watch.
 TEST_F(WatchTest, TheEndSaysWhenTheResultsExpire) {
   RunningServer& server =
       StartWith({.factory = GatedExperiments(gate_, 3), .limits = {.retain_days = 3}});

@@ -1,4 +1,4 @@
-// How long results are kept, and what principals may use. The time is the test's.
+// How long results are kept, and what principals may use. The test sets the time.
 #include <memory>
 #include <string>
 #include <thread>
@@ -219,7 +219,7 @@ TEST_F(StoredLimitsTest, APrincipalOverItsBytesIsRefusedAndOthersAreNot) {
   Done(kAlice, 2);
 }
 
-// Bytes of a job in the middle are counted after a restart.
+// The bytes of an unfinished job are counted after a restart.
 TEST_F(StoredLimitsTest, AnUnfinishedJobCountsAfterARestart) {
   Gate gate;
   const auto stuck = [&gate](size_t point, uint64_t, std::stop_token stop) {

@@ -160,7 +160,7 @@ TEST_F(UnixUsersTest, AUserTooManyOrWithoutANameIsClosedAndLogged) {
   EXPECT_THAT(Call(As(kBin)), StatusIs(grpc::StatusCode::UNAVAILABLE));
   EXPECT_OK(Call(As(kDaemon)));
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("connection of user 54321 closed: the system knows no name of this user"));
+              HasSubstr("connection of user 54321 closed: the system knows no name for this user"));
   EXPECT_THAT(service_.callers(), ElementsAre("daemon submit"));
 }
 
@@ -315,7 +315,7 @@ TEST_F(SharedSocket, UsersOfOtherNamespacesAreClosed) {
   EXPECT_THAT(List(unmapped), StatusIs(grpc::StatusCode::UNAVAILABLE));
   server_.reset();  // the line may come after the call has failed
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("1 connection of users without a number here"));
+              HasSubstr("1 connection of users outside this user namespace"));
 }
 
 TEST_F(SharedSocket, AnAccessFileAdmitsItsUsersWithTheirRoles) {
