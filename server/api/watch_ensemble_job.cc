@@ -324,6 +324,8 @@ absl::Status WatchReactor::TellOfEndedJob() {
   }
   absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
   if (!ended.ok()) return ended.status();
+  // Points that have expired since the job was found were perhaps not told.
+  if (ended->results_expired() && !job_.expired) return ResultsExpired(request_.name());
   *message_.mutable_job() = *std::move(ended);
   WriteLastAndEnd();
   return absl::OkStatus();

@@ -12,19 +12,21 @@ namespace {
 
 bool Exceeds(double value, double limit) { return limit > 0 && value > limit; }
 
-// What keeps one more job of the principal from being accepted, if anything does.
-absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits,
-                                        const std::string& principal) {
+// These set `refused` to the reason why one more job of the principal is not accepted, if there is
+// one. They return the errors of the store.
+
+absl::Status CheckQueue(Database& database, const Limits& limits, const std::string& principal,
+                        absl::Status& refused) {
   const auto all = CountActiveJobs(database, std::nullopt);
-  const auto own = CountActiveJobs(database, principal);
   if (!all.ok()) return all.status();
+  const auto own = CountActiveJobs(database, principal);
   if (!own.ok()) return own.status();
   if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
-    return LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
-                         "max-active-jobs", static_cast<double>(limits.max_active_jobs));
-  }
-  if (limits.max_active_jobs_per_principal > 0 && *own >= limits.max_active_jobs_per_principal) {
-    return LimitExceeded(
+    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
+                            "max-active-jobs", static_cast<double>(limits.max_active_jobs));
+  } else if (limits.max_active_jobs_per_principal > 0 &&
+             *own >= limits.max_active_jobs_per_principal) {
+    refused = LimitExceeded(
         "TOO_MANY_JOBS", absl::StrCat(principal, " has ", *own, " active jobs already"),
         "max-active-jobs-per-principal", static_cast<double>(limits.max_active_jobs_per_principal));
   }
@@ -32,27 +34,25 @@ absl::StatusOr<absl::Status> CheckQueue(Database& database, const Limits& limits
 }
 
 // Results expire before the store is full, but those of pinned and active jobs do not.
-absl::StatusOr<absl::Status> CheckStoreSize(Database& database, const Limits& limits) {
+absl::Status CheckStoreSize(Database& database, const Limits& limits, absl::Status& refused) {
   if (limits.max_store_bytes == 0) return absl::OkStatus();
   const absl::StatusOr<int64_t> used = UsedBytes(database);
   if (!used.ok()) return used.status();
   if (*used <= limits.max_store_bytes) return absl::OkStatus();
-  return LimitExceeded("TOO_MANY_STORED_BYTES",
-                       absl::StrCat("the store holds ", *used, " bytes: unpin or delete some jobs"),
-                       "max-store-bytes", static_cast<double>(limits.max_store_bytes));
+  refused =
+      LimitExceeded("TOO_MANY_STORED_BYTES",
+                    absl::StrCat("the store holds ", *used, " bytes: unpin or delete some jobs"),
+                    "max-store-bytes", static_cast<double>(limits.max_store_bytes));
+  return absl::OkStatus();
 }
 
-// The first reason why one more job is not accepted; OK if there is none.
-absl::StatusOr<absl::Status> CheckRoom(Database& database, const Limits& limits,
-                                       const ActivePoints& points, const Usage& usage,
-                                       const JobRecord& job) {
-  absl::StatusOr<absl::Status> queue = CheckQueue(database, limits, job.principal);
-  if (!queue.ok() || !queue->ok()) return queue;
-  const absl::Status grid = points.Check(job.principal, job.points, limits);
-  if (!grid.ok()) return absl::StatusOr<absl::Status>(grid);
-  const absl::Status quota = usage.Check(job.principal, job.create_time, limits);
-  if (!quota.ok()) return absl::StatusOr<absl::Status>(quota);
-  return CheckStoreSize(database, limits);
+absl::Status CheckRoom(Database& database, const Limits& limits, const ActivePoints& points,
+                       const Usage& usage, const JobRecord& job, absl::Status& refused) {
+  const absl::Status counted = CheckQueue(database, limits, job.principal, refused);
+  if (!counted.ok()) return counted;
+  refused.Update(points.Check(job.principal, job.points, limits));
+  refused.Update(usage.Check(job.principal, job.create_time, limits));
+  return refused.ok() ? CheckStoreSize(database, limits, refused) : absl::OkStatus();
 }
 
 // Requests answered with one job of which each is remembered; there may be any number of them.
@@ -129,10 +129,7 @@ absl::Status Judge(Database& database, const Limits& limits, const ActivePoints&
   if (!looked.ok() || acceptance.earlier || !acceptance.refused.ok()) return looked;
   acceptance.refused = acceptance.fits;
   if (!acceptance.refused.ok()) return absl::OkStatus();
-  absl::StatusOr<absl::Status> room = CheckRoom(database, limits, points, usage, acceptance.record);
-  if (!room.ok()) return room.status();
-  acceptance.refused = *std::move(room);
-  return absl::OkStatus();
+  return CheckRoom(database, limits, points, usage, acceptance.record, acceptance.refused);
 }
 
 absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,

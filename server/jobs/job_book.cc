@@ -251,7 +251,7 @@ absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
         absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
   }
   if (older.empty()) return absl::OkStatus();
-  return store_.Commit([&](Database& database) {
+  return store_.CommitDeletion([&](Database& database) {
     for (const JobRecord* record : older) {
       const absl::Status restarted =
           RestartJob(database, record->sequence, record->engine_version, record->question);
@@ -632,7 +632,12 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
   absl::StatusOr<std::shared_ptr<Job>> active = FindActive(caller, id);
   if (!active.ok()) return active.status();
   if (const std::shared_ptr<Job>& job = *active) {
-    return WatchedJob{job, job->sequence(), job->restarts(), job->last_finished(), {}, 0};
+    return WatchedJob{
+        .active = job,
+        .sequence = job->sequence(),
+        .restarts = job->restarts(),
+        .last_finished = job->last_finished(),
+    };
   }
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
@@ -642,12 +647,13 @@ absl::StatusOr<WatchedJob> JobBook::FindWatched(const Principal& caller, const s
     return last.status();
   });
   if (!read.ok()) return StoreFailure(read);
-  return WatchedJob{nullptr,
-                    record->sequence,
-                    record->restarts,
-                    record->expired_time ? 0 : *last,
-                    JobMessage(*record).progress(),
-                    record->spec.size()};
+  const bool expired = record->expired_time.has_value();
+  return WatchedJob{.sequence = record->sequence,
+                    .restarts = record->restarts,
+                    .last_finished = expired ? 0 : *last,
+                    .progress = JobMessage(*record).progress(),
+                    .spec_bytes = record->spec.size(),
+                    .expired = expired};
 }
 
 std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::milliseconds max_age,
@@ -692,7 +698,8 @@ void JobBook::KeepLimits(absl::Time now) {
   EndLongJobs();
   if (now >= next_work_time_) StoreNewWork(now);
   const absl::Status kept = retention_.Enforce(now);
-  if (!kept.ok() && !store_.failing()) {
+  const bool is_new = std::exchange(limits_failure_, kept) != kept;
+  if (is_new && !kept.ok() && !store_.failing()) {
     LogError(absl::StrCat("the limits on stored results cannot be enforced: ", kept.message()));
   }
 }
@@ -712,7 +719,7 @@ void JobBook::EndLongJobs() {
 
 void JobBook::StoreNewWork(absl::Time now) {
   next_work_time_ = now + kBetweenWork;
-  const auto work = std::make_shared<const std::vector<DayOfWork>>(usage_.TakeNewWork());
+  const auto work = std::make_shared<const std::vector<DayOfWork>>(usage_.TakeNewWork(now));
   if (work->empty()) return;
   store_.Record([work, first = Usage::FirstDay(now)](Database& database) {
     for (const DayOfWork& day : *work) {

@@ -61,12 +61,13 @@ struct JobsPage {
 
 // What a watch needs of a job.
 struct WatchedJob {
-  std::shared_ptr<Job> active;  // null if it has ended
+  std::shared_ptr<Job> active = nullptr;  // null if it has ended
   int64_t sequence = 0;
   int64_t restarts = 0;
   int64_t last_finished = 0;  // the number of its last finished point
-  v1::JobProgress progress;
+  v1::JobProgress progress = {};
   size_t spec_bytes = 0;  // of one that has ended
+  bool expired = false;
 };
 
 struct ResultsQuery {
@@ -200,6 +201,7 @@ class JobBook {
   Usage usage_;
   Retention retention_;
   absl::Time next_work_time_ = absl::InfinitePast();  // used by KeepLimits and at the end
+  absl::Status limits_failure_;                       // of the last call of KeepLimits
   std::atomic<uint64_t> succeeded_ = 0;
   std::atomic<uint64_t> failed_ = 0;
   std::atomic<uint64_t> cancelled_ = 0;

@@ -63,34 +63,34 @@ absl::Status Retention::EnforceSize(absl::Time now) {
 // A job may have been pinned or deleted since it was found.
 absl::Status Retention::Remove(const std::vector<JobSize>& jobs, Removal removal, absl::Time now) {
   if (jobs.empty()) return absl::OkStatus();
-  std::vector<JobRecord> removed;
-  const absl::Status committed = store_.CommitDeletion([&](Database& database) -> absl::Status {
+  const bool whole = removal == Removal::kJob;
+  std::vector<JobSize> removed;
+  const auto remove = [&](Database& database) -> absl::Status {
     removed.clear();
-    for (const JobSize& size : jobs) {
-      const absl::StatusOr<std::optional<JobRecord>> job =
-          FindJobBySequence(database, size.sequence);
+    for (const JobSize& found : jobs) {
+      const absl::StatusOr<std::optional<JobSize>> job = FindUnpinned(database, found.sequence);
       if (!job.ok()) return job.status();
-      if (!*job || (*job)->pinned) continue;
-      const absl::Status changed = removal == Removal::kJob
-                                       ? DeleteJob(database, size.sequence)
-                                       : ExpireJob(database, size.sequence, now);
+      if (!*job) continue;
+      const absl::Status changed =
+          whole ? DeleteJob(database, found.sequence) : ExpireJob(database, found.sequence, now);
       if (!changed.ok()) return changed;
       removed.push_back(**job);
     }
     return absl::OkStatus();
-  });
-  if (!committed.ok()) return committed;
-  for (const JobRecord& job : removed) {
-    const bool whole = removal == Removal::kJob;
-    const int64_t left = whole ? 0 : static_cast<int64_t>(job.spec.size());
-    usage_.AddStored(job.principal, whole ? -1 : 0, left - job.bytes);
+  };
+  const auto count = [&](const absl::Status& done) {
+    if (!done.ok()) return;
+    for (const JobSize& job : removed) {
+      const int64_t left = whole ? 0 : job.spec_bytes;
+      usage_.AddStored(job.principal, whole ? -1 : 0, left - job.bytes);
+    }
+  };
+  const absl::Status committed = store_.CommitDeletion(remove, count);
+  if (committed.ok() && !removed.empty()) {
+    LogInfo(absl::StrCat(whole ? "expired jobs were deleted: " : "results of jobs expired: ",
+                         removed.size()));
   }
-  if (!removed.empty()) {
-    LogInfo(absl::StrCat(
-        removal == Removal::kJob ? "expired jobs were deleted: " : "results of jobs expired: ",
-        removed.size()));
-  }
-  return absl::OkStatus();
+  return committed;
 }
 
 }  // namespace ballpiston::server

@@ -75,8 +75,10 @@ std::map<std::string, PrincipalUsage> Usage::All(absl::Time now) const {
   return all;
 }
 
-std::vector<DayOfWork> Usage::TakeNewWork() {
+std::vector<DayOfWork> Usage::TakeNewWork(absl::Time now) {
+  const int64_t first = FirstDay(now);
   MutexLock lock(mutex_);
+  std::erase_if(work_, [=](const auto& work) { return work.first.second < first; });
   std::vector<DayOfWork> work;
   for (const auto& [day, seconds] : new_work_) work.push_back({day.first, day.second, seconds});
   new_work_.clear();

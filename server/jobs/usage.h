@@ -38,8 +38,9 @@ class Usage {
   // All principals that use anything.
   std::map<std::string, PrincipalUsage> All(absl::Time now) const;
 
-  // The work that was added since the previous call. The caller stores it.
-  std::vector<DayOfWork> TakeNewWork();
+  // The work that was added since the previous call. The caller stores it. Forgets the days that do
+  // not count any more at the time `now`.
+  std::vector<DayOfWork> TakeNewWork(absl::Time now);
 
   // The first of the days that count.
   static int64_t FirstDay(absl::Time now);

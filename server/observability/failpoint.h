@@ -17,7 +17,7 @@
 namespace ballpiston::server {
 
 // Every place there is, in the order of a job's life; tests visit them all.
-inline constexpr std::array<std::string_view, 24> kFailpoints = {
+inline constexpr std::array<std::string_view, 25> kFailpoints = {
     "create.in_transaction",    // the job's row is written, not committed
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
@@ -37,6 +37,7 @@ inline constexpr std::array<std::string_view, 24> kFailpoints = {
     "cancel.committed",         // and committed; the workers do not know
     "delete.in_transaction",    // the rows are gone, not committed
     "delete.committed",         // the client knows nothing
+    "sweep.in_transaction",     // some of a deleted job's results are gone, not committed
     "resume.job",               // after a restart: one of the unfinished jobs goes on
     "resume.point",             // and one of its points goes on from its checkpoint
     "checkpoint.page",          // the log is folded into the store: before each page

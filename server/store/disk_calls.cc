@@ -21,14 +21,11 @@ struct DiskCalls::Methods {
 // During a call the file has its own functions again, because these may look at pMethods.
 class DiskCalls::Call {
  public:
-  explicit Call(sqlite3_file& file) : file_(file), methods_(Methods::Of(file)) {
+  explicit Call(sqlite3_file& file)
+      : file_(file), methods_(Methods::Of(file)), mark_(*methods_.calls) {
     file.pMethods = methods_.original;
-    methods_.calls->begin_ = Clock::now().time_since_epoch().count();
   }
-  ~Call() {
-    methods_.calls->begin_ = 0;
-    file_.pMethods = &methods_.watched;
-  }
+  ~Call() { file_.pMethods = &methods_.watched; }
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
@@ -37,6 +34,7 @@ class DiskCalls::Call {
  private:
   sqlite3_file& file_;
   const Methods& methods_;
+  const Mark mark_;
 };
 
 DiskCalls::DiskCalls() = default;

@@ -2,7 +2,7 @@
 //
 // A transaction may take long. But if a single disk call (a read, a write, a flush) takes seconds,
 // the disk hangs. SQLite does not report its disk calls, so this class replaces their functions in
-// its files.
+// its files. Other calls of the same thread are marked (Mark).
 #ifndef BALLPISTON_SERVER_STORE_DISK_CALLS_H_
 #define BALLPISTON_SERVER_STORE_DISK_CALLS_H_
 
@@ -26,6 +26,20 @@ class DiskCalls {
 
   // This must outlive the file's connection. The file's writes pass `failpoint`, if there is one.
   void Watch(sqlite3_file& file, const char* failpoint = nullptr);
+
+  // A disk call lasts as long as this lives.
+  class Mark {
+   public:
+    explicit Mark(DiskCalls& calls) : calls_(calls) {
+      calls_.begin_ = Clock::now().time_since_epoch().count();
+    }
+    ~Mark() { calls_.begin_ = 0; }
+    Mark(const Mark&) = delete;
+    Mark& operator=(const Mark&) = delete;
+
+   private:
+    DiskCalls& calls_;
+  };
 
   // How long the current disk call has taken; 0 between calls. Thread-safe.
   Clock::duration Waiting() const;

@@ -80,19 +80,28 @@ absl::Status RunFor(Database& database, int64_t sequence, const char* sql) {
   return database.Prepare(sql).Bind(sequence).Run();
 }
 
-// The jobs that ended first; an index has their order.
-absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
-                                           absl::Time ended_before, int most) {
-  Query query = database.Prepare(absl::StrCat("SELECT sequence, bytes, principal FROM jobs WHERE ",
-                                              condition, " ORDER BY end_time LIMIT ?"));
-  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
+absl::StatusOr<std::vector<JobSize>> AllSizes(Query& query) {
   std::vector<JobSize> sizes;
   while (true) {
     const absl::StatusOr<bool> row = query.Step();
     if (!row.ok()) return row.status();
     if (!*row) return sizes;
-    sizes.push_back({query.Integer(0), query.Integer(1), query.Bytes(2)});
+    sizes.push_back({query.Integer(0), query.Integer(1), query.Integer(2), query.Bytes(3)});
   }
+}
+
+std::string SelectSizes(const char* condition) {
+  return absl::StrCat("SELECT sequence, bytes, length(spec), principal FROM jobs WHERE ",
+                      condition);
+}
+
+// The jobs that ended first.
+absl::StatusOr<std::vector<JobSize>> Sizes(Database& database, const char* condition,
+                                           absl::Time ended_before, int most) {
+  Query query =
+      database.Prepare(absl::StrCat(SelectSizes(condition), " ORDER BY end_time LIMIT ?"));
+  query.Bind(absl::ToUnixNanos(ended_before)).Bind(int64_t{most});
+  return AllSizes(query);
 }
 
 // The rows of a job's unfinished points.
@@ -124,6 +133,15 @@ absl::StatusOr<std::optional<JobRecord>> FindJobBySequence(Database& database, i
   Query query = database.Prepare(SelectWhere("sequence = ?"));
   query.Bind(sequence);
   return FirstRow(query);
+}
+
+absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence) {
+  Query query = database.Prepare(SelectSizes("sequence = ? AND pinned = 0"));
+  query.Bind(sequence);
+  absl::StatusOr<std::vector<JobSize>> sizes = AllSizes(query);
+  if (!sizes.ok()) return sizes.status();
+  if (sizes->empty()) return std::nullopt;
+  return std::move(sizes->front());
 }
 
 absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,

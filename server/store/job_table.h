@@ -74,9 +74,13 @@ absl::Status PinJob(Database& database, int64_t sequence, bool pinned);
 
 struct JobSize {
   int64_t sequence = 0;
-  int64_t bytes = 0;  // JobRecord::bytes
+  int64_t bytes = 0;       // JobRecord::bytes
+  int64_t spec_bytes = 0;  // of them
   std::string principal;
 };
+
+// Of a job that is not pinned.
+absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence);
 
 // At most `most` jobs whose results may expire: they ended before `ended_before`, and are not
 // pinned. Those that ended first come first.

@@ -9,12 +9,15 @@
 #include <cstddef>
 #include <string>
 
+#include "server/store/disk_calls.h"
+
 namespace ballpiston::server {
 
 class Reserve {
  public:
-  // `vfs` as in Database::Open. Does not write the file yet.
-  Reserve(const std::string& store, size_t bytes, std::string vfs);
+  // `vfs` as in Database::Open. `calls`, which must outlive this, is told of each disk call. Does
+  // not write the file yet.
+  Reserve(const std::string& store, size_t bytes, std::string vfs, DiskCalls& calls);
 
   bool held() const { return held_; }
   void Take();     // writes the file, if there is room
@@ -24,6 +27,7 @@ class Reserve {
   const std::string path_;
   const size_t bytes_;
   const std::string vfs_;
+  DiskCalls& calls_;
   bool held_ = false;
 };
 

@@ -218,7 +218,7 @@ absl::Status Database::CopyTo(const std::string& path) {
   return Prepare("VACUUM INTO ?").BindText(path).Run();
 }
 
-std::shared_ptr<const DiskCalls> Database::WatchDisk() {
+std::shared_ptr<DiskCalls> Database::WatchDisk() {
   disk_calls_ = std::make_shared<DiskCalls>();
   sqlite3_file* file = nullptr;
   // In WAL mode only checkpoints write to the file itself.
@@ -229,6 +229,8 @@ std::shared_ptr<const DiskCalls> Database::WatchDisk() {
   if (log != nullptr) disk_calls_->Watch(*log);
   return disk_calls_;
 }
+
+bool Database::InTransaction() const { return sqlite3_get_autocommit(connection_) == 0; }
 
 int64_t Database::LastInsertedRow() const { return sqlite3_last_insert_rowid(connection_); }
 

@@ -98,7 +98,10 @@ class Database {
   absl::Status CopyTo(const std::string& path);
 
   // Watches the disk calls of the open file and of its log from now on.
-  std::shared_ptr<const DiskCalls> WatchDisk();
+  std::shared_ptr<DiskCalls> WatchDisk();
+
+  // False also after an error for which SQLite has rolled the transaction back.
+  bool InTransaction() const;
 
   int64_t LastInsertedRow() const;
   int64_t RowsChanged() const;  // by the last statement that was run

@@ -59,8 +59,8 @@ Store::Store(std::unique_ptr<Database> writer, std::vector<std::unique_ptr<Datab
       path_(std::move(path)),
       identity_(std::move(identity)),
       writer_(std::move(writer)),
-      reserve_(path_, options_.reserve_bytes, options_.vfs),
       disk_calls_(writer_->WatchDisk()),
+      reserve_(path_, options_.reserve_bytes, options_.vfs, *disk_calls_),
       free_readers_(std::move(readers)),
       readers_(free_readers_.size()) {
   reserve_.Take();
@@ -183,7 +183,10 @@ absl::Status Store::Read(absl::FunctionRef<absl::Status(Database&)> read) {
   std::unique_ptr<Database> reader = TakeReader();
   if (reader == nullptr) return Closed();
   const absl::Cleanup give_back = [&] { GiveBack(std::move(reader)); };
-  return read(*reader);
+  absl::Status status = reader->Execute("BEGIN");
+  if (status.ok()) status = read(*reader);
+  reader->Execute("ROLLBACK").IgnoreError();  // SQLite may have done so already
+  return status;
 }
 
 std::unique_ptr<Database> Store::TakeReader() {
@@ -284,7 +287,7 @@ void Store::WriteUntilClosed() {
 bool Store::BatchIsDue(Clock::time_point now) const {
   if (closing_) return true;
   // On a full disk, records wait while space is being freed: they would take it at once.
-  const bool records_wait = failing_ && sweep_advances_;
+  const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_;
   if (requests_ > (records_wait ? ordered_ : 0)) return true;
   if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
   // A batch is also due when half of the room is taken: AwaitRoom must not wait for the delay.
@@ -322,7 +325,7 @@ std::optional<Store::Batch> Store::TakeBatch() {
   MutexLock lock(mutex_);
   const Clock::time_point now = Clock::now();
   if (!BatchIsDue(now)) return std::nullopt;
-  const bool records_wait = failing_ && sweep_advances_ && !closing_;
+  const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_ && !closing_;
   const bool retry = closing_ || retry_time_ <= now || ordered_ > 0;
   return TakePending(!records_wait && (!failing_ || retry));
 }
@@ -439,6 +442,10 @@ absl::Status Store::TryGroup(Writes& batch, size_t first, size_t last,
       status = write.change(*writer_);
     } catch (const std::bad_alloc&) {
       status = absl::UnavailableError("store: out of memory");
+    }
+    // A change may treat an error as an answer, but the group must not go on without a transaction.
+    if (status.ok() && !writer_->InTransaction()) {
+      status = absl::UnavailableError("store: SQLite rolled the transaction back");
     }
     if (!status.ok()) culprit = i;
   }

@@ -100,7 +100,8 @@ class Store {
   void RecordResult(int64_t job, PointRow row,
                     std::function<void(int64_t number)> stored = nullptr);
 
-  // Runs `read` on one of the read-only connections; waits while all are in use.
+  // Runs `read` on one of the read-only connections, in a transaction: it sees the store at one
+  // moment. Waits while all connections are in use.
   absl::Status Read(absl::FunctionRef<absl::Status(Database&)> read);
 
   // Returns when few enough writes are pending, or the store is closing.
@@ -202,12 +203,12 @@ class Store {
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  // Only the store's thread uses these four.
+  // Only the store's thread uses these five. Everybody may ask disk_calls_ how long it waits.
   std::unique_ptr<Database> writer_;
   Sweeper sweeper_;
+  const std::shared_ptr<DiskCalls> disk_calls_;
   Reserve reserve_;
   Clock::time_point next_reserve_;
-  const std::shared_ptr<const DiskCalls> disk_calls_;
 
   Mutex readers_mutex_;
   Condition reader_is_free_;

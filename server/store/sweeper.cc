@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "absl/functional/function_ref.h"
 #include "absl/strings/str_cat.h"
+#include "server/observability/failpoint.h"
 
 namespace ballpiston::server {
 namespace {
@@ -53,6 +55,7 @@ absl::Status DropSome(Database& database, int64_t job, int64_t most) {
     if (!status.ok()) return status;
     dropped += database.RowsChanged();
   }
+  Failpoint("sweep.in_transaction");
   if (dropped > 0) return absl::OkStatus();
   return database.Prepare("DELETE FROM dropped WHERE job = ?").Bind(job).Run();
 }
@@ -68,6 +71,7 @@ absl::StatusOr<bool> Sweeper::DropRows(Database& database) {
   const auto job = database.Integer("SELECT min(job) FROM dropped");
   if (!job.ok()) return job.status();
   if (*job == 0) return false;
+  if (std::exchange(job_, *job) != *job) rows_ = kFirstRows;
   const absl::Status status =
       OneStep(database, rows_, [&] { return DropSome(database, *job, rows_); });
   if (!status.ok()) return status;

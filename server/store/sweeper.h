@@ -22,9 +22,12 @@ class Sweeper {
   absl::StatusOr<bool> DropRows(Database& database);
   absl::StatusOr<bool> ShortenFile(Database& database);
 
-  // What one step removes; adapted to the time that steps take.
-  int64_t rows_ = 64;
-  int64_t pages_ = 64;
+  static constexpr int64_t kFirstRows = 64, kFirstPages = 64;
+
+  int64_t job_ = 0;  // whose rows the last step removed
+  // In one step; adapted to the time that steps take. Another job's rows may be larger.
+  int64_t rows_ = kFirstRows;
+  int64_t pages_ = kFirstPages;
 };
 
 }  // namespace ballpiston::server

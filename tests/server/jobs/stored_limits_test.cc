@@ -294,11 +294,12 @@ TEST(UsageTest, NewWorkIsTakenOnce) {
   usage.AddStoredWork({"alice", Usage::FirstDay(start) + kQuotaDays - 1, 5});
   usage.AddWork("alice", start, 1);
   usage.AddWork("alice", start, 2);
-  const std::vector<DayOfWork> work = usage.TakeNewWork();
+  const std::vector<DayOfWork> work = usage.TakeNewWork(start);
   ASSERT_EQ(work.size(), 1u);
   EXPECT_EQ(work[0].seconds, 3);
-  EXPECT_TRUE(usage.TakeNewWork().empty());
   EXPECT_EQ(usage.Of("alice", start).seconds, 8);
+  EXPECT_TRUE(usage.TakeNewWork(start + 30 * kDay).empty());
+  EXPECT_TRUE(usage.All(start).empty());  // that day is forgotten
 }
 
 TEST_F(StoredLimitsTest, ProcessorTimeOutlivesTheServer) {
