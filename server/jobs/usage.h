@@ -1,5 +1,6 @@
-// What each principal uses, and the quotas: stored jobs, their bytes, and processor time. Kept in
-// memory, because the store would have to add up all its jobs for every new job. Thread-safe.
+// Counts the stored jobs, their bytes and the processor time of each principal, and checks them
+// against the quotas. The counts are in memory, because the store would have to add up all its jobs
+// for every new job. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_USAGE_H_
 #define BALLPISTON_SERVER_JOBS_USAGE_H_
 

@@ -213,7 +213,8 @@ std::optional<Lease> Scheduler::NextOf(Run& run, const Capacity& capacity) {
   return lease;
 }
 
-// Of the executor's leases with a turn, the one that goes before the others (Lease::GoesBefore).
+// Returns the lease that goes before the others (Lease::GoesBefore), among the leases of the run
+// that the executor holds and that have a turn.
 std::optional<Lease> Scheduler::HeldWithTurn(const Run& run, size_t executor) const {
   const Lease* first = nullptr;
   const auto end = held_.lower_bound({executor, run.key() + 1, 0});

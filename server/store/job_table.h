@@ -79,7 +79,7 @@ struct JobSize {
   std::string principal;
 };
 
-// Of a job that is not pinned.
+// The size of the job; nothing if the job is pinned or does not exist.
 absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t sequence);
 
 // At most `most` jobs whose results may expire: they ended before `ended_before`, and are not

@@ -15,8 +15,8 @@ namespace ballpiston::server {
 
 class Reserve {
  public:
-  // `vfs` as in Database::Open. `calls`, which must outlive this, is told of each disk call. Does
-  // not write the file yet.
+  // `vfs` is as in Database::Open. `calls` records each disk call; it must outlive the reserve. The
+  // constructor does not write the file.
   Reserve(const std::string& store, size_t bytes, std::string vfs, DiskCalls& calls);
 
   bool held() const { return held_; }
