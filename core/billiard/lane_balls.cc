@@ -16,95 +16,77 @@ HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 
-// Two groups of three vectors: without a piston to watch, three still fit. They stay in memory
-// between flights, as the engine's do.
+// Several vectors, each in its stage of a flight: while one aims, the one kLag before it takes the
+// root, and the one 2 kLag before it turns.
 template <typename T>
 class LaneBalls {
  public:
   explicit LaneBalls(const PairGeometry& geometry) : constants_(geometry) {}
 
-  static size_t Count() { return kGroups * LanesInGroup(); }
+  static size_t Count() { return kVectors * Width(); }
 
-  // Repeats the last one if there are fewer than Count(). Scales in place: a call out of this
-  // instruction set costs hundreds of cycles on some processors, for every ball.
+  // Repeats the last one if there are fewer than Count().
   void Begin(std::span<const LaneFrame> starts) {
-    const double k = constants_.scale;
-    for (size_t lane = 0; lane < Count(); ++lane) {
-      const LaneFrame& f = starts[std::min(lane, starts.size() - 1)];
-      const double columns[] = {f.h * k, f.e * k, f.c * k, f.s * k, f.a, f.b, f.m, 0, 0};
-      for (size_t i = 0; i < kColumns; ++i) values_[i][lane] = static_cast<T>(columns[i]);
+    for (size_t i = 0; i < Count(); ++i) {
+      const LaneFrame& frame = starts[std::min(i, starts.size() - 1)];
+      vectors_[i / Width()].balls.Set(i % Width(), Scaled(frame, constants_.scale));
     }
   }
 
-  // Always flies both groups, even for few balls. With a number of groups that the compiler does
-  // not know, a flight took up to 1.7 times as long.
-  void FlyAll() {
-    for (size_t group = 0; group < kGroups; ++group) FlyGroup(group * LanesInGroup());
+  // All balls, `hits` > 0 flights of each.
+  void Fly(uint64_t hits) {
+    const FlightConstants<T> k = constants_;  // a copy that no store into the lanes can change
+    for (size_t i = 0; i < 2 * kLag; ++i) {
+      AimOf(k, i);
+      if (i >= kLag) FindRootOf(i - kLag);
+    }
+    for (uint64_t flight = 0; flight + 1 < hits; ++flight) FlyOn(k);
+    for (size_t i = 2 * kLag; i < kVectors + 2 * kLag; ++i) {
+      if (i < kVectors) AimOf(k, i);
+      if (i < kVectors + kLag) FindRootOf(i - kLag);
+      TurnOf(k, i - 2 * kLag);
+    }
   }
 
-  // Computes LaneHit::x of all balls. Call it before Hit().
-  void FindAbscissae() {
-    for (size_t group = 0; group < kGroups; ++group) FindAbscissaeOfGroup(group * LanesInGroup());
-  }
-
-  LaneHit Hit(size_t lane) const {
-    const double k = constants_.scale;
-    const auto at = [&](size_t i) { return static_cast<double>(values_[i][lane]); };
-    const LaneFrame frame = {at(0), at(1), at(2), at(3), at(4), at(5), at(6)};
-    return {Scaled(frame, 1 / k), at(7) / k, at(8) / (k * k)};
+  LaneHit Hit(size_t i) const {
+    const Vector& vector = vectors_[i / Width()];
+    const double scale = constants_.scale;
+    const LaneFrame frame = Scaled(vector.balls.Frame(i % Width()), 1 / scale);
+    return {frame, static_cast<double>(vector.length[i % Width()]) / scale, Abscissa(frame)};
   }
 
  private:
-  using D = hn::ScalableTag<T>;
-  using V = hn::Vec<D>;
-  static constexpr size_t kGroups = 2;
-  static constexpr size_t K = 3;         // vectors in a group
-  static constexpr size_t kColumns = 9;  // frame, length, abscissa
+  static constexpr size_t kVectors = 8;
+  static constexpr size_t kLag = 3;
 
-  static size_t LanesInGroup() { return K * hn::Lanes(D()); }
+  struct Vector {
+    Balls<T> balls;
+    Flight<T> flight;
+    HWY_ALIGN T length[kMostLanes<T>];
+  };
 
-  HWY_INLINE void Get(size_t column, size_t first, V (&v)[K]) const {
-    BALLPISTON_EACH v[i] = hn::Load(D(), values_[column] + first + i * hn::Lanes(D()));
-  }
-  HWY_INLINE void Put(const V (&v)[K], size_t column, size_t first) {
-    BALLPISTON_EACH { hn::Store(v[i], D(), values_[column] + first + i * hn::Lanes(D())); }
-  }
+  static size_t Width() { return hn::Lanes(hn::ScalableTag<T>()); }
 
-  HWY_INLINE void GetBalls(size_t first, Balls<D, K>& balls) const {
-    Get(0, first, balls.h);
-    Get(1, first, balls.e);
-    Get(2, first, balls.c);
-    Get(3, first, balls.s);
-    Get(4, first, balls.a);
-    Get(5, first, balls.b);
-    Get(6, first, balls.m);
+  // One flight of each vector, from one that is about to aim in vector 2 kLag on.
+  HWY_INLINE void FlyOn(const FlightConstants<T>& k) {
+    _Pragma("GCC unroll 16") for (size_t i = 0; i < kVectors; ++i) {
+      TurnOf(k, i);
+      FindRootOf((i + kLag) % kVectors);
+      AimOf(k, (i + 2 * kLag) % kVectors);
+    }
   }
 
-  HWY_INLINE void FlyGroup(size_t first) {
-    Balls<D, K> balls;
-    V length[K], missed[K];
-    GetBalls(first, balls);
-    Fly(D(), constants_, balls, length, missed);
-    Put(balls.h, 0, first);
-    Put(balls.e, 1, first);
-    Put(balls.c, 2, first);
-    Put(balls.s, 3, first);
-    Put(balls.a, 4, first);
-    Put(balls.b, 5, first);
-    Put(balls.m, 6, first);
-    Put(length, 7, first);
+  HWY_INLINE void AimOf(const FlightConstants<T>& k, size_t i) {
+    Aim(k, vectors_[i].balls, vectors_[i].balls, vectors_[i].flight);
   }
-
-  void FindAbscissaeOfGroup(size_t first) {
-    Balls<D, K> balls;
-    V x[K];
-    GetBalls(first, balls);
-    Abscissae(D(), constants_, balls, T(0), x);
-    Put(x, 8, first);
+  HWY_INLINE void FindRootOf(size_t i) { FindRoot(vectors_[i].flight, vectors_[i].balls); }
+  HWY_INLINE void TurnOf(const FlightConstants<T>& k, size_t i) {
+    hn::Store(Turn(k, vectors_[i].flight, vectors_[i].balls), hn::ScalableTag<T>(),
+              vectors_[i].length);
   }
 
   FlightConstants<T> constants_;
-  HWY_ALIGN T values_[kColumns][kGroups * K * HWY_MAX_BYTES / sizeof(T)];
+  Vector vectors_[kVectors] = {};
 };
 
 template <typename T>
@@ -118,9 +100,8 @@ void FlyBalls(const PairGeometry& geometry, std::span<const LaneFrame> starts, u
     const size_t count = std::min(balls.Count(), starts.size() - first);
     balls.Begin(starts.subspan(first, count));
     for (uint64_t done = 0; done < hits; done += between) {
-      for (uint64_t k = 0; k < between; ++k) balls.FlyAll();
+      balls.Fly(between);
       if (recorded.empty()) continue;
-      balls.FindAbscissae();
       const size_t record = done / between;
       for (size_t i = 0; i < count; ++i) recorded[(first + i) * records + record] = balls.Hit(i);
     }

@@ -1,4 +1,4 @@
-// One flight of the ball, wall to wall, in every lane of some vectors; frame and symbols of
+// One flight of the ball, wall to wall, in every lane of a vector; frame and symbols of
 // lane_frame.h. Included once for each instruction set.
 //
 // For a disc displaced by D from the one just left, the ray's impact parameter is c + u x D and the
@@ -14,10 +14,13 @@
 // So which it is, is a matter of four signs. Then, with the c' of the disc that is hit,
 // s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
-// In the next disc's frame the cell lies toward (-, +) after (1, 0) and (-, -) after (1, 1): one
-// more turn by -90 or 180 degrees. In all, (h, e) becomes -(h cos + e sin, e cos - h sin) after
-// (1, 1); after (1, 0) the mirrored frame is taken, which is the same with h and e exchanged and
-// c' reversed beforehand.
+// In the next disc's frame the cell lies toward (-, -) after (1, 1): a turn by 180 degrees, and
+//   (h, e) becomes -(h cos + e sin, e cos - h sin).
+// After (1, 0) it lies toward (-, +): a turn by 90 degrees, which is the same with (e, -h) in place
+// of (h, e). So with x = u_x and y = u_y, where (1, 1) is hit, and both 0 elsewhere,
+//   n = h - x,   h2 = e + y,   c' = c + e - n,   f' = f1 + y,
+//   h' = -(h2 cos - n sin),   e' = n cos + h2 sin:
+// additions in place of a choice between two cases.
 //
 // h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c': no factor,
 // and the cosine need not wait for the root.
@@ -25,8 +28,10 @@
 // |u| would do a random walk by rounding; one Newton step a flight, of the direction before, keeps
 // h^2 + e^2 at 1/2.
 //
-// K vectors fly at once, operation by operation: a flight is a chain of some 60 cycles, and vector
-// after vector a processor would see hardly more than one chain at a time.
+// A flight is a chain of some 60 cycles, of which a processor overlaps little more than one. So it
+// has three stages that are joined by memory (Aim, FindRoot, Turn), and other balls are in other
+// stages: nothing that a stage needs was begun just before. The compass changes by exclusive or, a
+// bit for each lane, beside the vectors.
 #if defined(BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
 #undef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
@@ -38,12 +43,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
+#include "core/billiard/lane_frame.h"
 #include "core/geometry/pair_geometry.h"
-
-// For all K vectors; unrolled, or the arrays would not be kept in registers.
-#undef BALLPISTON_EACH
-#define BALLPISTON_EACH _Pragma("GCC unroll 8") for (size_t i = 0; i < K; ++i)
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -66,31 +69,47 @@ struct FlightConstants {
   T tip;  // from the cell's centre
 };
 
-// K vectors of balls on walls.
-template <class D, size_t K>
-struct Balls {
-  // Written down for HWY_INLINE: GCC compiles an implicit constructor for no instruction set, and
-  // cannot inline the constructors of NEON's vectors into it.
-  HWY_INLINE Balls() = default;
+template <typename T>
+inline constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(T);
 
-  hn::Vec<D> h[K], e[K], c[K], s[K];
-  hn::Vec<D> a[K], b[K], m[K];
+// A vector of balls on walls. a, b and m of the frame as bits, one for each lane: set for -1.
+template <typename T>
+struct Balls {
+  HWY_ALIGN T h[kMostLanes<T>], e[kMostLanes<T>], c[kMostLanes<T>], s[kMostLanes<T>];
+  uint32_t a, b, m;
+
+  void Set(size_t lane, const LaneFrame& frame) {
+    h[lane] = static_cast<T>(frame.h);
+    e[lane] = static_cast<T>(frame.e);
+    c[lane] = static_cast<T>(frame.c);
+    s[lane] = static_cast<T>(frame.s);
+    SetBit(a, lane, frame.a < 0);
+    SetBit(b, lane, frame.b < 0);
+    SetBit(m, lane, frame.m < 0);
+  }
+  LaneFrame Frame(size_t lane) const {
+    return {h[lane], e[lane], c[lane], s[lane], Sign(a, lane), Sign(b, lane), Sign(m, lane)};
+  }
+
+ private:
+  static void SetBit(uint32_t& bits, size_t lane, bool bit) {
+    bits = (bits & ~(uint32_t{1} << lane)) | uint32_t{bit} << lane;
+  }
+  static double Sign(uint32_t bits, size_t lane) { return (bits >> lane & 1) != 0 ? -1 : 1; }
 };
 
-// Exchanges x and y where `mask` is not set.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void SwapUnless(D d, hn::Mask<D> mask, V& x, V& y) {
-#if HWY_TARGET <= HWY_AVX3
-  (void)d;
-  const V before = x;
-  x = hn::IfThenElse(mask, x, y);
-  y = hn::IfThenElse(mask, y, before);
-#else
-  // A select is three operations on some processors, and these are four for both.
-  const V difference = hn::AndNot(hn::VecFromMask(d, mask), hn::Xor(x, y));
-  x = hn::Xor(x, difference);
-  y = hn::Xor(y, difference);
-#endif
+// Between the stages of a flight.
+template <typename T>
+struct Flight {
+  HWY_ALIGN T q[kMostLanes<T>];  // s'^2; below 0, and not by rounding, the ball has left the cell
+  HWY_ALIGN T foot[kMostLanes<T>];  // f'
+};
+
+template <class D>
+HWY_INLINE uint32_t Bits(D d, hn::Mask<D> mask) {
+  uint8_t bytes[2] = {0, 0};  // of 16 lanes at most
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0] | uint32_t{bytes[1]} << 8;
 }
 
 // Where the sign bit is set.
@@ -106,79 +125,73 @@ HWY_INLINE hn::Mask<D> SignMask(D d, V v) {
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V IfNegative(D d, V v, V yes, V no) {
+HWY_INLINE uint32_t SignBits(D d, V v) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
-  (void)d;
-  return hn::IfThenElse(hn::MaskFromVec(v), yes, no);  // there it looks at sign bits only
+  return Bits(d, hn::MaskFromVec(v));  // there it looks at sign bits only
 #else
-  return hn::IfThenElse(SignMask(d, v), yes, no);
+  return Bits(d, SignMask(d, v));
 #endif
 }
 
-// Flies every ball to the next wall, and reflects it there. `missed` is c'^2 - rho^2: more than
-// rounding above 0, the ball has left the cell.
-template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE void Fly(D d, const FlightConstants<T>& k, Balls<D, K>& balls, V (&length)[K],
-                    V (&missed)[K]) {
-  const V sign = hn::SignBit(d), zero = hn::Zero(d);
-  auto& [h, e, c, s, a, b, m] = balls;
-  V mirror[K], x[K], y[K], tip[K], chord[K], foot[K], unit[K], q[K], p[K], r[K], w[K], flip[K];
-  hn::Mask<D> ahead[K];  // hits the disc at (1, 1)
-  BALLPISTON_EACH c[i] = hn::Add(c[i], e[i]);
-  BALLPISTON_EACH mirror[i] = hn::And(c[i], sign);
-  BALLPISTON_EACH c[i] = hn::Abs(c[i]);
-  BALLPISTON_EACH e[i] = hn::Xor(e[i], mirror[i]);
-  BALLPISTON_EACH y[i] = hn::Sub(h[i], e[i]);
-  BALLPISTON_EACH x[i] = hn::Add(h[i], e[i]);
-  BALLPISTON_EACH tip[i] = hn::NegMulAdd(y[i], hn::Set(d, k.tip), c[i]);
-  BALLPISTON_EACH c[i] = hn::Sub(c[i], h[i]);  // c1
-  BALLPISTON_EACH foot[i] = hn::Sub(x[i], s[i]);
-  BALLPISTON_EACH chord[i] = hn::MulAdd(x[i], c[i], hn::Set(d, k.half_height));
-  BALLPISTON_EACH w[i] = hn::Or(foot[i], hn::Add(c[i], hn::Set(d, k.sqrt_2)));
-  BALLPISTON_EACH tip[i] = hn::And(tip[i], hn::Or(w[i], chord[i]));
-  BALLPISTON_EACH ahead[i] = SignMask(d, tip[i]);
-  BALLPISTON_EACH c[i] = IfNegative(d, tip[i], hn::Add(c[i], x[i]), c[i]);
-  BALLPISTON_EACH foot[i] = hn::Add(foot[i], hn::IfThenElseZero(ahead[i], y[i]));
-  BALLPISTON_EACH missed[i] = hn::MulSub(c[i], c[i], hn::Set(d, T(2)));
-  // Of a ray that rounding lets miss the disc the root is as good as 0.
-  BALLPISTON_EACH q[i] = hn::Abs(missed[i]);
-  BALLPISTON_EACH s[i] = hn::Sqrt(q[i]);
-  BALLPISTON_EACH unit[i] = hn::MulAdd(h[i], h[i], hn::Mul(e[i], e[i]));
-  BALLPISTON_EACH unit[i] =
-      hn::NegMulAdd(unit[i], hn::Set(d, k.length_squared), hn::Set(d, T(1.5)));
-  // Into the mirrored frame after (1, 0), then the turn.
-  BALLPISTON_EACH flip[i] = hn::IfThenZeroElse(ahead[i], sign);
-  BALLPISTON_EACH c[i] = hn::Xor(c[i], flip[i]);
-  BALLPISTON_EACH SwapUnless(d, ahead[i], h[i], e[i]);
-  BALLPISTON_EACH p[i] = hn::MulSub(q[i], unit[i], unit[i]);
-  BALLPISTON_EACH r[i] = hn::Mul(c[i], unit[i]);
-  BALLPISTON_EACH w[i] = hn::Mul(e[i], p[i]);
-  BALLPISTON_EACH p[i] = hn::Mul(h[i], p[i]);
-  BALLPISTON_EACH b[i] = hn::Xor(b[i], mirror[i]);
-  BALLPISTON_EACH SwapUnless(d, ahead[i], a[i], b[i]);
-  BALLPISTON_EACH a[i] = hn::Neg(a[i]);
-  BALLPISTON_EACH b[i] = hn::Neg(b[i]);
-  BALLPISTON_EACH m[i] = hn::Xor(m[i], hn::Xor(mirror[i], flip[i]));
-  BALLPISTON_EACH r[i] = hn::Mul(r[i], s[i]);
-  BALLPISTON_EACH w[i] = hn::NegMulAdd(h[i], r[i], w[i]);
-  BALLPISTON_EACH h[i] = hn::MulAdd(e[i], r[i], p[i]);
-  BALLPISTON_EACH e[i] = w[i];
-  BALLPISTON_EACH length[i] = hn::Max(hn::Sub(foot[i], s[i]), zero);
+// The first stage: which disc is hit, and where. Leaves n and h2 in `to.h` and `to.e`. `from` and
+// `to` may be the same.
+template <typename T>
+HWY_INLINE void Aim(const FlightConstants<T>& k, const Balls<T>& from, Balls<T>& to,
+                    Flight<T>& flight) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const V h = hn::Load(d, from.h);
+  const V before = hn::Load(d, from.e);
+  const V side = hn::Add(hn::Load(d, from.c), before);
+  const V e = hn::Xor(before, hn::And(side, hn::SignBit(d)));  // mirrored if need be
+  const V c = hn::Abs(side);                                   // + e
+  const V y = hn::Sub(h, e), x = hn::Add(h, e);
+  const V below_tip = hn::NegMulAdd(y, hn::Set(d, k.tip), c);
+  const V c1 = hn::Sub(c, h);
+  const V foot1 = hn::Sub(x, hn::Load(d, from.s));
+  const V chord = hn::MulAdd(x, c1, hn::Set(d, k.half_height));
+  const V off_chord = hn::Or(hn::Or(foot1, hn::Add(c1, hn::Set(d, k.sqrt_2))), chord);
+  const V ahead = hn::And(below_tip, off_chord);  // negative: hits the disc at (1, 1)
+  const hn::Mask<decltype(d)> is_ahead = SignMask(d, ahead);
+  const V y_ahead = hn::IfThenElseZero(is_ahead, y);
+  const V n = hn::Sub(h, hn::IfThenElseZero(is_ahead, x));
+  const V next_c = hn::Sub(c, n);
+  hn::Store(n, d, to.h);
+  hn::Store(hn::Add(e, y_ahead), d, to.e);
+  hn::Store(next_c, d, to.c);
+  hn::Store(hn::NegMulAdd(next_c, next_c, hn::Set(d, T(2))), d, flight.q);
+  hn::Store(hn::Add(foot1, y_ahead), d, flight.foot);
+
+  // The compass is mirrored, then turns by 180 degrees, or by 90 after (1, 0).
+  const uint32_t mirrored = SignBits(d, side), beside = ~SignBits(d, ahead);
+  const uint32_t a = from.a, b = from.b ^ mirrored;
+  const uint32_t exchanged = (a ^ b) & beside;
+  to.a = ~(a ^ exchanged);
+  to.b = ~(b ^ exchanged ^ beside);
+  to.m = from.m ^ mirrored;
 }
 
-// The balls' scale^2 (x - origin), x in the cell; `origin` scaled likewise.
-template <class D, size_t K, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE void Abscissae(D d, const FlightConstants<T>& k, const Balls<D, K>& balls, T origin,
-                          V (&x)[K]) {
-  const auto& [h, e, c, s, a, b, m] = balls;
-  // (q_x + q_y - 1)/2 and (q_x - q_y)/2, for x = (q - (1, 1)/2) . r.
-  V along[K], across[K];
-  BALLPISTON_EACH along[i] = hn::MulSub(s[i], h[i], hn::Set(d, k.half_height));
-  BALLPISTON_EACH across[i] = hn::Mul(s[i], e[i]);
-  BALLPISTON_EACH along[i] = hn::NegMulAdd(c[i], e[i], along[i]);
-  BALLPISTON_EACH across[i] = hn::MulAdd(c[i], h[i], across[i]);
-  BALLPISTON_EACH x[i] = hn::MulSub(a[i], along[i], hn::Set(d, origin));
-  BALLPISTON_EACH x[i] = hn::MulAdd(b[i], across[i], x[i]);
+// Of a ray that rounding lets miss the disc the root is as good as 0.
+template <typename T>
+HWY_INLINE void FindRoot(const Flight<T>& flight, Balls<T>& to) {
+  const hn::ScalableTag<T> d;
+  hn::Store(hn::Sqrt(hn::Max(hn::Load(d, flight.q), hn::Zero(d))), d, to.s);
+}
+
+// The last stage. Returns the flight's length.
+template <typename T>
+HWY_INLINE hn::Vec<hn::ScalableTag<T>> Turn(const FlightConstants<T>& k, const Flight<T>& flight,
+                                            Balls<T>& to) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const V n = hn::Load(d, to.h), h2 = hn::Load(d, to.e), s = hn::Load(d, to.s);
+  const V square = hn::MulAdd(n, n, hn::Mul(h2, h2));
+  const V unit = hn::NegMulAdd(square, hn::Set(d, k.length_squared), hn::Set(d, T(1.5)));
+  const V p = hn::MulSub(hn::Load(d, flight.q), unit, unit);
+  const V r = hn::Mul(hn::Mul(hn::Load(d, to.c), unit), s);
+  hn::Store(hn::NegMulAdd(n, r, hn::Mul(h2, p)), d, to.h);
+  hn::Store(hn::NegMulSub(h2, r, hn::Mul(n, p)), d, to.e);
+  return hn::Max(hn::Sub(hn::Load(d, flight.foot), s), hn::Zero(d));
 }
 
 }  // namespace HWY_NAMESPACE

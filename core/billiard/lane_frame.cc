@@ -55,6 +55,12 @@ LaneFrame Scaled(const LaneFrame& frame, double factor) {
           frame.a,          frame.b,          frame.m};
 }
 
+double Abscissa(const LaneFrame& f) {
+  // (q_x + q_y - 1)/2 and (q_x - q_y)/2, for x = (q - (1, 1)/2) . r.
+  const double along = f.s * f.h - 0.5 - f.c * f.e, across = f.s * f.e + f.c * f.h;
+  return f.a * along + f.b * across;
+}
+
 Eigen::Vector2d PositionInCell(const LaneFrame& frame) {
   const double x = frame.h + frame.e, y = frame.h - frame.e;
   return InCell(frame, frame.s * x + frame.c * y - 0.5, frame.s * y - frame.c * x - 0.5);

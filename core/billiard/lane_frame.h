@@ -29,6 +29,8 @@ LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector
 // h, e, c and s times a factor.
 LaneFrame Scaled(const LaneFrame& frame, double factor);
 
+// Of the place in the cell, x, without the rounding of a detour through both components.
+double Abscissa(const LaneFrame& frame);
 Eigen::Vector2d PositionInCell(const LaneFrame& frame);
 Eigen::Vector2d DirectionInCell(const LaneFrame& frame);
 

@@ -25,23 +25,26 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The vectors form two groups, which fly in turn. While one group flies, the engine tests the
-// flights that the other group has finished. So the branch of the test depends on finished results
-// only. A mispredicted branch on the newest flights would discard all operations begun after it.
-constexpr size_t kGroups = 2;
-constexpr size_t kVectorsInGroup = 2;
-constexpr size_t kVectors = kGroups * kVectorsInGroup;
-constexpr int kStepsBetweenLooks = 4096;  // between two calls of Pause; about 0.2 ms
+// The vectors form three parts. While one part aims, the part before it turns, kLag vectors later
+// in each stage (lane_flight-inl.h), and the engine looks at the flights of the third, which are
+// done. So the branches of a look depend on finished results only: a mispredicted branch on the
+// newest flights would discard all operations begun after it.
+constexpr size_t kParts = 3;
+constexpr size_t kVectorsInPart = 4;
+constexpr size_t kLag = 2;
+constexpr size_t kVectors = kParts * kVectorsInPart;
+static_assert(2 * kLag == kVectorsInPart);
+constexpr int kRoundsBetweenLooks = 2048;  // between two calls of Pause; about 0.2 ms
 
 // The part of an orbit's state that is not in its lane: the sums up to where the lane's sums begin.
 struct LaneOrbit {
   uint64_t orbit = 0;
   double ball_speed = 1;
   double piston_speed = 0;
-  Contact sums;            // `state` is set only while the orbit is in contact
-  double path = 0;         // the ball's since it entered the lanes, less what is in its lane
-  double entry_phase = 0;  // the piston's, then
-  uint64_t entry_step = 0;
+  Contact sums;               // `state` is set only while the orbit is in contact
+  double path = 0;            // the ball's since it entered the lanes, less what is in its lane
+  double entry_phase = 0;     // the piston's, then
+  uint64_t entry_flight = 0;  // the number of flights that the lane had made
 };
 
 // An orbit that is not in the lanes: before its first wall, or around a collision.
@@ -62,19 +65,17 @@ class LaneOrbits : public OrbitRun {
         constants_(geometry, wave_),
         source_(source),
         limit_(source.TimeLimit()),
-        lanes_(Width() * kVectors),
-        memory_(hwy::AllocateAligned<T>(lanes_ * kArrays)),
-        orbit_(lanes_) {
-    std::fill(memory_.get(), memory_.get() + lanes_ * kArrays, T(0));
-    outside_.reserve(lanes_);
-    for (size_t lane = 0; lane < lanes_; ++lane) Park(lane);
+        vectors_(hwy::MakeUniqueAlignedArray<Vector>(kVectors)),
+        orbit_(Width() * kVectors) {
+    outside_.reserve(orbit_.size());
+    for (size_t lane = 0; lane < orbit_.size(); ++lane) Park(lane);
     ListIdleLanes();
   }
 
   bool Advance() override {
     do {
       ResumeOutside();
-      for (int i = 0; i < kStepsBetweenLooks && running_ > 0; ++i) Step();
+      FlyLanes();
       if (limit_ < std::numeric_limits<double>::infinity()) LookAtLimits();
       if (IsDone()) return true;
     } while (!source_.Pause());
@@ -83,191 +84,262 @@ class LaneOrbits : public OrbitRun {
 
  private:
   using D = hn::ScalableTag<T>;
-  static constexpr size_t K = kVectorsInGroup;
   using V = hn::Vec<D>;
+  using Column = T[kMostLanes<T>];
 
   static size_t Width() { return hn::Lanes(D()); }
-  static size_t LanesInGroup() { return Width() * K; }
+  static size_t LanesInPart() { return Width() * kVectorsInPart; }
 
-  // One value a lane. The values that a flight changes are stored twice, before and after the
-  // flight; the two arrays swap at every step. kX: the ball's distance from where the piston can
-  // reach it. kPhase: the piston's phase, in periods. kPath: the ball's path since it was last
-  // taken out. kRatio: periods of the piston in a unit of path.
-  enum Array {
-    kH,
-    kE,
-    kC,
-    kS,
-    kA,
-    kB,
-    kM,
-    kX,
-    kPhase,
-    kPath,
-    kFlying,
-    kRatio = 2 * kFlying,
-    kArrays
+  // Twice what a flight changes: before and after it. The parity of the flights of the vector's
+  // part tells which is which.
+  struct Vector {
+    Balls<T> balls[2] = {};
+    HWY_ALIGN Column path[2] = {};  // the ball's since `phase` was set
+    HWY_ALIGN Column phase = {};    // the piston's when the path was 0, in periods
+    HWY_ALIGN Column ratio = {};    // periods of the piston in a unit of path
+    Flight<T> flight = {};
+    uint32_t in_reach[2] = {};  // lanes whose ball is where the piston can be
+    uint32_t suspects = 0;      // lanes where something may have happened in the last flight
   };
 
   // Rounding in the lanes must not hide a contact; a false alarm costs little.
   static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
-  // Single precision sums short paths only.
-  static constexpr T kLongestPath = T(256);
+  // A longer path is taken out, and a new phase set: sums of short paths have little rounding.
+  static constexpr T kLongestPath = T(64);
 
-  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. The same comparison
-  // finds contacts and escapes, so this value has to be small compared with kSlack.
+  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. It has to be small
+  // compared with kSlack.
   static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
 
-  static constexpr int kMostRounds = 256;  // of contacts, some 1 ms
+  static constexpr int kMostRounds = 256;   // of contacts, some 1 ms
+  static constexpr int kMostEvents = 4096;  // of a slow orbit, between two calls of Pause
+  static constexpr uint32_t kAllLanes = (uint64_t{1} << hn::MaxLanes(D())) - 1;
 
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
       const double square = flight.scale * flight.scale;
-      left = static_cast<T>(square * (wave.left() - kSlack));
+      left = square * (wave.left() - kSlack);
+      tip = static_cast<T>(square / 2 - left);
       period = static_cast<T>(square * 2 * wave.stroke());
+      // At most as far as the middle of an arc, which no other half of an arc is beyond.
+      const double middle = square / 2 - flight.scale;
+      one_tip = left > middle ? ~uint32_t{0} : 0;
     }
     FlightConstants<T> flight;
-    T left;  // from here on the piston can reach the ball
+    double left;  // from here on the piston can reach the ball
+    T tip;        // from there to the disc's centre
     T period;
+    uint32_t one_tip;  // all bits, if the piston reaches less than half of an arc
   };
 
-  static HWY_INLINE uint64_t Bits(hn::Mask<D> mask) {
-    uint8_t low, high = 0;  // of 16 lanes at most
-    if constexpr (hn::MaxLanes(D()) > 8) {
-      uint8_t bytes[2];
-      hn::StoreMaskBits(D(), mask, bytes);
-      low = bytes[0];
-      high = bytes[1];
-    } else {
-      hn::StoreMaskBits(D(), mask, &low);
-    }
-    return low | uint64_t{high} << 8;
-  }
-
-  // The memory lies group by group, then array by array.
-  T* At(size_t array, size_t lane) {
-    return memory_.get() + (GroupOf(lane) * kArrays + array) * LanesInGroup() +
-           lane % LanesInGroup();
-  }
-
-  // A group has made step_[group] flights; the parity tells where the newest state is.
-  static size_t GroupOf(size_t lane) { return lane / LanesInGroup(); }
-  size_t Newest(size_t group) const { return (step_[group] % 2) * kFlying; }
-  // Before and after the lane's last flight.
-  T& After(Array array, size_t lane) { return *At(array + Newest(GroupOf(lane)), lane); }
-  T& Before(Array array, size_t lane) { return *At(array + kFlying - Newest(GroupOf(lane)), lane); }
+  // Where a lane is.
+  static size_t PartOf(size_t lane) { return lane / LanesInPart(); }
+  Vector& VectorOf(size_t lane) { return vectors_[lane / Width()]; }
+  static size_t InVector(size_t lane) { return lane % Width(); }
+  // The newest state, and the one before.
+  size_t After(size_t lane) const { return flights_[PartOf(lane)] % 2; }
+  size_t Before(size_t lane) const { return 1 - After(lane); }
 
   bool IsDone() const {
     return source_is_empty_ && running_ == 0 && outside_.empty() && slow_.empty();
   }
 
-  void Step() {
-    FlyGroup(0);
-    LookAtGroup(1);
-    if (HWY_LIKELY(groups_ == kGroups)) FlyGroup(1);
-    LookAtGroup(0);
-    if (HWY_UNLIKELY(running_ + LanesInGroup() <= groups_ * LanesInGroup())) Compact();
+  // ---- flights ----
+
+  // So many rounds, a flight of each lane in a round; fewer if no orbits are left.
+  void FlyLanes() {
+    for (int rounds = kRoundsBetweenLooks; rounds > 0 && running_ > 0;) {
+      if (running_ <= LanesInPart()) Compact();
+      if (parts_ == 1) {
+        FlyFirstPart();
+        --rounds;
+      } else {
+        FlyAllParts(rounds);
+      }
+    }
   }
 
-  HWY_INLINE void FlyGroup(size_t group) {
-    const Constants constants = constants_;  // a copy that no store into the lanes can change
-    T* lanes = memory_.get() + group * kArrays * LanesInGroup();
-    const T* from = lanes + Newest(group) * LanesInGroup();
-    T* to = lanes + (kFlying - Newest(group)) * LanesInGroup();
-    ++step_[group];
-    FlyOnce(constants, from, to, lanes + kRatio * LanesInGroup(), flags_[group]);
+  void FlyFirstPart() {
+    const Constants k = constants_;  // a copy that no store into the lanes can change
+    for (size_t i = 0; i < kVectorsInPart; ++i) AimOf(k, 0, i);
+    for (size_t i = 0; i < kVectorsInPart; ++i) FindRootOf(0, i);
+    for (size_t i = 0; i < kVectorsInPart; ++i) TurnOf(k, 0, i);
+    ++flights_[0];
+    LookAtPart(0);
   }
 
-  static HWY_INLINE void Get(const T* lanes, Array array, V (&v)[K]) {
-    BALLPISTON_EACH v[i] = hn::Load(D(), lanes + array * LanesInGroup() + i * Width());
-  }
-  static HWY_INLINE void Put(const V (&v)[K], T* lanes, Array array) {
-    BALLPISTON_EACH { hn::Store(v[i], D(), lanes + array * LanesInGroup() + i * Width()); }
+  // Ends early if one part is enough for the orbits that are left.
+  void FlyAllParts(int& rounds) {
+    BeginLastPart();
+    do {
+      FlyOn<0>();
+      LookAtPart(1);
+      FlyOn<1>();
+      LookAtPart(2);
+      FlyOn<2>();
+      LookAtPart(0);
+    } while (--rounds > 0 && running_ > LanesInPart());
+    EndLastPart();
+    LookAtPart(1);
+    LookAtPart(2);
   }
 
-  static HWY_INLINE void FlyOnce(const Constants& k, const T* from, T* to, const T* ratios,
-                                 uint64_t& flags) {
+  void BeginLastPart() {
+    const Constants k = constants_;
+    for (size_t i = 0; i < kVectorsInPart; ++i) AimOf(k, kParts - 1, i);
+    for (size_t i = 0; i < kLag; ++i) FindRootOf(kParts - 1, i);
+  }
+
+  void EndLastPart() {
+    const Constants k = constants_;
+    for (size_t i = kLag; i < kVectorsInPart; ++i) FindRootOf(kParts - 1, i);
+    for (size_t i = 0; i < kVectorsInPart; ++i) TurnOf(k, kParts - 1, i);
+    ++flights_[kParts - 1];
+  }
+
+  // Begins a flight of part P, and ends that of the part before it.
+  template <size_t P>
+  HWY_INLINE void FlyOn() {
+    constexpr size_t kBefore = (P + kParts - 1) % kParts;
+    const Constants k = constants_;
+    _Pragma("GCC unroll 8") for (size_t i = 0; i < kVectorsInPart; ++i) {
+      TurnOf(k, kBefore, i);
+      i < kLag ? FindRootOf(kBefore, i + kLag) : FindRootOf(P, i - kLag);
+      AimOf(k, P, i);
+    }
+    ++flights_[kBefore];
+  }
+
+  HWY_INLINE void AimOf(const Constants& k, size_t part, size_t i) {
+    Vector& v = vectors_[part * kVectorsInPart + i];
+    const size_t from = flights_[part] % 2;
+    Aim(k.flight, v.balls[from], v.balls[1 - from], v.flight);
+  }
+
+  HWY_INLINE void FindRootOf(size_t part, size_t i) {
+    Vector& v = vectors_[part * kVectorsInPart + i];
+    FindRoot(v.flight, v.balls[1 - flights_[part] % 2]);
+  }
+
+  // A flight can be looked at when it is done. Marked are the lanes whose ball is, or was before,
+  // in the piston's reach, has left the cell, or has come a long way.
+  HWY_INLINE void TurnOf(const Constants& k, size_t part, size_t i) {
     const D d;
-    V length[K], missed[K], x[K], path[K];
-    Balls<D, K> balls;
-    Get(from, kH, balls.h);
-    Get(from, kE, balls.e);
-    Get(from, kC, balls.c);
-    Get(from, kS, balls.s);
-    Get(from, kA, balls.a);
-    Get(from, kB, balls.b);
-    Get(from, kM, balls.m);
-    Fly(d, k.flight, balls, length, missed);
-    Put(balls.h, to, kH);
-    Put(balls.e, to, kE);
-    Put(balls.c, to, kC);
-    Put(balls.s, to, kS);
-    Put(balls.a, to, kA);
-    Put(balls.b, to, kB);
-    Put(balls.m, to, kM);
-    Abscissae(d, k.flight, balls, k.left, x);
-    Put(x, to, kX);
-    Get(from, kPath, path);
-    BALLPISTON_EACH path[i] = hn::Add(path[i], length[i]);
-    Put(path, to, kPath);
-    MovePistons(k, from, to, ratios, length, missed, x, flags);
-    if constexpr (sizeof(T) == 4) FlagLongPaths(path, flags);
+    Vector& v = vectors_[part * kVectorsInPart + i];
+    const size_t from = flights_[part] % 2, to = 1 - from;
+    const V length = ballpiston::HWY_NAMESPACE::Turn(k.flight, v.flight, v.balls[to]);
+    const V path = hn::Add(hn::Load(d, v.path[from]), length);
+    hn::Store(path, d, v.path[to]);
+    v.in_reach[to] = FindReach(k, v.balls[to]);
+    const V left_cell = hn::Add(hn::Load(d, v.flight.q), hn::Set(d, kMissedByRounding));
+    const V way_left = hn::Sub(hn::Set(d, kLongestPath), path);
+    v.suspects = v.in_reach[0] | v.in_reach[1] | SignBits(d, hn::Or(left_cell, way_left));
   }
 
-  // `flags` marks the lanes to look at: ball and piston met, or may have met, or the ball has left
-  // the cell. The distance between ball and piston is a concave function of time, except where the
-  // piston turns at its left wall. So they met if the ball ends beyond the piston, and may have met
-  // if the piston turned while the ball was in its reach.
-  static HWY_INLINE void MovePistons(const Constants& k, const T* from, T* to, const T* ratios,
-                                     const V (&length)[K], const V (&missed)[K], const V (&x)[K],
-                                     uint64_t& flags) {
+  // Where balls on walls are, relative to where the piston can be. In a frame that has the right
+  // tip among the two tips of its arc (a < 0), the ball's depth in that tip is from_tip + b across.
+  struct Depth {
+    HWY_INLINE Depth(const Constants& k, const Balls<T>& balls) {
+      const D d;
+      const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
+              s = hn::Load(d, balls.s);
+      across = hn::MulAdd(c, h, hn::Mul(s, e));
+      from_tip = hn::MulAdd(c, e, hn::NegMulAdd(s, h, hn::Set(d, k.tip)));
+    }
+    V across, from_tip;
+  };
+
+  // Lanes whose ball may be in the piston's reach: it is, if the arc's right tip is the nearer one.
+  static HWY_INLINE uint32_t FindReach(const Constants& k, const Balls<T>& balls) {
     const D d;
-    V phase[K], turns[K], ratio[K], before[K], way[K], ball[K];
-    BALLPISTON_EACH ratio[i] = hn::Load(d, ratios + i * Width());
-    Get(from, kPhase, phase);
-    BALLPISTON_EACH phase[i] = hn::MulAdd(ratio[i], length[i], phase[i]);
-    BALLPISTON_EACH turns[i] = hn::Floor(phase[i]);
-    BALLPISTON_EACH phase[i] = hn::Sub(phase[i], turns[i]);
-    Put(phase, to, kPhase);
-    Get(from, kX, before);
-    BALLPISTON_EACH way[i] = hn::Min(phase[i], hn::Sub(hn::Set(d, T(1)), phase[i]));
-    BALLPISTON_EACH ball[i] = hn::NegMulAdd(way[i], hn::Set(d, k.period), x[i]);
-    BALLPISTON_EACH turns[i] = hn::Min(turns[i], hn::Max(x[i], before[i]));
-    BALLPISTON_EACH ball[i] = hn::Max(ball[i], turns[i]);
-    BALLPISTON_EACH ball[i] = hn::Max(ball[i], missed[i]);
-    uint64_t bits = 0;
-    BALLPISTON_EACH bits |= Bits(hn::Gt(ball[i], hn::Set(d, kMissedByRounding))) << (i * Width());
-    flags = bits;
+    const Depth depth(k, balls);
+    const uint32_t outside = SignBits(d, hn::Add(depth.from_tip, hn::Abs(depth.across)));
+    const uint32_t far_tip = (balls.b ^ SignBits(d, depth.across)) & k.one_tip;
+    return balls.a & ~(outside | far_tip) & kAllLanes;
   }
 
-  static HWY_INLINE void FlagLongPaths(const V (&path)[K], uint64_t& flags) {
-    BALLPISTON_EACH { flags |= Bits(hn::Gt(path[i], hn::Set(D(), kLongestPath))) << (i * Width()); }
+  // In the lanes with a < 0.
+  static HWY_INLINE V DepthOfAll(const Constants& k, const Balls<T>& balls) {
+    const D d;
+    const Depth depth(k, balls);
+    const uint8_t bits[8] = {static_cast<uint8_t>(balls.b), static_cast<uint8_t>(balls.b >> 8)};
+    const hn::Mask<D> negative = hn::LoadMaskBits(d, bits);
+    const V across = hn::IfThenElse(negative, hn::Neg(depth.across), depth.across);
+    return hn::Add(depth.from_tip, across);
   }
 
-  void LookAtGroup(size_t group) {
-    if (HWY_LIKELY(flags_[group] == 0)) return;
-    LookAtFlagged(group);
+  // ---- what happened in the flights ----
+
+  HWY_INLINE void LookAtPart(size_t part) {
+    uint32_t suspects = 0;
+    for (size_t i = 0; i < kVectorsInPart; ++i) {
+      suspects |= vectors_[part * kVectorsInPart + i].suspects;
+    }
+    if (suspects != 0) LookAtSuspects(part);
   }
 
   // Not inlined, so that the loop of flights stays small.
-  HWY_NOINLINE void LookAtFlagged(size_t group) {
-    for (uint64_t bits = std::exchange(flags_[group], 0); bits != 0; bits &= bits - 1) {
-      LookAt(group * LanesInGroup() + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+  HWY_NOINLINE void LookAtSuspects(size_t part) {
+    for (size_t i = 0; i < kVectorsInPart; ++i) {
+      const size_t vector = part * kVectorsInPart + i;
+      if (vectors_[vector].suspects != 0) LookAtVector(vector);
     }
+    if (outside_.empty()) return;
+    open_begin_ = parts_ == 1 ? 0 : part;
+    open_end_ = parts_ == 1 ? kParts : part + 1;
     FlyOutside();
   }
 
-  // At the lane's last flight.
-  void LookAt(size_t lane) {
-    if (HasEscaped(lane)) return Escape(lane);
-    if (MeetOnTheWay(lane)) return Leave(lane);
-    orbit_[lane].path += static_cast<double>(After(kPath, lane));
-    After(kPath, lane) = 0;
+  // The distance between ball and piston is a concave function of time, except where the piston
+  // turns at its left wall. So they met if the ball ends beyond the piston, and may have met if the
+  // piston turned while the ball was in its reach.
+  HWY_INLINE void LookAtVector(size_t vector) {
+    const D d;
+    const Constants& k = constants_;
+    Vector& v = vectors_[vector];
+    const size_t to = After(vector * Width()), from = 1 - to;
+    const V path = hn::Load(d, v.path[to]);
+    const V before = PhaseAfter(v, hn::Load(d, v.path[from])), after = PhaseAfter(v, path);
+    const V turns = hn::Floor(after);
+    const V phase = hn::Sub(after, turns);
+    const V way = hn::Min(phase, hn::Sub(hn::Set(d, T(1)), phase));
+    const V piston = hn::Mul(way, hn::Set(d, k.period));
+    const uint32_t beyond = Bits(d, hn::Gt(DepthOfAll(k, v.balls[to]), piston)) & v.in_reach[to];
+    const uint32_t turned =
+        Bits(d, hn::Gt(turns, hn::Floor(before))) & (v.in_reach[0] | v.in_reach[1]);
+    const uint32_t left_cell =
+        SignBits(d, hn::Add(hn::Load(d, v.flight.q), hn::Set(d, kMissedByRounding)));
+    const uint32_t far = Bits(d, hn::Gt(path, hn::Set(d, kLongestPath)));
+    v.suspects = 0;
+    const size_t first = vector * Width();
+    for (uint32_t lanes = left_cell & kAllLanes; lanes != 0; lanes &= lanes - 1) {
+      Escape(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+    }
+    for (uint32_t lanes = (beyond | turned) & ~left_cell; lanes != 0; lanes &= lanes - 1) {
+      const size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
+      if (MeetOnTheWay(lane)) Leave(lane);
+    }
+    if (far != 0) TakePathsOut(vector, far);
   }
 
-  bool HasEscaped(size_t lane) {
-    const T c = After(kC, lane);
-    return !(c * c - 2 <= kMissedByRounding);
+  static HWY_INLINE V PhaseAfter(const Vector& v, V path) {
+    return hn::MulAdd(hn::Load(D(), v.ratio), path, hn::Load(D(), v.phase));
+  }
+
+  // In a lane that an orbit has just left it does no harm.
+  void TakePathsOut(size_t vector, uint32_t lanes) {
+    const D d;
+    Vector& v = vectors_[vector];
+    Column& path = v.path[After(vector * Width())];
+    HWY_ALIGN Column phase;
+    const V after = PhaseAfter(v, hn::Load(d, path));
+    hn::Store(hn::Sub(after, hn::Floor(after)), d, phase);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
+      orbit_[vector * Width() + i].path += static_cast<double>(path[i]);
+      path[i] = 0;
+      v.phase[i] = phase[i];
+    }
   }
 
   void Escape(size_t lane) {
@@ -275,12 +347,30 @@ class LaneOrbits : public OrbitRun {
     EndInLane(lane);
   }
 
+  // Of the piston after so much of the ball's path, in periods, below 1; the bits of PhaseAfter.
+  double PhaseOf(size_t lane, T path) {
+    const hn::CappedTag<T, 1> d;
+    const Vector& v = VectorOf(lane);
+    const auto phase = hn::MulAdd(hn::Set(d, v.ratio[InVector(lane)]), hn::Set(d, path),
+                                  hn::Set(d, v.phase[InVector(lane)]));
+    return static_cast<double>(hn::GetLane(hn::Sub(phase, hn::Floor(phase))));
+  }
+
+  // Of the ball, beyond the piston's left wall; scaled.
+  double DepthOf(const Balls<T>& balls, size_t lane) const {
+    const LaneFrame f = balls.Frame(InVector(lane));
+    const double half = 0.5 * constants_.flight.scale * constants_.flight.scale;
+    return f.a * (f.s * f.h - half - f.c * f.e) + f.b * (f.s * f.e + f.c * f.h) - constants_.left;
+  }
+
   bool MeetOnTheWay(size_t lane) {
-    const double x0 = Before(kX, lane), x1 = After(kX, lane);
-    const double phase0 = Before(kPhase, lane), phase1 = After(kPhase, lane);
+    const Vector& v = VectorOf(lane);
+    const size_t i = InVector(lane), from = Before(lane), to = After(lane);
+    const double x0 = DepthOf(v.balls[from], lane), x1 = DepthOf(v.balls[to], lane);
+    const double phase0 = PhaseOf(lane, v.path[from][i]), phase1 = PhaseOf(lane, v.path[to][i]);
     if (x1 > std::min(phase1, 1 - phase1) * constants_.period) return true;
-    const double length = static_cast<double>(After(kPath, lane)) - Before(kPath, lane);
-    const double way = *At(kRatio, lane) * length;
+    const double length = static_cast<double>(v.path[to][i]) - v.path[from][i];
+    const double way = v.ratio[i] * length;
     if (!(phase0 + way > 1 - kSlack)) return false;
     // The first and the last moment of the flight when the piston was at its left wall.
     const double first = std::clamp((1 - phase0) / way, 0.0, 1.0);
@@ -291,16 +381,17 @@ class LaneOrbits : public OrbitRun {
   // Out of the lanes, at the beginning of the last flight.
   void Leave(size_t lane) {
     LaneOrbit& orbit = orbit_[lane];
-    const double phase = Before(kPhase, lane) * 2 * wave_.stroke();
-    const double path = (orbit.path + Before(kPath, lane)) / constants_.flight.scale;
+    const Vector& v = VectorOf(lane);
+    const size_t from = Before(lane);
+    const T lane_path = v.path[from][InVector(lane)];
+    const double phase = PhaseOf(lane, lane_path) * 2 * wave_.stroke();
+    const double path = (orbit.path + static_cast<double>(lane_path)) / constants_.flight.scale;
     orbit.sums.time += path / orbit.ball_speed;
-    orbit.sums.ball_wall_hits += step_[GroupOf(lane)] - 1 - orbit.entry_step;
+    orbit.sums.ball_wall_hits += flights_[PartOf(lane)] - 1 - orbit.entry_flight;
     orbit.sums.piston_wall_hits +=
         wave_.Hits(orbit.entry_phase, path * (orbit.piston_speed / orbit.ball_speed));
     const LaneFrame frame =
-        Scaled({Before(kH, lane), Before(kE, lane), Before(kC, lane), Before(kS, lane),
-                Before(kA, lane), Before(kB, lane), Before(kM, lane)},
-               1 / constants_.flight.scale);
+        Scaled(v.balls[from].Frame(InVector(lane)), 1 / constants_.flight.scale);
     const PairState state = {.position = PositionInCell(frame),
                              .direction = DirectionInCell(frame),
                              .ball_speed = orbit.ball_speed,
@@ -312,14 +403,16 @@ class LaneOrbits : public OrbitRun {
 
   void Empty(size_t lane) {
     orbit_[lane].orbit = kNoOrbit;
-    idle_.push_back(lane);
+    idle_[PartOf(lane)].lanes.push_back(lane);
     --running_;
   }
 
   // ---- orbits outside of the lanes ----
 
-  // Called between steps: advances slow orbits and starts new ones.
+  // Called while no part is in flight: advances slow orbits and starts new ones.
   void ResumeOutside() {
+    open_begin_ = 0;
+    open_end_ = kParts;
     outside_.insert(outside_.end(), slow_.begin(), slow_.end());
     slow_.clear();
     source_is_empty_ = false;
@@ -337,7 +430,9 @@ class LaneOrbits : public OrbitRun {
       Depart();
       StartNew();
     }
-    for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
+    slow_.insert(slow_.end(), outside_.begin(), outside_.end());
+    outside_.clear();
+    for (size_t part = open_begin_; part < open_end_; ++part) idle_[part].ParkNew(*this);
   }
 
   // Afterwards all orbits outside are in contact; `meetings_` has their contacts in the same order.
@@ -346,15 +441,15 @@ class LaneOrbits : public OrbitRun {
     size_t in_contact = 0;
     for (OrbitOutside& outside : outside_) {
       switch (FlyToContact(outside)) {
-        case Flight::kOnWall:
+        case Flown::kToWall:
           Enter(outside);
           break;
-        case Flight::kInContact:
+        case Flown::kToContact:
           meetings_.push_back({outside.orbit.orbit, outside.orbit.sums});
           if (&outside_[in_contact] != &outside) outside_[in_contact] = outside;
           ++in_contact;
           break;
-        case Flight::kSlow:
+        case Flown::kNotFar:
           slow_.push_back(outside);
           break;
       }
@@ -362,21 +457,21 @@ class LaneOrbits : public OrbitRun {
     outside_.erase(outside_.begin() + static_cast<std::ptrdiff_t>(in_contact), outside_.end());
   }
 
-  enum class Flight { kOnWall, kInContact, kSlow };
+  enum class Flown { kToWall, kToContact, kNotFar };
 
   // The piston may turn many times before a slow ball reaches anything.
-  Flight FlyToContact(OrbitOutside& outside) {
+  Flown FlyToContact(OrbitOutside& outside) {
     Contact& sums = outside.orbit.sums;
-    for (int events = 0; events < kStepsBetweenLooks; ++events) {
+    for (int events = 0; events < kMostEvents; ++events) {
       const Event event = outside.flow.Step();
       sums.Add(event);
-      if (event.kind == EventKind::kBallWall) return Flight::kOnWall;
+      if (event.kind == EventKind::kBallWall) return Flown::kToWall;
       sums.expired = sums.time > limit_;
       if (event.kind == EventKind::kPistonWall && !sums.expired) continue;
       sums.state = outside.flow.state();
-      return Flight::kInContact;
+      return Flown::kToContact;
     }
-    return Flight::kSlow;
+    return Flown::kNotFar;
   }
 
   // Each orbit in contact continues or ends.
@@ -394,7 +489,10 @@ class LaneOrbits : public OrbitRun {
   }
 
   void StartNew() {
-    const size_t room = lanes_ - running_ - outside_.size() - slow_.size();
+    size_t open = 0;
+    for (size_t part = open_begin_; part < open_end_; ++part) open += idle_[part].lanes.size();
+    const size_t room =
+        std::min(open - outside_.size(), orbit_.size() - running_ - outside_.size() - slow_.size());
     if (source_is_empty_ || room == 0) return;
     starts_.resize(room);
     const size_t started = source_.Start(starts_);
@@ -408,15 +506,14 @@ class LaneOrbits : public OrbitRun {
 
   // ---- between outside and the lanes ----
 
+  // Into the first lane of those that are not in flight.
   void Enter(const OrbitOutside& outside) {
-    const size_t lane = idle_.back();
-    idle_.pop_back();
-    parked_ = std::min(parked_, idle_.size());
+    size_t part = open_begin_;
+    while (idle_[part].lanes.empty()) ++part;
+    const size_t lane = idle_[part].Take();
     ++running_;
-    if (GroupOf(lane) >= groups_) groups_ = kGroups;
+    if (part >= parts_) parts_ = kParts;
     orbit_[lane] = outside.orbit;
-    // The lane's last flight belongs to another orbit.
-    flags_[GroupOf(lane)] &= ~(uint64_t{1} << (lane % LanesInGroup()));
     Place(lane, outside.flow.state());
   }
 
@@ -426,16 +523,17 @@ class LaneOrbits : public OrbitRun {
     orbit.piston_speed = std::fabs(state.piston_velocity);
     orbit.path = 0;
     orbit.entry_phase = wave_.Phase(state);
-    orbit.entry_step = step_[GroupOf(lane)];
+    orbit.entry_flight = flights_[PartOf(lane)];
     const double scale = constants_.flight.scale, period = 2 * wave_.stroke();
-    const LaneFrame f = Scaled(FrameOfBallOnWall(state.position, state.direction), scale);
-    const double x = scale * scale * state.position.x() - constants_.left;
-    const double values[kFlying] = {
-        f.h, f.e, f.c, f.s, f.a, f.b, f.m, x, orbit.entry_phase / period, 0};
-    for (size_t i = 0; i < kFlying; ++i) {
-      After(static_cast<Array>(i), lane) = static_cast<T>(values[i]);
-    }
-    *At(kRatio, lane) = static_cast<T>(orbit.piston_speed / orbit.ball_speed / (scale * period));
+    Vector& v = VectorOf(lane);
+    const size_t i = InVector(lane), to = After(lane);
+    v.balls[to].Set(i, Scaled(FrameOfBallOnWall(state.position, state.direction), scale));
+    v.path[to][i] = 0;
+    v.phase[i] = static_cast<T>(orbit.entry_phase / period);
+    v.ratio[i] = static_cast<T>(orbit.piston_speed / orbit.ball_speed / (scale * period));
+    const uint32_t bit = uint32_t{1} << i;
+    const bool in_reach = DepthOf(v.balls[to], lane) >= 0;
+    v.in_reach[to] = in_reach ? v.in_reach[to] | bit : v.in_reach[to] & ~bit;
   }
 
   // A lane without an orbit flies between two discs; its piston stands at the right wall.
@@ -451,17 +549,17 @@ class LaneOrbits : public OrbitRun {
 
   // ---- time limits ----
 
-  // Between steps.
+  // Called while no part is in flight.
   void LookAtLimits() {
-    LookAtGroup(1);
-    for (size_t lane = 0; lane < groups_ * LanesInGroup(); ++lane) {
+    for (size_t lane = 0; lane < parts_ * LanesInPart(); ++lane) {
       if (orbit_[lane].orbit != kNoOrbit && Elapsed(lane) > limit_) Expire(lane);
     }
   }
 
   double Elapsed(size_t lane) {
     const LaneOrbit& orbit = orbit_[lane];
-    const double path = orbit.path + static_cast<double>(After(kPath, lane));
+    const T lane_path = VectorOf(lane).path[After(lane)][InVector(lane)];
+    const double path = orbit.path + static_cast<double>(lane_path);
     return orbit.sums.time + path / constants_.flight.scale / orbit.ball_speed;
   }
 
@@ -480,41 +578,62 @@ class LaneOrbits : public OrbitRun {
 
   // ---- the last orbits ----
 
-  // Brings the orbits that are left into the first group. Between steps.
+  // Brings the orbits that are left into the first part. Called while no part is in flight.
   void Compact() {
-    LookAtGroup(1);
-    if (running_ > LanesInGroup()) return;
-    groups_ = 1;
-    size_t from = LanesInGroup();
-    for (size_t to = 0; to < LanesInGroup(); ++to) {
+    if (parts_ == 1) return;
+    parts_ = 1;
+    size_t from = LanesInPart();
+    for (size_t to = 0; to < LanesInPart(); ++to) {
       if (orbit_[to].orbit != kNoOrbit) continue;
-      while (from < lanes_ && orbit_[from].orbit == kNoOrbit) ++from;
-      if (from == lanes_) break;
+      while (from < orbit_.size() && orbit_[from].orbit == kNoOrbit) ++from;
+      if (from == orbit_.size()) break;
       Move(from, to);
     }
     ListIdleLanes();
   }
 
-  // The groups need not have made as many steps: the first one flew alone before.
+  // The parts need not have made as many flights: the first one flew alone before.
   void Move(size_t from, size_t to) {
     std::swap(orbit_[from], orbit_[to]);
-    orbit_[to].entry_step += step_[GroupOf(to)] - step_[GroupOf(from)];
-    for (size_t i = 0; i < kFlying; ++i) {
-      const auto array = static_cast<Array>(i);
-      std::swap(After(array, from), After(array, to));
-      std::swap(Before(array, from), Before(array, to));
-    }
-    std::swap(*At(kRatio, from), *At(kRatio, to));
+    orbit_[to].entry_flight += flights_[PartOf(to)] - flights_[PartOf(from)];
+    Vector& v = VectorOf(to);
+    const Vector& w = VectorOf(from);
+    const size_t i = InVector(to), j = InVector(from), now = After(to), then = After(from);
+    v.balls[now].Set(i, w.balls[then].Frame(j));
+    v.path[now][i] = w.path[then][j];
+    v.phase[i] = w.phase[j];
+    v.ratio[i] = w.ratio[j];
+    const uint32_t bit = uint32_t{1} << i;
+    const bool in_reach = (w.in_reach[then] >> j & 1) != 0;
+    v.in_reach[now] = in_reach ? v.in_reach[now] | bit : v.in_reach[now] & ~bit;
+    Park(from);
   }
 
-  // The first lanes are taken first.
   void ListIdleLanes() {
-    idle_.clear();
-    for (size_t lane = lanes_; lane-- > 0;) {
-      if (orbit_[lane].orbit == kNoOrbit) idle_.push_back(lane);
+    for (size_t part = 0; part < kParts; ++part) {
+      idle_[part].lanes.clear();
+      for (size_t lane = (part + 1) * LanesInPart(); lane-- > part * LanesInPart();) {
+        if (orbit_[lane].orbit == kNoOrbit) idle_[part].lanes.push_back(lane);
+      }
+      idle_[part].parked = idle_[part].lanes.size();
     }
-    parked_ = idle_.size();
   }
+
+  // Lanes of a part without an orbit; the first `parked` of them are parked.
+  struct IdleLanes {
+    std::vector<size_t> lanes;
+    size_t parked = 0;
+
+    size_t Take() {
+      const size_t lane = lanes.back();
+      lanes.pop_back();
+      parked = std::min(parked, lanes.size());
+      return lane;
+    }
+    void ParkNew(LaneOrbits& orbits) {
+      for (; parked < lanes.size(); ++parked) orbits.Park(lanes[parked]);
+    }
+  };
 
   static constexpr uint64_t kNoOrbit = ~uint64_t{0};
 
@@ -523,15 +642,13 @@ class LaneOrbits : public OrbitRun {
   Constants constants_;
   OrbitSource& source_;
   double limit_;  // time without a collision
-  size_t lanes_;
-  hwy::AlignedFreeUniquePtr<T[]> memory_;
-  std::vector<LaneOrbit> orbit_;
-  size_t groups_ = kGroups;  // that are flown
-  uint64_t step_[kGroups] = {};
-  uint64_t flags_[kGroups] = {};  // a bit a lane: to be looked at
-  size_t running_ = 0;            // orbits in the lanes
-  std::vector<size_t> idle_;      // lanes without an orbit
-  size_t parked_ = 0;             // the first parked_ of idle_ are parked
+  hwy::AlignedUniquePtr<Vector[]> vectors_;
+  std::vector<LaneOrbit> orbit_;   // by lane
+  size_t parts_ = kParts;          // that are flown: all, or the first
+  uint64_t flights_[kParts] = {};  // done
+  size_t running_ = 0;             // orbits in the lanes
+  IdleLanes idle_[kParts];
+  size_t open_begin_ = 0, open_end_ = kParts;  // parts that are not in flight: orbits may enter
   std::vector<OrbitOutside> outside_;
   std::vector<OrbitOutside> slow_;  // also outside; they need long to reach a wall
   bool source_is_empty_ = false;    // at the last call of Start
