@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "core/billiard/event_flow.h"
+#include "core/billiard/exchange.h"
 
 namespace ballpiston {
 
@@ -24,20 +24,6 @@ struct EventFlow<Real>::Plane {
 
   static Real Cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
   static Vector Perpendicular(const Vector& a) { return {-a.y(), a.x()}; }
-
-  // One Newton step: enough where the length is off from 1 by rounding.
-  static Real OneOverLength(const Vector& a) {
-    return static_cast<Real>(1.5) - static_cast<Real>(0.5) * a.squaredNorm();
-  }
-
-  // copysign, which Boost's 128 bits have not.
-  static Real WithSignOf(const Real& signed_number, const Real& magnitude) {
-    if constexpr (std::is_floating_point_v<Real>) {
-      return std::copysign(magnitude, signed_number);
-    } else {
-      return signbit(signed_number) ? -magnitude : magnitude;
-    }
-  }
 };
 
 template <typename Real>
@@ -87,7 +73,7 @@ inline void EventFlow<Real>::Advance(Real duration) {
 template <typename Real>
 inline void EventFlow<Real>::ReflectBall() {
   const Real sin_phi = encounter_.sin_phi, cos_phi = encounter_.cos_phi;
-  const Real unit = Plane::OneOverLength(state_.direction);
+  const Real unit = OneOverLength(state_.direction);
   const Vector normal = state_.direction * (-unit * cos_phi) +
                         Plane::Perpendicular(state_.direction) * (-unit * sin_phi);
   state_.position = centres_[static_cast<size_t>(encounter_.disc)] + normal * rho_;
@@ -105,21 +91,7 @@ void EventFlow<Real>::ReflectPiston() {
 
 template <typename Real>
 void EventFlow<Real>::ExchangeComponents() {
-  using std::fabs, std::sqrt;
-  const Real v1 = state_.ball_speed * state_.direction.x();
-  const Real v2 = state_.ball_speed * state_.direction.y();
-  const Real v3 = state_.piston_velocity;
-  Real ball = sqrt(v3 * v3 + v2 * v2), piston = fabs(v1);
-  if (ball < piston) {
-    piston = sqrt((1 - ball) * (1 + ball));
-  } else {
-    ball = sqrt((1 - piston) * (1 + piston));
-  }
-  if (ball > 0) state_.direction = {v3 / ball, v2 / ball};
-  state_.direction *= Plane::OneOverLength(state_.direction);
-  state_.ball_speed = ball;
-  state_.position.x() = state_.piston;
-  state_.piston_velocity = Plane::WithSignOf(v1, piston);
+  state_ = AfterExchange(state_);
   last_disc_ = kNoDisc;
   AimBall();
   TimePiston();

@@ -29,7 +29,7 @@ class LaneBalls {
   void Begin(std::span<const LaneFrame> starts) {
     for (size_t i = 0; i < Count(); ++i) {
       const LaneFrame& frame = starts[std::min(i, starts.size() - 1)];
-      vectors_[i / Width()].balls.Set(i % Width(), Scaled(frame, constants_.scale));
+      vectors_[i / Width()].Set(i % Width(), Scaled(frame, constants_.scale));
     }
   }
 
@@ -49,21 +49,15 @@ class LaneBalls {
   }
 
   LaneHit Hit(size_t i) const {
-    const Vector& vector = vectors_[i / Width()];
+    const Balls<T>& vector = vectors_[i / Width()];
     const double scale = constants_.scale;
-    const LaneFrame frame = Scaled(vector.balls.Frame(i % Width()), 1 / scale);
-    return {frame, static_cast<double>(vector.length[i % Width()]) / scale, Abscissa(frame)};
+    const LaneFrame frame = Scaled(vector.Frame(i % Width()), 1 / scale);
+    return {frame, static_cast<double>(vector.path[i % Width()]) / scale, Abscissa(frame)};
   }
 
  private:
   static constexpr size_t kVectors = 8;
   static constexpr size_t kLag = 3;
-
-  struct Vector {
-    Balls<T> balls;
-    Flight<T> flight;
-    HWY_ALIGN T length[kMostLanes<T>];
-  };
 
   static size_t Width() { return hn::Lanes(hn::ScalableTag<T>()); }
 
@@ -76,17 +70,14 @@ class LaneBalls {
     }
   }
 
-  HWY_INLINE void AimOf(const FlightConstants<T>& k, size_t i) {
-    Aim(k, vectors_[i].balls, vectors_[i].balls, vectors_[i].flight);
-  }
-  HWY_INLINE void FindRootOf(size_t i) { FindRoot(vectors_[i].flight, vectors_[i].balls); }
+  HWY_INLINE void AimOf(const FlightConstants<T>& k, size_t i) { Aim(k, vectors_[i], vectors_[i]); }
+  HWY_INLINE void FindRootOf(size_t i) { FindRoot(vectors_[i]); }
   HWY_INLINE void TurnOf(const FlightConstants<T>& k, size_t i) {
-    hn::Store(Turn(k, vectors_[i].flight, vectors_[i].balls), hn::ScalableTag<T>(),
-              vectors_[i].length);
+    Turn(k, hn::Zero(hn::ScalableTag<T>()), vectors_[i]);
   }
 
   FlightConstants<T> constants_;
-  Vector vectors_[kVectors] = {};
+  Balls<T> vectors_[kVectors] = {};  // `path` is that of the last flight
 };
 
 template <typename T>

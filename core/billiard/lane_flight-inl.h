@@ -72,11 +72,13 @@ struct FlightConstants {
 template <typename T>
 inline constexpr size_t kMostLanes = HWY_MAX_BYTES / sizeof(T);
 
-// A vector of balls on walls. a, b and m of the frame as bits, one for each lane: set for -1.
+// A vector of balls. The compass is in bits, one for each lane: a and m are set for -1, ab where a
+// and b have different signs.
 template <typename T>
 struct Balls {
   HWY_ALIGN T h[kMostLanes<T>], e[kMostLanes<T>], c[kMostLanes<T>], s[kMostLanes<T>];
-  uint32_t a, b, m;
+  HWY_ALIGN T path[kMostLanes<T>];  // so far
+  uint32_t a, ab, m;
 
   void Set(size_t lane, const LaneFrame& frame) {
     h[lane] = static_cast<T>(frame.h);
@@ -84,11 +86,11 @@ struct Balls {
     c[lane] = static_cast<T>(frame.c);
     s[lane] = static_cast<T>(frame.s);
     SetBit(a, lane, frame.a < 0);
-    SetBit(b, lane, frame.b < 0);
+    SetBit(ab, lane, frame.a != frame.b);
     SetBit(m, lane, frame.m < 0);
   }
   LaneFrame Frame(size_t lane) const {
-    return {h[lane], e[lane], c[lane], s[lane], Sign(a, lane), Sign(b, lane), Sign(m, lane)};
+    return {h[lane], e[lane], c[lane], s[lane], Sign(a, lane), Sign(a ^ ab, lane), Sign(m, lane)};
   }
 
  private:
@@ -98,18 +100,16 @@ struct Balls {
   static double Sign(uint32_t bits, size_t lane) { return (bits >> lane & 1) != 0 ? -1 : 1; }
 };
 
-// Between the stages of a flight.
-template <typename T>
-struct Flight {
-  HWY_ALIGN T q[kMostLanes<T>];  // s'^2; below 0, and not by rounding, the ball has left the cell
-  HWY_ALIGN T foot[kMostLanes<T>];  // f'
-};
-
 template <class D>
 HWY_INLINE uint32_t Bits(D d, hn::Mask<D> mask) {
-  uint8_t bytes[2] = {0, 0};  // of 16 lanes at most
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  return mask.raw;
+#else
+  uint8_t bytes[8];  // of 8 lanes at most
   hn::StoreMaskBits(d, mask, bytes);
-  return bytes[0] | uint32_t{bytes[1]} << 8;
+  return bytes[0];
+#endif
 }
 
 // Where the sign bit is set.
@@ -133,11 +133,12 @@ HWY_INLINE uint32_t SignBits(D d, V v) {
 #endif
 }
 
-// The first stage: which disc is hit, and where. Leaves n and h2 in `to.h` and `to.e`. `from` and
-// `to` may be the same.
+// The first stage: which disc is hit, and where. Leaves n, h2, s'^2 and f' in h, e, s and path of
+// `to`, and returns s'^2: below 0, and not by rounding, the ball has left the cell. `from` and `to`
+// may be the same.
 template <typename T>
-HWY_INLINE void Aim(const FlightConstants<T>& k, const Balls<T>& from, Balls<T>& to,
-                    Flight<T>& flight) {
+HWY_INLINE hn::Vec<hn::ScalableTag<T>> Aim(const FlightConstants<T>& k, const Balls<T>& from,
+                                           Balls<T>& to) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
   const V h = hn::Load(d, from.h);
@@ -156,42 +157,45 @@ HWY_INLINE void Aim(const FlightConstants<T>& k, const Balls<T>& from, Balls<T>&
   const V y_ahead = hn::IfThenElseZero(is_ahead, y);
   const V n = hn::Sub(h, hn::IfThenElseZero(is_ahead, x));
   const V next_c = hn::Sub(c, n);
+  const V square = hn::NegMulAdd(next_c, next_c, hn::Set(d, T(2)));
   hn::Store(n, d, to.h);
   hn::Store(hn::Add(e, y_ahead), d, to.e);
   hn::Store(next_c, d, to.c);
-  hn::Store(hn::NegMulAdd(next_c, next_c, hn::Set(d, T(2))), d, flight.q);
-  hn::Store(hn::Add(foot1, y_ahead), d, flight.foot);
+  hn::Store(square, d, to.s);
+  hn::Store(hn::Add(foot1, y_ahead), d, to.path);
 
-  // The compass is mirrored, then turns by 180 degrees, or by 90 after (1, 0).
+  // The compass is mirrored, which turns b and m, then turned by 180 degrees, or by 90 after (1,
+  // 0).
   const uint32_t mirrored = SignBits(d, side), beside = ~SignBits(d, ahead);
-  const uint32_t a = from.a, b = from.b ^ mirrored;
-  const uint32_t exchanged = (a ^ b) & beside;
-  to.a = ~(a ^ exchanged);
-  to.b = ~(b ^ exchanged ^ beside);
+  const uint32_t ab = from.ab ^ mirrored;
+  to.a = ~(from.a ^ (ab & beside));
+  to.ab = ab ^ beside;
   to.m = from.m ^ mirrored;
+  return square;
 }
 
 // Of a ray that rounding lets miss the disc the root is as good as 0.
 template <typename T>
-HWY_INLINE void FindRoot(const Flight<T>& flight, Balls<T>& to) {
+HWY_INLINE void FindRoot(Balls<T>& to) {
   const hn::ScalableTag<T> d;
-  hn::Store(hn::Sqrt(hn::Max(hn::Load(d, flight.q), hn::Zero(d))), d, to.s);
+  hn::Store(hn::Sqrt(hn::Max(hn::Load(d, to.s), hn::Zero(d))), d, to.s);
 }
 
-// The last stage. Returns the flight's length.
+// The last stage; `path` is what the balls had gone before.
 template <typename T>
-HWY_INLINE hn::Vec<hn::ScalableTag<T>> Turn(const FlightConstants<T>& k, const Flight<T>& flight,
-                                            Balls<T>& to) {
+HWY_INLINE void Turn(const FlightConstants<T>& k, hn::Vec<hn::ScalableTag<T>> path, Balls<T>& to) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
-  const V n = hn::Load(d, to.h), h2 = hn::Load(d, to.e), s = hn::Load(d, to.s);
-  const V square = hn::MulAdd(n, n, hn::Mul(h2, h2));
-  const V unit = hn::NegMulAdd(square, hn::Set(d, k.length_squared), hn::Set(d, T(1.5)));
-  const V p = hn::MulSub(hn::Load(d, flight.q), unit, unit);
-  const V r = hn::Mul(hn::Mul(hn::Load(d, to.c), unit), s);
+  const V n = hn::Load(d, to.h), h2 = hn::Load(d, to.e), c = hn::Load(d, to.c);
+  const V s = hn::Load(d, to.s);
+  const V unit = hn::NegMulAdd(hn::MulAdd(n, n, hn::Mul(h2, h2)), hn::Set(d, k.length_squared),
+                               hn::Set(d, T(1.5)));
+  const V square = hn::NegMulAdd(c, c, hn::Set(d, T(2)));
+  const V p = hn::MulSub(square, unit, unit);
+  const V r = hn::Mul(hn::Mul(c, unit), s);
   hn::Store(hn::NegMulAdd(n, r, hn::Mul(h2, p)), d, to.h);
   hn::Store(hn::NegMulSub(h2, r, hn::Mul(n, p)), d, to.e);
-  return hn::Max(hn::Sub(hn::Load(d, flight.foot), s), hn::Zero(d));
+  hn::Store(hn::Add(path, hn::Sub(hn::Load(d, to.path), s)), d, to.path);
 }
 
 }  // namespace HWY_NAMESPACE

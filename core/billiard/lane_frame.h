@@ -15,6 +15,8 @@
 #define BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 namespace ballpiston {
 
@@ -23,16 +25,56 @@ struct LaneFrame {
   double a, b, m;
 };
 
+// A ball anywhere in the cell, where mirrors by -1 or +1 make the axes of the cell those of the
+// frame.
+inline LaneFrame SeenIn(const Eigen::Vector2d& mirrors, const Eigen::Vector2d& position,
+                        const Eigen::Vector2d& direction) {
+  const double mx = mirrors.x(), my = mirrors.y();
+  const double ux = mx * direction.x(), uy = my * direction.y();
+  const double qx = mx * position.x() + 0.5, qy = my * position.y() + 0.5;
+  return {.h = (ux + uy) / 2,
+          .e = (ux - uy) / 2,
+          .c = uy * qx - ux * qy,
+          .s = std::max(ux * qx + uy * qy, 0.0),
+          .a = mx,
+          .b = mx,
+          .m = mx * my};
+}
+
+// A ball anywhere in the cell, seen from the disc behind it, which it need not have left: then
+// |q| >= rho, and the rest holds as it does on that disc.
+inline LaneFrame FrameOfBall(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) {
+  return SeenIn({std::copysign(1, direction.x()), std::copysign(1, direction.y())}, position,
+                direction);
+}
+
 // A ball on the arc of the disc in its quadrant, flying away from it.
 LaneFrame FrameOfBallOnWall(const Eigen::Vector2d& position, const Eigen::Vector2d& direction);
 
 // h, e, c and s times a factor.
-LaneFrame Scaled(const LaneFrame& frame, double factor);
+inline LaneFrame Scaled(const LaneFrame& frame, double factor) {
+  return {frame.h * factor, frame.e * factor, frame.c * factor, frame.s * factor,
+          frame.a,          frame.b,          frame.m};
+}
 
 // Of the place in the cell, x, without the rounding of a detour through both components.
 double Abscissa(const LaneFrame& frame);
-Eigen::Vector2d PositionInCell(const LaneFrame& frame);
-Eigen::Vector2d DirectionInCell(const LaneFrame& frame);
+
+// From components in the frame to components in the cell: x along r, y along r turned by a right
+// angle, the other way round in a mirror image.
+inline Eigen::Vector2d InCell(const LaneFrame& frame, double x, double y) {
+  const double rx = (frame.a + frame.b) / 2, ry = (frame.a - frame.b) / 2;
+  return {x * rx + y * ry, frame.m * (y * rx - x * ry)};
+}
+
+inline Eigen::Vector2d PositionInCell(const LaneFrame& frame) {
+  const double x = frame.h + frame.e, y = frame.h - frame.e;
+  return InCell(frame, frame.s * x + frame.c * y - 0.5, frame.s * y - frame.c * x - 0.5);
+}
+
+inline Eigen::Vector2d DirectionInCell(const LaneFrame& frame) {
+  return InCell(frame, frame.h + frame.e, frame.h - frame.e);
+}
 
 }  // namespace ballpiston
 

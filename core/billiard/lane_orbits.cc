@@ -4,56 +4,65 @@
 #define HWY_TARGET_INCLUDE "core/billiard/lane_orbits.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <memory>
-#include <utility>
+#include <optional>
 #include <vector>
 
+#include "core/billiard/exchange.h"
 #include "core/billiard/lane_flight-inl.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
-#include "core/billiard/reference_flow.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The vectors form three parts. While one part aims, the part before it turns, kLag vectors later
-// in each stage (lane_flight-inl.h), and the engine looks at the flights of the third, which are
-// done. So the branches of a look depend on finished results only: a mispredicted branch on the
-// newest flights would discard all operations begun after it.
-constexpr size_t kParts = 3;
-constexpr size_t kVectorsInPart = 4;
+// The lanes fly in bursts of some flights each. A burst keeps the state before and after every
+// flight: slot t is before flight t, slot t + kVectors after it, t % kVectors the vector. It also
+// keeps the lanes whose ball is in the piston's reach. After the burst the engine looks at the
+// flights that began or ended there, resolves the contacts it finds, and gives the lanes their next
+// orbits. So contacts and starts come in batches, and the flights have no branch to wait for. The
+// state behind a contact is a ball anywhere in the cell (FrameOfBall): the lanes take it as it is.
+//
+// An orbit enters at the beginning of a burst, and every burst has as many flights: so what is
+// rounded at the end of a burst is rounded at the same flights of the orbit, whatever its lane.
+//
+// Within a burst the vectors' flights overlap (lane_flight-inl.h): while one aims, the one kLag
+// before it takes the root, and the one 2 kLag before it turns. Fewer vectors would hardly take
+// less time, so all fly even if few lanes have orbits. More would not fit a processor's nearest
+// cache.
+constexpr size_t kVectors = 6;
 constexpr size_t kLag = 2;
-constexpr size_t kVectors = kParts * kVectorsInPart;
-static_assert(2 * kLag == kVectorsInPart);
-constexpr int kRoundsBetweenLooks = 2048;  // between two calls of Pause; about 0.2 ms
+constexpr size_t kMostFlights = 12;  // of a lane in a burst
+constexpr size_t kMostSteps = kVectors * kMostFlights;
+constexpr int kBurstsBetweenLooks = 512;  // between two calls of Pause; about 0.2 ms
 
-// The part of an orbit's state that is not in its lane: the sums up to where the lane's sums begin.
+// A slower ball is at rest. It flies at this speed, to meet what comes to it, but not far.
+constexpr double kAtRest = 1e-18;
+constexpr double kLongestPathAtRest = 1e-9;
+
+// A start this near to a wall may be on it.
+constexpr double kOnAWall = 1e-9;
+
+constexpr uint64_t kNoOrbit = ~uint64_t{0};
+
+// An orbit in a lane, since it entered at its start or its last contact.
 struct LaneOrbit {
-  uint64_t orbit = 0;
-  double ball_speed = 1;
+  uint64_t orbit = kNoOrbit;
+  double ball_speed = 1;  // at least kAtRest
   double piston_speed = 0;
-  Contact sums;               // `state` is set only while the orbit is in contact
-  double path = 0;            // the ball's since it entered the lanes, less what is in its lane
-  double entry_phase = 0;     // the piston's, then
-  uint64_t entry_flight = 0;  // the number of flights that the lane had made
-};
-
-// An orbit that is not in the lanes: before its first wall, or around a collision.
-struct OrbitOutside {
-  OrbitOutside(const LaneOrbit& orbit_outside, const PairGeometry& geometry, const PairState& state)
-      : orbit(orbit_outside), flow(geometry, state) {}
-
-  LaneOrbit orbit;
-  ReferenceFlow flow;
+  double entry_phase = 0;
+  uint64_t entry_burst = 0;
+  bool rests = false;
 };
 
 template <typename T>
@@ -65,19 +74,21 @@ class LaneOrbits : public OrbitRun {
         constants_(geometry, wave_),
         source_(source),
         limit_(source.TimeLimit()),
-        vectors_(hwy::MakeUniqueAlignedArray<Vector>(kVectors)),
+        flights_(FlightsInABurst(geometry)),
+        steps_(flights_ * kVectors),
+        slots_(kMostSteps + kVectors),
+        pistons_(kVectors),
         orbit_(Width() * kVectors) {
-    outside_.reserve(orbit_.size());
-    for (size_t lane = 0; lane < orbit_.size(); ++lane) Park(lane);
-    ListIdleLanes();
+    for (size_t lane = orbit_.size(); lane-- > 0;) idle_.push_back(lane);
   }
 
   bool Advance() override {
     do {
-      ResumeOutside();
-      FlyLanes();
+      source_is_empty_ = false;
+      Refill();
+      for (int i = 0; i < kBurstsBetweenLooks && IsRunning(); ++i) Burst();
       if (limit_ < std::numeric_limits<double>::infinity()) LookAtLimits();
-      if (IsDone()) return true;
+      if (source_is_empty_ && !IsRunning()) return true;
     } while (!source_.Pause());
     return false;
   }
@@ -85,573 +96,424 @@ class LaneOrbits : public OrbitRun {
  private:
   using D = hn::ScalableTag<T>;
   using V = hn::Vec<D>;
-  using Column = T[kMostLanes<T>];
 
   static size_t Width() { return hn::Lanes(D()); }
-  static size_t LanesInPart() { return Width() * kVectorsInPart; }
 
-  // Twice what a flight changes: before and after it. The parity of the flights of the vector's
-  // part tells which is which.
-  struct Vector {
-    Balls<T> balls[2] = {};
-    HWY_ALIGN Column path[2] = {};  // the ball's since `phase` was set
-    HWY_ALIGN Column phase = {};    // the piston's when the path was 0, in periods
-    HWY_ALIGN Column ratio = {};    // periods of the piston in a unit of path
-    Flight<T> flight = {};
-    uint32_t in_reach[2] = {};  // lanes whose ball is where the piston can be
-    uint32_t suspects = 0;      // lanes where something may have happened in the last flight
+  // Beside a vector of balls, as they are between two bursts.
+  struct Pistons {
+    HWY_ALIGN T phase[kMostLanes<T>];      // in periods
+    HWY_ALIGN T ratio[kMostLanes<T>];      // periods of the piston in a unit of the ball's path
+    HWY_ALIGN double path[kMostLanes<T>];  // the ball's since the orbit entered
+    uint32_t lanes;                        // that have orbits
   };
 
   // Rounding in the lanes must not hide a contact; a false alarm costs little.
   static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
-  // A longer path is taken out, and a new phase set: sums of short paths have little rounding.
-  static constexpr T kLongestPath = T(64);
 
   // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. It has to be small
   // compared with kSlack.
   static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
 
-  static constexpr int kMostRounds = 256;   // of contacts, some 1 ms
-  static constexpr int kMostEvents = 4096;  // of a slow orbit, between two calls of Pause
-  static constexpr uint32_t kAllLanes = (uint64_t{1} << hn::MaxLanes(D())) - 1;
-
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
       const double square = flight.scale * flight.scale;
       left = square * (wave.left() - kSlack);
-      tip = static_cast<T>(square / 2 - left);
       period = static_cast<T>(square * 2 * wave.stroke());
-      // At most as far as the middle of an arc, which no other half of an arc is beyond.
-      const double middle = square / 2 - flight.scale;
-      one_tip = left > middle ? ~uint32_t{0} : 0;
+      // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
+      const double sine = std::max((wave.left() - kSlack - 0.5) / geometry.rho(), -1.0);
+      edge = static_cast<T>(flight.scale * std::sin(std::asin(sine) + M_PI_4));
     }
     FlightConstants<T> flight;
     double left;  // from here on the piston can reach the ball
-    T tip;        // from there to the disc's centre
+    T edge;       // of the reach, along the arc: (q_x - q_y)/2
     T period;
-    uint32_t one_tip;  // all bits, if the piston reaches less than half of an arc
   };
 
-  // Where a lane is.
-  static size_t PartOf(size_t lane) { return lane / LanesInPart(); }
-  Vector& VectorOf(size_t lane) { return vectors_[lane / Width()]; }
-  static size_t InVector(size_t lane) { return lane % Width(); }
-  // The newest state, and the one before.
-  size_t After(size_t lane) const { return flights_[PartOf(lane)] % 2; }
-  size_t Before(size_t lane) const { return 1 - After(lane); }
-
-  bool IsDone() const {
-    return source_is_empty_ && running_ == 0 && outside_.empty() && slow_.empty();
+  // Few where contacts are frequent: the flights of a lane after its contact are in vain.
+  static size_t FlightsInABurst(const PairGeometry& geometry) {
+    return static_cast<size_t>(std::clamp(1.7 / geometry.delta(), 4.0, double{kMostFlights}));
   }
 
-  // ---- flights ----
+  size_t VectorOf(size_t lane) const { return lane / Width(); }
+  size_t InVector(size_t lane) const { return lane % Width(); }
+  bool IsRunning() const { return idle_.size() < orbit_.size(); }
 
-  // So many rounds, a flight of each lane in a round; fewer if no orbits are left.
-  void FlyLanes() {
-    for (int rounds = kRoundsBetweenLooks; rounds > 0 && running_ > 0;) {
-      if (running_ <= LanesInPart()) Compact();
-      if (parts_ == 1) {
-        FlyFirstPart();
-        --rounds;
-      } else {
-        FlyAllParts(rounds);
+  // ---- a burst ----
+
+  void Burst() {
+    Fly();
+    LookAtFlights();
+    EndBurst();
+    if (!meetings_.empty()) Refill();
+  }
+
+  void Fly() {
+    const Constants k = constants_;  // a copy that no store into the lanes can change
+    const D d;
+    const size_t steps = steps_;
+    Balls<T>* const slots = slots_.data();
+    uint16_t* const in_reach = in_reach_;
+    V worst = hn::Zero(d);
+    for (size_t t = 0; t < 2 * kLag; ++t) {
+      if (t >= kLag) FindRoot(slots[t - kLag + kVectors]);
+      worst = hn::Min(Aim(k.flight, slots[t], slots[t + kVectors]), worst);
+    }
+    for (size_t t = 0; t < steps - 2 * kLag; ++t) {
+      in_reach[t + kVectors] = EndFlight(k, slots[t], slots[t + kVectors]);
+      FindRoot(slots[t + kLag + kVectors]);
+      worst = hn::Min(Aim(k.flight, slots[t + 2 * kLag], slots[t + 2 * kLag + kVectors]), worst);
+    }
+    for (size_t t = steps - 2 * kLag; t < steps; ++t) {
+      in_reach[t + kVectors] = EndFlight(k, slots[t], slots[t + kVectors]);
+      if (t + kLag < steps) FindRoot(slots[t + kLag + kVectors]);
+    }
+    left_cell_ = SignBits(d, hn::Add(worst, hn::Set(d, kMissedByRounding))) != 0;
+    ++bursts_;
+  }
+
+  // Returns the lanes whose ball is in the piston's reach. The arc that has the right tip is in
+  // reach where it is near to that tip: a < 0, and b tells on which side it is.
+  static HWY_INLINE uint16_t EndFlight(const Constants& k, const Balls<T>& from, Balls<T>& to) {
+    const D d;
+    Turn(k.flight, hn::Load(d, from.path), to);
+    const V h = hn::Load(d, to.h), e = hn::Load(d, to.e);
+    const V across = hn::MulAdd(hn::Load(d, to.c), h, hn::Mul(hn::Load(d, to.s), e));
+    const uint32_t above = Bits(d, hn::Gt(across, hn::Set(d, k.edge)));
+    const uint32_t below = Bits(d, hn::Lt(across, hn::Set(d, -k.edge)));
+    return static_cast<uint16_t>(to.a & (below ^ (to.ab & (below ^ above))));
+  }
+
+  // The lanes' next burst begins where they are. Paths begin at 0: sums of short paths have little
+  // rounding.
+  void EndBurst() {
+    const D d;
+    for (size_t v = 0; v < kVectors; ++v) {
+      Pistons& piston = pistons_[v];
+      const V path = hn::Load(d, slots_[steps_ + v].path);
+      const V phase = PhaseAfter(piston, path);
+      hn::Store(hn::Sub(phase, hn::Floor(phase)), d, piston.phase);
+      AddPath(path, piston.path);
+      Copy(slots_[steps_ + v], slots_[v]);
+      hn::Store(hn::Zero(d), d, slots_[v].path);
+      in_reach_[v] = in_reach_[steps_ + v];
+    }
+  }
+
+  static HWY_INLINE void Copy(const Balls<T>& from, Balls<T>& to) {
+    const D d;
+    hn::Store(hn::Load(d, from.h), d, to.h);
+    hn::Store(hn::Load(d, from.e), d, to.e);
+    hn::Store(hn::Load(d, from.c), d, to.c);
+    hn::Store(hn::Load(d, from.s), d, to.s);
+    to.a = from.a;
+    to.ab = from.ab;
+    to.m = from.m;
+  }
+
+  static HWY_INLINE void AddPath(V path, double* sums) {
+    const hn::ScalableTag<double> d;
+    if constexpr (sizeof(T) == 8) {
+      hn::Store(hn::Add(hn::Load(d, sums), path), d, sums);
+    } else {
+#if HWY_TARGET == HWY_SCALAR
+      sums[0] += static_cast<double>(hn::GetLane(path));
+#else
+      const hn::Half<D> half;
+      const auto low = hn::PromoteTo(d, hn::LowerHalf(half, path));
+      const auto high = hn::PromoteTo(d, hn::UpperHalf(half, path));
+      hn::Store(hn::Add(hn::Load(d, sums), low), d, sums);
+      sums += hn::Lanes(d);
+      hn::Store(hn::Add(hn::Load(d, sums), high), d, sums);
+#endif
+    }
+  }
+
+  static HWY_INLINE V PhaseAfter(const Pistons& piston, V path) {
+    return hn::MulAdd(hn::Load(D(), piston.ratio), path, hn::Load(D(), piston.phase));
+  }
+
+  // ---- what happened in a burst ----
+
+  void LookAtFlights() {
+    if (HWY_UNLIKELY(left_cell_)) {
+      ListAll();
+    } else {
+      ListFlightsInReach();
+    }
+    KeepFlightsToContacts();
+    for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
+      if (HWY_UNLIKELY(left_cell_)) LookForEscapes(f->flight);
+      LookForContacts(f->flight, f->lanes & pistons_[f->flight % kVectors].lanes);
+    }
+  }
+
+  void ListAll() {
+    listed_end_ = listed_;
+    for (uint32_t t = 0; t < steps_; ++t) (listed_end_++)->flight = t;
+  }
+
+  // That began or ended there.
+  void ListFlightsInReach() {
+    const hn::CappedTag<uint16_t, 32> d;
+    listed_end_ = listed_;
+    for (size_t t = 0; t < steps_; t += hn::Lanes(d)) {
+      const auto in_reach =
+          hn::Or(hn::LoadU(d, in_reach_ + t), hn::LoadU(d, in_reach_ + t + kVectors));
+      uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, hn::Ne(in_reach, hn::Zero(d)), bytes);
+      uint64_t bits;
+      std::memcpy(&bits, bytes, sizeof(bits));
+      if (steps_ - t < hn::Lanes(d)) bits &= (uint64_t{1} << (steps_ - t)) - 1;
+      for (; bits != 0; bits &= bits - 1) {
+        (listed_end_++)->flight =
+            static_cast<uint32_t>(t + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
       }
     }
   }
 
-  void FlyFirstPart() {
-    const Constants k = constants_;  // a copy that no store into the lanes can change
-    for (size_t i = 0; i < kVectorsInPart; ++i) AimOf(k, 0, i);
-    for (size_t i = 0; i < kVectorsInPart; ++i) FindRootOf(0, i);
-    for (size_t i = 0; i < kVectorsInPart; ++i) TurnOf(k, 0, i);
-    ++flights_[0];
-    LookAtPart(0);
-  }
-
-  // Ends early if one part is enough for the orbits that are left.
-  void FlyAllParts(int& rounds) {
-    BeginLastPart();
-    do {
-      FlyOn<0>();
-      LookAtPart(1);
-      FlyOn<1>();
-      LookAtPart(2);
-      FlyOn<2>();
-      LookAtPart(0);
-    } while (--rounds > 0 && running_ > LanesInPart());
-    EndLastPart();
-    LookAtPart(1);
-    LookAtPart(2);
-  }
-
-  void BeginLastPart() {
-    const Constants k = constants_;
-    for (size_t i = 0; i < kVectorsInPart; ++i) AimOf(k, kParts - 1, i);
-    for (size_t i = 0; i < kLag; ++i) FindRootOf(kParts - 1, i);
-  }
-
-  void EndLastPart() {
-    const Constants k = constants_;
-    for (size_t i = kLag; i < kVectorsInPart; ++i) FindRootOf(kParts - 1, i);
-    for (size_t i = 0; i < kVectorsInPart; ++i) TurnOf(k, kParts - 1, i);
-    ++flights_[kParts - 1];
-  }
-
-  // Begins a flight of part P, and ends that of the part before it.
-  template <size_t P>
-  HWY_INLINE void FlyOn() {
-    constexpr size_t kBefore = (P + kParts - 1) % kParts;
-    const Constants k = constants_;
-    _Pragma("GCC unroll 8") for (size_t i = 0; i < kVectorsInPart; ++i) {
-      TurnOf(k, kBefore, i);
-      i < kLag ? FindRootOf(kBefore, i + kLag) : FindRootOf(P, i - kLag);
-      AimOf(k, P, i);
+  // Without a branch that waits for what it finds.
+  void KeepFlightsToContacts() {
+    FlightOfLanes* kept = listed_;
+    for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
+      const uint32_t t = f->flight, lanes = MayHaveMet(t);
+      *kept = {t, lanes};
+      kept += static_cast<size_t>(lanes != 0) | static_cast<size_t>(left_cell_);
     }
-    ++flights_[kBefore];
+    listed_end_ = kept;
   }
 
-  HWY_INLINE void AimOf(const Constants& k, size_t part, size_t i) {
-    Vector& v = vectors_[part * kVectorsInPart + i];
-    const size_t from = flights_[part] % 2;
-    Aim(k.flight, v.balls[from], v.balls[1 - from], v.flight);
-  }
-
-  HWY_INLINE void FindRootOf(size_t part, size_t i) {
-    Vector& v = vectors_[part * kVectorsInPart + i];
-    FindRoot(v.flight, v.balls[1 - flights_[part] % 2]);
-  }
-
-  // A flight can be looked at when it is done. Marked are the lanes whose ball is, or was before,
-  // in the piston's reach, has left the cell, or has come a long way.
-  HWY_INLINE void TurnOf(const Constants& k, size_t part, size_t i) {
+  HWY_NOINLINE void LookForEscapes(size_t t) {
     const D d;
-    Vector& v = vectors_[part * kVectorsInPart + i];
-    const size_t from = flights_[part] % 2, to = 1 - from;
-    const V length = ballpiston::HWY_NAMESPACE::Turn(k.flight, v.flight, v.balls[to]);
-    const V path = hn::Add(hn::Load(d, v.path[from]), length);
-    hn::Store(path, d, v.path[to]);
-    v.in_reach[to] = FindReach(k, v.balls[to]);
-    const V left_cell = hn::Add(hn::Load(d, v.flight.q), hn::Set(d, kMissedByRounding));
-    const V way_left = hn::Sub(hn::Set(d, kLongestPath), path);
-    v.suspects = v.in_reach[0] | v.in_reach[1] | SignBits(d, hn::Or(left_cell, way_left));
+    const V c = hn::Load(d, slots_[t + kVectors].c);
+    const V square = hn::NegMulAdd(c, c, hn::Set(d, 2 + kMissedByRounding));
+    ForLanes(t, SignBits(d, square) & pistons_[t % kVectors].lanes,
+             [&](size_t lane) { Report(lane, Escape()); });
   }
 
-  // Where balls on walls are, relative to where the piston can be. In a frame that has the right
-  // tip among the two tips of its arc (a < 0), the ball's depth in that tip is from_tip + b across.
-  struct Depth {
-    HWY_INLINE Depth(const Constants& k, const Balls<T>& balls) {
-      const D d;
-      const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
-              s = hn::Load(d, balls.s);
-      across = hn::MulAdd(c, h, hn::Mul(s, e));
-      from_tip = hn::MulAdd(c, e, hn::NegMulAdd(s, h, hn::Set(d, k.tip)));
+  void LookForContacts(size_t t, uint32_t lanes) {
+    ForLanes(t, lanes, [&](size_t lane) {
+      const std::optional<Contact> contact = FindContact(t, lane);
+      if (contact) Report(lane, *contact);
+    });
+  }
+
+  template <typename Function>
+  static HWY_INLINE void ForLanes(size_t t, uint32_t lanes, const Function& function) {
+    const size_t first = t % kVectors * Width();
+    for (; lanes != 0; lanes &= lanes - 1) {
+      function(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
     }
-    V across, from_tip;
-  };
-
-  // Lanes whose ball may be in the piston's reach: it is, if the arc's right tip is the nearer one.
-  static HWY_INLINE uint32_t FindReach(const Constants& k, const Balls<T>& balls) {
-    const D d;
-    const Depth depth(k, balls);
-    const uint32_t outside = SignBits(d, hn::Add(depth.from_tip, hn::Abs(depth.across)));
-    const uint32_t far_tip = (balls.b ^ SignBits(d, depth.across)) & k.one_tip;
-    return balls.a & ~(outside | far_tip) & kAllLanes;
-  }
-
-  // In the lanes with a < 0.
-  static HWY_INLINE V DepthOfAll(const Constants& k, const Balls<T>& balls) {
-    const D d;
-    const Depth depth(k, balls);
-    const uint8_t bits[8] = {static_cast<uint8_t>(balls.b), static_cast<uint8_t>(balls.b >> 8)};
-    const hn::Mask<D> negative = hn::LoadMaskBits(d, bits);
-    const V across = hn::IfThenElse(negative, hn::Neg(depth.across), depth.across);
-    return hn::Add(depth.from_tip, across);
-  }
-
-  // ---- what happened in the flights ----
-
-  HWY_INLINE void LookAtPart(size_t part) {
-    uint32_t suspects = 0;
-    for (size_t i = 0; i < kVectorsInPart; ++i) {
-      suspects |= vectors_[part * kVectorsInPart + i].suspects;
-    }
-    if (suspects != 0) LookAtSuspects(part);
-  }
-
-  // Not inlined, so that the loop of flights stays small.
-  HWY_NOINLINE void LookAtSuspects(size_t part) {
-    for (size_t i = 0; i < kVectorsInPart; ++i) {
-      const size_t vector = part * kVectorsInPart + i;
-      if (vectors_[vector].suspects != 0) LookAtVector(vector);
-    }
-    if (outside_.empty()) return;
-    open_begin_ = parts_ == 1 ? 0 : part;
-    open_end_ = parts_ == 1 ? kParts : part + 1;
-    FlyOutside();
   }
 
   // The distance between ball and piston is a concave function of time, except where the piston
-  // turns at its left wall. So they met if the ball ends beyond the piston, and may have met if the
-  // piston turned while the ball was in its reach.
-  HWY_INLINE void LookAtVector(size_t vector) {
+  // turns at its left wall. So they met if the ball ends beyond the piston, or was in reach when
+  // the piston turned for the first or the last time in the flight.
+  HWY_INLINE uint32_t MayHaveMet(size_t t) const {
     const D d;
-    const Constants& k = constants_;
-    Vector& v = vectors_[vector];
-    const size_t to = After(vector * Width()), from = 1 - to;
-    const V path = hn::Load(d, v.path[to]);
-    const V before = PhaseAfter(v, hn::Load(d, v.path[from])), after = PhaseAfter(v, path);
-    const V turns = hn::Floor(after);
-    const V phase = hn::Sub(after, turns);
-    const V way = hn::Min(phase, hn::Sub(hn::Set(d, T(1)), phase));
-    const V piston = hn::Mul(way, hn::Set(d, k.period));
-    const uint32_t beyond = Bits(d, hn::Gt(DepthOfAll(k, v.balls[to]), piston)) & v.in_reach[to];
+    const Balls<T>&from = slots_[t], &to = slots_[t + kVectors];
+    const Pistons& piston = pistons_[t % kVectors];
+    const V x0 = Depth(from), x1 = Depth(to), gain = hn::Sub(x1, x0);
+    const V before = PhaseAfter(piston, hn::Load(d, from.path));
+    const V after = PhaseAfter(piston, hn::Load(d, to.path));
+    const V turns = hn::Floor(after), last = hn::Floor(before);
+    const V phase0 = hn::Sub(before, last), phase1 = hn::Sub(after, turns);
+    const V one = hn::Set(d, T(1)), way = hn::Sub(after, before);
+    const V distance =
+        hn::Mul(hn::Min(phase1, hn::Sub(one, phase1)), hn::Set(d, constants_.period));
+    // Times `way`: x0 + gain (1 - phase0)/way, and x1 - gain phase1/way.
+    const V at_first = hn::MulAdd(gain, hn::Sub(one, phase0), hn::Mul(x0, way));
+    const V at_last = hn::NegMulAdd(gain, phase1, hn::Mul(x1, way));
+    const uint32_t beyond = Bits(d, hn::Gt(x1, distance));
     const uint32_t turned =
-        Bits(d, hn::Gt(turns, hn::Floor(before))) & (v.in_reach[0] | v.in_reach[1]);
-    const uint32_t left_cell =
-        SignBits(d, hn::Add(hn::Load(d, v.flight.q), hn::Set(d, kMissedByRounding)));
-    const uint32_t far = Bits(d, hn::Gt(path, hn::Set(d, kLongestPath)));
-    v.suspects = 0;
-    const size_t first = vector * Width();
-    for (uint32_t lanes = left_cell & kAllLanes; lanes != 0; lanes &= lanes - 1) {
-      Escape(first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
-    }
-    for (uint32_t lanes = (beyond | turned) & ~left_cell; lanes != 0; lanes &= lanes - 1) {
-      const size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
-      if (MeetOnTheWay(lane)) Leave(lane);
-    }
-    if (far != 0) TakePathsOut(vector, far);
+        Bits(d, hn::Gt(turns, last)) & Bits(d, hn::Gt(hn::Max(at_first, at_last), hn::Zero(d)));
+    return (beyond | turned) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
   }
 
-  static HWY_INLINE V PhaseAfter(const Vector& v, V path) {
-    return hn::MulAdd(hn::Load(D(), v.ratio), path, hn::Load(D(), v.phase));
-  }
-
-  // In a lane that an orbit has just left it does no harm.
-  void TakePathsOut(size_t vector, uint32_t lanes) {
+  // Of the ball, beyond where the piston can be; scaled.
+  HWY_INLINE V Depth(const Balls<T>& balls) const {
     const D d;
-    Vector& v = vectors_[vector];
-    Column& path = v.path[After(vector * Width())];
-    HWY_ALIGN Column phase;
-    const V after = PhaseAfter(v, hn::Load(d, path));
-    hn::Store(hn::Sub(after, hn::Floor(after)), d, phase);
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
-      orbit_[vector * Width() + i].path += static_cast<double>(path[i]);
-      path[i] = 0;
-      v.phase[i] = phase[i];
-    }
+    const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
+            s = hn::Load(d, balls.s);
+    const V along =
+        hn::NegMulAdd(c, e, hn::MulSub(s, h, hn::Set(d, constants_.flight.half_height)));
+    const V across = hn::MulAdd(c, h, hn::Mul(s, e));
+    const V sum = hn::Add(NegatedIn(balls.a, along), NegatedIn(balls.a ^ balls.ab, across));
+    return hn::Sub(sum, hn::Set(d, constants_.left));
   }
 
-  void Escape(size_t lane) {
-    orbit_[lane].sums.escaped = true;
-    EndInLane(lane);
+  static HWY_INLINE V NegatedIn(uint32_t lanes, V v) {
+    const uint8_t bytes[8] = {static_cast<uint8_t>(lanes), static_cast<uint8_t>(lanes >> 8)};
+    return hn::IfThenElse(hn::LoadMaskBits(D(), bytes), hn::Neg(v), v);
+  }
+
+  static Contact Escape() {
+    Contact contact;
+    contact.escaped = true;
+    return contact;
+  }
+  static Contact Expiry(double time) {
+    Contact contact;
+    contact.time = time;
+    contact.expired = true;
+    return contact;
+  }
+
+  // The orbit leaves the lane; Meet tells its source.
+  void Report(size_t lane, const Contact& contact) {
+    pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
+    meetings_.push_back({orbit_[lane].orbit, contact});
+    met_.push_back(lane);
+  }
+
+  // On the lane's flight t.
+  std::optional<Contact> FindContact(size_t t, size_t lane) const {
+    const size_t i = InVector(lane);
+    const Pistons& piston = pistons_[VectorOf(lane)];
+    const LaneOrbit& orbit = orbit_[lane];
+    const Balls<T>& from = slots_[t];
+    const double inverse = 1 / constants_.flight.scale;
+    const LaneFrame frame = Scaled(from.Frame(i), inverse);
+    Contact contact;
+    PairState& state = contact.state;
+    state.position = PositionInCell(frame);
+    state.direction = DirectionInCell(frame);
+    state.direction *= OneOverLength(state.direction);
+    const double phase = PhaseOf(piston, i, from.path[i]) * 2 * wave_.stroke();
+    const double ratio = orbit.piston_speed / orbit.ball_speed;
+    const double length = (slots_[t + kVectors].path[i] - from.path[i]) * inverse;
+    const std::optional<PistonWave::Meeting> meeting = wave_.FirstMeeting(
+        phase, ratio, state.position.x() - wave_.left(), state.direction.x(), length);
+    if (!meeting) return std::nullopt;
+    const double path =
+        (piston.path[i] + static_cast<double>(from.path[i])) * inverse + meeting->way;
+    if (orbit.rests && path > kLongestPathAtRest) return std::nullopt;
+    state.position += state.direction * meeting->way;
+    state.ball_speed = orbit.rests ? 0 : orbit.ball_speed;
+    state.piston = state.position.x();
+    state.piston_velocity = meeting->piston_goes_right ? orbit.piston_speed : -orbit.piston_speed;
+    contact.time = path / orbit.ball_speed;
+    contact.expired = contact.time > limit_;
+    contact.ball_wall_hits = (bursts_ - 1 - orbit.entry_burst) * flights_ + t / kVectors;
+    contact.piston_wall_hits = wave_.Hits(orbit.entry_phase, path * ratio);
+    return contact;
   }
 
   // Of the piston after so much of the ball's path, in periods, below 1; the bits of PhaseAfter.
-  double PhaseOf(size_t lane, T path) {
+  static double PhaseOf(const Pistons& piston, size_t i, T path) {
     const hn::CappedTag<T, 1> d;
-    const Vector& v = VectorOf(lane);
-    const auto phase = hn::MulAdd(hn::Set(d, v.ratio[InVector(lane)]), hn::Set(d, path),
-                                  hn::Set(d, v.phase[InVector(lane)]));
+    const auto phase =
+        hn::MulAdd(hn::Set(d, piston.ratio[i]), hn::Set(d, path), hn::Set(d, piston.phase[i]));
     return static_cast<double>(hn::GetLane(hn::Sub(phase, hn::Floor(phase))));
   }
 
-  // Of the ball, beyond the piston's left wall; scaled.
-  double DepthOf(const Balls<T>& balls, size_t lane) const {
-    const LaneFrame f = balls.Frame(InVector(lane));
-    const double half = 0.5 * constants_.flight.scale * constants_.flight.scale;
-    return f.a * (f.s * f.h - half - f.c * f.e) + f.b * (f.s * f.e + f.c * f.h) - constants_.left;
-  }
+  // ---- between bursts ----
 
-  bool MeetOnTheWay(size_t lane) {
-    const Vector& v = VectorOf(lane);
-    const size_t i = InVector(lane), from = Before(lane), to = After(lane);
-    const double x0 = DepthOf(v.balls[from], lane), x1 = DepthOf(v.balls[to], lane);
-    const double phase0 = PhaseOf(lane, v.path[from][i]), phase1 = PhaseOf(lane, v.path[to][i]);
-    if (x1 > std::min(phase1, 1 - phase1) * constants_.period) return true;
-    const double length = static_cast<double>(v.path[to][i]) - v.path[from][i];
-    const double way = v.ratio[i] * length;
-    if (!(phase0 + way > 1 - kSlack)) return false;
-    // The first and the last moment of the flight when the piston was at its left wall.
-    const double first = std::clamp((1 - phase0) / way, 0.0, 1.0);
-    const double last = std::clamp(1 - phase1 / way, 0.0, 1.0);
-    return std::max(x0 + first * (x1 - x0), x0 + last * (x1 - x0)) > 0;
-  }
-
-  // Out of the lanes, at the beginning of the last flight.
-  void Leave(size_t lane) {
-    LaneOrbit& orbit = orbit_[lane];
-    const Vector& v = VectorOf(lane);
-    const size_t from = Before(lane);
-    const T lane_path = v.path[from][InVector(lane)];
-    const double phase = PhaseOf(lane, lane_path) * 2 * wave_.stroke();
-    const double path = (orbit.path + static_cast<double>(lane_path)) / constants_.flight.scale;
-    orbit.sums.time += path / orbit.ball_speed;
-    orbit.sums.ball_wall_hits += flights_[PartOf(lane)] - 1 - orbit.entry_flight;
-    orbit.sums.piston_wall_hits +=
-        wave_.Hits(orbit.entry_phase, path * (orbit.piston_speed / orbit.ball_speed));
-    const LaneFrame frame =
-        Scaled(v.balls[from].Frame(InVector(lane)), 1 / constants_.flight.scale);
-    const PairState state = {.position = PositionInCell(frame),
-                             .direction = DirectionInCell(frame),
-                             .ball_speed = orbit.ball_speed,
-                             .piston = wave_.Position(phase),
-                             .piston_velocity = wave_.Velocity(phase, orbit.piston_speed)};
-    outside_.emplace_back(orbit, geometry_, state);
-    Empty(lane);
-  }
-
-  void Empty(size_t lane) {
-    orbit_[lane].orbit = kNoOrbit;
-    idle_[PartOf(lane)].lanes.push_back(lane);
-    --running_;
-  }
-
-  // ---- orbits outside of the lanes ----
-
-  // Called while no part is in flight: advances slow orbits and starts new ones.
-  void ResumeOutside() {
-    open_begin_ = 0;
-    open_end_ = kParts;
-    outside_.insert(outside_.end(), slow_.begin(), slow_.end());
-    slow_.clear();
-    source_is_empty_ = false;
-    StartNew();
-    FlyOutside();
-  }
-
-  // Advances each orbit event by event, through any collisions, until it is on a wall or has taken
-  // too long. A ball at rest never reaches a wall, so the number of rounds between two calls of
-  // Pause has a limit.
-  void FlyOutside() {
-    for (int round = 0; !outside_.empty() && round < kMostRounds; ++round) {
-      FlyToContacts();
-      if (!meetings_.empty()) source_.Meet(meetings_);
-      Depart();
+  // Tells the source of the orbits that have left the lanes, and gives the lanes their next ones.
+  void Refill() {
+    do {
+      Meet();
       StartNew();
-    }
-    slow_.insert(slow_.end(), outside_.begin(), outside_.end());
-    outside_.clear();
-    for (size_t part = open_begin_; part < open_end_; ++part) idle_[part].ParkNew(*this);
+    } while (!meetings_.empty());
+    for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 
-  // Afterwards all orbits outside are in contact; `meetings_` has their contacts in the same order.
-  void FlyToContacts() {
-    meetings_.clear();
-    size_t in_contact = 0;
-    for (OrbitOutside& outside : outside_) {
-      switch (FlyToContact(outside)) {
-        case Flown::kToWall:
-          Enter(outside);
-          break;
-        case Flown::kToContact:
-          meetings_.push_back({outside.orbit.orbit, outside.orbit.sums});
-          if (&outside_[in_contact] != &outside) outside_[in_contact] = outside;
-          ++in_contact;
-          break;
-        case Flown::kNotFar:
-          slow_.push_back(outside);
-          break;
+  void Meet() {
+    if (meetings_.empty()) return;
+    source_.Meet(meetings_);
+    for (size_t i = 0; i < met_.size(); ++i) {
+      const Contact& contact = meetings_[i].contact;
+      if (meetings_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
+        idle_.push_back(met_[i]);
+      } else {
+        Enter(met_[i], {meetings_[i].orbit, AfterExchange(contact.state)});
       }
     }
-    outside_.erase(outside_.begin() + static_cast<std::ptrdiff_t>(in_contact), outside_.end());
-  }
-
-  enum class Flown { kToWall, kToContact, kNotFar };
-
-  // The piston may turn many times before a slow ball reaches anything.
-  Flown FlyToContact(OrbitOutside& outside) {
-    Contact& sums = outside.orbit.sums;
-    for (int events = 0; events < kMostEvents; ++events) {
-      const Event event = outside.flow.Step();
-      sums.Add(event);
-      if (event.kind == EventKind::kBallWall) return Flown::kToWall;
-      sums.expired = sums.time > limit_;
-      if (event.kind == EventKind::kPistonWall && !sums.expired) continue;
-      sums.state = outside.flow.state();
-      return Flown::kToContact;
-    }
-    return Flown::kNotFar;
-  }
-
-  // Each orbit in contact continues or ends.
-  void Depart() {
-    size_t going_on = 0;
-    for (size_t i = 0; i < outside_.size(); ++i) {
-      const Contact& contact = outside_[i].orbit.sums;
-      if (meetings_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) continue;
-      if (going_on != i) outside_[going_on] = outside_[i];
-      outside_[going_on].flow.ExchangeComponents();
-      outside_[going_on].orbit.sums = {};
-      ++going_on;
-    }
-    outside_.erase(outside_.begin() + static_cast<std::ptrdiff_t>(going_on), outside_.end());
+    meetings_.clear();
+    met_.clear();
   }
 
   void StartNew() {
-    size_t open = 0;
-    for (size_t part = open_begin_; part < open_end_; ++part) open += idle_[part].lanes.size();
-    const size_t room =
-        std::min(open - outside_.size(), orbit_.size() - running_ - outside_.size() - slow_.size());
-    if (source_is_empty_ || room == 0) return;
-    starts_.resize(room);
+    if (source_is_empty_ || idle_.empty()) return;
+    starts_.resize(idle_.size());
     const size_t started = source_.Start(starts_);
-    source_is_empty_ = started < room;
+    source_is_empty_ = started < starts_.size();
     for (size_t i = 0; i < started; ++i) {
-      LaneOrbit orbit;
-      orbit.orbit = starts_[i].orbit;
-      outside_.emplace_back(orbit, geometry_, starts_[i].state);
+      const size_t lane = idle_.back();
+      idle_.pop_back();
+      parked_ = std::min(parked_, idle_.size());
+      Enter(lane, starts_[i]);
+      if (!InsideCell(geometry_, starts_[i].state.position, kOnAWall)) Report(lane, Escape());
     }
   }
 
-  // ---- between outside and the lanes ----
-
-  // Into the first lane of those that are not in flight.
-  void Enter(const OrbitOutside& outside) {
-    size_t part = open_begin_;
-    while (idle_[part].lanes.empty()) ++part;
-    const size_t lane = idle_[part].Take();
-    ++running_;
-    if (part >= parts_) parts_ = kParts;
-    orbit_[lane] = outside.orbit;
-    Place(lane, outside.flow.state());
-  }
-
-  void Place(size_t lane, const PairState& state) {
-    LaneOrbit& orbit = orbit_[lane];
-    orbit.ball_speed = state.ball_speed;
-    orbit.piston_speed = std::fabs(state.piston_velocity);
-    orbit.path = 0;
-    orbit.entry_phase = wave_.Phase(state);
-    orbit.entry_flight = flights_[PartOf(lane)];
+  void Enter(size_t lane, const OrbitStart& start) {
+    const PairState& state = start.state;
+    const size_t v = VectorOf(lane), i = InVector(lane);
+    const double ball_speed = std::max(state.ball_speed, kAtRest);
+    const double piston_speed = std::fabs(state.piston_velocity);
     const double scale = constants_.flight.scale, period = 2 * wave_.stroke();
-    Vector& v = VectorOf(lane);
-    const size_t i = InVector(lane), to = After(lane);
-    v.balls[to].Set(i, Scaled(FrameOfBallOnWall(state.position, state.direction), scale));
-    v.path[to][i] = 0;
-    v.phase[i] = static_cast<T>(orbit.entry_phase / period);
-    v.ratio[i] = static_cast<T>(orbit.piston_speed / orbit.ball_speed / (scale * period));
+    orbit_[lane] = {.orbit = start.orbit,
+                    .ball_speed = ball_speed,
+                    .piston_speed = piston_speed,
+                    .entry_phase = wave_.Phase(state),
+                    .entry_burst = bursts_,
+                    .rests = state.ball_speed < kAtRest};
+    Balls<T>& balls = slots_[v];
+    balls.Set(i, Scaled(FrameOfBall(state.position, state.direction), scale));
+    balls.path[i] = 0;
     const uint32_t bit = uint32_t{1} << i;
-    const bool in_reach = DepthOf(v.balls[to], lane) >= 0;
-    v.in_reach[to] = in_reach ? v.in_reach[to] | bit : v.in_reach[to] & ~bit;
+    const bool in_reach = state.position.x() >= wave_.left() - kSlack;
+    in_reach_[v] = static_cast<uint16_t>(in_reach ? in_reach_[v] | bit : in_reach_[v] & ~bit);
+    Pistons& piston = pistons_[v];
+    piston.phase[i] = static_cast<T>(orbit_[lane].entry_phase / period);
+    piston.ratio[i] = static_cast<T>(piston_speed / ball_speed / (scale * period));
+    piston.path[i] = 0;
+    piston.lanes |= bit;
   }
 
-  // A lane without an orbit flies between two discs; its piston stands at the right wall.
+  // A lane without an orbit flies between two discs.
   void Park(size_t lane) {
-    const double x = 0.5 - geometry_.rho() * M_SQRT1_2;
-    orbit_[lane] = LaneOrbit();
-    orbit_[lane].orbit = kNoOrbit;
-    Place(lane, {.position = {x, x},
-                 .direction = {-M_SQRT1_2, -M_SQRT1_2},
-                 .ball_speed = 1,
-                 .piston = geometry_.piston_right()});
+    Enter(lane, {.state = {.position = {0, 0},
+                           .direction = {-M_SQRT1_2, -M_SQRT1_2},
+                           .ball_speed = 1,
+                           .piston = geometry_.piston_right()}});
+    pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
   }
 
-  // ---- time limits ----
-
-  // Called while no part is in flight.
   void LookAtLimits() {
-    for (size_t lane = 0; lane < parts_ * LanesInPart(); ++lane) {
-      if (orbit_[lane].orbit != kNoOrbit && Elapsed(lane) > limit_) Expire(lane);
+    for (size_t lane = 0; lane < orbit_.size(); ++lane) {
+      const Pistons& piston = pistons_[VectorOf(lane)];
+      if ((piston.lanes >> InVector(lane) & 1) == 0) continue;
+      const double time =
+          piston.path[InVector(lane)] / constants_.flight.scale / orbit_[lane].ball_speed;
+      if (time > limit_) Report(lane, Expiry(time));
     }
+    Refill();
   }
-
-  double Elapsed(size_t lane) {
-    const LaneOrbit& orbit = orbit_[lane];
-    const T lane_path = VectorOf(lane).path[After(lane)][InVector(lane)];
-    const double path = orbit.path + static_cast<double>(lane_path);
-    return orbit.sums.time + path / constants_.flight.scale / orbit.ball_speed;
-  }
-
-  void Expire(size_t lane) {
-    orbit_[lane].sums.time = Elapsed(lane);
-    orbit_[lane].sums.expired = true;
-    EndInLane(lane);
-  }
-
-  void EndInLane(size_t lane) {
-    if (orbit_[lane].orbit == kNoOrbit) return Park(lane);
-    Meeting end = {orbit_[lane].orbit, orbit_[lane].sums};
-    Empty(lane);
-    source_.Meet({&end, 1});
-  }
-
-  // ---- the last orbits ----
-
-  // Brings the orbits that are left into the first part. Called while no part is in flight.
-  void Compact() {
-    if (parts_ == 1) return;
-    parts_ = 1;
-    size_t from = LanesInPart();
-    for (size_t to = 0; to < LanesInPart(); ++to) {
-      if (orbit_[to].orbit != kNoOrbit) continue;
-      while (from < orbit_.size() && orbit_[from].orbit == kNoOrbit) ++from;
-      if (from == orbit_.size()) break;
-      Move(from, to);
-    }
-    ListIdleLanes();
-  }
-
-  // The parts need not have made as many flights: the first one flew alone before.
-  void Move(size_t from, size_t to) {
-    std::swap(orbit_[from], orbit_[to]);
-    orbit_[to].entry_flight += flights_[PartOf(to)] - flights_[PartOf(from)];
-    Vector& v = VectorOf(to);
-    const Vector& w = VectorOf(from);
-    const size_t i = InVector(to), j = InVector(from), now = After(to), then = After(from);
-    v.balls[now].Set(i, w.balls[then].Frame(j));
-    v.path[now][i] = w.path[then][j];
-    v.phase[i] = w.phase[j];
-    v.ratio[i] = w.ratio[j];
-    const uint32_t bit = uint32_t{1} << i;
-    const bool in_reach = (w.in_reach[then] >> j & 1) != 0;
-    v.in_reach[now] = in_reach ? v.in_reach[now] | bit : v.in_reach[now] & ~bit;
-    Park(from);
-  }
-
-  void ListIdleLanes() {
-    for (size_t part = 0; part < kParts; ++part) {
-      idle_[part].lanes.clear();
-      for (size_t lane = (part + 1) * LanesInPart(); lane-- > part * LanesInPart();) {
-        if (orbit_[lane].orbit == kNoOrbit) idle_[part].lanes.push_back(lane);
-      }
-      idle_[part].parked = idle_[part].lanes.size();
-    }
-  }
-
-  // Lanes of a part without an orbit; the first `parked` of them are parked.
-  struct IdleLanes {
-    std::vector<size_t> lanes;
-    size_t parked = 0;
-
-    size_t Take() {
-      const size_t lane = lanes.back();
-      lanes.pop_back();
-      parked = std::min(parked, lanes.size());
-      return lane;
-    }
-    void ParkNew(LaneOrbits& orbits) {
-      for (; parked < lanes.size(); ++parked) orbits.Park(lanes[parked]);
-    }
-  };
-
-  static constexpr uint64_t kNoOrbit = ~uint64_t{0};
 
   PairGeometry geometry_;
   PistonWave wave_;
   Constants constants_;
   OrbitSource& source_;
-  double limit_;  // time without a collision
-  hwy::AlignedUniquePtr<Vector[]> vectors_;
-  std::vector<LaneOrbit> orbit_;   // by lane
-  size_t parts_ = kParts;          // that are flown: all, or the first
-  uint64_t flights_[kParts] = {};  // done
-  size_t running_ = 0;             // orbits in the lanes
-  IdleLanes idle_[kParts];
-  size_t open_begin_ = 0, open_end_ = kParts;  // parts that are not in flight: orbits may enter
-  std::vector<OrbitOutside> outside_;
-  std::vector<OrbitOutside> slow_;  // also outside; they need long to reach a wall
-  bool source_is_empty_ = false;    // at the last call of Start
+  double limit_;            // time without a collision
+  size_t flights_, steps_;  // of a lane, and of a vector, in a burst
+  std::vector<Balls<T>> slots_;
+  std::vector<Pistons> pistons_;
+  // By slot, the lanes whose ball is in the piston's reach; and room for a vector beyond.
+  uint16_t in_reach_[kMostSteps + kVectors + 32] = {};
+  // Flights of the last burst to look at, and the lanes that may have met the piston in them.
+  struct FlightOfLanes {
+    uint32_t flight, lanes;
+  };
+  FlightOfLanes listed_[kMostSteps];
+  FlightOfLanes* listed_end_ = listed_;
+  bool left_cell_ = false;  // some ball in that burst
+  uint64_t bursts_ = 0;
+  std::vector<LaneOrbit> orbit_;  // by lane
+  std::vector<size_t> idle_;      // lanes without an orbit
+  size_t parked_ = 0;             // of them, the first ones
+  bool source_is_empty_ = false;  // at the last call of Start
+  std::vector<size_t> met_;       // lanes of the meetings
   std::vector<Meeting> meetings_;
   std::vector<OrbitStart> starts_;
 };

@@ -3,10 +3,10 @@
 // Two engines do the same work behind one interface.
 //   kReference  one orbit after the other by ReferenceFlow, every event resolved.
 //   kLanes      the ball's flight between walls in vector lanes, without positions; the piston is
-//               not stepped: its position is a triangle wave in time. The engine finds a contact
-//               from the positions of both at the end of the flight and from whether the piston
-//               turned during the flight. ReferenceFlow resolves each flight with a contact, and
-//               the first flight after a collision.
+//               not stepped: its position is a triangle wave in time, looked at only when the ball
+//               is where the piston can be. The engine finds a contact from the positions of both
+//               at the flight's end and where the piston turned, resolves it within the flight, and
+//               the orbit goes on from there in its lane.
 //
 // An orbit's numbers do not depend on the lane it ran in, on how many lanes there are, or on what
 // runs beside it: every operation is elementwise, and exact, correctly rounded or fused as written.

@@ -4,11 +4,9 @@
 // The declarations are those of Highway 1.0. The instruction sets that a target requires are those
 // for which Highway compiles it (hwy/ops/set_macros-inl.h). The C library says which of them the
 // processor and the kernel support.
-#include <hwy/aligned_allocator.h>
 #include <hwy/highway.h>
 
 #include <cstdint>
-#include <cstdlib>
 
 #if HWY_ARCH_X86
 #ifdef __clang__
@@ -70,16 +68,6 @@ int64_t SupportedTargets() {
 ChosenTarget& GetChosenTarget() {
   static ChosenTarget chosen;
   return chosen;
-}
-
-// `allocate` is null: the core has no allocator of its own.
-void* AllocateAlignedBytes(size_t bytes, AllocPtr, void*) {
-  const size_t rounded = (bytes + HWY_ALIGNMENT - 1) / HWY_ALIGNMENT * HWY_ALIGNMENT;
-  return std::aligned_alloc(HWY_ALIGNMENT, rounded);
-}
-
-void FreeAlignedBytes(const void* pointer, FreePtr, void*) {
-  std::free(const_cast<void*>(pointer));
 }
 
 }  // namespace hwy

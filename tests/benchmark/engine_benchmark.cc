@@ -58,7 +58,7 @@ struct FlightContender {
 
   double Rate(uint64_t seed) const {
     Use(target);
-    constexpr uint64_t kHits = 200'000, kBalls = 64;
+    constexpr uint64_t kHits = 100'000, kBalls = 128;
     CounterRandom random(seed, 0, 0);
     std::vector<LaneFrame> starts;
     while (starts.size() < kBalls) {  // leaving the middle of a disc's arc

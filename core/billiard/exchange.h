@@ -1,0 +1,55 @@
+// The collision of ball and piston: they exchange their horizontal components (the paper's
+// eq. tv1tv2tv3ep).
+#ifndef BALLPISTON_CORE_BILLIARD_EXCHANGE_H_
+#define BALLPISTON_CORE_BILLIARD_EXCHANGE_H_
+
+#include <cmath>
+#include <type_traits>
+
+#include "core/geometry/pair_state.h"
+
+namespace ballpiston {
+
+// 1/|a| by one Newton step: enough where the length is off from 1 by rounding.
+template <typename Vector>
+auto OneOverLength(const Vector& a) {
+  using Real = typename Vector::Scalar;
+  return static_cast<Real>(1.5) - static_cast<Real>(0.5) * a.squaredNorm();
+}
+
+// copysign, which Boost's 128 bits have not.
+template <typename Real>
+Real WithSignOf(const Real& signed_number, const Real& magnitude) {
+  if constexpr (std::is_floating_point_v<Real>) {
+    return std::copysign(magnitude, signed_number);
+  } else {
+    return signbit(signed_number) ? -magnitude : magnitude;
+  }
+}
+
+// Of a ball and a piston in contact. Of the two speeds the smaller is computed, the larger follows
+// from the energy 1/2.
+template <typename Real>
+PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before) {
+  using std::fabs, std::sqrt;
+  PairStateOf<Real> after = before;
+  const Real v1 = before.ball_speed * before.direction.x();
+  const Real v2 = before.ball_speed * before.direction.y();
+  const Real v3 = before.piston_velocity;
+  Real ball = sqrt(v3 * v3 + v2 * v2), piston = fabs(v1);
+  if (ball < piston) {
+    piston = sqrt((1 - ball) * (1 + ball));
+  } else {
+    ball = sqrt((1 - piston) * (1 + piston));
+  }
+  if (ball > 0) after.direction = {v3 / ball, v2 / ball};
+  after.direction *= OneOverLength(after.direction);
+  after.ball_speed = ball;
+  after.position.x() = before.piston;
+  after.piston_velocity = WithSignOf(v1, piston);
+  return after;
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_BILLIARD_EXCHANGE_H_
