@@ -119,6 +119,7 @@ class LaneOrbits : public OrbitRun {
       const double square = flight.scale * flight.scale;
       left = square * (wave.left() - kSlack);
       period = static_cast<T>(square * 2 * wave.stroke());
+      phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack) / (2 * wave.stroke()));
       // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
       const double sine = std::max((wave.left() - kSlack - 0.5) / geometry.rho(), -1.0);
       edge = static_cast<T>(flight.scale * std::sin(std::asin(sine) + M_PI_4));
@@ -127,6 +128,7 @@ class LaneOrbits : public OrbitRun {
     double left;  // from here on the piston can reach the ball
     T edge;       // of the reach, along the arc: (q_x - q_y)/2
     T period;
+    T phase_at_tip;  // of the piston
   };
 
   // Few where contacts are frequent: the flights of a lane after its contact are in vain.
@@ -240,7 +242,8 @@ class LaneOrbits : public OrbitRun {
     } else {
       ListFlightsInReach();
     }
-    KeepFlightsToContacts();
+    if (flights_ == kMostFlights) Keep([this](size_t t) { return PistonMayBeNear(t); });
+    Keep([this](size_t t) { return MayHaveMet(t); });
     for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
       if (HWY_UNLIKELY(left_cell_)) LookForEscapes(f->flight);
       LookForContacts(f->flight, f->lanes & pistons_[f->flight % kVectors].lanes);
@@ -271,15 +274,31 @@ class LaneOrbits : public OrbitRun {
     }
   }
 
-  // Without a branch that waits for what it finds.
-  void KeepFlightsToContacts() {
+  // Of the listed flights, those where `test` finds lanes. Without a branch that waits for that.
+  template <typename Test>
+  HWY_INLINE void Keep(const Test& test) {
     FlightOfLanes* kept = listed_;
     for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
-      const uint32_t t = f->flight, lanes = MayHaveMet(t);
+      const uint32_t t = f->flight, lanes = test(t);
       *kept = {t, lanes};
       kept += static_cast<size_t>(lanes != 0) | static_cast<size_t>(left_cell_);
     }
     listed_end_ = kept;
+  }
+
+  // A test before MayHaveMet, of less work: the piston turned at its left wall, or began or ended
+  // so near to it that a ball in the tip may have come as far.
+  HWY_INLINE uint32_t PistonMayBeNear(size_t t) const {
+    const D d;
+    const Pistons& piston = pistons_[t % kVectors];
+    const V before = PhaseAfter(piston, hn::Load(d, slots_[t].path));
+    const V after = PhaseAfter(piston, hn::Load(d, slots_[t + kVectors].path));
+    const V turns = hn::Floor(after), last = hn::Floor(before);
+    const V nearest =
+        hn::Min(hn::Sub(before, last), hn::Sub(hn::Add(turns, hn::Set(d, T(1))), after));
+    const uint32_t turned = Bits(d, hn::Gt(turns, last));
+    const uint32_t near = Bits(d, hn::Lt(nearest, hn::Set(d, constants_.phase_at_tip)));
+    return (turned | near) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
   }
 
   HWY_NOINLINE void LookForEscapes(size_t t) {

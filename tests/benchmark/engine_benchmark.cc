@@ -3,18 +3,22 @@
 //
 //   engine_benchmark [--threads N]
 //
-// Engines take turns of some 50 ms of processor time; a row shows each one's best turn, so that
-// what other programs do meanwhile counts as little as it can. With --threads, how many times as
-// much N threads do as one.
+// The yardsticks run in the same run: the reference, and a plain scalar ball as billiard codes have
+// it. Contenders take turns of some 50 ms of processor time; a row shows each one's best turn, and
+// says if a neighbour disturbed it (turns.h). With --threads, how many times as much N threads do
+// as one, and how many times as much of the independent operations of the probe.
 #include <hwy/targets.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <string>
+#include <functional>
+#include <limits>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -29,46 +33,40 @@
 #include "core/geometry/paper.h"
 #include "core/sampling/direction.h"
 #include "server/processor_time.h"
+#include "tests/benchmark/turns.h"
 
 namespace ballpiston {
 namespace {
-
-constexpr double kFastestPeer = 8.7e6;  // wall hits a second and core
 
 void Use(int64_t target) {
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().DeInit();
 }
 
-// A rate of each contender: the best of some turns, taken in alternation.
-template <typename Contenders>
-std::vector<double> BestRates(const Contenders& contenders, int turns) {
-  std::vector<double> best(contenders.size());
-  for (int turn = 0; turn < turns; ++turn) {
-    for (size_t i = 0; i < contenders.size(); ++i) {
-      best[i] = std::max(best[i], contenders[i].Rate(static_cast<uint64_t>(turn)));
-    }
+constexpr uint64_t kHits = 100'000, kBalls = 128;  // as many balls as the widest lanes have
+
+std::vector<LaneFrame> BallsFromTheMiddleOfAnArc(uint64_t seed) {
+  CounterRandom random(seed, 0, 0);
+  std::vector<LaneFrame> balls;
+  while (balls.size() < kBalls) {
+    Eigen::Vector2d direction = UniformDirection(random);
+    if (direction.x() + direction.y() < 0) direction = -direction;
+    const double c = kPaperRho * (direction.y() - direction.x()) * M_SQRT1_2;
+    const double s = kPaperRho * (direction.y() + direction.x()) * M_SQRT1_2;
+    balls.push_back(
+        {(direction.x() + direction.y()) / 2, (direction.x() - direction.y()) / 2, c, s, 1, 1, 1});
   }
-  return best;
+  return balls;
 }
 
 struct FlightContender {
   int64_t target;
   bool single;
 
-  double Rate(uint64_t seed) const {
+  // Wall hits a second.
+  double Rate(uint64_t turn) const {
     Use(target);
-    constexpr uint64_t kHits = 100'000, kBalls = 128;
-    CounterRandom random(seed, 0, 0);
-    std::vector<LaneFrame> starts;
-    while (starts.size() < kBalls) {  // leaving the middle of a disc's arc
-      Eigen::Vector2d direction = UniformDirection(random);
-      if (direction.x() + direction.y() < 0) direction = -direction;
-      const double c = kPaperRho * (direction.y() - direction.x()) * M_SQRT1_2;
-      const double s = kPaperRho * (direction.y() + direction.x()) * M_SQRT1_2;
-      starts.push_back({(direction.x() + direction.y()) / 2, (direction.x() - direction.y()) / 2, c,
-                        s, 1, 1, 1});
-    }
+    const std::vector<LaneFrame> starts = BallsFromTheMiddleOfAnArc(turn);
     const PairGeometry geometry = *PairGeometry::Create(kPaperRho, 0.05);
     const double begin = server::ThreadSeconds();
     (single ? FlyLaneBallsSingle : FlyLaneBalls)(geometry, starts, kHits, {});
@@ -76,14 +74,70 @@ struct FlightContender {
   }
 };
 
+// One ball after the other, one event after the other: the nearest of the roots over all discs,
+// then u - 2 (u . n) n, its length set to 1 again.
+struct ScalarContender {
+  double Rate(uint64_t turn) const {
+    constexpr uint64_t kScalarHits = 500'000;
+    const LaneFrame start = BallsFromTheMiddleOfAnArc(turn)[0];
+    Eigen::Vector2d position = PositionInCell(start), direction = DirectionInCell(start);
+    int left = -1;  // the disc
+    const double begin = server::ThreadSeconds();
+    for (uint64_t hit = 0; hit < kScalarHits; ++hit) Fly(position, direction, left);
+    const double rate = kScalarHits / (server::ThreadSeconds() - begin);
+    volatile double used = position.x();
+    static_cast<void>(used);
+    return rate;
+  }
+
+  static void Fly(Eigen::Vector2d& position, Eigen::Vector2d& direction, int& left) {
+    double nearest = std::numeric_limits<double>::infinity();
+    int next = left;
+    for (int disc = 0; disc < 4; ++disc) {
+      if (disc == left) continue;
+      const Eigen::Vector2d away = position - Centre(disc);
+      const double along = direction.dot(away);
+      const double square = along * along - (away.squaredNorm() - kPaperRho * kPaperRho);
+      if (along >= 0 || square < 0) continue;
+      const double distance = -along - std::sqrt(square);
+      if (distance < nearest) {
+        nearest = distance;
+        next = disc;
+      }
+    }
+    position += direction * std::min(nearest, 1.0);
+    const Eigen::Vector2d normal = (position - Centre(next)).normalized();
+    direction = (direction - normal * (2 * direction.dot(normal))).normalized();
+    left = next;
+  }
+
+  static Eigen::Vector2d Centre(int disc) {
+    return {(disc & 1) != 0 ? 0.5 : -0.5, (disc & 2) != 0 ? 0.5 : -0.5};
+  }
+};
+
+// Either, for Turns.
+struct BallContender {
+  std::optional<FlightContender> lanes;
+
+  double Rate(uint64_t turn) const {
+    return lanes ? lanes->Rate(turn) : ScalarContender().Rate(turn);
+  }
+};
+
 void ShowFlight(int64_t target) {
-  const std::vector<FlightContender> contenders = {{target, false}, {target, true}};
-  const std::vector<double> rates = BestRates(contenders, 10);
-  for (size_t i = 0; i < 2; ++i) {
-    std::printf(
-        "%-6s %-7s %8.0f million wall hits/s   %5.2f ns a hit   %5.1f times the fastest peer\n",
-        hwy::TargetName(target), i == 0 ? "double" : "single", rates[i] * 1e-6, 1e9 / rates[i],
-        rates[i] / kFastestPeer);
+  const std::vector<BallContender> contenders = {
+      {}, {FlightContender{target, false}}, {FlightContender{target, true}}};
+  const Turns turns(contenders, 15);
+  const double cycles = CyclesPerSecond();
+  const char* const names[] = {"scalar", "double", "single"};
+  for (size_t i = 0; i < contenders.size(); ++i) {
+    const double rate = turns.Best(i);
+    std::printf("%-6s %-7s %8.1f million wall hits/s   %6.2f ns a hit   %6.2f cycles   %5.1f times",
+                hwy::TargetName(target), names[i], rate * 1e-6, 1e9 / rate, cycles / rate,
+                rate / turns.Best(0));
+    ShowDisturbance(turns);
+    std::printf("\n");
   }
 }
 
@@ -145,39 +199,51 @@ void ShowEngines(const char* name, const ExperimentKind* experiment, double delt
   const double time = ExactTime(*reference);
   const std::vector<EngineContender> contenders = {
       {target, reference.get(), time}, {target, lanes.get(), time}, {target, single.get(), time}};
-  const std::vector<double> rates = BestRates(contenders, 12);
+  const Turns turns(contenders, 12);
   std::printf(
       "%-6s %-12s delta %-7g reference %9.0f samples/s (%5.1f million events/s)   "
-      "billiard %9.0f: %5.1f times   single: %5.1f times\n",
-      hwy::TargetName(target), name, delta, rates[0],
-      rates[0] * reference->plan().events_per_sample() * 1e-6, rates[1], rates[1] / rates[0],
-      rates[2] / rates[0]);
+      "billiard %9.0f: %5.1f times   single: %5.1f times",
+      hwy::TargetName(target), name, delta, turns.Best(0),
+      turns.Best(0) * reference->plan().events_per_sample() * 1e-6, turns.Best(1),
+      turns.Best(1) / turns.Best(0), turns.Best(2) / turns.Best(0));
+  ShowDisturbance(turns);
+  std::printf("\n");
 }
 
-// Blocks a second of `threads` threads that share eight blocks.
-double BlocksPerSecond(const PointExperiment& point, unsigned threads) {
-  constexpr uint64_t kBlocks = 8;
+// Of `threads` threads that share eight pieces of work, work(0) ... work(7), in elapsed time.
+double PiecesPerSecond(unsigned threads, const std::function<void(uint64_t)>& work) {
+  constexpr uint64_t kPieces = 8;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::thread> running;
   for (unsigned i = 0; i < threads; ++i) {
-    running.emplace_back([&point, i, threads] {
-      for (uint64_t k = i; k < kBlocks; k += threads) RunBlock(point, BlockOfATurn(point, k));
+    running.emplace_back([&work, i, threads] {
+      for (uint64_t k = i; k < kPieces; k += threads) work(k);
     });
   }
   for (std::thread& thread : running) thread.join();
-  return kBlocks / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return kPieces / std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// How many times as much so many threads do as one.
+double Scaling(unsigned threads, const std::function<void(uint64_t)>& work) {
+  double one = 0, all = 0;
+  for (int turn = 0; turn < 6; ++turn) {
+    one = std::max(one, PiecesPerSecond(1, work));
+    all = std::max(all, PiecesPerSecond(threads, work));
+  }
+  return all / one;
 }
 
 void ShowThreads(unsigned threads) {
   const auto point = PointExperiment::Create(
       Question(&kFirstHit, 0.0125, Model::kBilliard, Precision::kDouble), 0);
-  double one = 0, all = 0;
-  for (int turn = 0; turn < 6; ++turn) {
-    one = std::max(one, BlocksPerSecond(*point, 1));
-    all = std::max(all, BlocksPerSecond(*point, threads));
-  }
-  std::printf("first-hit, delta 0.0125: %u threads do %.2f times as much as one\n", threads,
-              all / one);
+  const double orbits =
+      Scaling(threads, [&point](uint64_t k) { RunBlock(*point, BlockOfATurn(*point, k)); });
+  const double probe = Scaling(threads, [](uint64_t) { SecondsOfChains<6>(1'000'000); });
+  std::printf(
+      "first-hit, delta 0.0125: %u threads do %.2f times as much as one\n"
+      "independent operations:  %.2f times (less than %u where threads share a core)\n",
+      threads, orbits, probe, threads);
 }
 
 void ShowAll() {

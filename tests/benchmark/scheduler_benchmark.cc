@@ -120,6 +120,7 @@ class SimulatedExecutor : public Executor {
       : local_(local), capacity_{.executor = scheduler.AddExecutor(*this), .seconds = seconds} {}
 
   ExecutorTraits traits() const override { return {.local = local_}; }
+  void Start() override {}
   void Wake() override { is_woken_ = true; }
   bool HasTurn(int64_t) const override { return false; }  // a lease is one turn
   void Shutdown() override {}

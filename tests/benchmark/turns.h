@@ -1,0 +1,116 @@
+// Contenders that take turns, and whether a neighbour on the same core disturbed them.
+//
+// Two threads of a processor's core share its ports. A program of another user there costs code
+// that keeps the ports busy much, and code that waits for results little: so it changes ratios, and
+// the clock does not show it. A probe before and after each turn does: independent operations, as
+// many at a time as a core can do, take longer then.
+#ifndef BALLPISTON_TESTS_BENCHMARK_TURNS_H_
+#define BALLPISTON_TESTS_BENCHMARK_TURNS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "server/processor_time.h"
+
+namespace ballpiston {
+
+// Processor seconds of so many steps of `kChains` chains of six operations, each of which waits for
+// the one before it.
+template <size_t kChains>
+double SecondsOfChains(uint64_t steps) {
+  uint64_t x[kChains];
+  for (size_t i = 0; i < kChains; ++i) x[i] = 0x9e3779b97f4a7c15 * (i + 1);
+  const double begin = server::ThreadSeconds();
+  for (uint64_t step = 0; step < steps; ++step) {
+    for (size_t i = 0; i < kChains; ++i) {
+      x[i] ^= x[i] << 13;
+      x[i] ^= x[i] >> 7;
+      x[i] ^= x[i] << 17;
+    }
+  }
+  const double seconds = server::ThreadSeconds() - begin;
+  volatile uint64_t used = 0;
+  for (const uint64_t value : x) used = used ^ value;
+  return seconds;
+}
+
+// Of the clock, by one chain: a cycle for each operation.
+inline double CyclesPerSecond() {
+  constexpr uint64_t kSteps = 50'000;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 20; ++i) least = std::min(least, SecondsOfChains<1>(kSteps));
+  return 6 * kSteps / least;
+}
+
+// Best rates of contenders that take turns.
+class Turns {
+ public:
+  // Of each contender, contenders[i].Rate(turn), some work a second of processor time.
+  template <typename Contenders>
+  Turns(const Contenders& contenders, int turns) {
+    for (int turn = 0; turn < turns; ++turn) {
+      for (size_t i = 0; i < contenders.size(); ++i) {
+        const double before = Probe();
+        const double rate = contenders[i].Rate(static_cast<uint64_t>(turn));
+        turns_.push_back({i, rate, std::min(before, Probe())});
+      }
+    }
+  }
+
+  // In turns without a neighbour, unless all of the contender's had one.
+  double Best(size_t contender) const {
+    const double quiet = Best(contender, true);
+    return quiet > 0 ? quiet : Best(contender, false);
+  }
+  size_t disturbed() const { return Count(&Turns::IsDisturbed); }
+  size_t turns() const { return turns_.size(); }
+
+ private:
+  struct Turn {
+    size_t contender;
+    double rate;
+    double probe;
+  };
+
+  // Chains a second, of as many as keep all ports busy.
+  static double Probe() {
+    constexpr uint64_t kSteps = 20'000;
+    const double probe = kSteps / SecondsOfChains<6>(kSteps);
+    best_probe_ = std::max(best_probe_, probe);
+    return probe;
+  }
+
+  // Against the best of the whole program.
+  static bool IsDisturbed(const Turn& turn) { return turn.probe < 0.9 * best_probe_; }
+
+  size_t Count(bool (*is)(const Turn&)) const {
+    return static_cast<size_t>(std::count_if(turns_.begin(), turns_.end(), is));
+  }
+
+  double Best(size_t contender, bool quiet) const {
+    double best = 0;
+    for (const Turn& turn : turns_) {
+      if (turn.contender != contender || (quiet && IsDisturbed(turn))) continue;
+      best = std::max(best, turn.rate);
+    }
+    return best;
+  }
+
+  static inline double best_probe_ = 0;
+
+  std::vector<Turn> turns_;
+};
+
+// At the end of a line.
+inline void ShowDisturbance(const Turns& turns) {
+  if (turns.disturbed() == 0) return;
+  std::printf("  [a neighbour in %zu of %zu turns]", turns.disturbed(), turns.turns());
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_BENCHMARK_TURNS_H_
