@@ -1,5 +1,6 @@
 #include "core/experiment/energy_relaxation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -57,19 +58,22 @@ std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const 
   values[0] =
       energy.CorrelationIntegral(kMeanPistonEnergy, kOriginTimes * mean_free_time_, window()) /
       kVarianceOfPistonEnergy;
-  const auto steps = static_cast<size_t>((kLags - 1) * kOriginTimes / kWindowTimes);
-  std::vector<double> samples = energy.Samples(Lag(1), steps + kLags - 1);
-  for (double& sample : samples) sample -= kMeanPistonEnergy;
-  for (size_t origin = 0; origin < steps; origin += kLagsBetweenOrigins) {
-    for (size_t lag = 0; lag < kLags; ++lag) {
-      values[1 + lag] += samples[origin] * samples[origin + lag];
-    }
-  }
-  const double origins = static_cast<double>(steps / kLagsBetweenOrigins);
-  for (size_t lag = 0; lag < kLags; ++lag) {
-    values[1 + lag] /= origins * kVarianceOfPistonEnergy;
-  }
+  const ByLag curve = Autocorrelation(energy) / kVarianceOfPistonEnergy;
+  std::copy(curve.begin(), curve.end(), values.begin() + 1);
   return values;
+}
+
+// Mean over the time origins. Of a fixed size, so that the compiler makes vector operations of it:
+// these products are most of what a sample of the jump process costs.
+EnergyRelaxation::ByLag EnergyRelaxation::Autocorrelation(const StepFunction& energy) const {
+  constexpr size_t kSteps = static_cast<size_t>((kLags - 1) * kOriginTimes / kWindowTimes);
+  std::vector<double> samples = energy.Samples(Lag(1), kSteps + kLags - 1);
+  for (double& sample : samples) sample -= kMeanPistonEnergy;
+  ByLag sum = ByLag::Zero();
+  for (size_t origin = 0; origin < kSteps; origin += kLagsBetweenOrigins) {
+    sum += samples[origin] * ByLag::Map(&samples[origin]);
+  }
+  return sum / (kSteps / kLagsBetweenOrigins);
 }
 
 SpectralValue EnergyRelaxation::IntegralOfLimit(double window) const {

@@ -21,6 +21,7 @@
 #ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 #define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -65,6 +66,9 @@ class EnergyRelaxation {
   Curve CurveOfLimit() const;
 
  private:
+  using ByLag = Eigen::Array<double, kLags, 1>;
+
+  ByLag Autocorrelation(const StepFunction& energy) const;
   std::string CurveName() const;
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }

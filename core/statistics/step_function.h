@@ -16,7 +16,7 @@ namespace ballpiston {
 
 class StepFunction {
  public:
-  explicit StepFunction(double first) : times_{0}, values_{first} {}
+  explicit StepFunction(double first);
 
   // From `duration` >= 0 after the last jump on, the value is `value`.
   void Add(double duration, double value);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/billiard/lane_balls.h"
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
@@ -29,6 +30,32 @@ TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
       ASSERT_NEAR(frame.h * frame.h + frame.e * frame.e, 0.5, 1e-15);
       ASSERT_GE(frame.s, 0);
       ASSERT_EQ(std::fabs(frame.a) + std::fabs(frame.b) + std::fabs(frame.m), 3);
+    }
+  }
+}
+
+// Anywhere in the cell and in any direction: there and back, and the next wall hit is that of the
+// reference.
+TEST(LaneFrame, OfABallInTheCellLeadsToTheNextWall) {
+  for (const double rho : {0.501, kPaperRho, 0.7}) {
+    const PairGeometry geometry = GeometryAtShare(rho, 0.3);
+    for (uint64_t i = 0; i < 3000; ++i) {
+      CounterRandom random(1, 2, i);
+      PairState state = DrawFromFlowMeasure(geometry, random);
+      const LaneFrame frame = FrameOfBall(state.position, state.direction);
+      ASSERT_NEAR((PositionInCell(frame) - state.position).norm(), 0, 1e-15);
+      ASSERT_NEAR((DirectionInCell(frame) - state.direction).norm(), 0, 1e-15);
+      state.piston = geometry.piston_right();
+      state.piston_velocity = 0;
+      state.ball_speed = 1;
+      ReferenceFlow flow(geometry, state);
+      const Event event = flow.Step();
+      if (event.kind != EventKind::kBallWall) continue;
+      LaneHit hit[1];
+      FlyLaneBalls(geometry, {&frame, 1}, 1, hit);
+      ASSERT_NEAR(hit[0].length, event.duration, 1e-13);
+      ASSERT_NEAR((PositionInCell(hit[0].frame) - flow.state().position).norm(), 0, 1e-13);
+      ASSERT_NEAR((DirectionInCell(hit[0].frame) - flow.state().direction).norm(), 0, 1e-12);
     }
   }
 }

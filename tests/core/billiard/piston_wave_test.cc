@@ -1,0 +1,101 @@
+#include "core/billiard/piston_wave.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/sampling/counter_random.h"
+#include "tests/core/geometries.h"
+
+namespace ballpiston {
+namespace {
+
+// A ball on its way, and a piston.
+struct Approach {
+  double phase, ratio, x, ux, length;
+};
+
+// x and the piston are to the right of the piston's left wall.
+double Gap(const PistonWave& wave, const Approach& a, double way) {
+  const double period = 2 * wave.stroke();
+  const double phase = a.phase + a.ratio * way;
+  const double rest = phase - period * std::floor(phase / period);
+  return wave.Position(rest) - wave.left() - (a.x + a.ux * way);
+}
+
+std::optional<PistonWave::Meeting> FirstMeeting(const PistonWave& wave, const Approach& a) {
+  return wave.FirstMeeting(a.phase, a.ratio, a.x, a.ux, a.length);
+}
+
+// The piston is nowhere left of the ball before `way`, up to rounding.
+void ExpectApartBefore(const PistonWave& wave, const Approach& a, double way) {
+  constexpr int kPlaces = 500;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double place = way * i / kPlaces;
+    if (a.x + a.ux * place <= 0) continue;
+    ASSERT_GT(Gap(wave, a, place), -1e-12 * (1 + a.ratio));
+  }
+}
+
+// Starts apart, or touching and parting.
+Approach Drawn(const PistonWave& wave, CounterRandom& random) {
+  const double angle = 2 * M_PI * random.Uniform();
+  Approach a = {.phase = 2 * wave.stroke() * random.Uniform(),
+                .ratio = std::pow(10, 4 * random.Uniform() - 2),
+                .x = 0,
+                .ux = std::cos(angle),
+                .length = 0.6 * random.Uniform()};
+  const double piston = wave.Position(a.phase) - wave.left();
+  const double velocity = wave.Velocity(a.phase, a.ratio);
+  const bool touches = random.Uniform() < 0.3 && velocity > a.ux;
+  a.x = touches ? piston : piston - 0.5 * random.Uniform();
+  return a;
+}
+
+TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
+  int meetings = 0, none = 0;
+  for (const double delta : {0.001, 0.05, 0.3}) {
+    const PistonWave wave(PaperGeometry(delta));
+    for (uint64_t i = 0; i < 3000; ++i) {
+      CounterRandom random(1, 2, i);
+      const Approach a = Drawn(wave, random);
+      const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
+      ExpectApartBefore(wave, a, meeting ? meeting->way : a.length);
+      if (!meeting) {
+        ++none;
+        continue;
+      }
+      ++meetings;
+      ASSERT_GE(meeting->way, 0);
+      ASSERT_LE(meeting->way, a.length);
+      ASSERT_NEAR(Gap(wave, a, meeting->way), 0, 1e-12 * (1 + a.ratio));
+      ASSERT_GT(a.ux, meeting->piston_goes_right ? a.ratio : -a.ratio);
+    }
+  }
+  EXPECT_GT(meetings, 500);
+  EXPECT_GT(none, 500);
+}
+
+TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
+  const PistonWave wave(PaperGeometry(0.1));
+  const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};
+  const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
+  ASSERT_TRUE(meeting);
+  EXPECT_NEAR(meeting->way, 0.27 / 0.5, 1e-15);
+}
+
+// The ball touches the piston and goes the same way, slower; the piston comes back.
+TEST(PistonWave, FirstMeetingOfABallAtRestIsWithThePistonOnItsWayBack) {
+  const PistonWave wave(PaperGeometry(0.1));
+  const double stroke = wave.stroke();
+  const Approach a = {.phase = 0.05, .ratio = 1e18, .x = 0.05, .ux = 1, .length = 0.3};
+  const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
+  ASSERT_TRUE(meeting);
+  EXPECT_NEAR(meeting->way * a.ratio, 2 * (stroke - 0.05), 1e-12);
+  EXPECT_FALSE(meeting->piston_goes_right);
+}
+
+}  // namespace
+}  // namespace ballpiston
