@@ -1,4 +1,4 @@
-// Flies balls without a piston in vector lanes, six vectors at a time, with the flights of
+// Flies balls without a piston in vector lanes, several vectors at a time, with the flights of
 // lane_flight-inl.h. Comparisons of methods, tools and tests use it, because they need single hits.
 #ifndef BALLPISTON_CORE_BILLIARD_LANE_BALLS_H_
 #define BALLPISTON_CORE_BILLIARD_LANE_BALLS_H_

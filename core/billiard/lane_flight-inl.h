@@ -22,6 +22,9 @@
 //   h' = -(h2 cos - n sin),   e' = n cos + h2 sin:
 // additions in place of a choice between two cases.
 //
+// Nothing here asks that the ball has just left the disc at the origin. A ball anywhere in the cell
+// will do, with u_x >= 0 and u_y >= 0: it cannot hit the discs behind it (FrameOfBall).
+//
 // h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c': no factor,
 // and the cosine need not wait for the root.
 //

@@ -31,34 +31,36 @@ class PistonWave {
   }
   double Velocity(double phase, double speed) const { return phase < stroke_ ? speed : -speed; }
 
-  // The way of a ball until it meets the piston, from a place `x` to the right of the piston's left
-  // wall, along a direction with the component `ux`, at most `length`. The piston goes `ratio`
-  // times as far. Two that touch and part do not meet.
+  // Where a ball meets the piston: after `way`, with the piston on its way to the right or back.
   struct Meeting {
     double way;
     bool piston_goes_right;
   };
+  // The first meeting of a ball that goes at most `length`, from a place `x` to the right of the
+  // piston's left wall and not beyond the piston, along a direction with the component `ux`. The
+  // piston goes `ratio` times as far. Two that touch and part do not meet there. The piston comes
+  // past every ball that is right of its left wall: so they meet before it turns there, or the ball
+  // has left its reach.
   std::optional<Meeting> FirstMeeting(double phase, double ratio, double x, double ux,
                                       double length) const {
     double way = 0;
     if (x < 0) {  // to where the piston can be
-      way = ux > 0 ? -x / ux : length;
+      if (ux <= 0) return std::nullopt;
+      way = -x / ux;
       const double periods = (phase + ratio * way) / (2 * stroke_);
       phase = 2 * stroke_ * (periods - std::floor(periods));
     }
-    while (way < length && (x + ux * way > 0 || ux > 0)) {
-      const bool right = phase < stroke_;
-      const double turn = right ? stroke_ : 2 * stroke_;
-      const double gap = std::max((right ? phase : turn - phase) - (x + ux * way), 0.0);
-      const double approach = right ? ux - ratio : ux + ratio;
-      if (approach > 0 && gap * ratio <= approach * (turn - phase)) {
-        way += gap / approach;
-        return way <= length ? std::optional<Meeting>({way, right}) : std::nullopt;
-      }
-      way += (turn - phase) / ratio;
-      phase = right ? stroke_ : 0;
+    if (phase < stroke_) {
+      const double gap = phase - (x + ux * way), approach = ux - ratio, rest = stroke_ - phase;
+      const std::optional<double> met = Meet(gap, approach, ratio, rest);
+      if (met) return Within(length, {way + *met, true});
+      way += rest / ratio;
+      phase = stroke_;
     }
-    return std::nullopt;
+    if (way > length) return std::nullopt;
+    const double rest = 2 * stroke_ - phase;
+    const std::optional<double> met = Meet(rest - (x + ux * way), ux + ratio, ratio, rest);
+    return met ? Within(length, {way + *met, false}) : std::nullopt;
   }
 
   // Walls hit while it goes `way` further.
@@ -67,6 +69,16 @@ class PistonWave {
   }
 
  private:
+  // The ball's way until a gap closes, unless the piston has gone the rest of its way before.
+  static std::optional<double> Meet(double gap, double approach, double ratio, double rest) {
+    gap = std::max(gap, 0.0);  // below 0 by rounding
+    if (approach <= 0 || gap * ratio > approach * rest) return std::nullopt;
+    return gap / approach;
+  }
+  static std::optional<Meeting> Within(double length, const Meeting& meeting) {
+    return meeting.way <= length ? std::optional(meeting) : std::nullopt;
+  }
+
   double left_;
   double stroke_;
 };
