@@ -17,7 +17,7 @@ auto OneOverLength(const Vector& a) {
   return static_cast<Real>(1.5) - static_cast<Real>(0.5) * a.squaredNorm();
 }
 
-// copysign, which Boost's 128 bits have not.
+// std::copysign; Boost's type of 128 bits has none.
 template <typename Real>
 Real WithSignOf(const Real& signed_number, const Real& magnitude) {
   if constexpr (std::is_floating_point_v<Real>) {

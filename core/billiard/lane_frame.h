@@ -1,8 +1,9 @@
-// A ball on a wall, as the lanes keep it, and the way back to a position in the cell.
+// A ball as the lanes keep it, on a wall unless it comes from elsewhere, and the way back to a
+// position in the cell.
 //
 // The frame. Its origin is the centre of the disc just left; axes are those of the cell, possibly
 // mirrored, such that the cell lies toward (+, +). With u the unit direction of flight and q the
-// ball's place, |q| = rho:
+// ball's place, |q| = rho on the wall:
 //   c = rho sin(phi) = u x (0 - q),   s = rho cos(phi) = u . q >= 0,
 //   h = (u_x + u_y)/2,   e = (u_x - u_y)/2,   h^2 + e^2 = 1/2,
 // and q = (s u_x + c u_y, s u_y - c u_x). Mirroring x <-> y flips the signs of e and c alone, which
@@ -25,8 +26,7 @@ struct LaneFrame {
   double a, b, m;
 };
 
-// A ball anywhere in the cell, where mirrors by -1 or +1 make the axes of the cell those of the
-// frame.
+// `mirrors`, each -1 or +1, turn the cell's axes into the frame's.
 inline LaneFrame SeenIn(const Eigen::Vector2d& mirrors, const Eigen::Vector2d& position,
                         const Eigen::Vector2d& direction) {
   const double mx = mirrors.x(), my = mirrors.y();

@@ -46,18 +46,19 @@ constexpr size_t kMostFlights = 12;  // of a lane in a burst
 constexpr size_t kMostSteps = kVectors * kMostFlights;
 constexpr int kBurstsBetweenLooks = 512;  // between two calls of Pause; about 0.2 ms
 
-// A slower ball is at rest. It flies at this speed, to meet what comes to it, but not far.
+// A ball slower than this counts as at rest. The lanes give it this speed, and a contact counts
+// only on the first part of its path: there the piston has come to the ball.
 constexpr double kAtRest = 1e-18;
 constexpr double kLongestPathAtRest = 1e-9;
+
+constexpr int kMostRounds = 256;  // of starts between two bursts
 
 // A start this near to a wall may be on it.
 constexpr double kOnAWall = 1e-9;
 
-constexpr uint64_t kNoOrbit = ~uint64_t{0};
-
 // An orbit in a lane, since it entered at its start or its last contact.
 struct LaneOrbit {
-  uint64_t orbit = kNoOrbit;
+  uint64_t orbit = 0;
   double ball_speed = 1;  // at least kAtRest
   double piston_speed = 0;
   double entry_phase = 0;
@@ -110,14 +111,13 @@ class LaneOrbits : public OrbitRun {
   // Rounding in the lanes must not hide a contact; a false alarm costs little.
   static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
 
-  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps. It has to be small
-  // compared with kSlack.
+  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps.
   static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
 
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
       const double square = flight.scale * flight.scale;
-      left = square * (wave.left() - kSlack);
+      left = static_cast<T>(square * (wave.left() - kSlack));
       period = static_cast<T>(square * 2 * wave.stroke());
       phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack) / (2 * wave.stroke()));
       // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
@@ -125,8 +125,8 @@ class LaneOrbits : public OrbitRun {
       edge = static_cast<T>(flight.scale * std::sin(std::asin(sine) + M_PI_4));
     }
     FlightConstants<T> flight;
-    double left;  // from here on the piston can reach the ball
-    T edge;       // of the reach, along the arc: (q_x - q_y)/2
+    T left;  // from here on the piston can reach the ball
+    T edge;  // of the reach, along the arc: (q_x - q_y)/2
     T period;
     T phase_at_tip;  // of the piston
   };
@@ -252,7 +252,7 @@ class LaneOrbits : public OrbitRun {
 
   void ListAll() {
     listed_end_ = listed_;
-    for (uint32_t t = 0; t < steps_; ++t) (listed_end_++)->flight = t;
+    for (uint32_t t = 0; t < steps_; ++t) *listed_end_++ = {t, ~0U};
   }
 
   // That began or ended there.
@@ -268,18 +268,19 @@ class LaneOrbits : public OrbitRun {
       std::memcpy(&bits, bytes, sizeof(bits));
       if (steps_ - t < hn::Lanes(d)) bits &= (uint64_t{1} << (steps_ - t)) - 1;
       for (; bits != 0; bits &= bits - 1) {
-        (listed_end_++)->flight =
-            static_cast<uint32_t>(t + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+        const uint64_t first = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+        *listed_end_++ = {static_cast<uint32_t>(t + first), ~0U};
       }
     }
   }
 
-  // Of the listed flights, those where `test` finds lanes. Without a branch that waits for that.
+  // Keeps of the listed flights those lanes in which `test` finds something. The list is compacted
+  // without a branch, because that branch would often be mispredicted.
   template <typename Test>
   HWY_INLINE void Keep(const Test& test) {
     FlightOfLanes* kept = listed_;
     for (const FlightOfLanes* f = listed_; f != listed_end_; ++f) {
-      const uint32_t t = f->flight, lanes = test(t);
+      const uint32_t t = f->flight, lanes = test(t) & f->lanes;
       *kept = {t, lanes};
       kept += static_cast<size_t>(lanes != 0) | static_cast<size_t>(left_cell_);
     }
@@ -287,7 +288,7 @@ class LaneOrbits : public OrbitRun {
   }
 
   // A test before MayHaveMet, of less work: the piston turned at its left wall, or began or ended
-  // so near to it that a ball in the tip may have come as far.
+  // so near to it that it may have touched a ball in the tip.
   HWY_INLINE uint32_t PistonMayBeNear(size_t t) const {
     const D d;
     const Pistons& piston = pistons_[t % kVectors];
@@ -304,8 +305,9 @@ class LaneOrbits : public OrbitRun {
   HWY_NOINLINE void LookForEscapes(size_t t) {
     const D d;
     const V c = hn::Load(d, slots_[t + kVectors].c);
-    const V square = hn::NegMulAdd(c, c, hn::Set(d, 2 + kMissedByRounding));
-    ForLanes(t, SignBits(d, square) & pistons_[t % kVectors].lanes,
+    const V square = hn::NegMulAdd(c, c, hn::Set(d, T(2)));
+    const V left_cell = hn::Add(square, hn::Set(d, kMissedByRounding));
+    ForLanes(t, SignBits(d, left_cell) & pistons_[t % kVectors].lanes,
              [&](size_t lane) { Report(lane, Escape()); });
   }
 
@@ -348,7 +350,7 @@ class LaneOrbits : public OrbitRun {
     return (beyond | turned) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
   }
 
-  // Of the ball, beyond where the piston can be; scaled.
+  // How far the balls are to the right of the piston's left wall, plus kSlack; scaled.
   HWY_INLINE V Depth(const Balls<T>& balls) const {
     const D d;
     const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
@@ -428,11 +430,13 @@ class LaneOrbits : public OrbitRun {
   // ---- between bursts ----
 
   // Tells the source of the orbits that have left the lanes, and gives the lanes their next ones.
+  // An orbit that starts outside of the cell leaves at once; the next burst tells of the last of
+  // many.
   void Refill() {
-    do {
+    for (int round = 0; round == 0 || (round < kMostRounds && !meetings_.empty()); ++round) {
       Meet();
       StartNew();
-    } while (!meetings_.empty());
+    }
     for (; parked_ < idle_.size(); ++parked_) Park(idle_[parked_]);
   }
 

@@ -22,7 +22,7 @@ class PistonWave {
   double stroke() const { return stroke_; }
 
   double Phase(const PairState& state) const {
-    const double way = state.piston - left_;
+    const double way = std::clamp(state.piston - left_, 0.0, stroke_);
     // By its sign bit: a piston at rest keeps it.
     return std::signbit(state.piston_velocity) ? 2 * stroke_ - way : way;
   }
@@ -47,6 +47,7 @@ class PistonWave {
     if (x < 0) {  // to where the piston can be
       if (ux <= 0) return std::nullopt;
       way = -x / ux;
+      x = -ux * way;  // so that it is exactly there
       const double periods = (phase + ratio * way) / (2 * stroke_);
       phase = 2 * stroke_ * (periods - std::floor(periods));
     }
@@ -63,9 +64,10 @@ class PistonWave {
     return met ? Within(length, {way + *met, false}) : std::nullopt;
   }
 
-  // Walls hit while it goes `way` further.
+  // Walls hit while it goes `way` further, and 2^63 if there are more.
   uint64_t Hits(double phase, double way) const {
-    return static_cast<uint64_t>(std::floor((phase + way) / stroke_) - std::floor(phase / stroke_));
+    const double hits = std::floor((phase + way) / stroke_) - std::floor(phase / stroke_);
+    return static_cast<uint64_t>(std::min(hits, 0x1p63));
   }
 
  private:

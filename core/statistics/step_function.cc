@@ -24,12 +24,23 @@ double StepFunction::End(size_t i) const {
   return i + 1 < times_.size() ? times_[i + 1] : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+// The first sample at or after a time, or one beyond `count`.
+size_t FirstSampleFrom(double time, double step, size_t count) {
+  double sample = std::min(std::ceil(time / step), static_cast<double>(count) + 1);
+  if (sample >= 1 && step * (sample - 1) >= time) --sample;  // the quotient was rounded
+  if (step * sample < time) ++sample;
+  return static_cast<size_t>(sample);
+}
+
+}  // namespace
+
 // Counts the jumps between two samples, then sums: without a branch that depends on when they are.
 std::vector<double> StepFunction::Samples(double step, size_t count) const {
   std::vector<uint32_t> jumps(count + 1);
   for (size_t i = 1; i < times_.size(); ++i) {
-    const double sample = std::ceil(times_[i] / step);  // the first one after the jump
-    ++jumps[static_cast<size_t>(std::min(sample, static_cast<double>(count)))];
+    ++jumps[std::min(FirstSampleFrom(times_[i], step, count), count)];
   }
   std::vector<double> samples(count);
   size_t piece = 0;

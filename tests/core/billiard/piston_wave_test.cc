@@ -78,6 +78,34 @@ TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
   EXPECT_GT(none, 500);
 }
 
+// For slow balls nothing is left of the piston's phase; there is an answer all the same.
+TEST(PistonWave, FirstMeetingOfASlowBallIsInItsWay) {
+  const PistonWave wave(PaperGeometry(0.01));
+  for (uint64_t i = 0; i < 3000; ++i) {
+    CounterRandom random(3, 4, i);
+    Approach a = Drawn(wave, random);
+    a.ratio = std::pow(10, 6 + 12 * random.Uniform());
+    const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
+    const double farthest = a.x + a.ux * a.length;
+    if (farthest > 1e-3 && a.x > 1e-3) {
+      ASSERT_TRUE(meeting);  // the piston comes past many times
+    }
+    if (!meeting) continue;
+    ASSERT_GE(meeting->way, 0);
+    ASSERT_LE(meeting->way, a.length);
+    ASSERT_GT(a.x + a.ux * meeting->way, -1e-15);
+  }
+}
+
+TEST(PistonWave, FirstMeetingOfABallThatLeavesIsNone) {
+  const PistonWave wave(PaperGeometry(0.1));
+  for (const double ux : {0.0, -1e-300, -1.0}) {
+    EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, ux, 0.5));
+  }
+  EXPECT_FALSE(wave.FirstMeeting(2 * wave.stroke(), 0, -0.01, 1, 0.005));  // does not come so far
+  EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, 1e-300, 0.5));
+}
+
 TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
   const PistonWave wave(PaperGeometry(0.1));
   const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};

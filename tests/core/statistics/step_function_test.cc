@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -95,6 +96,31 @@ TEST(StepFunction, SamplesHoldTheLastValue) {
   EXPECT_EQ(function.Samples(0.5, 6), (std::vector<double>{5, 5, 6, 7, 7, 7}));
   EXPECT_EQ(function.Samples(100, 2), (std::vector<double>{5, 7}));
   EXPECT_TRUE(function.Samples(1, 0).empty());
+}
+
+// Jumps anywhere, on samples and by an ulp beside them.
+TEST(StepFunction, SamplesAreTheValuesAtTheirTimes) {
+  CounterRandom random(1, 2, 3);
+  for (int trial = 0; trial < 300; ++trial) {
+    const double step = random.Uniform();
+    StepFunction function(0);
+    std::vector<double> jumps = {0};
+    for (int draw = 0; draw < 200; ++draw) {
+      const double sample = step * std::floor(80 * random.Uniform());
+      const double times[] = {sample, std::nextafter(sample, 0), std::nextafter(sample, 99),
+                              80 * step * random.Uniform()};
+      const double time = times[random.Bits() % 4];
+      if (time <= jumps.back()) continue;
+      function.Add(time - jumps.back(), static_cast<double>(jumps.size()));
+      jumps.push_back(function.last_jump());
+    }
+    const std::vector<double> samples = function.Samples(step, 60);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const auto later =
+          std::upper_bound(jumps.begin(), jumps.end(), step * static_cast<double>(i));
+      ASSERT_EQ(samples[i], static_cast<double>(later - jumps.begin() - 1));
+    }
+  }
 }
 
 TEST(StepFunction, PiecesWithoutDurationAreNotSeen) {
