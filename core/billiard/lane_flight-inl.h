@@ -198,7 +198,8 @@ HWY_INLINE void Turn(const FlightConstants<T>& k, hn::Vec<hn::ScalableTag<T>> pa
   const V r = hn::Mul(hn::Mul(c, unit), s);
   hn::Store(hn::NegMulAdd(n, r, hn::Mul(h2, p)), d, to.h);
   hn::Store(hn::NegMulSub(h2, r, hn::Mul(n, p)), d, to.e);
-  hn::Store(hn::Add(path, hn::Sub(hn::Load(d, to.path), s)), d, to.path);
+  const V length = hn::Max(hn::Sub(hn::Load(d, to.path), s), hn::Zero(d));
+  hn::Store(hn::Add(path, length), d, to.path);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -5,18 +5,22 @@
 // depth delta falls to the rounding of a position, and in cells so small that the ball forgets
 // slowly. Measured against exact values, with one standard error:
 //
-//   mean free times at fixed energies, at delta's bound     rho = 0.6           -2.5e-4 +- 1.3e-4
-//     (6e6 returns at each of 4 energies)                   rho = 0.65          -0.6e-4 +- 1.3e-4
-//                                                           rho = 0.7           -0.2e-4 +- 1.7e-4
-//                                                           rho = 1/sqrt 2-1e-3  2.8e-4 +- 2.9e-4
-//     at a tenth of it                                      rho = 0.6           -0.3e-4 +- 4.2e-4
-//                                                           rho = 0.65           7.8e-4 +- 5.4e-4
-//   share of wall hits within 1e-3 of a tip (1e9 hits)      rho = 0.7           -7.8e-4 +- 2.2e-4
-//     within 1e-4                                                               -2.8e-4 +- 4.8e-4
-//     within 1e-5                                                                8.4e-3 +- 1.4e-3
-//     within 4e-4                                           rho = 1/sqrt 2-1e-3  2.7e-3 +- 2.6e-4
-//     within 1.4e-4                                                             1.4e-2 +- 6e-4
-//     within 1.4e-5                                                             2.2e-2 +- 1.2e-3
+//   mean free times at fixed energies, at delta's bound     rho = 0.6            0.9e-4 +- 1.3e-4
+//     (6e6 returns at each of 4 energies)                   rho = 0.65          -3.3e-4 +- 1.3e-4
+//                                                           rho = 0.7           -1.4e-4 +- 1.3e-4
+//                                                           rho = 1/sqrt 2-1e-3 -2.5e-4 +- 1.3e-4
+//     at a tenth of it                                      rho = 0.6            0.4e-4 +- 3.2e-4
+//                                                           rho = 0.65          -3.5e-4 +- 6.4e-4
+//                                                           rho = 0.7            4.1e-4 +- 3.1e-4
+//   share of wall hits within 1e-3 of a tip (7e8 hits)      rho = 0.7            2.6e-4 +- 0.9e-4
+//     within 1e-4                                                                0.6e-4 +- 2.7e-4
+//     within 1e-5                                                                1.6e-3 +- 9e-4
+//     within 4e-4 (5e8 hits)                                rho = 1/sqrt 2-1e-3 -3.4e-4 +- 0.6e-4
+//     within 1.4e-4                                                             -3.4e-4 +- 1.0e-4
+//     within 1.4e-5                                                              3.1e-3 +- 3e-4
+//
+// The errors of the shares are those of independent hits; hits of one ball are not, and double
+// precision is as far off in the first four rows of them.
 //
 // Where the runs tell less, they show no difference either: mean free times at rho = 0.7, delta =
 // 1e-3 (2.6e-3 +- 1.4e-3); the narrow tips of rho = 1/2 + 1e-9, 0.501 and 0.53 (5e-4 +- 3e-4 at
