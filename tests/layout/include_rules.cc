@@ -115,7 +115,7 @@ const std::vector<Rule>& Rules() {
        {"core/", "tests/oracle/", "tests/support/", "Eigen/", "absl/", "hwy/", "gtest/"},
        true},
       {"tests/benchmark/",
-       {"core/", "server/", "tests/support/", "absl/", "hwy/", "benchmark/"},
+       {"core/", "server/", "tests/benchmark/", "tests/support/", "absl/", "hwy/", "benchmark/"},
        true},
       {"tests/sanitizer/",
        {"server/mutex.h", "ballpiston/v1/", "absl/", "grpc/", "grpcpp/", "sanitizer/"},
