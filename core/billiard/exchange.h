@@ -27,8 +27,8 @@ Real WithSignOf(const Real& signed_number, const Real& magnitude) {
   }
 }
 
-// Of a ball and a piston in contact. Of the two speeds the smaller is computed, the larger follows
-// from the energy 1/2.
+// The state after a ball and a piston in contact have exchanged. The function computes the smaller
+// of the two new speeds from the components, and the larger from the energy, which is 1/2.
 template <typename Real>
 PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before) {
   using std::fabs, std::sqrt;

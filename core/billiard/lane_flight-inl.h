@@ -177,7 +177,8 @@ HWY_INLINE hn::Vec<hn::ScalableTag<T>> Aim(const FlightConstants<T>& k, const Ba
   return square;
 }
 
-// Of a ray that rounding lets miss the disc the root is as good as 0.
+// The second stage: the root s'. Where rounding lets a ray miss its disc by some ulps, s'^2 is
+// negative, and s' is 0.
 template <typename T>
 HWY_INLINE void FindRoot(Balls<T>& to) {
   const hn::ScalableTag<T> d;

@@ -57,7 +57,8 @@ inline LaneFrame Scaled(const LaneFrame& frame, double factor) {
           frame.a,          frame.b,          frame.m};
 }
 
-// Of the place in the cell, x, without the rounding of a detour through both components.
+// The ball's x in the cell. It has less rounding than PositionInCell, which computes the components
+// in the frame first.
 double Abscissa(const LaneFrame& frame);
 
 // From components in the frame to components in the cell: x along r, y along r turned by a right

@@ -131,7 +131,8 @@ class LaneOrbits : public OrbitRun {
     T phase_at_tip;  // of the piston
   };
 
-  // Few where contacts are frequent: the flights of a lane after its contact are in vain.
+  // A lane that has a contact flies on to the end of the burst, and those flights are lost. So a
+  // burst is short where contacts are frequent.
   static size_t FlightsInABurst(const PairGeometry& geometry) {
     return static_cast<size_t>(std::clamp(1.7 / geometry.delta(), 4.0, double{kMostFlights}));
   }
@@ -255,7 +256,7 @@ class LaneOrbits : public OrbitRun {
     for (uint32_t t = 0; t < steps_; ++t) *listed_end_++ = {t, ~0U};
   }
 
-  // That began or ended there.
+  // Lists the flights that began or ended in the piston's reach.
   void ListFlightsInReach() {
     const hn::CappedTag<uint16_t, 32> d;
     listed_end_ = listed_;
@@ -386,7 +387,7 @@ class LaneOrbits : public OrbitRun {
     met_.push_back(lane);
   }
 
-  // On the lane's flight t.
+  // Where ball and piston of the lane meet in flight t, if they do.
   std::optional<Contact> FindContact(size_t t, size_t lane) const {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
@@ -419,7 +420,9 @@ class LaneOrbits : public OrbitRun {
     return contact;
   }
 
-  // Of the piston after so much of the ball's path, in periods, below 1; the bits of PhaseAfter.
+  // The piston's phase when the ball has gone `path` in this burst, in periods, at least 0 and
+  // below
+  // 1. It has the same bits as PhaseAfter of the whole vector.
   static double PhaseOf(const Pistons& piston, size_t i, T path) {
     const hn::CappedTag<T, 1> d;
     const auto phase =
@@ -429,9 +432,9 @@ class LaneOrbits : public OrbitRun {
 
   // ---- between bursts ----
 
-  // Tells the source of the orbits that have left the lanes, and gives the lanes their next ones.
-  // An orbit that starts outside of the cell leaves at once; the next burst tells of the last of
-  // many.
+  // Tells the source which orbits have left the lanes, and gives the lanes new orbits. An orbit
+  // that starts outside of the cell leaves at once. If there are very many of those, the next call
+  // of Refill tells the source of the last ones.
   void Refill() {
     for (int round = 0; round == 0 || (round < kMostRounds && !meetings_.empty()); ++round) {
       Meet();

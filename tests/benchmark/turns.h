@@ -44,8 +44,8 @@ double SecondsOfChains(uint64_t steps) {
   return server::ThreadSeconds() - begin;
 }
 
-// Of the clock, by one chain of multiplications: three cycles each, on Intel's processors and
-// AMD's.
+// The clock's rate. It is measured by one chain of multiplications, which take three cycles each on
+// processors of Intel and AMD.
 inline double CyclesPerSecond() {
   constexpr uint64_t kSteps = 200'000;
   double least = std::numeric_limits<double>::infinity();
@@ -64,8 +64,9 @@ inline double CyclesPerSecond() {
 // Best rates of contenders that take turns.
 class Turns {
  public:
-  // Of each contender, contenders[i].Rate(turn), some work a second of processor time. Goes on, up
-  // to three times as long, until there were five turns a contender without a neighbour.
+  // contenders[i].Rate(turn) does some work and returns how much of it a second of processor time
+  // would do. There are at least `turns` turns, and up to three times as many: the turns go on
+  // until five for each contender, on average, had no neighbour.
   template <typename Contenders>
   Turns(const Contenders& contenders, int turns) {
     for (int turn = 0; turn < turns || (turn < 3 * turns && !IsQuietEnough(contenders.size()));
@@ -125,7 +126,7 @@ class Turns {
   std::vector<Turn> turns_;
 };
 
-// At the end of a line.
+// Prints, at the end of a line, in how many turns there was a neighbour.
 inline void ShowDisturbance(const Turns& turns) {
   if (turns.disturbed() == 0) return;
   std::printf("  [a neighbour in %zu of %zu turns]", turns.disturbed(), turns.turns());
