@@ -1,0 +1,44 @@
+// The shape of a gas: how many cells it has, and how they are joined.
+//
+// A chain of N cells, written "N": each ball meets a piston on its left and one on its right. A
+// lattice of N x M cells, written "NxM": N columns along x and M rows along y, and each ball meets
+// four pistons. Both close on themselves unless reservoirs stand at the ends of x.
+//
+// A ring of one cell is permitted: its ball meets one piston from both sides.
+#ifndef BALLPISTON_CORE_GAS_GAS_SHAPE_H_
+#define BALLPISTON_CORE_GAS_GAS_SHAPE_H_
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston {
+
+inline constexpr int64_t kMaxCells = 1'000'000;  // of a gas
+
+struct GasShape {
+  int64_t columns = 1;
+  int64_t rows = 1;
+  bool is_lattice = false;  // or a chain, which has one row
+
+  int64_t cells() const { return columns * rows; }
+  int directions() const { return is_lattice ? 4 : 2; }  // in which a ball has a piston
+
+  friend bool operator==(const GasShape&, const GasShape&) = default;
+};
+
+// "12" or "4x3". INVALID_ARGUMENT with the text and what is permitted: whole numbers, 1 to kMaxCells
+// cells in all.
+absl::StatusOr<GasShape> ParseGasShape(absl::string_view text);
+
+std::string Text(const GasShape& shape);
+
+// A shape as a value of the parameter `cells`, a whole number below 2^41 that determines the shape.
+double CodeOf(const GasShape& shape);
+GasShape ShapeOf(double code);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_GAS_SHAPE_H_
