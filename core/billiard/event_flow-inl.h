@@ -4,8 +4,6 @@
 #define BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "core/billiard/event_flow.h"
 #include "core/billiard/exchange.h"
@@ -13,26 +11,10 @@
 namespace ballpiston {
 
 template <typename Real>
-struct EventFlow<Real>::Plane {
-  static constexpr Real Never() { return std::numeric_limits<Real>::infinity(); }
-
-  // Discs are numbered by the signs of their centres: bit 0 for x, bit 1 for y.
-  static Vector Centre(int disc) {
-    return {static_cast<Real>((disc & 1) != 0 ? 0.5 : -0.5),
-            static_cast<Real>((disc & 2) != 0 ? 0.5 : -0.5)};
-  }
-
-  static Real Cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
-  static Vector Perpendicular(const Vector& a) { return {-a.y(), a.x()}; }
-};
-
-template <typename Real>
 EventFlow<Real>::EventFlow(const PairGeometry& geometry, const State& state)
-    : rho_(static_cast<Real>(geometry.rho())),
-      inverse_rho_(1 / rho_),
+    : walls_(geometry),
       piston_left_(static_cast<Real>(geometry.piston_left())),
       piston_right_(static_cast<Real>(geometry.piston_right())),
-      centres_{Plane::Centre(0), Plane::Centre(1), Plane::Centre(2), Plane::Centre(3)},
       state_(state) {
   AimBall();
   TimePiston();
@@ -68,16 +50,9 @@ inline void EventFlow<Real>::Advance(Real duration) {
   time_to_piston_wall_ -= duration;
 }
 
-// Along the ray the impact parameter is constant, and centre - hit = s u + c u_perp. The factor
-// that keeps the normal's length at 1 is taken from u: it need not wait for the root.
 template <typename Real>
 inline void EventFlow<Real>::ReflectBall() {
-  const Real sin_phi = encounter_.sin_phi, cos_phi = encounter_.cos_phi;
-  const Real unit = OneOverLength(state_.direction);
-  const Vector normal = state_.direction * (-unit * cos_phi) +
-                        Plane::Perpendicular(state_.direction) * (-unit * sin_phi);
-  state_.position = centres_[static_cast<size_t>(encounter_.disc)] + normal * rho_;
-  state_.direction = normal * cos_phi + Plane::Perpendicular(normal) * sin_phi;
+  walls_.Reflect(encounter_, state_.position, state_.direction);
   last_disc_ = encounter_.disc;
   AimBall();
 }
@@ -91,7 +66,7 @@ void EventFlow<Real>::ReflectPiston() {
 
 template <typename Real>
 void EventFlow<Real>::ExchangeComponents() {
-  state_ = AfterExchange(state_);
+  state_ = AfterExchange(state_, Real(1));
   last_disc_ = kNoDisc;
   AimBall();
   TimePiston();
@@ -99,8 +74,8 @@ void EventFlow<Real>::ExchangeComponents() {
 
 template <typename Real>
 inline void EventFlow<Real>::AimBall() {
-  encounter_ = NextDisc();
-  time_to_wall_ = state_.ball_speed > 0 ? encounter_.distance / state_.ball_speed : Plane::Never();
+  encounter_ = walls_.Next(state_.position, state_.direction, last_disc_);
+  time_to_wall_ = state_.ball_speed > 0 ? encounter_.distance / state_.ball_speed : Never();
 }
 
 template <typename Real>
@@ -108,33 +83,7 @@ inline void EventFlow<Real>::TimePiston() {
   const Real velocity = state_.piston_velocity;
   const Real wall = velocity > 0 ? piston_right_ : piston_left_;
   time_to_piston_wall_ =
-      velocity == 0 ? Plane::Never() : std::max((wall - state_.piston) / velocity, Real(0));
-}
-
-template <typename Real>
-inline typename EventFlow<Real>::Encounter EventFlow<Real>::NextDisc() const {
-  // The ball is inside the unit cell, so it moves away from the centre in the quadrant behind it.
-  const int behind = (state_.direction.x() < 0 ? 1 : 0) | (state_.direction.y() < 0 ? 2 : 0);
-  const std::array<Encounter, 3> discs = {Meet(behind ^ 1), Meet(behind ^ 2), Meet(behind ^ 3)};
-  // Which one is hit is as good as random: an index costs less here than mispredicted jumps do.
-  const size_t beside = discs[1].distance < discs[0].distance;
-  const size_t ahead = discs[2].distance < discs[beside].distance;
-  return discs[std::max(beside, 2 * ahead)];
-}
-
-template <typename Real>
-inline typename EventFlow<Real>::Encounter EventFlow<Real>::Meet(int disc) const {
-  using std::sqrt;
-  const Vector to_centre = centres_[static_cast<size_t>(disc)] - state_.position;
-  const Real foot = state_.direction.dot(to_centre);
-  const Real impact = Plane::Cross(state_.direction, to_centre);
-  const Real square = rho_ * rho_ - impact * impact;
-  // The operator is & and not &&: && makes a branch for each condition, and those are mispredicted.
-  const int hit = int{disc != last_disc_} & int{foot > 0} & int{square > 0};
-  const Real half_chord = sqrt(hit ? square : Real(0));
-  const Real distance = std::max(foot - half_chord, Real(0));
-  return {hit ? disc : kNoDisc, hit ? distance : Plane::Never(), impact * inverse_rho_,
-          half_chord * inverse_rho_};
+      velocity == 0 ? Never() : std::max((wall - state_.piston) / velocity, Real(0));
 }
 
 }  // namespace ballpiston

@@ -24,9 +24,9 @@
 #ifndef BALLPISTON_CORE_BILLIARD_EVENT_FLOW_H_
 #define BALLPISTON_CORE_BILLIARD_EVENT_FLOW_H_
 
-#include <Eigen/Core>
-#include <array>
+#include <limits>
 
+#include "core/billiard/cell_walls.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
 
@@ -61,37 +61,21 @@ class EventFlow {
   const State& state() const { return state_; }
 
  private:
-  using Vector = typename State::Vector;
-  struct Plane;  // what is computed in it
+  static constexpr Real Never() { return std::numeric_limits<Real>::infinity(); }
 
-  static constexpr int kNoDisc = -1;
-
-  // A disc that the ball's ray meets: distance along the ray, and the angle phi between the ray and
-  // the normal there, rho sin(phi) = c, rho cos(phi) = s. kNoDisc, infinitely far, if it misses it.
-  struct Encounter {
-    int disc;
-    Real distance;
-    Real sin_phi;
-    Real cos_phi;
-  };
-
-  Encounter NextDisc() const;
-  Encounter Meet(int disc) const;
   void AimBall();
   void TimePiston();
   void Advance(Real duration);
   void ReflectBall();
   void ReflectPiston();
 
-  Real rho_;
-  Real inverse_rho_;
+  CellWalls<Real> walls_;
   Real piston_left_;
   Real piston_right_;
-  std::array<Vector, 4> centres_;
 
   State state_;
   int last_disc_ = kNoDisc;  // on which the ball is, if it is on one
-  Encounter encounter_ = {};
+  typename CellWalls<Real>::Encounter encounter_ = {};
   Real time_to_wall_ = 0;         // the ball's
   Real time_to_piston_wall_ = 0;  // the piston's
 };

@@ -27,10 +27,11 @@ Real WithSignOf(const Real& signed_number, const Real& magnitude) {
   }
 }
 
-// The state after a ball and a piston in contact have exchanged. The function computes the smaller
-// of the two new speeds from the components, and the larger from the energy, which is 1/2.
+// The state after a ball and a piston in contact have exchanged. `speed` is sqrt(2 E), E the energy
+// of both. The function computes the smaller of the two new speeds from the components, and the
+// larger from the energy.
 template <typename Real>
-PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before) {
+PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before, const Real& speed) {
   using std::fabs, std::sqrt;
   PairStateOf<Real> after = before;
   const Real v1 = before.ball_speed * before.direction.x();
@@ -38,9 +39,9 @@ PairStateOf<Real> AfterExchange(const PairStateOf<Real>& before) {
   const Real v3 = before.piston_velocity;
   Real ball = sqrt(v3 * v3 + v2 * v2), piston = fabs(v1);
   if (ball < piston) {
-    piston = sqrt((1 - ball) * (1 + ball));
+    piston = sqrt((speed - ball) * (speed + ball));
   } else {
-    ball = sqrt((1 - piston) * (1 + piston));
+    ball = sqrt((speed - piston) * (speed + piston));
   }
   if (ball > 0) after.direction = {v3 / ball, v2 / ball};
   after.direction *= OneOverLength(after.direction);

@@ -451,7 +451,7 @@ class LaneOrbits : public OrbitRun {
       if (meetings_[i].after == AfterContact::kEnd || contact.escaped || contact.expired) {
         idle_.push_back(met_[i]);
       } else {
-        Enter(met_[i], {meetings_[i].orbit, AfterExchange(contact.state)});
+        Enter(met_[i], {meetings_[i].orbit, AfterExchange(contact.state, 1.0)});
       }
     }
     meetings_.clear();

@@ -28,9 +28,8 @@ absl::StatusOr<GasShape> ParseGasShape(absl::string_view text) {
   const bool is_valid = ParseCount(parts.first, shape.columns) &&
                         (!shape.is_lattice || ParseCount(parts.second, shape.rows));
   if (is_valid && shape.cells() <= kMaxCells) return shape;
-  return absl::InvalidArgumentError(
-      absl::StrCat("cells is \"", text, "\"; permitted: N or NxM, 1 to ", kMaxCells,
-                   " cells in all"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "cells is \"", text, "\"; permitted: N or NxM, 1 to ", kMaxCells, " cells in all"));
 }
 
 std::string Text(const GasShape& shape) {

@@ -29,8 +29,8 @@ struct GasShape {
   friend bool operator==(const GasShape&, const GasShape&) = default;
 };
 
-// "12" or "4x3". INVALID_ARGUMENT with the text and what is permitted: whole numbers, 1 to kMaxCells
-// cells in all.
+// "12" or "4x3". INVALID_ARGUMENT with the text and what is permitted: whole numbers, 1 to
+// kMaxCells cells in all.
 absl::StatusOr<GasShape> ParseGasShape(absl::string_view text);
 
 std::string Text(const GasShape& shape);

@@ -4,9 +4,21 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "core/arithmetic/number_text.h"
 
 namespace ballpiston {
+namespace {
+
+absl::Status ValidateDelta(double rho, double delta, double bound, absl::string_view formula,
+                           absl::string_view whose) {
+  if (delta > 0 && delta <= bound * (1 + kDeltaSlack)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("delta is ", NumberText(delta), "; permitted at rho = ", NumberText(rho),
+                   ": 0 < delta <= ", formula, " = ", NumberText(bound), ", ", whose));
+}
+
+}  // namespace
 
 double Lambda(double rho) {
   // The factors are exact or correctly rounded; 4 rho^2 - 1 would lose all digits at rho -> 1/2.
@@ -31,11 +43,13 @@ absl::Status ValidateRho(double rho) {
 }
 
 absl::Status ValidatePairDelta(double rho, double delta) {
-  const double bound = PairDeltaBound(rho);
-  if (delta > 0 && delta <= bound * (1 + kDeltaSlack)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "delta is ", NumberText(delta), "; permitted at rho = ", NumberText(rho),
-      ": 0 < delta <= (1 - lambda)/2 = ", NumberText(bound), ", the bound of a ball-piston pair"));
+  return ValidateDelta(rho, delta, PairDeltaBound(rho), "(1 - lambda)/2",
+                       "the bound of a ball-piston pair");
+}
+
+absl::Status ValidateGasDelta(double rho, double delta) {
+  return ValidateDelta(rho, delta, GasDeltaBound(rho), "rho/sqrt(2) - lambda/2",
+                       "the bound of a gas, where no two pistons may overlap");
 }
 
 absl::Status ValidateSomeDelta(double delta) {

@@ -63,6 +63,7 @@ class PairGeometry {
 // OK, or the message Create would fail with: for callers that collect every violation.
 absl::Status ValidateRho(double rho);
 absl::Status ValidatePairDelta(double rho, double delta);  // rho has to be valid
+absl::Status ValidateGasDelta(double rho, double delta);   // likewise
 absl::Status ValidateSomeDelta(double delta);  // whether some rho permits it: 0 < delta < 1/2
 
 }  // namespace ballpiston

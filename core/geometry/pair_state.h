@@ -38,6 +38,11 @@ PairStateOf<To> RoundedTo(const PairStateOf<From>& state) {
           .piston_velocity = static_cast<To>(state.piston_velocity)};
 }
 
+// Of ball and piston together, by their speeds.
+inline double EnergyOf(const PairState& state) {
+  return (state.ball_speed * state.ball_speed + state.piston_velocity * state.piston_velocity) / 2;
+}
+
 // |2 E - 1|: how far the pair's energy, computed from all of the state, is from 1/2, relatively.
 double EnergyError(const PairState& state);
 

@@ -1,10 +1,11 @@
 // Uniform random numbers as a pure function of (seed, stream, sample, draw).
 //
-// Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4). So a
-// sample's numbers do not depend on who computes it, when, or what was computed before.
+// Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4, part).
+// So a sample's numbers do not depend on who computes it, when, or what was computed before.
 //   seed    the user's.
 //   stream  tells apart what must be independent under one seed, e.g. the points of a grid.
 //   sample  index of the sample within the stream.
+//   part    tells apart sequences of one sample, where it needs several.
 // One object is one sample's sequence of draws; not for sharing between threads.
 #ifndef BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
 #define BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
@@ -17,8 +18,8 @@ namespace ballpiston {
 
 class CounterRandom {
  public:
-  CounterRandom(uint64_t seed, uint64_t stream, uint64_t sample)
-      : key_{{seed, stream}}, counter_{{sample, 0, 0, 0}} {}
+  CounterRandom(uint64_t seed, uint64_t stream, uint64_t sample, uint64_t part = 0)
+      : key_{{seed, stream}}, counter_{{sample, 0, part, 0}} {}
 
   uint64_t Bits() {
     if (used_ == 4) Refill();

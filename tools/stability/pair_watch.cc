@@ -113,8 +113,11 @@ void CollisionWatch::LookBack(const PairState& departure, const Contact& contact
   if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
   ++failures_.looked_back;
   std::array<double, 3> overlaps, gaps, beyond;
+  // Engines round lengths of 1, the distance between discs, however small the cell. A turn moves
+  // the ray by a length of the cell's size times its angle.
+  const double turn = 1e3 * epsilon_ * std::max(1.0, 0.1 / geometry_.tip());
   for (size_t i = 0; i < 3; ++i) {
-    const double angle = 1e3 * epsilon_ * (static_cast<double>(i) - 1);
+    const double angle = turn * (static_cast<double>(i) - 1);
     const GhostFlight ghost = FlyAsGhost(geometry_, Turned(departure, angle), contact.time);
     overlaps[i] = ghost.overlap;
     gaps[i] = ghost.gap;

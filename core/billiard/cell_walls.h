@@ -1,0 +1,96 @@
+// The four arcs that a ball flies between, one flight at a time, in numbers of any precision: part
+// of EventFlow (event_flow.h says what keeps it stable).
+//
+// Real is a floating-point type with numeric_limits, sqrt and fabs. Immutable.
+#ifndef BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_
+#define BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "core/billiard/exchange.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+inline constexpr int kNoDisc = -1;
+
+template <typename Real>
+class CellWalls {
+ public:
+  using Vector = Eigen::Matrix<Real, 2, 1>;
+
+  explicit CellWalls(const PairGeometry& geometry)
+      : rho_(static_cast<Real>(geometry.rho())),
+        inverse_rho_(1 / rho_),
+        centres_{Centre(0), Centre(1), Centre(2), Centre(3)} {}
+
+  // A disc that a ball's ray meets: distance along the ray, and the angle phi between the ray and
+  // the normal there, rho sin(phi) = c, rho cos(phi) = s. kNoDisc, infinitely far, if it misses it.
+  struct Encounter {
+    int disc = kNoDisc;
+    Real distance = std::numeric_limits<Real>::infinity();
+    Real sin_phi = 0;
+    Real cos_phi = 0;
+  };
+
+  // The disc that a ball in the cell meets next, which is not `last_disc`, on which it is.
+  Encounter Next(const Vector& position, const Vector& direction, int last_disc) const {
+    // The ball is inside the unit cell, so it moves away from the centre in the quadrant behind it.
+    const int behind = (direction.x() < 0 ? 1 : 0) | (direction.y() < 0 ? 2 : 0);
+    const std::array<Encounter, 3> discs = {Meet(behind ^ 1, position, direction, last_disc),
+                                            Meet(behind ^ 2, position, direction, last_disc),
+                                            Meet(behind ^ 3, position, direction, last_disc)};
+    // Which one is hit is as good as random: an index costs less here than mispredicted jumps do.
+    const size_t beside = discs[1].distance < discs[0].distance;
+    const size_t ahead = discs[2].distance < discs[beside].distance;
+    return discs[std::max(beside, 2 * ahead)];
+  }
+
+  // Moves the ball to the wall, and reflects it there. Along the ray the impact parameter is
+  // constant, and centre - hit = s u + c u_perp. The factor that keeps the normal's length at 1 is
+  // taken from u: it need not wait for the root.
+  void Reflect(const Encounter& hit, Vector& position, Vector& direction) const {
+    const Real unit = OneOverLength(direction);
+    const Vector normal =
+        direction * (-unit * hit.cos_phi) + Perpendicular(direction) * (-unit * hit.sin_phi);
+    position = centres_[static_cast<size_t>(hit.disc)] + normal * rho_;
+    direction = normal * hit.cos_phi + Perpendicular(normal) * hit.sin_phi;
+  }
+
+ private:
+  // Discs are numbered by the signs of their centres: bit 0 for x, bit 1 for y.
+  static Vector Centre(int disc) {
+    return {static_cast<Real>((disc & 1) != 0 ? 0.5 : -0.5),
+            static_cast<Real>((disc & 2) != 0 ? 0.5 : -0.5)};
+  }
+  static Real Cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
+  static Vector Perpendicular(const Vector& a) { return {-a.y(), a.x()}; }
+
+  Encounter Meet(int disc, const Vector& position, const Vector& direction, int last_disc) const {
+    using std::sqrt;
+    const Vector to_centre = centres_[static_cast<size_t>(disc)] - position;
+    const Real foot = direction.dot(to_centre);
+    const Real impact = Cross(direction, to_centre);
+    const Real square = rho_ * rho_ - impact * impact;
+    // The operator is & and not &&: && makes a branch for each condition, and those are
+    // mispredicted.
+    const int hit = int{disc != last_disc} & int{foot > 0} & int{square > 0};
+    const Real half_chord = sqrt(hit ? square : Real(0));
+    const Real distance = std::max(foot - half_chord, Real(0));
+    return {hit ? disc : kNoDisc, hit ? distance : std::numeric_limits<Real>::infinity(),
+            impact * inverse_rho_, half_chord * inverse_rho_};
+  }
+
+  Real rho_;
+  Real inverse_rho_;
+  std::array<Vector, 4> centres_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_

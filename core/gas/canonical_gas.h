@@ -1,0 +1,55 @@
+// Gases in local equilibrium: places uniform over all that the gas may take, velocities Gaussian.
+//
+// A ball at temperature T has the energy law Gamma(1), exp(-e/T)/T, a piston Gamma(1/2); all
+// velocities and the places are independent of each other. With one temperature this is the
+// canonical ensemble, which the gas's flow leaves as it is.
+//
+// Places by partial rejection sampling: draw all balls and pistons, then draw again, at once, every
+// ball and piston that are on the wrong sides of each other, until there are none. Two such events
+// that share a ball or a piston exclude each other, because the parts of a cell that its pistons
+// cut off do not overlap; for events of that kind the method is exact (Guo, Jerrum, Liu 2017).
+// Properties, each with the test that bears its name:
+//   1. PistonsHaveTheirExactLaw: of a ring of one cell, of two, of a lattice.
+//   2. EnergiesHaveTheirGammaLaws.
+#ifndef BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
+#define BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
+
+#include <cmath>
+
+#include "core/arithmetic/elementary_functions.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+// A temperature that depends on x, in cells from the left end: T^(3/2) falls linearly from one end
+// to the other, as in a gas that conducts with a conductivity that grows as sqrt T.
+class TemperatureProfile {
+ public:
+  explicit TemperatureProfile(double everywhere) : TemperatureProfile(everywhere, everywhere, 1) {}
+  // hot >= cold > 0
+  TemperatureProfile(double hot, double cold, double length)
+      : hot_(hot), slope_((1 - cold / hot * std::sqrt(cold / hot)) / length) {}
+
+  double At(double x) const { return hot_ * Power(1 - slope_ * x, 2.0 / 3); }  // 0 <= x <= length
+
+ private:
+  double hot_;
+  double slope_;  // of (T/hot)^(3/2), downward
+};
+
+GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperature,
+                 CounterRandom& random);
+
+// A component of a thermal velocity: Gaussian with variance T.
+double DrawThermalVelocity(double temperature, CounterRandom& random);
+
+// The speed of a piston that leaves a thermal wall: the flux law (v/T) exp(-v^2/(2 T)).
+inline double DrawFluxSpeed(double temperature, CounterRandom& random) {
+  return std::sqrt(-2 * temperature * Log(random.Uniform()));
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_CANONICAL_GAS_H_

@@ -1,0 +1,173 @@
+// Derivation. Divide a cell's free area by the cell's area, and let each piston's offset be
+// uniform. A piston cuts the part a of the cell on one of its sides, or b on the other; a and b are
+// never both above 0, and both have the mean z. So the configuration integral is the mean of
+//     product over cells of (1 - sum over its pistons of the parts).
+// Multiplied out, each cell chooses one of its pistons, with the weight -z, or none, and no piston
+// is chosen by two cells. In a contact the ball stands on its piston: that cell has made its
+// choice, and the rest is what the derivative by z leaves. With n directions and N cells
+//     F = -(1/(n N)) d log Z/dz .
+//
+// Chain. On functions of the offset of a piston the product is an operator of rank two, with the
+// eigenvalues r^2 of the two roots of r (1 - r) = z. Of a ring of N, Z = r1^(2N) + r2^(2N), hence
+// with s = r1 - r2 = sqrt(1 - 4 z) and q = r2/r1
+//     F = (1 - q^(2N-1))/(s r1 (1 + q^(2N))) .
+//
+// Lattice. Cells choose one after the other, down a column and then to the right: a transfer matrix
+// over which of a column's pistons the column before it has chosen. What goes round a torus of N x
+// M the shorter way contributes as z^N: beyond kWidest cells it is the infinite gas, to 1e-13. The
+// derivative is that of a complex step, which loses no digits.
+#include "core/gas/gas_exchange_rate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/closed_form/pair_measures.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr int kWidest = 8;
+constexpr double kStep = 1e-30;  // of the complex derivative
+
+using Weight = std::complex<double>;
+
+// Columns of a lattice that is periodic across them.
+class Columns {
+ public:
+  Columns(int rows, double z)
+      : rows_(rows), minus_z_(-z, -kStep), weights_(size_t{4} << rows), next_(weights_.size()) {}
+
+  // Begins where the column before has chosen these pistons, a bit for each row.
+  void BeginWith(size_t chosen) {
+    std::fill(weights_.begin(), weights_.end(), Weight(0));
+    weights_[At(chosen, 0)] = 1;
+  }
+
+  void AddColumn() {
+    for (int row = 0; row < rows_; ++row) AddCell(row);
+    for (size_t bits = 0; bits < size_t{1} << rows_; ++bits) {
+      Weight sum = 0;
+      for (size_t flags = 0; flags < 4; ++flags) sum += std::exchange(weights_[At(bits, flags)], 0);
+      weights_[At(bits, 0)] = sum;
+    }
+  }
+
+  Weight WeightOf(size_t chosen) const { return weights_[At(chosen, 0)]; }
+  Weight Total() const {
+    Weight sum = 0;
+    for (const Weight& weight : weights_) sum += weight;
+    return sum;
+  }
+
+ private:
+  static constexpr size_t kBelowIsChosen = 1;  // the piston below the next cell, by the cell there
+  static constexpr size_t kWrapIsChosen = 2;   // the piston below the first cell, by that cell
+
+  static size_t At(size_t bits, size_t flags) { return bits * 4 + flags; }
+
+  void AddCell(int row) {
+    const size_t bit = size_t{1} << row;
+    std::fill(next_.begin(), next_.end(), Weight(0));
+    for (size_t bits = 0; bits < size_t{1} << rows_; ++bits) {
+      for (size_t flags = 0; flags < 4; ++flags) Choose(row, bit, bits, flags);
+    }
+    std::swap(weights_, next_);
+  }
+
+  void Choose(int row, size_t bit, size_t bits, size_t flags) {
+    const Weight none = weights_[At(bits, flags)];
+    if (none == Weight(0)) return;
+    const Weight one = none * minus_z_;
+    const size_t wrap = flags & kWrapIsChosen, open = bits & ~bit;
+    const bool is_first = row == 0, is_last = row + 1 == rows_;
+    next_[At(open, wrap)] += none;
+    next_[At(open | bit, wrap)] += one;                   // right
+    if ((bits & bit) == 0) next_[At(open, wrap)] += one;  // left
+    if (is_first) next_[At(open, kWrapIsChosen)] += one;  // below, round the torus
+    if (!is_first && (flags & kBelowIsChosen) == 0) next_[At(open, wrap)] += one;
+    if (!is_last) next_[At(open, wrap | kBelowIsChosen)] += one;  // above
+    if (is_last && wrap == 0) next_[At(open, wrap)] += one;       // above, round the torus
+  }
+
+  int rows_;
+  Weight minus_z_;
+  std::vector<Weight> weights_, next_;
+};
+
+// d log(z)/dz, where `z` came by a complex step.
+double LogarithmicSlope(const Weight& z) { return std::arg(z) / kStep; }
+
+double FactorOfTorus(int columns, int rows, double z) {
+  Columns lattice(rows, z);
+  Weight trace = 0;
+  for (size_t chosen = 0; chosen < size_t{1} << rows; ++chosen) {
+    lattice.BeginWith(chosen);
+    for (int column = 0; column < columns; ++column) lattice.AddColumn();
+    trace += lattice.WeightOf(chosen);
+  }
+  return -LogarithmicSlope(trace) / (4.0 * columns * rows);
+}
+
+// Infinitely many columns: the largest eigenvalue.
+double FactorOfTube(int rows, double z) {
+  constexpr int kColumns = 24;  // the next eigenvalue is some z times the largest
+  Columns lattice(rows, z);
+  lattice.BeginWith(0);
+  for (int column = 0; column < kColumns; ++column) lattice.AddColumn();
+  const Weight before = lattice.Total();
+  lattice.AddColumn();
+  return -LogarithmicSlope(lattice.Total() / before) / (4.0 * rows);
+}
+
+double FactorOfRing(double cells, double z) {
+  const double s = std::sqrt(1 - 4 * z), larger = (1 + s) / 2;
+  const double ratio = z / (larger * larger);  // of the roots, r2/r1 = r1 r2/r1^2
+  return (1 - std::pow(ratio, 2 * cells - 1)) / (s * larger * (1 + std::pow(ratio, 2 * cells)));
+}
+
+struct Crowding {
+  double z;
+  double rate;  // at z = 0 and temperature 1
+};
+
+Crowding CrowdingOf(const PairGeometry& pair) {
+  const PairMeasures measures = Measures(pair);
+  const double stroke = pair.lambda() + 2 * pair.delta();
+  const double all = stroke * measures.cell_area;
+  return {.z = std::max(1 - measures.volume / all, 0.0),
+          .rate = measures.area_ball_piston / (all * std::sqrt(2 * std::numbers::pi))};
+}
+
+}  // namespace
+
+double CrowdingFactor(const GasShape& shape, double z) {
+  if (!shape.is_lattice) return FactorOfRing(static_cast<double>(shape.columns), z);
+  const auto [shorter, longer] = std::minmax(shape.columns, shape.rows);
+  const int rows = static_cast<int>(std::min<int64_t>(shorter, kWidest));
+  if (longer >= kWidest) return FactorOfTube(rows, z);
+  return FactorOfTorus(static_cast<int>(longer), rows, z);
+}
+
+double InfiniteCrowdingFactor(bool is_lattice, double z) {
+  if (is_lattice) return FactorOfTube(kWidest, z);
+  const double s = std::sqrt(1 - 4 * z);
+  return 2 / (s * (1 + s));
+}
+
+double GasExchangeRate(const GasGeometry& geometry, double temperature) {
+  const Crowding crowding = CrowdingOf(geometry.pair());
+  return std::sqrt(temperature) * crowding.rate * CrowdingFactor(geometry.shape(), crowding.z);
+}
+
+double InfiniteGasExchangeRate(const GasGeometry& geometry, double temperature) {
+  const Crowding crowding = CrowdingOf(geometry.pair());
+  return std::sqrt(temperature) * crowding.rate *
+         InfiniteCrowdingFactor(geometry.shape().is_lattice, crowding.z);
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,115 @@
+// The gas of balls and pistons: which ball meets which piston, and where.
+//
+// Cells form a lattice of `columns` x `rows`; cell b = row * columns + column has its ball b. A
+// piston stands on every edge that two cells share: on those across x, and in a lattice on those
+// across y as well. Along y the gas is periodic. Along x it is periodic too, or it ends on both
+// sides at reservoirs: there each row has a piston more, and the outermost two meet one ball only.
+//
+// A ball sees each of its pistons as a pair's ball does, in the cell turned by quarter turns until
+// the piston is on the right: direction 0 right, 1 up (in a lattice), 2 left, 3 down. Then all of
+// the pair's geometry holds, with the gas's bound on delta: rho/sqrt(2) - lambda/2.
+//
+// A piston has an offset from its edge, toward +x or +y, in [-reach, reach], reach = lambda/2 +
+// delta.
+//
+// Immutable, so safe to share between threads.
+#ifndef BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_
+#define BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "absl/status/statusor.h"
+#include "core/gas/gas_shape.h"
+#include "core/geometry/pair_geometry.h"
+
+namespace ballpiston {
+
+enum class GasEnds { kPeriodic, kReservoirs };
+
+// Number of quarter turns from the right.
+enum class Direction { kRight, kUp, kLeft, kDown };
+
+class GasGeometry {
+ public:
+  // INVALID_ARGUMENT, with name, value and permitted range, unless kMinRho < rho < kMaxRho and
+  // 0 < delta <= GasDeltaBound(rho) (1 + kDeltaSlack).
+  static absl::StatusOr<GasGeometry> Create(double rho, double delta, const GasShape& shape,
+                                            GasEnds ends);
+
+  const PairGeometry& pair() const { return pair_; }
+  const GasShape& shape() const { return shape_; }
+  GasEnds ends() const { return ends_; }
+  double reach() const { return pair_.lambda() / 2 + pair_.delta(); }
+
+  int64_t balls() const { return shape_.cells(); }
+  int64_t pistons() const;
+  int64_t contacts() const { return balls() * directions(); }  // pairs of ball and piston that meet
+  int directions() const { return shape_.directions(); }
+  Direction DirectionAt(int i) const {  // i < directions()
+    return static_cast<Direction>(shape_.is_lattice ? i : 2 * i);
+  }
+
+  int64_t PistonOf(int64_t ball, Direction direction) const;
+  // The ball that sees the piston in this direction; kNoBall beyond a reservoir.
+  int64_t BallOf(int64_t piston, Direction direction) const;
+  static constexpr int64_t kNoBall = -1;
+
+  // kRight or kUp: in which the ball before it, toward -x or -y, sees the piston.
+  Direction DirectionTo(int64_t piston) const {
+    return IsAlongX(piston) ? Direction::kRight : Direction::kUp;
+  }
+  bool IsAlongX(int64_t piston) const { return piston < edges_ * shape_.rows; }
+  // Where its edge is along x, in cells from the gas's left end.
+  double PositionOfPiston(int64_t piston) const;
+
+ private:
+  GasGeometry(const PairGeometry& pair, const GasShape& shape, GasEnds ends)
+      : pair_(pair),
+        shape_(shape),
+        ends_(ends),
+        edges_(shape.columns + (ends == GasEnds::kReservoirs ? 1 : 0)) {}
+
+  PairGeometry pair_;
+  GasShape shape_;
+  GasEnds ends_;
+  int64_t edges_;  // across x, of a row
+};
+
+// A vector of the cell as seen after turning the cell until `direction` points to the right.
+inline Eigen::Vector2d SeenToward(Direction direction, const Eigen::Vector2d& v) {
+  switch (direction) {
+    case Direction::kUp:
+      return {v.y(), -v.x()};
+    case Direction::kLeft:
+      return -v;
+    case Direction::kDown:
+      return {-v.y(), v.x()};
+    case Direction::kRight:
+      break;
+  }
+  return v;
+}
+
+// The way back.
+inline Eigen::Vector2d SeenFrom(Direction direction, const Eigen::Vector2d& v) {
+  const bool is_across = direction == Direction::kUp || direction == Direction::kDown;
+  return is_across ? Eigen::Vector2d(-SeenToward(direction, v)) : SeenToward(direction, v);
+}
+
+inline Direction Opposite(Direction direction) {
+  return static_cast<Direction>((static_cast<int>(direction) + 2) % 4);
+}
+
+// +1 where the direction is that of a piston's positive offset.
+inline double SignOf(Direction direction) {
+  return direction == Direction::kRight || direction == Direction::kUp ? 1 : -1;
+}
+
+inline bool IsAlongX(Direction direction) {
+  return direction == Direction::kRight || direction == Direction::kLeft;
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_GAS_GEOMETRY_H_

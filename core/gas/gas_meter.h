@@ -1,0 +1,98 @@
+// What a gas does in a window of time: exchanges counted, energy carried along x, and each body's
+// mean energy. An engine tells it of every exchange, in the order of time.
+//
+// Bodies are the balls, then the pistons. Not for sharing between threads.
+#ifndef BALLPISTON_CORE_GAS_GAS_METER_H_
+#define BALLPISTON_CORE_GAS_GAS_METER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+
+namespace ballpiston {
+
+// A ball that exchanges with the piston it sees in `direction`, and the energies that they have
+// then.
+struct GasExchange {
+  double time = 0;
+  int64_t ball = 0;
+  int64_t piston = 0;
+  Direction direction = Direction::kRight;
+  double ball_energy = 0;
+  double piston_energy = 0;
+};
+
+class GasMeter {
+ public:
+  GasMeter(const GasGeometry& geometry, const GasState& start)
+      : balls_(static_cast<size_t>(geometry.balls())) {
+    bodies_.reserve(start.balls.size() + start.pistons.size());
+    for (const GasBall& ball : start.balls) bodies_.push_back({.energy = EnergyOf(ball)});
+    for (const GasPiston& piston : start.pistons) bodies_.push_back({.energy = EnergyOf(piston)});
+  }
+
+  // Forgets what was measured before.
+  void Begin(double time) {
+    begin_ = time;
+    exchanges_ = 0;
+    carried_ = 0;
+    for (Body& body : bodies_) body = {.energy = body.energy, .since = time};
+  }
+
+  void Exchange(const GasExchange& exchange) {
+    ++exchanges_;
+    Body& ball = bodies_[static_cast<size_t>(exchange.ball)];
+    if (IsAlongX(exchange.direction)) {
+      carried_ += SignOf(exchange.direction) * (ball.energy - exchange.ball_energy);
+    }
+    Set(exchange.time, exchange.ball_energy, ball);
+    SetPiston(exchange.time, exchange.piston, exchange.piston_energy);
+  }
+
+  // A piston has left a thermal wall.
+  void SetPiston(double time, int64_t piston, double energy) {
+    Set(time, energy, bodies_[balls_ + static_cast<size_t>(piston)]);
+  }
+
+  void End(double time) {
+    end_ = time;
+    for (Body& body : bodies_) Set(time, body.energy, body);
+  }
+
+  uint64_t exchanges() const { return exchanges_; }
+  // Through all contacts along x, toward +x.
+  double carried() const { return carried_; }
+  double duration() const { return end_ - begin_; }
+
+  size_t balls() const { return balls_; }
+  size_t bodies() const { return bodies_.size(); }
+  double MeanEnergy(size_t body) const { return bodies_[body].integral / duration(); }
+  double Energy(size_t body) const { return bodies_[body].energy; }
+
+ private:
+  struct Body {
+    double energy = 0;
+    double since = 0;     // has that energy
+    double integral = 0;  // of its energy, until then
+  };
+
+  static void Set(double time, double energy, Body& body) {
+    body.integral += body.energy * (time - body.since);
+    body.energy = energy;
+    body.since = time;
+  }
+
+  size_t balls_;
+  std::vector<Body> bodies_;
+  double begin_ = 0;
+  double end_ = 0;
+  uint64_t exchanges_ = 0;
+  double carried_ = 0;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_GAS_METER_H_

@@ -1,0 +1,92 @@
+#include "core/gas/gas_run.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/gas/gas_exchange_rate.h"
+#include "core/gas/jump_gas.h"
+#include "core/gas/reference_gas.h"
+
+namespace ballpiston {
+namespace {
+
+class ReferenceRun : public GasRun {
+ public:
+  ReferenceRun(const GasGeometry& geometry, std::vector<GasStart> replicas) {
+    for (GasStart& start : replicas) {
+      replicas_.push_back(
+          {ReferenceGas(geometry, start.state, std::move(start.walls)), start.meter});
+    }
+  }
+
+  void AdvanceTo(double time) override {
+    for (Replica& replica : replicas_) {
+      while (replica.gas.NextTime() <= time) Record(replica);
+    }
+  }
+
+  uint64_t escapes() const override { return escapes_; }
+
+ private:
+  struct Replica {
+    ReferenceGas gas;
+    GasMeter* meter;
+  };
+
+  void Record(Replica& replica) {
+    ReferenceGas& gas = replica.gas;
+    const GasEvent event = gas.Step();
+    if (event.kind == EventKind::kBallPiston) {
+      replica.meter->Exchange({event.time, event.ball, event.piston, event.direction,
+                               gas.BallEnergy(event.ball), gas.PistonEnergy(event.piston)});
+    } else if (event.kind == EventKind::kPistonWall) {
+      replica.meter->SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
+    } else if (event.kind == EventKind::kEscape) {
+      ++escapes_;
+    }
+  }
+
+  std::vector<Replica> replicas_;
+  uint64_t escapes_ = 0;
+};
+
+class JumpRun : public GasRun {
+ public:
+  JumpRun(const GasGeometry& geometry, std::vector<GasStart> replicas) {
+    const double density = std::sqrt(std::numbers::pi) * RateOf(geometry);
+    for (GasStart& start : replicas) {
+      const CounterRandom random = start.random.OfJumps();
+      replicas_.push_back(
+          {JumpGas(geometry, density, start.state, std::move(start.walls), random), start.meter});
+    }
+  }
+
+  void AdvanceTo(double time) override {
+    for (Replica& replica : replicas_) replica.gas.AdvanceTo(time, *replica.meter);
+  }
+
+ private:
+  struct Replica {
+    JumpGas gas;
+    GasMeter* meter;
+  };
+
+  // At temperature 1.
+  static double RateOf(const GasGeometry& geometry) {
+    return geometry.ends() == GasEnds::kPeriodic ? GasExchangeRate(geometry, 1)
+                                                 : InfiniteGasExchangeRate(geometry, 1);
+  }
+
+  std::vector<Replica> replicas_;
+};
+
+}  // namespace
+
+std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
+                                   std::vector<GasStart> replicas) {
+  if (engine == GasEngine::kJumps) return std::make_unique<JumpRun>(geometry, std::move(replicas));
+  return std::make_unique<ReferenceRun>(geometry, std::move(replicas));
+}
+
+}  // namespace ballpiston

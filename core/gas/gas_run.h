@@ -1,0 +1,46 @@
+// Gases in motion: one interface for the engines.
+//
+//   kReference  every event of every ball and piston resolved, one at a time (reference_gas.h).
+//   kJumps      the limit of rare collisions: energies alone, exchanged at random (jump_gas.h).
+//
+// A replica's numbers depend on its start alone, not on how far each call goes or on what runs
+// beside it.
+#ifndef BALLPISTON_CORE_GAS_GAS_RUN_H_
+#define BALLPISTON_CORE_GAS_GAS_RUN_H_
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/thermal_walls.h"
+
+namespace ballpiston {
+
+enum class GasEngine { kReference, kJumps };
+
+// A gas at time 0. The meter must outlive the run, and have the same energies.
+struct GasStart {
+  GasState state;
+  ThermalWalls walls;
+  GasRandom random;
+  GasMeter* meter;
+};
+
+class GasRun {
+ public:
+  virtual ~GasRun() = default;
+  // Moves all replicas to `time`, not before that of the last call.
+  virtual void AdvanceTo(double time) = 0;
+  // Balls that have left their cell so far: anything but 0 is a defect.
+  virtual uint64_t escapes() const { return 0; }
+};
+
+std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
+                                   std::vector<GasStart> replicas);
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_GAS_RUN_H_

@@ -1,0 +1,31 @@
+// Where all balls and pistons of a gas are, and how they move: a point of its phase space.
+#ifndef BALLPISTON_CORE_GAS_GAS_STATE_H_
+#define BALLPISTON_CORE_GAS_GAS_STATE_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ballpiston {
+
+struct GasBall {
+  Eigen::Vector2d position = {0, 0};   // from the centre of its cell
+  Eigen::Vector2d direction = {1, 0};  // of its flight, length 1; kept when at rest
+  double speed = 0;
+};
+
+struct GasPiston {
+  double offset = 0;  // from its edge, toward +x or +y
+  double velocity = 0;
+};
+
+struct GasState {
+  std::vector<GasBall> balls;
+  std::vector<GasPiston> pistons;
+};
+
+inline double EnergyOf(const GasBall& ball) { return ball.speed * ball.speed / 2; }
+inline double EnergyOf(const GasPiston& piston) { return piston.velocity * piston.velocity / 2; }
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_GAS_STATE_H_

@@ -1,0 +1,77 @@
+// The gas in the limit of rare collisions: energies alone. A ball and a piston that can meet
+// exchange at a rate that depends on their energies, with the law of a contact: the ball's angle
+// uniform, the piston's sign even, weight (v1 - v3)+; then they exchange v1 and v3. So the energies
+// follow the kernel W of the pair (markov/jump_process.h), which is homogeneous: rates scale with
+// the root of the energy.
+//
+// Sampled by thinning. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and v_p/2. So
+// each body proposes exchanges at a rate that its speed alone decides, and a proposal is accepted
+// with the ratio of the two: four in five are. Bodies stand in classes of rates between 2^k and
+// 2^(k+1), so one is drawn at its rate in a time that does not depend on their number, and sums of
+// rates are exact. An outermost piston has a new thermal velocity at every proposal, because
+// between two of its exchanges it hits its thermal wall many times.
+//
+// Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>,
+// at temperature T in the mean density sqrt(T/pi).
+// Properties, each with the test that bears its name:
+//   1. PairsAreTheJumpProcess.  2. KeepsTheGammaLaws.  3. EqualReservoirsAreAnEquilibrium.
+#ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
+#define BALLPISTON_CORE_GAS_JUMP_GAS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/thermal_walls.h"
+#include "core/gas/weighted_bodies.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+class JumpGas {
+ public:
+  JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
+          const CounterRandom& random);
+
+  // Exchanges until `time`; tells the meter. An outermost piston has its mean energy there.
+  void AdvanceTo(double time, GasMeter& meter);
+
+ private:
+  // An exchange. In the direction in which the ball sees the piston, v1 is the ball's velocity and
+  // v3 the piston's; `across` is the ball's other component.
+  struct Proposal {
+    int64_t ball = 0;
+    int64_t piston = 0;
+    Direction direction = Direction::kRight;
+    double v1 = 0;
+    double across = 0;
+    double v3 = 0;
+    bool is_accepted = false;
+  };
+
+  void FindNext();
+  void Propose(size_t body);
+  void ByBall(int64_t ball);
+  void ByPiston(int64_t piston);
+  void Accept();
+  double DrawPistonVelocity(int64_t piston);
+  void SetBallWeight(int64_t ball);
+  void SetPistonWeight(int64_t piston);
+
+  GasGeometry geometry_;
+  double density_;
+  ThermalWalls walls_;
+  CounterRandom random_;
+  std::vector<double> balls_;    // speeds
+  std::vector<double> pistons_;  // speeds; of the outermost ones none
+  WeightedBodies weights_;
+  double time_ = 0;  // of the next exchange
+  Proposal next_ = {};
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_JUMP_GAS_H_

@@ -1,0 +1,91 @@
+// The gas, every event resolved, one at a time, in double precision: the yardstick for the faster
+// engines, and the source of traces. Balls move as in the pair's reference (cell_walls.h says what
+// keeps that stable); whoever has the next event is found in a queue.
+//
+// A body is moved only at its own events: a ball's time is that of its last wall or exchange, a
+// piston's that of its last wall or exchange. Properties, each with a test of its name:
+//   1. OneBallAndOnePistonAreThePair.  2. ReversedVelocitiesRetraceTheirWay.
+//   3. EnergyStays.
+//
+// Times are in cells per unit speed. One object is one gas; not for sharing between threads.
+#ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
+#define BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/billiard/cell_walls.h"
+#include "core/billiard/reference_flow.h"
+#include "core/gas/event_queue.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/thermal_walls.h"
+#include "core/geometry/pair_state.h"
+
+namespace ballpiston {
+
+struct GasEvent {
+  EventKind kind = EventKind::kEscape;
+  double time = 0;
+  int64_t ball = -1;                        // of a wall hit, an exchange or an escape
+  int64_t piston = -1;                      // of a wall hit or an exchange
+  Direction direction = Direction::kRight;  // in which the ball sees the piston
+};
+
+class ReferenceGas {
+ public:
+  ReferenceGas(const GasGeometry& geometry, const GasState& state, ThermalWalls walls);
+
+  // The time of the next event; infinite if there is none.
+  double NextTime() const { return queue_.First().time; }
+  // Moves to the next event and resolves it. An escaped ball has no more events.
+  GasEvent Step();
+
+  // At a time between the last event and the next one.
+  GasBall BallAt(int64_t ball, double time) const;
+  GasPiston PistonAt(int64_t piston, double time) const;
+  GasState StateAt(double time) const;
+
+  double BallEnergy(int64_t ball) const { return EnergyOf(balls_[Index(ball)].state); }
+  double PistonEnergy(int64_t piston) const { return EnergyOf(pistons_[Index(piston)].state); }
+
+ private:
+  struct Ball {
+    GasBall state;
+    double time = 0;
+    int last_disc = kNoDisc;  // on which the ball is, if it is on one
+    CellWalls<double>::Encounter encounter = {};
+    double wall_time = 0;
+    double contact_time = 0;
+    Direction contact = Direction::kRight;
+  };
+  struct Piston {
+    GasPiston state;
+    double time = 0;
+    double turn_time = 0;
+  };
+
+  static size_t Index(int64_t i) { return static_cast<size_t>(i); }
+
+  void Aim(Ball& ball) const;
+  void TimePiston(Piston& piston) const;
+  double ContactTime(const Ball& ball, Direction direction, const Piston& piston) const;
+  void LookAgain(int64_t ball);  // for the ball's next contact
+  void Schedule(int64_t ball);
+  void SchedulePiston(int64_t piston);
+  GasEvent HitWall(int64_t ball);
+  GasEvent Exchange(int64_t ball);
+  GasEvent TurnPiston(int64_t piston);
+
+  GasGeometry geometry_;
+  CellWalls<double> cell_walls_;
+  ThermalWalls thermal_walls_;
+  std::vector<Ball> balls_;
+  std::vector<Piston> pistons_;
+  EventQueue queue_;  // balls, then pistons
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_REFERENCE_GAS_H_

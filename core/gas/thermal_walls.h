@@ -1,0 +1,69 @@
+// The reservoirs at the two ends of a gas: thermal walls, which the outermost pistons hit from
+// inside. A piston leaves such a wall with a speed from the flux law of the wall's temperature; if
+// both are the same, the gas between them is in equilibrium at that temperature.
+#ifndef BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
+#define BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_geometry.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+// The random numbers of one replica of a gas. Each user has a sequence of its own.
+class GasRandom {
+ public:
+  GasRandom(uint64_t seed, uint64_t stream, uint64_t replica)
+      : seed_(seed), stream_(stream), replica_(replica) {}
+
+  CounterRandom OfStart() const { return Sequence(0); }
+  CounterRandom OfJumps() const { return Sequence(1); }
+  CounterRandom OfWall(uint64_t wall) const { return Sequence(2 + wall); }
+
+ private:
+  CounterRandom Sequence(uint64_t user) const { return {seed_, stream_, replica_, user}; }
+
+  uint64_t seed_;
+  uint64_t stream_;
+  uint64_t replica_;
+};
+
+class ThermalWalls {
+ public:
+  ThermalWalls() = default;  // of a periodic gas: none
+  // The left one is hot, the right one cold: hot >= cold > 0.
+  ThermalWalls(const GasGeometry& geometry, double hot, double cold, const GasRandom& random)
+      : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold) {
+    if (geometry.ends() == GasEnds::kPeriodic) return;
+    for (int64_t i = 0; i < 2 * geometry.shape().rows; ++i) {
+      random_.push_back(random.OfWall(static_cast<uint64_t>(i)));
+    }
+    pistons_ = edges_ * geometry.shape().rows;
+  }
+
+  // Whether the piston has a thermal wall, and so meets one ball only.
+  bool Has(int64_t piston) const {
+    return piston < pistons_ && (IsHot(piston) || piston % edges_ == edges_ - 1);
+  }
+  // These require Has.
+  bool IsHot(int64_t piston) const { return piston % edges_ == 0; }
+  double TemperatureAt(int64_t piston) const { return IsHot(piston) ? hot_ : cold_; }
+  double DrawSpeed(int64_t piston) {
+    const auto wall = static_cast<size_t>(2 * (piston / edges_) + (IsHot(piston) ? 0 : 1));
+    return DrawFluxSpeed(TemperatureAt(piston), random_[wall]);
+  }
+
+ private:
+  int64_t edges_ = 1;    // of a row
+  int64_t pistons_ = 0;  // along x
+  double hot_ = 0;
+  double cold_ = 0;
+  std::vector<CounterRandom> random_;  // by row, hot and cold
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
