@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/billiard/exchange.h"
-#include "core/billiard/lane_flight-inl.h"
+#include "core/billiard/lane_burst-inl.h"
 #include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
 
@@ -26,24 +26,16 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The lanes fly in bursts of some flights each. A burst keeps the state before and after every
-// flight: slot t is before flight t, slot t + kVectors after it, t % kVectors the vector. It also
-// keeps the lanes whose ball is in the piston's reach. After the burst the engine looks at the
-// flights that began or ended there, resolves the contacts it finds, and gives the lanes their next
-// orbits. So contacts and starts come in batches, and the flights have no branch to wait for. The
-// state behind a contact is a ball anywhere in the cell (FrameOfBall): the lanes take it as it is.
+// The lanes fly in bursts of some flights each (lane_burst-inl.h). After the burst the engine looks
+// at the flights that began or ended there, resolves the contacts it finds, and gives the lanes
+// their next orbits. So contacts and starts come in batches, and the flights have no branch to wait
+// for. The state behind a contact is a ball anywhere in the cell (FrameOfBall): the lanes take it
+// as it is.
 //
 // An orbit enters at the beginning of a burst, and every burst has as many flights: so what is
 // rounded at the end of a burst is rounded at the same flights of the orbit, whatever its lane.
 //
-// Within a burst the vectors' flights overlap (lane_flight-inl.h): while one aims, the one kLag
-// before it takes the root, and the one 2 kLag before it turns. Fewer vectors would hardly take
-// less time, so all fly even if few lanes have orbits. More would not fit a processor's nearest
-// cache.
-constexpr size_t kVectors = 6;
-constexpr size_t kLag = 2;
-constexpr size_t kMostFlights = 12;  // of a lane in a burst
-constexpr size_t kMostSteps = kVectors * kMostFlights;
+// Fewer vectors would hardly take less time, so all fly even if few lanes have orbits.
 constexpr int kBurstsBetweenLooks = 512;  // between two calls of Pause; about 0.2 ms
 
 // A ball slower than this counts as at rest. The lanes give it this speed, and a contact counts
@@ -108,25 +100,17 @@ class LaneOrbits : public OrbitRun {
     uint32_t lanes;                        // that have orbits
   };
 
-  // Rounding in the lanes must not hide a contact; a false alarm costs little.
-  static constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
-
-  // The largest c'^2 - 2 that is taken for rounding, which makes some ulps.
-  static constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
-
   struct Constants {
     Constants(const PairGeometry& geometry, const PistonWave& wave) : flight(geometry) {
       const double square = flight.scale * flight.scale;
-      left = static_cast<T>(square * (wave.left() - kSlack));
+      left = static_cast<T>(square * (wave.left() - kSlack<T>));
       period = static_cast<T>(square * 2 * wave.stroke());
-      phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack) / (2 * wave.stroke()));
-      // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
-      const double sine = std::max((wave.left() - kSlack - 0.5) / geometry.rho(), -1.0);
-      edge = static_cast<T>(flight.scale * std::sin(std::asin(sine) + M_PI_4));
+      phase_at_tip = static_cast<T>((geometry.delta() + 2 * kSlack<T>) / (2 * wave.stroke()));
+      edge = EdgeOfReach<T>(geometry, flight.scale);
     }
     FlightConstants<T> flight;
     T left;  // from here on the piston can reach the ball
-    T edge;  // of the reach, along the arc: (q_x - q_y)/2
+    T edge;
     T period;
     T phase_at_tip;  // of the piston
   };
@@ -150,40 +134,15 @@ class LaneOrbits : public OrbitRun {
     if (!meetings_.empty()) Refill();
   }
 
+  // The arc that has the right tip is in reach where it is near to that tip: a < 0, and b tells on
+  // which side it is.
   void Fly() {
-    const Constants k = constants_;  // a copy that no store into the lanes can change
-    const D d;
-    const size_t steps = steps_;
-    Balls<T>* const slots = slots_.data();
-    uint16_t* const in_reach = in_reach_;
-    V worst = hn::Zero(d);
-    for (size_t t = 0; t < 2 * kLag; ++t) {
-      if (t >= kLag) FindRoot(slots[t - kLag + kVectors]);
-      worst = hn::Min(Aim(k.flight, slots[t], slots[t + kVectors]), worst);
-    }
-    for (size_t t = 0; t < steps - 2 * kLag; ++t) {
-      in_reach[t + kVectors] = EndFlight(k, slots[t], slots[t + kVectors]);
-      FindRoot(slots[t + kLag + kVectors]);
-      worst = hn::Min(Aim(k.flight, slots[t + 2 * kLag], slots[t + 2 * kLag + kVectors]), worst);
-    }
-    for (size_t t = steps - 2 * kLag; t < steps; ++t) {
-      in_reach[t + kVectors] = EndFlight(k, slots[t], slots[t + kVectors]);
-      if (t + kLag < steps) FindRoot(slots[t + kLag + kVectors]);
-    }
-    left_cell_ = SignBits(d, hn::Add(worst, hn::Set(d, kMissedByRounding))) != 0;
+    const auto reach = [edge = constants_.edge](const Balls<T>& balls) HWY_ATTR {
+      const TipsInReach tips = TipsOf(balls, edge);
+      return balls.a & (tips.below ^ (balls.ab & (tips.below ^ tips.above)));
+    };
+    left_cell_ = FlyBurst(constants_.flight, flights_, reach, slots_.data(), in_reach_);
     ++bursts_;
-  }
-
-  // Returns the lanes whose ball is in the piston's reach. The arc that has the right tip is in
-  // reach where it is near to that tip: a < 0, and b tells on which side it is.
-  static HWY_INLINE uint16_t EndFlight(const Constants& k, const Balls<T>& from, Balls<T>& to) {
-    const D d;
-    Turn(k.flight, hn::Load(d, from.path), to);
-    const V h = hn::Load(d, to.h), e = hn::Load(d, to.e);
-    const V across = hn::MulAdd(hn::Load(d, to.c), h, hn::Mul(hn::Load(d, to.s), e));
-    const uint32_t above = Bits(d, hn::Gt(across, hn::Set(d, k.edge)));
-    const uint32_t below = Bits(d, hn::Lt(across, hn::Set(d, -k.edge)));
-    return static_cast<uint16_t>(to.a & (below ^ (to.ab & (below ^ above))));
   }
 
   // The lanes' next burst begins where they are. Paths begin at 0: sums of short paths have little
@@ -307,7 +266,7 @@ class LaneOrbits : public OrbitRun {
     const D d;
     const V c = hn::Load(d, slots_[t + kVectors].c);
     const V square = hn::NegMulAdd(c, c, hn::Set(d, T(2)));
-    const V left_cell = hn::Add(square, hn::Set(d, kMissedByRounding));
+    const V left_cell = hn::Add(square, hn::Set(d, kMissedByRounding<T>));
     ForLanes(t, SignBits(d, left_cell) & pistons_[t % kVectors].lanes,
              [&](size_t lane) { Report(lane, Escape()); });
   }
@@ -488,7 +447,7 @@ class LaneOrbits : public OrbitRun {
     balls.Set(i, Scaled(FrameOfBall(state.position, state.direction), scale));
     balls.path[i] = 0;
     const uint32_t bit = uint32_t{1} << i;
-    const bool in_reach = state.position.x() >= wave_.left() - kSlack;
+    const bool in_reach = state.position.x() >= wave_.left() - kSlack<T>;
     in_reach_[v] = static_cast<uint16_t>(in_reach ? in_reach_[v] | bit : in_reach_[v] & ~bit);
     Pistons& piston = pistons_[v];
     piston.phase[i] = static_cast<T>(orbit_[lane].entry_phase / period);

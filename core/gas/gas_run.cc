@@ -6,6 +6,7 @@
 
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/jump_gas.h"
+#include "core/gas/lane_gas.h"
 #include "core/gas/reference_gas.h"
 
 namespace ballpiston {
@@ -85,7 +86,14 @@ class JumpRun : public GasRun {
 
 std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
                                    std::vector<GasStart> replicas) {
-  if (engine == GasEngine::kJumps) return std::make_unique<JumpRun>(geometry, std::move(replicas));
+  switch (engine) {
+    case GasEngine::kJumps:
+      return std::make_unique<JumpRun>(geometry, std::move(replicas));
+    case GasEngine::kLanes:
+      return std::make_unique<LaneGas>(geometry, std::move(replicas));
+    case GasEngine::kReference:
+      break;
+  }
   return std::make_unique<ReferenceRun>(geometry, std::move(replicas));
 }
 

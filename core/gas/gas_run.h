@@ -1,6 +1,7 @@
 // Gases in motion: one interface for the engines.
 //
 //   kReference  every event of every ball and piston resolved, one at a time (reference_gas.h).
+//   kLanes      the same gas, with the flights of many balls in vector lanes (lane_gas.h).
 //   kJumps      the limit of rare collisions: energies alone, exchanged at random (jump_gas.h).
 //
 // A replica's numbers depend on its start alone, not on how far each call goes or on what runs
@@ -19,7 +20,7 @@
 
 namespace ballpiston {
 
-enum class GasEngine { kReference, kJumps };
+enum class GasEngine { kReference, kLanes, kJumps };
 
 // A gas at time 0. The meter must outlive the run, and have the same energies.
 struct GasStart {

@@ -1,8 +1,8 @@
 #include "tools/stability/pair_watch.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/billiard/reference_flow.h"
 #include "tools/stability/ghost_flight.h"
@@ -25,8 +25,8 @@ PairState Turned(PairState state, double angle) {
   return state;
 }
 
-// Whether a number is above `slack` on all three, by more than they differ.
-bool Exceeds(const std::array<double, 3>& values, double slack) {
+// Whether all values are above `slack`, by more than they differ.
+bool Exceeds(const std::vector<double>& values, double slack) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return *least > slack + (*most - *least);
 }
@@ -112,24 +112,33 @@ void CollisionWatch::LookBack(const PairState& departure, const Contact& contact
   constexpr uint64_t kFewHits = 6;
   if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
   ++failures_.looked_back;
-  std::array<double, 3> overlaps, gaps, beyond;
-  // Engines round lengths of 1, the distance between discs, however small the cell. A turn moves
-  // the ray by a length of the cell's size times its angle.
-  const double turn = 1e3 * epsilon_ * std::max(1.0, 0.1 / geometry_.tip());
-  for (size_t i = 0; i < 3; ++i) {
-    const double angle = turn * (static_cast<double>(i) - 1);
-    const GhostFlight ghost = FlyAsGhost(geometry_, Turned(departure, angle), contact.time);
-    overlaps[i] = ghost.overlap;
-    gaps[i] = ghost.gap;
-    beyond[i] = -ghost.gap;
+  // The flight from which it is told is rounded too: where it grazes, two neighbours tell too
+  // little.
+  Failures found = AsGhostsTell(departure, contact, 1);
+  if (found.Total() > 0) found = AsGhostsTell(departure, contact, 8);
+  failures_.Merge(found);
+}
+
+// By that flight and so many neighbours on each side.
+Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact& contact,
+                                      int neighbours) const {
+  std::vector<double> overlaps, gaps, beyond;
+  for (int i = -neighbours; i <= neighbours; ++i) {
+    const GhostFlight ghost =
+        FlyAsGhost(geometry_, Turned(departure, 1e3 * epsilon_ * i), contact.time);
+    overlaps.push_back(ghost.overlap);
+    gaps.push_back(ghost.gap);
+    beyond.push_back(-ghost.gap);
   }
   // The piston's phase carries the rounding of all its way, and the time that of as many sums as
   // there were events: of a slow ball millions, all rounded alike.
   const double way = std::fabs(departure.piston_velocity) * contact.time;
   const auto events = static_cast<double>(contact.ball_wall_hits + contact.piston_wall_hits);
   const double slack = epsilon_ * (1e4 * (1 + way) + events * way);
-  failures_.missed += Exceeds(overlaps, slack);
-  failures_.phantoms += Exceeds(gaps, slack) || Exceeds(beyond, slack);
+  Failures found;
+  found.missed += Exceeds(overlaps, slack);
+  found.phantoms += Exceeds(gaps, slack) || Exceeds(beyond, slack);
+  return found;
 }
 
 AfterContact CollisionWatch::End(Orbit& orbit) {

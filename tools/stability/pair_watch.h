@@ -63,6 +63,7 @@ class CollisionWatch : public NumberedOrbits {
   };
 
   void LookBack(const PairState& departure, const Contact& contact);
+  Failures AsGhostsTell(const PairState& departure, const Contact& contact, int neighbours) const;
   AfterContact End(Orbit& orbit);
 
   PairGeometry geometry_;

@@ -1,0 +1,290 @@
+#include "core/gas/lane_gas.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/billiard/exchange.h"
+#include "core/closed_form/pair_measures.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "core/geometry/pair_state.h"
+
+namespace ballpiston {
+namespace {
+
+// A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
+constexpr double kAtRest = 1e-18;
+
+// Balls fly ahead about so many flights, or until about so many of them have an exchange, whichever
+// is less: flights behind an exchange are lost.
+constexpr double kFlightsAhead = 32;
+constexpr double kExchangesAhead = 0.3;
+constexpr size_t kFlightsTogether = 8;
+
+double MeanFlight(const PairGeometry& pair) {
+  const PairMeasures measures = Measures(pair);
+  const double stroke = pair.lambda() + 2 * pair.delta();
+  return std::numbers::pi * measures.cell_area * stroke / measures.area_ball_wall;
+}
+
+}  // namespace
+
+LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
+    : geometry_(geometry),
+      wave_(geometry.pair()),
+      balls_each_(static_cast<uint32_t>(geometry.balls())),
+      pistons_each_(static_cast<uint32_t>(geometry.pistons())),
+      unit_(FlyingUnit(geometry)),
+      mean_flight_(MeanFlight(geometry.pair())) {
+  for (GasStart& start : replicas) {
+    Place(start.state);
+    replicas_.push_back({std::move(start.walls), start.meter});
+  }
+  FindPistons();
+  from_ = to_;
+  versions_.resize(balls_.size() + pistons_.size());
+  ChooseWindow();
+}
+
+void LaneGas::Place(const GasState& state) {
+  for (const GasBall& ball : state.balls) {
+    to_.push_back(PlacedBall(geometry_, ball.position, ball.direction));
+    balls_.push_back({.speed = std::max(ball.speed, kAtRest)});
+  }
+  for (const GasPiston& piston : state.pistons) {
+    const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
+    pistons_.push_back({wave_.Phase(seen), std::fabs(piston.velocity)});
+  }
+}
+
+void LaneGas::FindPistons() {
+  for (uint32_t ball = 0; ball < balls_.size(); ++ball) {
+    const uint32_t first = ball / balls_each_ * pistons_each_;
+    for (int i = 0; i < geometry_.directions(); ++i) {
+      const Direction direction = geometry_.DirectionAt(i);
+      const int64_t piston = geometry_.PistonOf(ball % balls_each_, direction);
+      balls_[ball].pistons[static_cast<size_t>(direction)] = first + static_cast<uint32_t>(piston);
+    }
+  }
+}
+
+// For the mean energy of the balls; the results do not depend on it.
+void LaneGas::ChooseWindow() {
+  double energy = 0;
+  for (const Ball& ball : balls_) energy += ball.speed * ball.speed / 2;
+  const double temperature = energy / static_cast<double>(balls_.size());
+  const double flights = std::sqrt(temperature * std::numbers::pi / 2) / mean_flight_;
+  const double exchanges =
+      geometry_.directions() * InfiniteGasExchangeRate(geometry_, std::max(temperature, kAtRest));
+  window_ = std::min(kFlightsAhead / std::max(flights, kAtRest), kExchangesAhead / exchanges);
+}
+
+void LaneGas::AdvanceTo(double time) {
+  while (now_ < time) {
+    end_ = std::min(now_ + window_, time);
+    AdvanceWindow();
+    now_ = end_;
+  }
+}
+
+void LaneGas::AdvanceWindow() {
+  FlyAll();
+  if (geometry_.ends() == GasEnds::kReservoirs) {
+    for (uint32_t piston = 0; piston < pistons_.size(); ++piston) FindArrival(piston);
+  }
+  while (!queue_.empty()) {
+    const Entry entry = queue_.top();
+    queue_.pop();
+    if (entry.version != versions_[entry.body]) continue;
+    now_ = entry.time;
+    Handle(entry);
+  }
+}
+
+void LaneGas::Handle(const Entry& entry) {
+  if (entry.body < balls_.size()) {
+    Exchange(entry);
+  } else {
+    LeaveThermalWall(entry);
+  }
+}
+
+// ---- flights ----
+
+FlightOrder LaneGas::OrderFor(uint32_t ball) const {
+  return {.ball = ball, .until = (end_ - balls_[ball].since) * balls_[ball].speed / unit_};
+}
+
+void LaneGas::FlyAll() {
+  std::swap(from_, to_);
+  meetings_.clear();
+  orders_.clear();
+  for (uint32_t ball = 0; ball < balls_.size(); ++ball) {
+    balls_[ball].contact_time = kNever;
+    orders_.push_back(OrderFor(ball));
+  }
+  for (bool is_first = true; !orders_.empty(); is_first = false) {
+    size_t kept = 0;
+    for (size_t first = 0; first < orders_.size(); first += kMostBallsAhead) {
+      const size_t count = std::min(kMostBallsAhead, orders_.size() - first);
+      const std::span<FlightOrder> orders(&orders_[first], count);
+      Fly(kFlightsTogether, orders, is_first ? from_ : to_);
+      for (const FlightOrder& order : orders) {
+        if (!order.has_arrived) orders_[kept++] = order;
+      }
+    }
+    orders_.resize(kept);
+  }
+}
+
+// From their last places, but what was before now_ has been done.
+void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
+  orders_.clear();
+  double flights = 1;
+  for (const uint32_t ball : balls) {
+    ++versions_[ball];
+    balls_[ball].contact_time = kNever;
+    orders_.push_back(OrderFor(ball));
+    flights = std::max(flights, (orders_.back().until - from_[ball].path) * unit_ / mean_flight_);
+  }
+  for (bool is_first = true; !orders_.empty(); is_first = false) {
+    const double ahead = std::min(std::ceil(flights) + 1, double{kMostFlightsAhead});
+    Fly(static_cast<size_t>(ahead), orders_, is_first ? from_ : to_);
+    std::erase_if(orders_, [](const FlightOrder& order) { return order.has_arrived; });
+  }
+}
+
+void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
+  visits_.clear();
+  FlyAhead(geometry_, flights, orders, from, to_, visits_);
+  for (const Visit& visit : visits_) Compare(visit);
+  for (FlightOrder& order : orders) {
+    if (to_[order.ball].has_escaped) Stop(order);
+  }
+}
+
+// A ball that has escaped stays where it is.
+void LaneGas::Stop(FlightOrder& order) {
+  ++escapes_;
+  ++versions_[order.ball];
+  Ball& ball = balls_[order.ball];
+  ball.speed = kAtRest;
+  ball.since = now_;
+  ball.contact_time = kNever;
+  from_[order.ball] = to_[order.ball] = PlacedBall(geometry_, {0, 0}, {1, 0});
+  order.has_arrived = true;
+}
+
+// ---- contacts ----
+
+double LaneGas::PhaseAt(const Piston& piston, double time, Direction seen) const {
+  const double half_turn = SignOf(seen) < 0 ? wave_.stroke() : 0;
+  const double phase = piston.phase + half_turn + piston.speed * (time - piston.since);
+  const double periods = phase / (2 * wave_.stroke());
+  return 2 * wave_.stroke() * (periods - std::floor(periods));
+}
+
+// Whether ball and piston meet in this visit, from now_ to the window's end, before the ball meets
+// another one.
+void LaneGas::Compare(const Visit& visit) {
+  Ball& ball = balls_[visit.ball];
+  const double begin = ball.since + visit.path / ball.speed;
+  if (begin >= ball.contact_time) return;
+  const double start = std::max(begin, now_), gone = (start - begin) * ball.speed;
+  if (gone > visit.length) return;
+  const Piston& piston = pistons_[ball.pistons[static_cast<size_t>(visit.piston)]];
+  const double ux = SeenToward(visit.piston, visit.velocity).x();
+  const double x = SeenToward(visit.piston, visit.position).x() + ux * gone - wave_.left();
+  const double phase = PhaseAt(piston, start, visit.piston), ratio = piston.speed / ball.speed;
+  const double length = visit.length - gone;
+  if (!wave_.MayMeet(phase, ratio, x, ux, length, kReachSlack)) return;
+  const std::optional<PistonWave::Meeting> meeting =
+      wave_.FirstMeeting(phase, ratio, x, ux, length);
+  if (!meeting) return;
+  const double time = start + meeting->way / ball.speed;
+  if (time >= ball.contact_time || time > end_) return;
+  ball.contact_time = time;
+  meetings_.push_back({visit.position + visit.velocity * (gone + meeting->way), visit.velocity,
+                       visit.piston, meeting->piston_goes_right});
+  ++versions_[visit.ball];
+  Push({.time = time, .body = visit.ball, .meeting = meetings_.size() - 1});
+}
+
+// An outermost piston's next arrival at its thermal wall, until the window's end.
+void LaneGas::FindArrival(uint32_t number) {
+  const ThermalWalls& walls = replicas_[number / pistons_each_].walls;
+  const int64_t local = number % pistons_each_;
+  if (!walls.Has(local)) return;
+  const Piston& piston = pistons_[number];
+  const double wall = walls.IsHot(local) ? 2 * wave_.stroke() : wave_.stroke();
+  const double phase = piston.phase < wall ? piston.phase : piston.phase - 2 * wave_.stroke();
+  const auto body = static_cast<uint32_t>(balls_.size() + number);
+  ++versions_[body];
+  Push({.time = piston.since + (wall - phase) / piston.speed, .body = body});
+}
+
+void LaneGas::Push(Entry entry) {
+  entry.version = versions_[entry.body];
+  if (entry.time <= end_) queue_.push(entry);
+}
+
+void LaneGas::LeaveThermalWall(const Entry& entry) {
+  const auto number = static_cast<uint32_t>(entry.body - balls_.size());
+  const int64_t local = number % pistons_each_;
+  Replica& replica = replicas_[number / pistons_each_];
+  const bool is_hot = replica.walls.IsHot(local);
+  Piston& piston = pistons_[number];
+  piston = {.phase = is_hot ? 0 : wave_.stroke(),
+            .speed = replica.walls.DrawSpeed(local),
+            .since = entry.time};
+  replica.meter->SetPiston(entry.time, local, piston.speed * piston.speed / 2);
+  FindArrival(number);
+  const uint32_t ball = BallOf(number, is_hot ? Direction::kLeft : Direction::kRight);
+  FlyAgain({&ball, 1});
+}
+
+// The pair's exchange, in the cell turned until the piston is on the right.
+void LaneGas::Exchange(const Entry& entry) {
+  const uint32_t number = entry.body;
+  Ball& ball = balls_[number];
+  const Meeting meeting = meetings_[entry.meeting];
+  const Direction direction = meeting.direction;
+  const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
+  Piston& piston = pistons_[piston_number];
+  PairState before = {.position = SeenToward(direction, meeting.position),
+                      .direction = SeenToward(direction, meeting.velocity),
+                      .ball_speed = ball.speed > kAtRest ? ball.speed : 0};
+  before.piston = before.position.x();
+  before.piston_velocity = meeting.piston_goes_right ? piston.speed : -piston.speed;
+  const PairState after = AfterExchange(before, std::sqrt(2 * EnergyOf(before)));
+
+  const double half_turn = SignOf(direction) < 0 ? wave_.stroke() : 0;
+  piston = {.phase = std::fmod(wave_.Phase(after) + half_turn, 2 * wave_.stroke()),
+            .speed = std::fabs(after.piston_velocity),
+            .since = entry.time};
+  ball.speed = std::max(after.ball_speed, kAtRest);
+  ball.since = entry.time;
+  from_[number] = PlacedBall(geometry_, SeenFrom(direction, after.position),
+                             SeenFrom(direction, after.direction));
+  ReplicaOf(number).meter->Exchange({.time = entry.time,
+                                     .ball = number % balls_each_,
+                                     .piston = piston_number % pistons_each_,
+                                     .direction = direction,
+                                     .ball_energy = after.ball_speed * after.ball_speed / 2,
+                                     .piston_energy = piston.speed * piston.speed / 2});
+  FindArrival(piston_number);
+  const uint32_t other = BallOf(piston_number, Opposite(direction));
+  const std::array<uint32_t, 2> balls = {number, other};
+  FlyAgain({balls.data(), other == kNone || other == number ? size_t{1} : 2});
+}
+
+uint32_t LaneGas::BallOf(uint32_t piston, Direction direction) const {
+  const uint32_t replica = piston / pistons_each_;
+  const int64_t ball = geometry_.BallOf(piston % pistons_each_, direction);
+  return ball == GasGeometry::kNoBall ? kNone : replica * balls_each_ + static_cast<uint32_t>(ball);
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,128 @@
+// Many gases in vector lanes. Between its exchanges a ball's way does not depend on the pistons. So
+// in each window of time all balls fly ahead, many at once (lane_visits.h), and every visit to
+// where a piston can be is compared with that piston's place, a triangle wave in time. The first
+// visit in which they meet is the ball's next contact, and the window's contacts stand in a queue
+// by time. An exchange changes the way of its ball and the motion of its piston: so the ball, and
+// the other ball of that piston, fly the rest of the window again. Nothing else depends on it.
+//
+// Replicas are gases of one geometry that know nothing of each other; small gases fill the lanes
+// together. A replica's numbers do not depend on how many there are, nor on the windows.
+// Properties, each with the test that bears its name:
+//   1. AgreesWithTheReferenceEventByEvent, for some 15 wall hits a ball.
+//   2. DoesNotDependOnSlicesOrOtherReplicas.  3. EnergyStays.
+#ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
+#define BALLPISTON_CORE_GAS_LANE_GAS_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "core/billiard/piston_wave.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_run.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/lane_visits.h"
+#include "core/gas/thermal_walls.h"
+
+namespace ballpiston {
+
+class LaneGas : public GasRun {
+ public:
+  LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas);
+
+  void AdvanceTo(double time) override;
+  uint64_t escapes() const override { return escapes_; }
+
+ private:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+  // Since its last exchange, or the start.
+  struct Ball {
+    double speed = 0;
+    double since = 0;
+    double contact_time = 0;               // its next one, until the window's end
+    std::array<uint32_t, 4> pistons = {};  // by direction
+  };
+  // Its phase at `since` is that of PistonWave, seen from the ball before it.
+  struct Piston {
+    double phase = 0;
+    double speed = 0;
+    double since = 0;
+  };
+  // A ball meets the piston that it sees in `direction`.
+  struct Meeting {
+    Eigen::Vector2d position;
+    Eigen::Vector2d velocity;  // of length 1
+    Direction direction;
+    bool piston_goes_right;  // as the ball sees it
+  };
+  // A ball's contact, or an outermost piston's arrival at its thermal wall.
+  struct Entry {
+    double time = 0;
+    uint32_t body = 0;     // a ball, or a piston behind all balls
+    uint32_t version = 0;  // void unless the body's version is the same
+    size_t meeting = 0;    // in meetings_
+
+    bool operator>(const Entry& other) const {
+      return time > other.time || (time == other.time && body > other.body);
+    }
+  };
+  struct Replica {
+    ThermalWalls walls;
+    GasMeter* meter;
+  };
+
+  void Place(const GasState& state);
+  void FindPistons();
+  void ChooseWindow();
+
+  void AdvanceWindow();  // to end_
+  void FlyAll();
+  void FlyAgain(std::span<const uint32_t> balls);
+  void Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from);
+  FlightOrder OrderFor(uint32_t ball) const;
+  void Compare(const Visit& visit);
+  void Stop(FlightOrder& order);
+
+  void FindArrival(uint32_t piston);
+  void Push(Entry entry);
+  void Handle(const Entry& entry);
+  void Exchange(const Entry& entry);
+  void LeaveThermalWall(const Entry& entry);
+
+  double PhaseAt(const Piston& piston, double time, Direction seen) const;
+  Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
+  uint32_t BallOf(uint32_t piston, Direction direction) const;  // kNone if there is none
+
+  GasGeometry geometry_;
+  PistonWave wave_;
+  uint32_t balls_each_;  // of a replica
+  uint32_t pistons_each_;
+  double unit_;  // of the lanes
+  double mean_flight_;
+  double window_ = 0;  // of time
+  std::vector<Replica> replicas_;
+  // By ball. At the window's beginning, or the last exchange in it; and at its end, each before the
+  // flight in which that is.
+  std::vector<FlyingBall> from_, to_;
+  std::vector<Ball> balls_;
+  std::vector<Piston> pistons_;
+  std::vector<uint32_t> versions_;                                        // by ball, then by piston
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
+  std::vector<Meeting> meetings_;
+  std::vector<FlightOrder> orders_;
+  std::vector<Visit> visits_;
+  double now_ = 0;  // what was before has been done
+  double end_ = 0;  // of the window
+  uint64_t escapes_ = 0;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_LANE_GAS_H_
