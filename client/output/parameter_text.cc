@@ -22,15 +22,13 @@ std::string ShapeOf(const Point& point, Digits) { return point.cells(); }
 struct OptionalParameter {
   const char* name;
   std::string (*text)(const Point& point, Digits digits);  // empty if it is absent
-  int (v1::Grid::*size)() const;                                // of the grid's list
+  int (v1::Grid::*size)() const;                           // of the grid's list
   bool in_every_csv = false;
 };
 
 constexpr OptionalParameter kOptional[kOptionalParameters] = {
-    {"epsilon", NumberOf<&Point::has_epsilon, &Point::epsilon>, &v1::Grid::epsilon_size,
-     true},
-    {"exponent", NumberOf<&Point::has_exponent, &Point::exponent>,
-     &v1::Grid::exponent_size, true},
+    {"epsilon", NumberOf<&Point::has_epsilon, &Point::epsilon>, &v1::Grid::epsilon_size, true},
+    {"exponent", NumberOf<&Point::has_exponent, &Point::exponent>, &v1::Grid::exponent_size, true},
     {"cells", ShapeOf, &v1::Grid::cells_size},
     {"temperature", NumberOf<&Point::has_temperature, &Point::temperature>,
      &v1::Grid::temperature_size},
@@ -47,8 +45,7 @@ std::vector<std::string> TitlesOf(const ShownParameters& shown) {
   return titles;
 }
 
-std::vector<std::string> CellsOf(const ShownParameters& shown, const Point& point,
-                                 Digits digits) {
+std::vector<std::string> CellsOf(const ShownParameters& shown, const Point& point, Digits digits) {
   std::vector<std::string> cells = {digits(point.rho()), digits(point.delta())};
   for (size_t i = 0; i < kOptionalParameters; ++i) {
     if (shown[i]) cells.push_back(kOptional[i].text(point, digits));
