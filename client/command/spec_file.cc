@@ -38,8 +38,9 @@ void DropSignsOfZeros(v1::EnsembleSpec& spec) {
   }
   if (!spec.has_grid()) return;
   v1::Grid& grid = *spec.mutable_grid();
-  for (auto* list : {grid.mutable_rho(), grid.mutable_delta(), grid.mutable_epsilon(),
-                     grid.mutable_exponent()}) {
+  for (auto* list :
+       {grid.mutable_rho(), grid.mutable_delta(), grid.mutable_epsilon(), grid.mutable_exponent(),
+        grid.mutable_temperature(), grid.mutable_hot(), grid.mutable_cold()}) {
     for (double& number : *list) number += 0.0;
   }
 }

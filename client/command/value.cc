@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "client/command/number_list.h"
+#include "client/command/shape_list.h"
 #include "client/library/quoted.h"
 #include "client/library/request_id.h"
 
@@ -90,6 +91,10 @@ Value Seed(Store<uint64_t> store) { return Parsed("SEED", ParseSeed, std::move(s
 
 Value List(Store<std::vector<double>> store) {
   return Parsed("LIST", ParseNumberList, std::move(store));
+}
+
+Value Shapes(Store<std::vector<std::string>> store) {
+  return Parsed("LIST", ParseShapeList, std::move(store));
 }
 
 Value Words(std::string name, Store<std::string> store) {

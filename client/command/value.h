@@ -48,6 +48,7 @@ Value Number(std::string name, Store<double> store);
 Value Count(Store<int64_t> store);  // N
 Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
+Value Shapes(Store<std::vector<std::string>> store);      // LIST (shape_list.h)
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);                     // ensembleJobs/ID

@@ -30,6 +30,12 @@ Value Grid(Numbers* (v1::Grid::*list)()) {
   });
 }
 
+Value GridCells() {
+  return Shapes([](Options& options, const std::vector<std::string>& shapes) {
+    options.spec.mutable_grid()->mutable_cells()->Add(shapes.begin(), shapes.end());
+  });
+}
+
 Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
   return List([list](Options& options, const std::vector<double>& numbers) {
     (options.closed_forms.*list)()->Add(numbers.begin(), numbers.end());
@@ -97,7 +103,16 @@ const FlagGroup kGrid = {
       "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
      {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
       "the piston's energies, 0 to 1/2; energy-relaxation needs none"},
-     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"}}};
+     {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
+     {"--cells", GridCells(),
+      "shapes of the gas: N, a chain of N cells, or NxM, a lattice of N columns and M rows; at "
+      "most "
+      "1e6 cells"},
+     {"--temperature", Grid(&v1::Grid::mutable_temperature),
+      "temperatures of a gas in equilibrium, 1e-120 to 1e120 (the Boltzmann constant is 1)"},
+     {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
+     {"--cold", Grid(&v1::Grid::mutable_cold),
+      "temperatures of the cold reservoir, 1e-120 to 1e120"}}};
 
 const FlagGroup kTarget = {
     "Target (at most one; --tolerance and --budget can be combined)",

@@ -2,6 +2,7 @@
 #ifndef BALLPISTON_CLIENT_OUTPUT_PARAMETER_TEXT_H_
 #define BALLPISTON_CLIENT_OUTPUT_PARAMETER_TEXT_H_
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -9,20 +10,34 @@
 
 namespace ballpiston::client {
 
+// epsilon, exponent, cells, temperature, hot, cold.
+inline constexpr size_t kOptionalParameters = 6;
+
 // rho 0.53, delta 0.2, epsilon 0.25, exponent 1; ten digits each.
 std::string ParameterText(const v1::PointParameters& parameters);
 
-// For CSV: rho, delta, epsilon, exponent; exact; empty if absent.
-std::vector<std::string> ParameterColumns(const v1::PointParameters& parameters);
+// For CSV: rho, delta, epsilon and exponent in every file; cells, temperature, hot and cold if the
+// question's grid has them. Exact; empty if absent.
+class ParameterColumns {
+ public:
+  explicit ParameterColumns(const v1::Grid& grid);
 
-// For tables: the same as far as a column is wanted, ten digits each.
-struct ParametersShown {
-  bool epsilon = false;
-  bool exponent = false;
+  std::vector<std::string> Titles() const;
+  std::vector<std::string> Cells(const v1::PointParameters& parameters) const;
 
+ private:
+  std::array<bool, kOptionalParameters> shown_;
+};
+
+// For tables: rho, delta and each other parameter that some point has; ten digits each.
+class ParametersShown {
+ public:
   void Include(const v1::PointParameters& parameters);  // what it has is shown from now on
   std::vector<std::string> Titles() const;
   std::vector<std::string> Cells(const v1::PointParameters& parameters) const;
+
+ private:
+  std::array<bool, kOptionalParameters> shown_ = {};
 };
 
 }  // namespace ballpiston::client

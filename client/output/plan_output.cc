@@ -34,10 +34,11 @@ std::string WholeReason(const v1::PointPlan& point, const v1::ModelPlan& model) 
   return absl::StrCat(point.reason(), "; ", model.reason());
 }
 
-Cells CsvCells(const v1::PointPlan& point, const v1::ModelPlan& model) {
+Cells CsvCells(const ParameterColumns& parameters, const v1::PointPlan& point,
+               const v1::ModelPlan& model) {
   const auto number = [](bool known, double x) { return known ? ExactText(x) : ""; };
   const auto truth = [](bool holds) { return holds ? "true" : "false"; };
-  Cells cells = ParameterColumns(point.parameters());
+  Cells cells = parameters.Cells(point.parameters());
   Append({Spelling(model.model()), truth(IsChosen(point, model)), truth(model.answers()),
           number(model.has_samples(), model.samples()), number(model.has_work(), model.work()),
           number(model.has_statistical_error(), model.statistical_error()),
@@ -46,12 +47,14 @@ Cells CsvCells(const v1::PointPlan& point, const v1::ModelPlan& model) {
   return cells;
 }
 
-void PrintCsv(const v1::PlanEnsembleJobResponse& plan, std::ostream& out) {
-  out << "rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,"
-         "model_error,reason\n";
+void PrintCsv(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan,
+              std::ostream& out) {
+  const ParameterColumns parameters(spec.grid());
+  out << absl::StrJoin(parameters.Titles(), ",")
+      << ",model,chosen,answers,samples,work,statistical_error,model_error,reason\n";
   for (const v1::PointPlan& point : plan.points()) {
     for (const v1::ModelPlan& model : point.models()) {
-      out << CsvRow(CsvCells(point, model));
+      out << CsvRow(CsvCells(parameters, point, model));
     }
   }
 }
@@ -192,7 +195,7 @@ void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& 
     case Format::kJsonl:
       return PrintJsonLines(plan.points(), out);
     case Format::kCsv:
-      return PrintCsv(plan, out);
+      return PrintCsv(spec, plan, out);
   }
 }
 

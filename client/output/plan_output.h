@@ -8,7 +8,8 @@
 //   jsonl   one point a line
 //   csv     a row for each point and model:
 //           rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,
-//           model_error,reason
+//           model_error,reason; after exponent the other parameters of the question
+//           (parameter_text.h)
 //
 // Work is in seconds of one core's time (a table gives its units), errors are relative. What is not
 // known stays empty. In CSV the chosen model's reason tells first why it is chosen, then, after a
@@ -26,7 +27,7 @@ namespace ballpiston::client {
 
 inline constexpr int kMostLadders = 8;  // that a table shows in full
 
-// `spec` is what was asked: for a table's heading.
+// `spec` is what was asked: for a table's heading and the columns of CSV.
 void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
                std::ostream& out);
 

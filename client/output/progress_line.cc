@@ -43,6 +43,11 @@ std::string Parameters(const v1::PointParameters& parameters) {
   std::string text = absl::StrFormat("delta %.4g", parameters.delta());
   if (parameters.has_epsilon()) absl::StrAppendFormat(&text, " epsilon %.4g", parameters.epsilon());
   if (parameters.has_exponent()) absl::StrAppendFormat(&text, " n %.4g", parameters.exponent());
+  if (parameters.has_cells()) absl::StrAppend(&text, " cells ", parameters.cells());
+  if (parameters.has_temperature())
+    absl::StrAppendFormat(&text, " T %.4g", parameters.temperature());
+  if (parameters.has_hot()) absl::StrAppendFormat(&text, " hot %.4g", parameters.hot());
+  if (parameters.has_cold()) absl::StrAppendFormat(&text, " cold %.4g", parameters.cold());
   return absl::StrCat("(", text, ")");
 }
 

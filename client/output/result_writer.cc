@@ -58,12 +58,14 @@ class CsvWriter : public ResultWriter {
  public:
   explicit CsvWriter(std::ostream& out) : out_(out) {}
 
-  void Begin(const v1::EnsembleJob&) override {
-    out_ << "rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,"
-            "model_error,noise_floor,limit\n";
+  void Begin(const v1::EnsembleJob& job) override {
+    parameters_ = ParameterColumns(job.spec().grid());
+    out_
+        << absl::StrJoin(parameters_.Titles(), ",")
+        << ",model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit\n";
   }
   void Add(const v1::PointResult& point) override {
-    std::vector<std::string> cells = ParameterColumns(point.parameters());
+    std::vector<std::string> cells = parameters_.Cells(point.parameters());
     cells.insert(cells.end(), {Spelling(point.model()), ExactText(point.samples())});
     for (const v1::Estimate& row : EstimatesOf(point)) {
       std::vector<std::string> all = cells;
@@ -79,6 +81,7 @@ class CsvWriter : public ResultWriter {
 
  private:
   std::ostream& out_;
+  ParameterColumns parameters_{v1::Grid()};
 };
 
 class JsonlWriter : public ResultWriter {
@@ -139,8 +142,11 @@ class TableWriter : public ResultWriter {
     models_.insert(Spelling(point.model()));
     parameters_.Include(point.parameters());
     reasons_.Add(point.parameters(), point.model(), point.reason());
-    points_.push_back({point.parameters(), Spelling(point.model()), ExactText(point.samples()),
-                       EstimatesOf(point)});
+    points_.push_back({point.parameters(),
+                       Spelling(point.model()),
+                       ExactText(point.samples()),
+                       EstimatesOf(point),
+                       {point.remarks().begin(), point.remarks().end()}});
   }
 
   void End() override {
@@ -157,6 +163,7 @@ class TableWriter : public ResultWriter {
     v1::PointParameters parameters;
     std::string model, samples;
     std::vector<v1::Estimate> rows;
+    std::vector<std::string> remarks;
   };
 
   bool HasSeveralModels() const { return models_.size() > 1; }
@@ -210,6 +217,7 @@ class TableWriter : public ResultWriter {
       for (const ExtraColumn& column : extra_columns_) cells.push_back(ExtraCell(column, row));
       table.AddRow(std::move(cells));
     }
+    for (const std::string& remark : point.remarks) table.AddLine("remark: " + remark);
   }
 
   std::ostream& out_;

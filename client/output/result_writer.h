@@ -4,12 +4,14 @@
 //   json    {"job": {...}, "points": [...]}, one point a line
 //   jsonl   one point a line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
-//           model_error,noise_floor,limit
+//           model_error,noise_floor,limit; after exponent the other parameters of the question
+//           (parameter_text.h)
 //
 // In tables and CSV a Kullback-Leibler divergence becomes two rows of its own, kl_divergence and
 // kl_noise_floor. What does not exist stays empty; a table has the columns model, model_error,
 // noise_floor and limit only where they tell something, and below it the reasons for the models
-// (model_reasons.h). Histograms and curves are in JSON only. The same points give the same bytes.
+// (model_reasons.h). A table has a line for each remark, below the estimates of its point; CSV has
+// no remarks. Histograms and curves are in JSON only. The same points give the same bytes.
 #ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 #define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 

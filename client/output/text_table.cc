@@ -28,22 +28,27 @@ TextTable::TextTable(std::vector<Column> columns)
 void TextTable::AddRow(std::vector<std::string> row) {
   row.resize(columns_.size());
   for (size_t i = 0; i < row.size(); ++i) widths_[i] = std::max(widths_[i], Width(row[i]));
-  rows_.push_back(std::move(row));
+  rows_.push_back({.cells = std::move(row), .line = ""});
 }
 
-std::string TextTable::Line(const std::vector<std::string>& row, size_t indent) const {
-  std::string line(indent, ' ');
-  for (size_t i = 0; i < row.size(); ++i) {
-    const std::string padding(widths_[i] - Width(row[i]), ' ');
+void TextTable::AddLine(std::string text) {
+  rows_.push_back({.cells = {}, .line = std::move(text)});
+}
+
+std::string TextTable::Line(const Row& row, size_t indent) const {
+  std::string line = std::string(indent, ' ') + row.line;
+  for (size_t i = 0; i < row.cells.size(); ++i) {
+    const std::string& cell = row.cells[i];
+    const std::string padding(widths_[i] - Width(cell), ' ');
     const bool left = columns_[i].alignment == Column::kLeft;
-    absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, row[i], left ? padding : "");
+    absl::StrAppend(&line, i == 0 ? "" : "  ", left ? "" : padding, cell, left ? padding : "");
   }
   absl::StripTrailingAsciiWhitespace(&line);
   return line;
 }
 
 void TextTable::Print(std::ostream& out, size_t indent) const {
-  for (const std::vector<std::string>& row : rows_) out << Line(row, indent) << '\n';
+  for (const Row& row : rows_) out << Line(row, indent) << '\n';
 }
 
 }  // namespace ballpiston::client

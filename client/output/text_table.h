@@ -19,15 +19,22 @@ class TextTable {
 
   // One text for each column.
   void AddRow(std::vector<std::string> row);
+  // A text across all columns; the columns' widths do not depend on it.
+  void AddLine(std::string text);
   // Each line indented by `indent` blanks; no blanks at a line's end.
   void Print(std::ostream& out, size_t indent = 0) const;
 
  private:
-  std::string Line(const std::vector<std::string>& row, size_t indent) const;
+  struct Row {
+    std::vector<std::string> cells;
+    std::string line;  // if there are no cells
+  };
+
+  std::string Line(const Row& row, size_t indent) const;
 
   std::vector<Column> columns_;
   std::vector<size_t> widths_;
-  std::vector<std::vector<std::string>> rows_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace ballpiston::client

@@ -6,8 +6,8 @@
 // Symbols: beta inverse temperature; eb, ep energies of ball and piston (a Gamma(1) and a
 // Gamma(1/2) variable). Units: P per energy^2; averages in |dG_bp|/|G| times energy^(1/2) for <f>,
 // energy^(5/2) for the other two. Domain of P: beta > 0, eb >= 0, ep >= 0 (P is infinite at
-// ep = 0). Domain of the averages: kMinTemperature <= beta <= kMaxTemperature, and so 1/beta; there
-// <h>, which grows as T^(5/2), stays in the range of double.
+// ep = 0). Domain of the averages: kMinTemperature <= beta <= kMaxTemperature, and so 1/beta
+// (core/geometry/temperature.h); there <h>, which grows as T^(5/2), stays in the range of double.
 //
 // Properties, each with the test that bears its name:
 //   1. DensityIntegratesToOne.
@@ -18,10 +18,9 @@
 #ifndef BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
 #define BALLPISTON_CORE_CLOSED_FORM_CANONICAL_MEASURE_H_
 
-namespace ballpiston {
+#include "core/geometry/temperature.h"  // the domain, for callers that check it
 
-inline constexpr double kMinTemperature = 1e-120;
-inline constexpr double kMaxTemperature = 1e120;
+namespace ballpiston {
 
 double CanonicalDensity(double beta, double eb, double ep);
 

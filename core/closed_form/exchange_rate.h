@@ -14,7 +14,7 @@
 // Units: the Boltzmann constant is 1, so T is an energy, in the units of the pair's energy. Rates
 // count collisions of one contact (a ball and a piston) in a unit of time. The conductivity is the
 // heat current through the cross-section of one cell, divided by the temperature's difference from
-// one cell to the next. Domain: kMinTemperature <= T <= kMaxTemperature (canonical_measure.h),
+// one cell to the next. Domain: kMinTemperature <= T <= kMaxTemperature (temperature.h),
 // kMinRho < rho < kMaxRho, every PairGeometry with delta > 1e-140. Below, rates can underflow.
 //
 // Properties, each with the test that bears its name:

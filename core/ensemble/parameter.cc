@@ -1,9 +1,9 @@
 #include "core/ensemble/parameter.h"
 
-#include <cmath>
-
 #include "absl/strings/str_cat.h"
 #include "core/arithmetic/number_text.h"
+#include "core/gas/gas_shape.h"
+#include "core/geometry/temperature.h"
 
 namespace ballpiston {
 namespace {
@@ -12,6 +12,17 @@ absl::Status InRange(const Parameter& parameter, double value, double lower, dou
   if (value >= lower && value <= upper) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(parameter.name, " is ", NumberText(value),
                                                  "; permitted: [", lower, ", ", upper, "]"));
+}
+
+absl::Status IsTemperature(const Parameter& parameter, double value) {
+  return InRange(parameter, value, kMinTemperature, kMaxTemperature);
+}
+
+bool IsCodeOfShape(double value) {
+  constexpr double kAboveAllCodes = 0x1p41;
+  if (!(value >= 1 && value < kAboveAllCodes)) return false;  // NaN too; the others fit an integer
+  const GasShape shape = ShapeOf(value);
+  return shape.cells() >= 1 && shape.cells() <= kMaxCells && CodeOf(shape) == value;
 }
 
 }  // namespace
@@ -23,10 +34,19 @@ absl::Status ValidateExponent(double exponent) {
 }
 
 absl::Status ValidateCells(double cells) {
-  if (cells == std::floor(cells)) return InRange(kCells, cells, 1, kMaxCells);
-  return absl::InvalidArgumentError(
-      absl::StrCat("cells is ", NumberText(cells), "; permitted: whole numbers"));
+  if (IsCodeOfShape(cells)) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("cells is the code ", NumberText(cells),
+                                                 "; permitted: codes of N or NxM, 1 to ", kMaxCells,
+                                                 " cells in all"));
 }
+
+absl::Status ValidateTemperature(double temperature) {
+  return IsTemperature(kTemperature, temperature);
+}
+
+absl::Status ValidateHot(double temperature) { return IsTemperature(kHot, temperature); }
+
+absl::Status ValidateCold(double temperature) { return IsTemperature(kCold, temperature); }
 
 PointParameters::PointParameters(
     std::initializer_list<std::pair<const Parameter&, std::optional<double>>> values) {

@@ -22,20 +22,29 @@ struct Parameter {
 };
 
 inline constexpr double kMaxExponent = 1000;
-inline constexpr double kMaxCells = 1e6;
 
 absl::Status ValidateEpsilon(double epsilon);
 absl::Status ValidateExponent(double exponent);
-absl::Status ValidateCells(double cells);
+absl::Status ValidateCells(double cells);  // whether it is the code of a shape
+absl::Status ValidateTemperature(double temperature);
+absl::Status ValidateHot(double temperature);
+absl::Status ValidateCold(double temperature);
 
 inline constexpr Parameter kRho = {"rho", 0, ValidateRho};
 inline constexpr Parameter kDelta = {"delta", 1, ValidateSomeDelta};
 inline constexpr Parameter kEpsilon = {"epsilon", 2, ValidateEpsilon};
 inline constexpr Parameter kExponent = {"exponent", 3, ValidateExponent};
-inline constexpr Parameter kCells = {"cells", 4, ValidateCells};  // a whole number
+// The shape of a gas, as the code that CodeOf of core/gas/gas_shape.h makes of it.
+inline constexpr Parameter kCells = {"cells", 4, ValidateCells};
+// Of a gas in equilibrium, and of the two reservoirs at the ends of a gas. Units: the Boltzmann
+// constant is 1 (core/geometry/temperature.h).
+inline constexpr Parameter kTemperature = {"temperature", 5, ValidateTemperature};
+inline constexpr Parameter kHot = {"hot", 6, ValidateHot};
+inline constexpr Parameter kCold = {"cold", 7, ValidateCold};
 
 // In the order of a grid's loops, outermost first.
-inline constexpr std::array kParameters = {&kRho, &kDelta, &kEpsilon, &kExponent, &kCells};
+inline constexpr std::array kParameters = {&kRho,   &kDelta,       &kEpsilon, &kExponent,
+                                           &kCells, &kTemperature, &kHot,     &kCold};
 
 // The values of one point; those that its experiment does not use are absent.
 class PointParameters {

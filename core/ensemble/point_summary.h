@@ -33,9 +33,12 @@ struct SignedHistogram {
   Histogram histogram;
 };
 
-// A function of time.
+// What a curve is a function of: the time, in cells over unit speed, or the position in a gas, in
+// cells from the left reservoir.
+enum class CurveAxis { kTime, kPosition };
+
 struct CurvePoint {
-  double time = 0;
+  double at = 0;  // along the curve's axis
   double value = 0;
   std::optional<double> standard_error = {};
   std::optional<double> limit = {};  // what the limit delta -> 0 gives here
@@ -44,6 +47,7 @@ struct CurvePoint {
 struct Curve {
   std::string name;
   std::vector<CurvePoint> points = {};
+  CurveAxis axis = CurveAxis::kTime;
 };
 
 struct PointSummary {
@@ -53,6 +57,8 @@ struct PointSummary {
   std::vector<SignedHistogram> histograms = {};
   std::vector<Curve> curves = {};
   Health health = {};
+  // Sentences for the user about the result, for instance that a run was too short.
+  std::vector<std::string> remarks = {};
 };
 
 }  // namespace ballpiston

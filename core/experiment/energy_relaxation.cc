@@ -127,7 +127,7 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
   Curve curve = {.name = CurveName()};
   for (size_t i = 0; i < kLags; ++i) {
     const Moments& measured = merged.moments[1 + i];
-    curve.points.push_back({.time = Lag(i),
+    curve.points.push_back({.at = Lag(i),
                             .value = measured.mean,
                             .standard_error = ErrorOf(measured),
                             .limit = CurveOfLimitAt(Lag(i)).value});
@@ -139,10 +139,8 @@ Curve EnergyRelaxation::CurveOfLimit() const {
   Curve curve = {.name = CurveName()};
   for (size_t i = 0; i < kLags; ++i) {
     const SpectralValue limit = CurveOfLimitAt(Lag(i));
-    curve.points.push_back({.time = Lag(i),
-                            .value = limit.value,
-                            .standard_error = limit.error,
-                            .limit = limit.value});
+    curve.points.push_back(
+        {.at = Lag(i), .value = limit.value, .standard_error = limit.error, .limit = limit.value});
   }
   return curve;
 }

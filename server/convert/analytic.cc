@@ -17,6 +17,7 @@
 #include "core/closed_form/mean_free_time.h"
 #include "core/closed_form/pair_measures.h"
 #include "core/geometry/pair_geometry.h"
+#include "core/geometry/temperature.h"
 #include "server/convert/errors.h"
 
 namespace ballpiston::server {

@@ -66,7 +66,11 @@ void Fill(const storage::Curve& record, v1::Curve& message) {
   message.set_name(record.name());
   for (const storage::Curve::Point& point : record.points()) {
     v1::Curve::Point* added = message.add_points();
-    added->set_time(point.time());
+    if (record.axis() == storage::Curve::POSITION) {
+      added->set_position(point.at());
+    } else {
+      added->set_time(point.at());
+    }
     added->set_value(point.value());
     if (point.has_standard_error()) added->set_standard_error(point.standard_error());
     if (point.has_limit()) added->set_limit(point.limit());
@@ -88,6 +92,7 @@ v1::PointResult PointResultMessage(const storage::Result& record) {
   if (record.has_max_energy_error()) {
     message.mutable_health()->set_max_energy_error(record.max_energy_error());
   }
+  *message.mutable_remarks() = record.remarks();
   return message;
 }
 

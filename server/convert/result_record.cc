@@ -55,9 +55,11 @@ void AddHistogram(const SignedHistogram& histogram, storage::Details& details) {
 void AddCurve(const Curve& curve, storage::Details& details) {
   storage::Curve* record = details.add_curves();
   record->set_name(curve.name);
+  record->set_axis(curve.axis == CurveAxis::kPosition ? storage::Curve::POSITION
+                                                      : storage::Curve::TIME);
   for (const CurvePoint& point : curve.points) {
     storage::Curve::Point* added = record->add_points();
-    added->set_time(point.time);
+    added->set_at(point.at);
     added->set_value(point.value);
     if (Exists(point.standard_error)) added->set_standard_error(*point.standard_error);
     if (Exists(point.limit)) added->set_limit(*point.limit);
@@ -110,6 +112,7 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
   }
   if (summary.kl_divergence) SetDivergence(*summary.kl_divergence, result);
   SetHealth(summary.health, result);
+  result.mutable_remarks()->Assign(summary.remarks.begin(), summary.remarks.end());
   return result;
 }
 

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "absl/status/status.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
+#include "core/gas/gas_shape.h"
 #include "core/model_choice/ladder.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/message.h"
@@ -80,21 +84,45 @@ const google::protobuf::FieldDescriptor* FieldOf(const google::protobuf::Message
   return message.GetDescriptor()->FindFieldByName(std::string(parameter.name));
 }
 
-bool IsWhole(const google::protobuf::FieldDescriptor* field) {
-  return field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_INT32;
+// The form in which an error shows a text of the user that is not a shape.
+std::string Shown(absl::string_view text) {
+  constexpr size_t kLongest = 100;
+  const std::string shown = absl::CEscape(text.substr(0, kLongest));
+  return text.size() > kLongest ? absl::StrCat(shown, "...") : shown;
 }
 
-Grid GridOf(const v1::Grid& message) {
+// The code of the shape; NaN, which is the code of no shape, and a violation if there is none.
+double CellsOf(const std::string& text, int index, Violations& violations) {
+  if (const auto shape = ParseGasShape(text); shape.ok()) return CodeOf(*shape);
+  violations.push_back({absl::StrCat("spec.grid.cells[", index, "]"),
+                        std::string(ParseGasShape(Shown(text)).status().message())});
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// A list with more texts than a grid has points is not read: its length is a violation.
+std::vector<double> CodesOf(const v1::Grid& message, Violations& violations) {
+  const auto size = static_cast<size_t>(message.cells_size());
+  std::vector<double> codes(size, std::numeric_limits<double>::quiet_NaN());
+  if (message.cells_size() > kMaxPoints) return codes;
+  for (size_t i = 0; i < size; ++i) {
+    const int index = static_cast<int>(i);
+    codes[i] = CellsOf(message.cells(index), index, violations);
+  }
+  return codes;
+}
+
+Grid GridOf(const v1::Grid& message, Violations& violations) {
   Grid grid;
   const google::protobuf::Reflection& reflection = *message.GetReflection();
   for (const Parameter* parameter : kParameters) {
+    if (parameter == &kCells) continue;
     const auto* field = FieldOf(message, *parameter);
     std::vector<double>& list = grid[*parameter];
     for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
-      list.push_back(IsWhole(field) ? reflection.GetRepeatedInt32(message, field, i)
-                                    : reflection.GetRepeatedDouble(message, field, i));
+      list.push_back(reflection.GetRepeatedDouble(message, field, i));
     }
   }
+  grid[kCells] = CodesOf(message, violations);
   return grid;
 }
 
@@ -133,14 +161,13 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
 
 // The core's own findings, except on fields that did not even get there.
 void AddCoreViolations(const EnsembleSpec& spec, Violations& violations) {
-  const size_t known = violations.size();
+  std::set<std::string> known;
+  for (const FieldViolation& violation : violations) known.insert(violation.field);
   Violations found = ballpiston::Violations(spec);
   if (found.empty()) found = ToleranceViolations(spec);
   for (FieldViolation& violation : found) {
     violation.field = absl::StrCat("spec.", violation.field);
-    bool repeated = false;
-    for (size_t i = 0; i < known; ++i) repeated |= violations[i].field == violation.field;
-    if (!repeated) violations.push_back(std::move(violation));
+    if (!known.contains(violation.field)) violations.push_back(std::move(violation));
   }
 }
 
@@ -152,15 +179,11 @@ v1::Grid GridMessage(const Grid& grid) {
   v1::Grid message;
   const google::protobuf::Reflection& reflection = *message.GetReflection();
   for (const Parameter* parameter : kParameters) {
+    if (parameter == &kCells) continue;
     const auto* field = FieldOf(message, *parameter);
-    for (const double value : grid[*parameter]) {
-      if (IsWhole(field)) {
-        reflection.AddInt32(&message, field, static_cast<int32_t>(value));
-      } else {
-        reflection.AddDouble(&message, field, value);
-      }
-    }
+    for (const double value : grid[*parameter]) reflection.AddDouble(&message, field, value);
   }
+  for (const double code : grid[kCells]) message.add_cells(Text(ShapeOf(code)));
   return message;
 }
 
@@ -185,7 +208,7 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   AddUnknownFields("spec.grid", message.grid(), checked.violations);
   AddUnknownFields("spec.target", message.target(), checked.violations);
   checked.spec.experiment = ExperimentOf(message.experiment(), checked.violations);
-  checked.spec.grid = GridOf(message.grid());
+  checked.spec.grid = GridOf(message.grid(), checked.violations);
   checked.spec.target = TargetOf(message.target());
   checked.spec.seed = message.seed();
   checked.spec.model = ModelOf(message.model(), checked.violations);
@@ -212,9 +235,11 @@ v1::PointParameters ParametersMessage(const PointParameters& parameters) {
   v1::PointParameters message;
   for (const Parameter* parameter : kParameters) {
     const auto& value = parameters.Find(*parameter);
-    if (!value) continue;
+    if (!value || parameter == &kCells) continue;
     message.GetReflection()->SetDouble(&message, FieldOf(message, *parameter), *value);
   }
+  const auto& code = parameters.Find(kCells);  // of a damaged record it may be anything
+  if (code && kCells.validate(*code).ok()) message.set_cells(Text(ShapeOf(*code)));
   return message;
 }
 

@@ -20,7 +20,9 @@ struct CheckedSpec {
 // enumeration that this version does not know is a violation: it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
+// The values of `cells` have to be codes of shapes.
 v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
+// `cells` is left out if its value is not the code of a shape.
 v1::PointParameters ParametersMessage(const PointParameters& parameters);
 v1::EnsembleSpec::Model ModelMessage(Model model);
 

@@ -69,7 +69,7 @@ constexpr std::array<int64_t, 18> kIntegers = {0,
                                                std::numeric_limits<int64_t>::min(),
                                                7};
 
-constexpr std::array<std::string_view, 10> kWords = {"",
+constexpr std::array<std::string_view, 12> kWords = {"",
                                                      "ensembleJobs/",
                                                      "ensembleJobs/0123456789abcdef",
                                                      "123e4567-e89b-12d3-a456-426614174000",
@@ -78,6 +78,8 @@ constexpr std::array<std::string_view, 10> kWords = {"",
                                                      "\xff",
                                                      "\xc3\xa9",
                                                      "-",
+                                                     "4x3",
+                                                     "1000001",
                                                      "type.googleapis.com/google.rpc.ErrorInfo"};
 
 double Number(Dice& dice, double now) {

@@ -1,10 +1,11 @@
-// The client's numbers, counts, seeds and lists of numbers.
+// The client's numbers, counts, seeds, lists of numbers and lists of shapes.
 #include "client/command/number_list.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "absl/strings/match.h"
+#include "client/command/shape_list.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace ballpiston::fuzz {
@@ -37,6 +38,16 @@ void CheckList(const std::string& text) {
           "a number is finite");
 }
 
+void CheckShapes(const std::string& text) {
+  const auto list = client::ParseShapeList(text);
+  if (!list.ok()) return RequireTold(list.status());
+  Require(!list->empty() && list->size() <= client::kMaxListLength, "a list has a length");
+  for (const std::string& shape : *list) {
+    const auto again = client::ParseShapeList(shape);
+    Require(again.ok() && *again == std::vector<std::string>{shape}, "a shape has one spelling");
+  }
+}
+
 void CheckNumberList(const std::string& text) {
   const auto number = client::ParseNumber(text);
   const auto count = client::ParseCount(text);
@@ -45,7 +56,9 @@ void CheckNumberList(const std::string& text) {
   if (!count.ok()) RequireTold(count.status());
   if (!seed.ok()) RequireTold(seed.status());
   Require(!number.ok() || std::isfinite(*number), "a number is finite");
-  if (!IsLong(text) || IsOneIn(256, text)) CheckList(text);
+  if (IsLong(text) && !IsOneIn(256, text)) return;
+  CheckList(text);
+  CheckShapes(text);
 }
 
 const Registration kNumberList({.name = "number_list", .check = CheckNumberList});

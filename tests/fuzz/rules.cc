@@ -23,7 +23,8 @@ constexpr size_t kOneIn = 16;
 bool HasManyPoints(const v1::Grid& grid) {
   int points = 1;
   for (const int size :
-       {grid.rho_size(), grid.delta_size(), grid.epsilon_size(), grid.exponent_size()}) {
+       {grid.rho_size(), grid.delta_size(), grid.epsilon_size(), grid.exponent_size(),
+        grid.cells_size(), grid.temperature_size(), grid.hot_size(), grid.cold_size()}) {
     points *= std::clamp(size, 1, 100);
   }
   return points > 16;

@@ -101,7 +101,7 @@ double LargestScore(const Curve& curve, size_t first) {
 void Print(const Curve& curve) {
   for (size_t i = 0; i < curve.points.size(); i += 4) {
     const CurvePoint& point = curve.points[i];
-    std::cout << std::setprecision(4) << "t " << point.time << "  " << point.value << " +- "
+    std::cout << std::setprecision(4) << "t " << point.at << "  " << point.value << " +- "
               << *point.standard_error << "  limit " << *point.limit << "\n";
   }
 }
@@ -116,8 +116,8 @@ TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
   EXPECT_GT(curve.points.front().value, 0.99);
   // Down to 1e-3 every point differs from zero by more than five standard errors.
   EXPECT_LT(*curve.points.back().limit, 1e-3);
-  for (const CurvePoint& at : curve.points) {
-    EXPECT_TRUE(*at.limit < 1e-3 || at.value > 5 * *at.standard_error) << at.time;
+  for (const CurvePoint& point : curve.points) {
+    EXPECT_TRUE(*point.limit < 1e-3 || point.value > 5 * *point.standard_error) << point.at;
   }
   const Eigen::VectorXd limit = LimitOf(curve, 0);
   const double score = HotellingScore(blocks.curves, limit);

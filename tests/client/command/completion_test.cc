@@ -73,7 +73,9 @@ TEST_F(CompletionTest, OffersAnArgumentAtItsPlace) {
   EXPECT_EQ(Offers({"run", "--rho", "0.53", "--verify", ""}), Offers({"run", ""}));
   EXPECT_EQ(Offers({"run", "--rho", "=", "0.53", ""}), Offers({"run", ""}));
   EXPECT_EQ(Offers({"run", "--rho=0.53", ""}), Offers({"run", ""}));
-  EXPECT_THAT(Offers({"run", "first-hit", ""}), Contains(StartsWith("--rho\t")));
+  for (const char* flag : {"--rho\t", "--cells\t", "--temperature\t", "--hot\t", "--cold\t"}) {
+    EXPECT_THAT(Offers({"run", "first-hit", ""}), Contains(StartsWith(flag)));
+  }
   EXPECT_THAT(Offers({"completion", ""}), Contains("bash"));
 }
 

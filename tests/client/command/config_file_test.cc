@@ -93,6 +93,8 @@ TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
       "format = \"csv\"\n"
       "rho = [0.53, 0.6]\n"
       "delta = \"0.1,0.2\"\n"
+      "cells = [\"12\", \"4x3\", 8]\n"
+      "hot = 2\n"
       "samples = 1e6\n"
       "verify = false\n");
   ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"run", "first-hit"}));
@@ -100,6 +102,8 @@ TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
   EXPECT_EQ(line.options.format, Format::kCsv);
   EXPECT_THAT(line.options.spec.grid().rho(), ElementsAre(0.53, 0.6));
   EXPECT_THAT(line.options.spec.grid().delta(), ElementsAre(0.1, 0.2));
+  EXPECT_THAT(line.options.spec.grid().cells(), ElementsAre("12", "4x3", "8"));
+  EXPECT_THAT(line.options.spec.grid().hot(), ElementsAre(2));
   EXPECT_EQ(line.options.spec.target().samples(), 1'000'000);
   EXPECT_FALSE(line.options.spec.verify());
 }

@@ -37,6 +37,21 @@ TEST(SpecFile, ZeroHasNoSignInAnyNotation) {
   EXPECT_FALSE(ParseSpec("s.json", "{}")->has_grid());
 }
 
+TEST(SpecFile, ReadsTheParametersOfAGas) {
+  ASSERT_OK_AND_ASSIGN(
+      const v1::EnsembleSpec spec,
+      ParseSpec("s.json", R"({"grid": {"cells": ["12", "4x3"], "temperature": [-0.0, 0.5],
+                                       "hot": [-0.0, 2], "cold": [-0.0, 1]}})"));
+  EXPECT_THAT(spec.grid().cells(), testing::ElementsAre("12", "4x3"));
+  EXPECT_EQ(spec.grid().temperature(1), 0.5);
+  EXPECT_EQ(spec.grid().hot(1), 2);
+  EXPECT_EQ(spec.grid().cold(1), 1);
+  for (const double number :
+       {spec.grid().temperature(0), spec.grid().hot(0), spec.grid().cold(0)}) {
+    EXPECT_FALSE(std::signbit(number));
+  }
+}
+
 TEST(SpecFile, RejectsWhatIsNotASpecification) {
   for (const char* text :
        {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",

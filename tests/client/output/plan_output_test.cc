@@ -144,6 +144,19 @@ TEST(PlanCsv, HasARowForEachPointAndModel) {
 )");
 }
 
+TEST(PlanCsv, HasColumnsForTheParametersOfAGas) {
+  v1::EnsembleSpec question = Question();
+  *question.mutable_grid() = FromText<v1::Grid>("cells: '4x3' temperature: 1");
+  const auto plan = FromText<v1::PlanEnsembleJobResponse>(R"(
+      points { parameters { rho: 0.53 delta: 0.1 cells: "4x3" temperature: 1 }
+               models { model: BILLIARD answers: true } model: BILLIARD })");
+  EXPECT_EQ(
+      PrintedPlan(Format::kCsv, plan, question),
+      R"(rho,delta,epsilon,exponent,cells,temperature,model,chosen,answers,samples,work,statistical_error,model_error,reason
+0.53,0.1,,,4x3,1,billiard,true,true,,,,,
+)");
+}
+
 TEST(PlanJson, IsTheResponseWithTheProtosNames) {
   const std::string text = PrintedPlan(Format::kJson);
   v1::PlanEnsembleJobResponse read;

@@ -16,11 +16,13 @@
 #include "client/output/progress_line.h"
 #include "client/output/progress_meter.h"
 #include "client/output/progress_reporter.h"
+#include "tests/client/message_text.h"
 
 namespace ballpiston::client {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -90,6 +92,14 @@ TEST(ProgressLine, ShowsPointsRateTimeAndTheRunningEstimate) {
   EXPECT_EQ(ProgressLine(Halfway(), ConditionalPoint(), 200),
             "[##############--------------] 50/100 points  1.2e5 samples/s  0:10 left  "
             "tau_conditional 21.63 +- 0.12  (delta 0.1 epsilon 0.25)");
+}
+
+TEST(ProgressLine, ShowsTheParametersOfAGas) {
+  v1::PointResult point = ConditionalPoint();
+  *point.mutable_parameters() =
+      FromText<v1::PointParameters>("delta: 0.1 cells: '4x3' temperature: 0.5 hot: 2 cold: 1");
+  EXPECT_THAT(ProgressLine(Halfway(), point, 200),
+              EndsWith("  (delta 0.1 cells 4x3 T 0.5 hot 2 cold 1)"));
 }
 
 TEST(ProgressLine, AnOrdinaryTerminalShowsTheEstimate) {

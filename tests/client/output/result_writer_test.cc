@@ -40,10 +40,11 @@ std::vector<v1::PointResult> TwoPoints() {
             estimates { name: "mean_hit_time" value: 1e-7 standard_error: 2e-9 })")};
 }
 
-std::string Written(Format format, const std::vector<v1::PointResult>& points = TwoPoints()) {
+std::string Written(Format format, const std::vector<v1::PointResult>& points = TwoPoints(),
+                    const v1::EnsembleJob& job = FirstHitJob()) {
   std::ostringstream out;
   const auto writer = NewResultWriter(format, out);
-  writer->Begin(FirstHitJob());
+  writer->Begin(job);
   for (const v1::PointResult& point : points) writer->Add(point);
   writer->End();
   return out.str();
@@ -64,6 +65,29 @@ std::vector<v1::PointResult> PointsOfTheLadder() {
             estimates { name: "kernel_distance" value: 0.00213 standard_error: 0.00043
                         noise_floor: 0.00198 }
             reason: "the limit is off by 7.3e-04")")};
+}
+
+// Of a gas between reservoirs.
+v1::EnsembleJob JobOfAGas() {
+  v1::EnsembleJob job = FirstHitJob();
+  *job.mutable_spec()->mutable_grid() =
+      FromText<v1::Grid>("rho: 0.53 delta: 0.1 cells: ['12', '4x3'] hot: 2 cold: 1");
+  return job;
+}
+
+std::vector<v1::PointResult> PointsOfAGas() {
+  return {FromText<v1::PointResult>(R"(
+            index: 0 parameters { rho: 0.53 delta: 0.1 cells: "12" hot: 2 cold: 1 }
+            model: BILLIARD samples: 100
+            estimates { name: "heat_current" value: 0.25 standard_error: 0.012 }
+            estimates { name: "conductivity" value: 0.5 standard_error: 0.023 }
+            curves { name: "temperature" points { position: 0 value: 2 }
+                     points { position: 0.5 value: 1.9 } }
+            remarks: "the run was too short" remarks: "another sentence")"),
+          FromText<v1::PointResult>(R"(
+            index: 1 parameters { rho: 0.53 delta: 0.1 cells: "4x3" hot: 2 cold: 1 }
+            model: BILLIARD samples: 100
+            estimates { name: "heat_current" value: 0.75 standard_error: 0.034 })")};
 }
 
 TEST(ResultTable, AlignsAndRounds) {
@@ -89,6 +113,19 @@ TEST(ResultTable, HasColumnsForTheLadder) {
 0.53  0.0125  markov    1000000  kernel_distance  0.00213  0.00043                             0.00198
 billiard (rho 0.53, delta 0.1): the limit is off by 2.1e-02
 markov (rho 0.53, delta 0.0125): the limit is off by 7.3e-04
+)");
+}
+
+TEST(ResultTable, HasTheRemarksBelowTheEstimatesOfTheirPoint) {
+  EXPECT_EQ(
+      Written(Format::kTable, PointsOfAGas(), JobOfAGas()),
+      R"(first-hit, model billiard, seed 7, engine 1  (ensembleJobs/abc, succeeded, 2 of 2 points)
+ rho  delta  cells  hot  cold  samples  estimate      value  error  exact  z
+0.53    0.1     12    2     1      100  heat_current  0.250  0.012
+0.53    0.1     12    2     1      100  conductivity  0.500  0.023
+remark: the run was too short
+remark: another sentence
+0.53    0.1    4x3    2     1      100  heat_current  0.750  0.034
 )");
 }
 
@@ -127,10 +164,28 @@ TEST(ResultCsv, HasTheLadderInItsLastColumns) {
 )");
 }
 
+TEST(ResultCsv, HasColumnsForTheParametersOfAGasAndNoRemarks) {
+  EXPECT_EQ(
+      Written(Format::kCsv, PointsOfAGas(), JobOfAGas()),
+      R"(rho,delta,epsilon,exponent,cells,hot,cold,model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit
+0.53,0.1,,,12,2,1,billiard,100,heat_current,0.25,0.012,,,,,
+0.53,0.1,,,12,2,1,billiard,100,conductivity,0.5,0.023,,,,,
+0.53,0.1,,,4x3,2,1,billiard,100,heat_current,0.75,0.034,,,,,
+)");
+}
+
+TEST(ResultJson, HasShapesPositionsAndRemarks) {
+  const std::string text = Written(Format::kJsonl, PointsOfAGas(), JobOfAGas());
+  EXPECT_THAT(text, HasSubstr(R"("cells":"12","hot":2,"cold":1})"));
+  EXPECT_THAT(text,
+              HasSubstr(R"("points":[{"value":2,"position":0},{"value":1.9,"position":0.5}])"));
+  EXPECT_THAT(text, HasSubstr(R"("remarks":["the run was too short","another sentence"]})"));
+}
+
 TEST(ResultJson, HasReasonsAndCurves) {
   const std::string text = Written(Format::kJsonl, PointsOfTheLadder());
   EXPECT_THAT(text, HasSubstr(R"("reason":"the limit is off by 2.1e-02","curves":[{"name":)"
-                              R"("energy_autocorrelation","points":[{"time":0,"value":1}]}])"));
+                              R"("energy_autocorrelation","points":[{"value":1,"time":0}]}])"));
   EXPECT_THAT(text, HasSubstr(R"("model_error":0,"limit":3.14159)"));
 }
 
@@ -139,8 +194,8 @@ TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
       Written(Format::kJson),
       R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0},
 "points": [
-{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[]},
-{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[]}
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[],"remarks":[]},
+{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[],"remarks":[]}
 ]}
 )");
 }

@@ -25,6 +25,18 @@ TEST(TextTable, AlignsNumbersRightAndTextLeft) {
             " b\n");
 }
 
+TEST(TextTable, LineLiesAcrossAllColumns) {
+  TextTable table({{"name", TextTable::Column::kLeft}, {"value"}});
+  table.AddRow({"a", "1"});
+  table.AddLine("remark: wider than both columns");
+  table.AddRow({"b", "22"});
+  EXPECT_EQ(PrintedTable(table),
+            " name  value\n"
+            " a         1\n"
+            " remark: wider than both columns\n"
+            " b        22\n");
+}
+
 // µ has two bytes.
 TEST(TextTable, CountsCharactersNotBytes) {
   TextTable table({{"work"}, {"n"}});

@@ -79,19 +79,26 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
   spec.grid[kEpsilon] = {0.6, -HUGE_VAL};
   spec.grid[kExponent] = {-1, 1001};
   spec.grid[kCells] = {4};
+  spec.grid[kTemperature] = {1, 2, -1};
+  spec.grid[kHot] = {1};
+  spec.grid[kCold] = {1, 0};
   spec.target = {.samples = 0, .tolerance = 0};
   spec.model = Model::kMarkov;
   spec.precision = Precision::kSingle;
-  EXPECT_THAT(
-      Violations(spec),
-      UnorderedElementsAre(Names("grid.rho[1]", "rho is 0.5"), Names("grid.rho[2]", "rho is nan"),
-                           Names("grid.delta[0]", "bound of a ball-piston pair"),
-                           Names("grid.delta[1]", "-1"), Names("grid.epsilon[0]", "[0, 0.5]"),
-                           Names("grid.epsilon[1]", "-inf"), Names("grid.exponent[0]", "[0, 1000]"),
-                           Names("grid.exponent[1]", "1001"), Names("grid.cells", "takes none"),
-                           Names("target", "more than one"), Names("target.samples", "is 0"),
-                           Names("target.tolerance", "0 < tolerance < 1"), Names("model", "markov"),
-                           Names("precision", "single")));
+  EXPECT_THAT(Violations(spec),
+              UnorderedElementsAre(
+                  Names("grid.rho[1]", "rho is 0.5"), Names("grid.rho[2]", "rho is nan"),
+                  Names("grid.delta[0]", "bound of a ball-piston pair"),
+                  Names("grid.delta[1]", "-1"), Names("grid.epsilon[0]", "[0, 0.5]"),
+                  Names("grid.epsilon[1]", "-inf"), Names("grid.exponent[0]", "[0, 1000]"),
+                  Names("grid.exponent[1]", "1001"), Names("grid.cells", "takes none"),
+                  Names("grid.temperature", "has 3 values; first-hit takes none"),
+                  Names("grid.temperature[2]", "temperature is -1"),
+                  Names("grid.hot", "has 1 values; first-hit takes none"),
+                  Names("grid.cold", "has 2 values; first-hit takes none"),
+                  Names("grid.cold[1]", "cold is 0"), Names("target", "more than one"),
+                  Names("target.samples", "is 0"), Names("target.tolerance", "0 < tolerance < 1"),
+                  Names("model", "markov"), Names("precision", "single")));
 }
 
 TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {

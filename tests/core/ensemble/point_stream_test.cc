@@ -45,6 +45,14 @@ TEST(PointStream, AbsentDiffersFromZeroAndZerosAreEqual) {
   EXPECT_EQ(of(-0.0), of(0.0));
 }
 
+TEST(PointStream, EqualValuesOfDifferentParametersDiffer) {
+  std::set<uint64_t> streams;
+  for (const Parameter* parameter : {&kEpsilon, &kCells, &kTemperature, &kHot, &kCold}) {
+    streams.insert(StreamAt(kFirstHit, {{kRho, 0.6}, {kDelta, 0.1}, {*parameter, 1}}));
+  }
+  EXPECT_EQ(streams.size(), 5u);
+}
+
 TEST(PointStream, APilotAndTheJumpProcessHaveNumbersOfTheirOwn) {
   const PointParameters point = {{kRho, 0.6}, {kDelta, 0.1}};
   const uint64_t billiard = StreamAt(kEnergyRelaxation, point);

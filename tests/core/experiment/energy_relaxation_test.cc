@@ -192,7 +192,7 @@ TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
   ASSERT_EQ(correlation.points.size(), kLags);
   ASSERT_EQ(decay.points.size(), kLags);
   for (size_t i = 0; i < kLags; ++i) {
-    const double time = decay.points[i].time;
+    const double time = decay.points[i].at;
     EXPECT_NEAR(time / unit, 4 * kWindowTimes * static_cast<double>(i) / (kLags - 1), 1e-7);
     EXPECT_NEAR(correlation.points[i].value, spectrum.Autocorrelation(time / unit).value, 1e-13);
     EXPECT_NEAR(decay.points[i].value, spectrum.MeanEnergy(0.4, time / unit).value, 1e-13);

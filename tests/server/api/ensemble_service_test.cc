@@ -52,14 +52,18 @@ TEST(EnsembleService, AllViolationsAreListedWithTheirPaths) {
   spec.mutable_grid()->add_delta(-1);
   spec.mutable_grid()->add_epsilon(std::numeric_limits<double>::quiet_NaN());
   spec.mutable_grid()->add_exponent(std::numeric_limits<double>::infinity());
+  spec.mutable_grid()->add_cells("4x4");
+  spec.mutable_grid()->add_cells("4y4");
+  spec.mutable_grid()->add_cold(0);
   spec.mutable_target()->set_samples(0);
   spec.set_model(static_cast<v1::EnsembleSpec::Model>(99));
   const grpc::Status status = RunningServer().Create(CreateRequest(spec, "not a uuid"));
   EXPECT_THAT(status, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_SPEC"));
-  EXPECT_THAT(
-      DetailsOf(status).fields,
-      IsSupersetOf({"spec.grid.rho[0]", "spec.grid.delta[3]", "spec.grid.epsilon[2]",
-                    "spec.grid.exponent[1]", "spec.target.samples", "spec.model", "request_id"}));
+  EXPECT_THAT(DetailsOf(status).fields,
+              IsSupersetOf({"spec.grid.rho[0]", "spec.grid.delta[3]", "spec.grid.epsilon[2]",
+                            "spec.grid.exponent[1]", "spec.grid.cells", "spec.grid.cells[1]",
+                            "spec.grid.cold", "spec.grid.cold[0]", "spec.target.samples",
+                            "spec.model", "request_id"}));
 }
 
 TEST(EnsembleService, AnEmptyRequestIsRefused) {

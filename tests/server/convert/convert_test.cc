@@ -8,6 +8,7 @@
 
 #include "absl/strings/ascii.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
@@ -201,6 +202,78 @@ TEST(Spec, EveryParameterHasAListInGrids) {
   }
 }
 
+TEST(Spec, EveryParameterHasAFieldInPoints) {
+  PointParameters point;
+  for (const Parameter* parameter : kParameters) {
+    point.Set(*parameter, 3 + static_cast<double>(parameter->index));
+  }
+  const v1::PointParameters message = ParametersMessage(point);
+  EXPECT_EQ(message.rho(), 3);
+  EXPECT_EQ(message.delta(), 4);
+  EXPECT_EQ(message.epsilon(), 5);
+  EXPECT_EQ(message.exponent(), 6);
+  EXPECT_EQ(message.cells(), "7");
+  EXPECT_EQ(message.temperature(), 8);
+  EXPECT_EQ(message.hot(), 9);
+  EXPECT_EQ(message.cold(), 10);
+  const v1::PointParameters pair = ParametersMessage({{kRho, 0.6}, {kDelta, 0.1}});
+  EXPECT_FALSE(pair.has_cells() || pair.has_temperature() || pair.has_hot() || pair.has_cold());
+}
+
+TEST(Spec, ShapesComeBackAsTheyWereWritten) {
+  v1::EnsembleSpec message;
+  const std::vector<std::string> shapes = {"1", "12", "1x1", "4x3", "1000000", "1x1000000"};
+  message.mutable_grid()->mutable_cells()->Assign(shapes.begin(), shapes.end());
+  const CheckedSpec checked = CheckSpec(message);
+  EXPECT_THAT(ViolatedFields(checked), testing::ElementsAre("spec.experiment"));
+  EXPECT_EQ(checked.spec.grid[kCells][3], CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
+  EXPECT_THAT(SpecMessage(checked.spec).grid().cells(), testing::ElementsAreArray(shapes));
+  EXPECT_EQ(ParametersMessage(PointAt(checked.spec, 3)).cells(), "4x3");
+}
+
+TEST(Spec, TextThatIsNotAShapeIsAViolationBesideTheOthers) {
+  v1::EnsembleSpec message = OneFirstHit();
+  const std::vector<std::string> texts = {"4", "4y4", "0", "x", "1e9", "-3", "", "1001x1000", "4x"};
+  message.mutable_grid()->mutable_cells()->Assign(texts.begin(), texts.end());
+  message.mutable_grid()->add_hot(-1);
+  message.mutable_grid()->add_rho(kNan);
+  const CheckedSpec checked = CheckSpec(message);
+  std::vector<std::string> expected = {"spec.grid.cells", "spec.grid.hot", "spec.grid.hot[0]",
+                                       "spec.grid.rho[1]"};
+  for (size_t i = 1; i < texts.size(); ++i) {
+    expected.push_back("spec.grid.cells[" + std::to_string(i) + "]");
+    EXPECT_EQ(checked.violations[i - 1].field, expected.back());
+    EXPECT_EQ(checked.violations[i - 1].description,
+              "cells is \"" + texts[i] + "\"; permitted: N or NxM, 1 to 1000000 cells in all");
+  }
+  EXPECT_THAT(ViolatedFields(checked), testing::UnorderedElementsAreArray(expected));  // each once
+  EXPECT_THAT(checked.violations,
+              testing::Contains(testing::Field(&FieldViolation::description,
+                                               "has 9 values; first-hit takes none")));
+}
+
+TEST(Spec, ViolationShowsAStrangeTextEscapedAndShortened) {
+  v1::EnsembleSpec message = OneFirstHit();
+  message.mutable_grid()->add_cells("\x1b[2J");
+  message.mutable_grid()->add_cells(std::string(100, '0') + "1" + std::string(1'000'000, 'y'));
+  const CheckedSpec checked = CheckSpec(message);
+  EXPECT_EQ(checked.violations[0].description,
+            "cells is \"\\033[2J\"; permitted: N or NxM, 1 to 1000000 cells in all");
+  EXPECT_EQ(checked.violations[1].description,
+            "cells is \"" + std::string(100, '0') +
+                "...\"; permitted: N or NxM, 1 to 1000000 cells in all");
+}
+
+// A message of 4 MiB holds two million empty texts.
+TEST(Spec, OfAListThatIsTooLongNoShapeIsRead) {
+  v1::EnsembleSpec message = OneFirstHit();
+  for (int i = 0; i <= kMaxPoints; ++i) message.mutable_grid()->add_cells("");
+  EXPECT_THAT(ViolatedFields(CheckSpec(message)),
+              testing::UnorderedElementsAre("spec.grid", "spec.grid.cells"));
+  message.mutable_grid()->mutable_cells()->RemoveLast();
+  EXPECT_EQ(CheckSpec(message).violations.size(), static_cast<size_t>(kMaxPoints) + 1);
+}
+
 TEST(Spec, VerifyComesBack) {
   v1::EnsembleSpec message = OneFirstHit();
   message.set_verify(true);
@@ -326,7 +399,9 @@ class ToldExperiment : public PointExperiment {
     summary.estimates = {{.name = "time", .value = -4, .standard_error = 0.5, .limit = 3},
                          {.name = "distance", .value = 0.25, .noise_floor = 0.125},
                          {.name = "odd", .value = 1, .limit = kNan, .noise_floor = kInfinity}};
-    summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}}};
+    summary.curves = {{"decay", {{0, 1, 0.25, 1}, {2, 0.5, {}, {}}, {4, 0.25, kNan, kInfinity}}},
+                      {"profile", {{0, 2}, {1.5, 1}}, CurveAxis::kPosition}};
+    summary.remarks = {"the run was too short", "another sentence"};
     return summary;
   }
 };
@@ -340,7 +415,7 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
   EXPECT_FALSE(result.estimates(1).has_limit());
   EXPECT_FALSE(result.estimates(2).has_limit());
   EXPECT_FALSE(result.estimates(2).has_noise_floor());
-  ASSERT_EQ(result.curves_size(), 1);
+  ASSERT_EQ(result.curves_size(), 2);
   EXPECT_EQ(result.curves(0).name(), "decay");
   ASSERT_EQ(result.curves(0).points_size(), 3);
   EXPECT_EQ(result.curves(0).points(0).standard_error(), 0.25);
@@ -351,6 +426,39 @@ TEST(PointResult, LimitNoiseFloorAndCurvesAreKept) {
     EXPECT_FALSE(result.curves(0).points(i).has_standard_error());
     EXPECT_FALSE(result.curves(0).points(i).has_limit());
   }
+}
+
+TEST(PointResult, CurveHasATimeOrAPositionAtEachPoint) {
+  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
+  for (const v1::Curve::Point& point : result.curves(0).points()) {
+    EXPECT_TRUE(point.has_time());
+    EXPECT_FALSE(point.has_position());
+  }
+  EXPECT_EQ(result.curves(1).name(), "profile");
+  ASSERT_EQ(result.curves(1).points_size(), 2);
+  for (const v1::Curve::Point& point : result.curves(1).points()) {
+    EXPECT_FALSE(point.has_time());
+    EXPECT_TRUE(point.has_position());
+  }
+  EXPECT_EQ(result.curves(1).points(1).position(), 1.5);
+  EXPECT_EQ(result.curves(1).points(1).value(), 1);
+}
+
+TEST(PointResult, RemarksAreKeptInTheirOrder) {
+  const v1::PointResult result = PointResultOf(0, ToldExperiment(FakeSpec(1, 1)), BlockResult());
+  EXPECT_THAT(result.remarks(), testing::ElementsAre("the run was too short", "another sentence"));
+}
+
+TEST(PointResult, DamagedCodeOfAShapeIsLeftOut) {
+  storage::Result record;
+  storage::Value& cells = *record.add_point();
+  cells.set_parameter(kCells.index);
+  for (const double code : {0.0, -1.0, 0.5, 1e300, kNan, kInfinity}) {
+    cells.set_value(code);
+    EXPECT_FALSE(PointResultMessage(record).parameters().has_cells()) << code;
+  }
+  cells.set_value(CodeOf({.columns = 4, .rows = 3, .is_lattice = true}));
+  EXPECT_EQ(PointResultMessage(record).parameters().cells(), "4x3");
 }
 
 // They are functions of the parameters alone, and are not stored.

@@ -272,6 +272,9 @@ void SetOther(google::protobuf::Message& message, const FieldDescriptor& field) 
       return reflect.SetUInt64(&message, &field, 77);
     case FieldDescriptor::CPPTYPE_BOOL:
       return reflect.SetBool(&message, &field, !reflect.GetBool(message, &field));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return field.is_repeated() ? reflect.AddString(&message, &field, "77")
+                                 : reflect.SetString(&message, &field, "77");
     case FieldDescriptor::CPPTYPE_ENUM:
       return reflect.SetEnumValue(&message, &field, field.enum_type()->value_count() - 1);
     default:

@@ -169,7 +169,9 @@ TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
               r.mutable_question()->set_single_precision(true);
             }},
            {"question.point.parameter",
-            [](Record& r) { r.mutable_question()->add_point()->set_parameter(5); }},
+            [](Record& r) {
+              r.mutable_question()->add_point()->set_parameter(kParameters.size());
+            }},
            {"question.point",
             [](Record& r) { r.mutable_question()->add_point()->set_parameter(0); }},
            {"question.grid.rho", [](Record& r) { ValueOf(r, kRho).set_value(kNan); }},

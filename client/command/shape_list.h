@@ -1,0 +1,25 @@
+// Lists of shapes of a gas, as users write them on the command line.
+//
+//   LIST   items separated by commas, each a SHAPE or a range; at most 100,000 shapes
+//   SHAPE  N, a chain of N cells, or NxM, a lattice; N and M are COUNTs
+//   range  FROM:TO:COUNT or FROM:TO:COUNT:log, whose numbers are whole: chains of these lengths
+//
+// COUNT and range are those of number_list.h. The server checks which numbers are permitted.
+#ifndef BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_
+#define BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+
+// Each shape in its only spelling: 1e3x04 is 1000x4. Every error is INVALID_ARGUMENT; it quotes the
+// text and says what is permitted.
+absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_
