@@ -13,9 +13,12 @@ extern const ExperimentKind kConditionalMeanFreeTime;
 extern const ExperimentKind kFirstHit;
 extern const ExperimentKind kEnergyRelaxation;
 extern const ExperimentKind kMarkovProperty;
+extern const ExperimentKind kGasEquilibrium;
+extern const ExperimentKind kGasConduction;
 
 inline constexpr std::array kAllExperiments = {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
-                                               &kEnergyRelaxation, &kMarkovProperty};
+                                               &kEnergyRelaxation, &kMarkovProperty,
+                                               &kGasEquilibrium, &kGasConduction};
 
 }  // namespace ballpiston
 

@@ -19,8 +19,9 @@ bool HasFiniteTimes(double rho, double delta) {
   return measures.area_ball_piston >= std::numeric_limits<double>::min();
 }
 
-std::optional<std::string> WrongDelta(double smallest, double largest, double delta) {
-  const absl::Status status = ValidatePairDelta(largest, delta);
+std::optional<std::string> WrongDelta(double smallest, double largest, double delta,
+                                      DeltaValidation validate) {
+  const absl::Status status = validate(largest, delta);
   if (!status.ok()) return std::string(status.message());
   if (HasFiniteTimes(smallest, delta)) return std::nullopt;
   return absl::StrCat("delta is ", NumberText(delta),
@@ -42,18 +43,6 @@ RangeOfRho RangeIn(const Grid& grid) {
     range.smallest = std::fmin(range.smallest, rho);
   }
   return range;
-}
-
-// The largest valid rho has the smallest bound, and the smallest rho has the longest times, so it
-// is enough to check each delta with these two.
-void CheckDeltas(const Grid& grid, const RangeOfRho& range, std::vector<FieldViolation>& found) {
-  const std::vector<double>& deltas = grid[kDelta];
-  for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!ValidateSomeDelta(deltas[i]).ok()) continue;  // said already
-    if (const auto wrong = WrongDelta(range.smallest, range.largest, deltas[i])) {
-      found.push_back({absl::StrFormat("grid.delta[%d]", i), *wrong});
-    }
-  }
 }
 
 void CheckSinglePrecision(const Grid& grid, std::vector<FieldViolation>& found) {
@@ -80,10 +69,23 @@ PairGeometry GeometryOf(const PointParameters& point) {
   return PairGeometry::Create(point[kRho], point[kDelta]).value();
 }
 
-void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
-  const RangeOfRho range = RangeIn(spec.grid);
+// The largest valid rho has the smallest bound, and the smallest rho has the longest times, so it
+// is enough to check each delta with these two.
+void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found) {
+  const RangeOfRho range = RangeIn(grid);
   if (range.IsEmpty()) return;
-  CheckDeltas(spec.grid, range, found);
+  const std::vector<double>& deltas = grid[kDelta];
+  for (size_t i = 0; i < deltas.size(); ++i) {
+    if (!ValidateSomeDelta(deltas[i]).ok()) continue;  // said already
+    if (const auto wrong = WrongDelta(range.smallest, range.largest, deltas[i], validate)) {
+      found.push_back({absl::StrFormat("grid.delta[%d]", i), *wrong});
+    }
+  }
+}
+
+void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  CheckDeltas(spec.grid, ValidatePairDelta, found);
+  if (RangeIn(spec.grid).IsEmpty()) return;
   if (spec.precision == Precision::kSingle) CheckSinglePrecision(spec.grid, found);
 }
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "absl/status/status.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
 #include "core/experiment/predicted_hits.h"
@@ -17,6 +18,12 @@ inline constexpr Model kBilliards[] = {Model::kBilliard, Model::kBilliardReferen
 
 // Requires a valid rho and delta.
 PairGeometry GeometryOf(const PointParameters& point);
+
+using DeltaValidation = absl::Status (*)(double rho, double delta);
+
+// Finds deltas that are not permitted at the largest rho, and deltas so small that the mean free
+// time of the smallest rho leaves the range of double.
+void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldViolation>& found);
 
 // Finds deltas beyond the bound of the largest rho, and deltas so small that the mean free time of
 // the smallest rho leaves the range of double. With single precision also finds rho and delta at

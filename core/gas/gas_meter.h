@@ -57,11 +57,15 @@ class GasMeter {
     Set(time, energy, bodies_[balls_ + static_cast<size_t>(piston)]);
   }
 
+  // A ball has left its cell, which none should do.
+  void CountEscape() { ++escapes_; }
+
   void End(double time) {
     end_ = time;
     for (Body& body : bodies_) Set(time, body.energy, body);
   }
 
+  uint64_t escapes() const { return escapes_; }  // since the start
   uint64_t exchanges() const { return exchanges_; }
   // Through all contacts along x, toward +x.
   double carried() const { return carried_; }
@@ -71,6 +75,11 @@ class GasMeter {
   size_t bodies() const { return bodies_.size(); }
   double MeanEnergy(size_t body) const { return bodies_[body].integral / duration(); }
   double Energy(size_t body) const { return bodies_[body].energy; }
+  double TotalEnergy() const {
+    double sum = 0;
+    for (const Body& body : bodies_) sum += body.energy;
+    return sum;
+  }
 
  private:
   struct Body {
@@ -89,6 +98,7 @@ class GasMeter {
   std::vector<Body> bodies_;
   double begin_ = 0;
   double end_ = 0;
+  uint64_t escapes_ = 0;
   uint64_t exchanges_ = 0;
   double carried_ = 0;
 };

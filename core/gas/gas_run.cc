@@ -27,8 +27,6 @@ class ReferenceRun : public GasRun {
     }
   }
 
-  uint64_t escapes() const override { return escapes_; }
-
  private:
   struct Replica {
     ReferenceGas gas;
@@ -44,12 +42,11 @@ class ReferenceRun : public GasRun {
     } else if (event.kind == EventKind::kPistonWall) {
       replica.meter->SetPiston(event.time, event.piston, gas.PistonEnergy(event.piston));
     } else if (event.kind == EventKind::kEscape) {
-      ++escapes_;
+      replica.meter->CountEscape();
     }
   }
 
   std::vector<Replica> replicas_;
-  uint64_t escapes_ = 0;
 };
 
 class JumpRun : public GasRun {

@@ -35,8 +35,6 @@ class GasRun {
   virtual ~GasRun() = default;
   // Moves all replicas to `time`, not before that of the last call.
   virtual void AdvanceTo(double time) = 0;
-  // Balls that have left their cell so far: anything but 0 is a defect.
-  virtual uint64_t escapes() const { return 0; }
 };
 
 std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,

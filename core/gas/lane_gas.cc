@@ -168,7 +168,7 @@ void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const
 
 // A ball that has escaped stays where it is.
 void LaneGas::Stop(FlightOrder& order) {
-  ++escapes_;
+  ReplicaOf(order.ball).meter->CountEscape();
   ++versions_[order.ball];
   Ball& ball = balls_[order.ball];
   ball.speed = kAtRest;
@@ -187,15 +187,15 @@ double LaneGas::PhaseAt(const Piston& piston, double time, Direction seen) const
   return 2 * wave_.stroke() * (periods - std::floor(periods));
 }
 
-// Whether ball and piston meet in this visit, from now_ to the window's end, before the ball meets
-// another one.
+// Whether ball and piston meet in this visit, by the window's end and before the ball meets another
+// one. What was before the piston's last change has been done. Nothing here depends on the window.
 void LaneGas::Compare(const Visit& visit) {
   Ball& ball = balls_[visit.ball];
   const double begin = ball.since + visit.path / ball.speed;
   if (begin >= ball.contact_time) return;
-  const double start = std::max(begin, now_), gone = (start - begin) * ball.speed;
-  if (gone > visit.length) return;
   const Piston& piston = pistons_[ball.pistons[static_cast<size_t>(visit.piston)]];
+  const double start = std::max(begin, piston.since), gone = (start - begin) * ball.speed;
+  if (gone > visit.length) return;
   const double ux = SeenToward(visit.piston, visit.velocity).x();
   const double x = SeenToward(visit.piston, visit.position).x() + ux * gone - wave_.left();
   const double phase = PhaseAt(piston, start, visit.piston), ratio = piston.speed / ball.speed;

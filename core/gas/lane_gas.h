@@ -36,7 +36,6 @@ class LaneGas : public GasRun {
   LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas);
 
   void AdvanceTo(double time) override;
-  uint64_t escapes() const override { return escapes_; }
 
  private:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -120,7 +119,6 @@ class LaneGas : public GasRun {
   std::vector<Visit> visits_;
   double now_ = 0;  // what was before has been done
   double end_ = 0;  // of the window
-  uint64_t escapes_ = 0;
 };
 
 }  // namespace ballpiston

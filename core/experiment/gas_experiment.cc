@@ -1,0 +1,194 @@
+#include "core/experiment/gas_experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "core/closed_form/pair_measures.h"
+#include "core/experiment/pair_experiment.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_shape.h"
+
+namespace ballpiston {
+namespace {
+
+// A block whose replicas are being computed. Their meters are kept until all are done, so that they
+// are measured in their order.
+struct OpenBlock {
+  Block block;
+  std::vector<std::unique_ptr<GasMeter>> meters = {};  // of the replicas that have been started
+  std::vector<double> energies = {};                   // at their starts
+  uint64_t done = 0;
+};
+
+// Several replicas at a time, of several blocks where these are small, so that the lanes are full.
+class GasBlocks : public BlockRun {
+ public:
+  GasBlocks(const GasExperiment& experiment, BlockQueue& queue)
+      : experiment_(experiment), queue_(queue) {}
+
+  bool Advance() override {
+    do {
+      if (run_ == nullptr && !Begin()) return true;
+      AdvanceSlice();
+    } while (!queue_.Pause());
+    return false;
+  }
+
+ private:
+  static constexpr int64_t kBallsTogether = 1536;
+  static constexpr double kSecondsOfASlice = 0.01;
+
+  // Takes replicas until there are enough balls. Returns false if there are none.
+  bool Begin() {
+    std::vector<GasStart> starts;
+    const int64_t each = experiment_.geometry().balls();
+    for (int64_t balls = 0; balls < kBallsTogether && HasNext(); balls += each) {
+      starts.push_back(Start());
+    }
+    if (starts.empty()) return false;
+    const double seconds = experiment_.plan().SecondsFor(static_cast<double>(starts.size()));
+    slice_ = experiment_.times().Total() / std::ceil(seconds / kSecondsOfASlice);
+    time_ = 0;
+    is_measuring_ = false;
+    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), std::move(starts));
+    return true;
+  }
+
+  bool HasNext() {
+    if (!open_.empty() && open_.back()->meters.size() < open_.back()->block.samples) return true;
+    const std::optional<Block> block = queue_.Next();
+    if (block) open_.push_back(std::make_unique<OpenBlock>(OpenBlock{*block}));
+    return block.has_value();
+  }
+
+  GasStart Start() {
+    OpenBlock& open = *open_.back();
+    const GasRandom random = experiment_.RandomOf(open.block.first + open.meters.size());
+    CounterRandom of_start = random.OfStart();
+    GasState state = experiment_.Draw(of_start);
+    open.meters.push_back(std::make_unique<GasMeter>(experiment_.geometry(), state));
+    GasMeter* const meter = open.meters.back().get();
+    open.energies.push_back(meter->TotalEnergy());
+    running_.push_back(meter);
+    return {std::move(state), experiment_.WallsOf(random), random, meter};
+  }
+
+  void AdvanceSlice() {
+    const GasTimes& times = experiment_.times();
+    const double end = is_measuring_ ? times.Total() : times.relax;
+    time_ = std::min(time_ + slice_, end);
+    run_->AdvanceTo(time_);
+    if (time_ < end) return;
+    if (is_measuring_) return Finish();
+    is_measuring_ = true;
+    for (GasMeter* const meter : running_) meter->Begin(time_);
+  }
+
+  // Replicas were started in the order of their blocks.
+  void Finish() {
+    run_.reset();
+    for (GasMeter* const meter : running_) meter->End(time_);
+    size_t left = std::exchange(running_, {}).size();
+    for (const auto& open : open_) {
+      const uint64_t more = std::min<uint64_t>(left, open->meters.size() - open->done);
+      open->done += more;
+      left -= more;
+    }
+    while (!open_.empty() && open_.front()->done == open_.front()->block.samples) {
+      const std::unique_ptr<OpenBlock> open = std::move(open_.front());
+      open_.erase(open_.begin());
+      queue_.Done(open->block, ResultOf(*open));
+    }
+  }
+
+  BlockResult ResultOf(const OpenBlock& open) const {
+    BlockResult result = experiment_.EmptyResult();
+    for (size_t i = 0; i < open.meters.size(); ++i) {
+      const GasMeter& meter = *open.meters[i];
+      Health health = {.escapes = meter.escapes()};
+      if (experiment_.geometry().ends() == GasEnds::kPeriodic) {
+        health.max_energy_error = std::fabs(meter.TotalEnergy() / open.energies[i] - 1);
+      }
+      result.health.Merge(health);
+      ++result.samples;
+      experiment_.Measure(meter, result);
+    }
+    return result;
+  }
+
+  const GasExperiment& experiment_;
+  BlockQueue& queue_;
+  std::vector<std::unique_ptr<OpenBlock>> open_;
+  std::vector<GasMeter*> running_;
+  std::unique_ptr<GasRun> run_;
+  double slice_ = 0;
+  double time_ = 0;
+  bool is_measuring_ = false;
+};
+
+// Wall hits and the piston's turns, in a unit of time at temperature 1.
+struct HitRates {
+  double of_a_ball;
+  double of_a_piston;
+};
+
+HitRates HitRatesOf(const PairGeometry& pair) {
+  const PairMeasures measures = Measures(pair);
+  const double stroke = pair.lambda() + 2 * pair.delta();
+  const double flight = std::numbers::pi * measures.cell_area * stroke / measures.area_ball_wall;
+  return {.of_a_ball = std::sqrt(std::numbers::pi / 2) / flight,
+          .of_a_piston = std::sqrt(2 / std::numbers::pi) / stroke};
+}
+
+}  // namespace
+
+GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends) {
+  return GasGeometry::Create(point[kRho], point[kDelta], ShapeOf(point[kCells]), ends).value();
+}
+
+void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
+  CheckDeltas(spec.grid, ValidateGasDelta, found);
+  if (spec.precision == Precision::kSingle) {
+    found.push_back({"precision", "is single; permitted for a gas: double"});
+  }
+}
+
+// Measured, in units of the pair's work: a wall hit in the gas's lanes takes as long as five of the
+// pair's, an exchange as long as ten, and the reference's queue doubles the time of its events.
+SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
+  const auto balls = static_cast<double>(geometry.balls());
+  const auto pistons = static_cast<double>(geometry.pistons());
+  const double exchanges =
+      static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 4 * exchanges};
+  const HitRates rates = HitRatesOf(geometry.pair());
+  const bool is_reference = model == Model::kBilliardReference;
+  const double hit = is_reference ? 4 : 5, exchange = is_reference ? 4 : 10;
+  return {.ball_wall = hit * rates.of_a_ball * balls * time,
+          .piston_wall = hit * rates.of_a_piston * pistons * time,
+          .collisions = exchange * exchanges,
+          .starts = balls};
+}
+
+GasEngine GasExperiment::gas_engine() const {
+  switch (answer().model) {
+    case Model::kMarkov:
+      return GasEngine::kJumps;
+    case Model::kBilliardReference:
+      return GasEngine::kReference;
+    default:
+      return GasEngine::kLanes;
+  }
+}
+
+std::unique_ptr<BlockRun> GasExperiment::StartRun(BlockQueue& queue) const {
+  return std::make_unique<GasBlocks>(*this, queue);
+}
+
+}  // namespace ballpiston
