@@ -18,11 +18,12 @@ namespace {
 // A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
 constexpr double kAtRest = 1e-18;
 
-// Balls fly ahead about so many flights, or until about so many of them have an exchange, whichever
-// is less: flights behind an exchange are lost.
-constexpr double kFlightsAhead = 32;
-constexpr double kExchangesAhead = 0.3;
-constexpr size_t kFlightsTogether = 8;
+// A window takes some time of its own for each ball, as long as this number of balls' flights one by
+// one; and flights behind an exchange are lost and flown again, one by one. So the time is least
+// where a ball flies ahead the root of this number times the flights between two of its exchanges.
+constexpr double kFlightsOfAWindow = 8;
+constexpr double kMostFlightsInAWindow = 64;
+constexpr size_t kFlightsTogether = 12;
 
 double MeanFlight(const PairGeometry& pair) {
   const PairMeasures measures = Measures(pair);
@@ -45,28 +46,28 @@ LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
   }
   FindPistons();
   from_ = to_;
-  versions_.resize(balls_.size() + pistons_.size());
+  versions_.resize(gas_.balls.size() + gas_.pistons.size());
   ChooseWindow();
 }
 
 void LaneGas::Place(const GasState& state) {
   for (const GasBall& ball : state.balls) {
     to_.push_back(PlacedBall(geometry_, ball.position, ball.direction));
-    balls_.push_back({.speed = std::max(ball.speed, kAtRest)});
+    gas_.balls.push_back({.speed = std::max(ball.speed, kAtRest)});
   }
   for (const GasPiston& piston : state.pistons) {
     const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
-    pistons_.push_back({wave_.Phase(seen), std::fabs(piston.velocity)});
+    gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = wave_.Phase(seen)});
   }
 }
 
 void LaneGas::FindPistons() {
-  for (uint32_t ball = 0; ball < balls_.size(); ++ball) {
+  for (uint32_t ball = 0; ball < gas_.balls.size(); ++ball) {
     const uint32_t first = ball / balls_each_ * pistons_each_;
     for (int i = 0; i < geometry_.directions(); ++i) {
       const Direction direction = geometry_.DirectionAt(i);
       const int64_t piston = geometry_.PistonOf(ball % balls_each_, direction);
-      balls_[ball].pistons[static_cast<size_t>(direction)] = first + static_cast<uint32_t>(piston);
+      gas_.balls[ball].pistons[static_cast<size_t>(direction)] = first + static_cast<uint32_t>(piston);
     }
   }
 }
@@ -74,12 +75,13 @@ void LaneGas::FindPistons() {
 // For the mean energy of the balls; the results do not depend on it.
 void LaneGas::ChooseWindow() {
   double energy = 0;
-  for (const Ball& ball : balls_) energy += ball.speed * ball.speed / 2;
-  const double temperature = energy / static_cast<double>(balls_.size());
+  for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
+  const double temperature = energy / static_cast<double>(gas_.balls.size());
   const double flights = std::sqrt(temperature * std::numbers::pi / 2) / mean_flight_;
   const double exchanges =
       geometry_.directions() * InfiniteGasExchangeRate(geometry_, std::max(temperature, kAtRest));
-  window_ = std::min(kFlightsAhead / std::max(flights, kAtRest), kExchangesAhead / exchanges);
+  const double best = std::sqrt(kFlightsOfAWindow * flights / exchanges);
+  window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);
 }
 
 void LaneGas::AdvanceTo(double time) {
@@ -93,7 +95,7 @@ void LaneGas::AdvanceTo(double time) {
 void LaneGas::AdvanceWindow() {
   FlyAll();
   if (geometry_.ends() == GasEnds::kReservoirs) {
-    for (uint32_t piston = 0; piston < pistons_.size(); ++piston) FindArrival(piston);
+    for (uint32_t piston = 0; piston < gas_.pistons.size(); ++piston) FindArrival(piston);
   }
   while (!queue_.empty()) {
     const Entry entry = queue_.top();
@@ -105,7 +107,7 @@ void LaneGas::AdvanceWindow() {
 }
 
 void LaneGas::Handle(const Entry& entry) {
-  if (entry.body < balls_.size()) {
+  if (entry.body < gas_.balls.size()) {
     Exchange(entry);
   } else {
     LeaveThermalWall(entry);
@@ -115,15 +117,15 @@ void LaneGas::Handle(const Entry& entry) {
 // ---- flights ----
 
 FlightOrder LaneGas::OrderFor(uint32_t ball) const {
-  return {.ball = ball, .until = (end_ - balls_[ball].since) * balls_[ball].speed / unit_};
+  return {.ball = ball, .until = (end_ - gas_.balls[ball].since) * gas_.balls[ball].speed / unit_};
 }
 
 void LaneGas::FlyAll() {
   std::swap(from_, to_);
   meetings_.clear();
   orders_.clear();
-  for (uint32_t ball = 0; ball < balls_.size(); ++ball) {
-    balls_[ball].contact_time = kNever;
+  for (uint32_t ball = 0; ball < gas_.balls.size(); ++ball) {
+    gas_.balls[ball].next_contact = kNever;
     orders_.push_back(OrderFor(ball));
   }
   for (bool is_first = true; !orders_.empty(); is_first = false) {
@@ -146,7 +148,7 @@ void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
   double flights = 1;
   for (const uint32_t ball : balls) {
     ++versions_[ball];
-    balls_[ball].contact_time = kNever;
+    gas_.balls[ball].next_contact = kNever;
     orders_.push_back(OrderFor(ball));
     flights = std::max(flights, (orders_.back().until - from_[ball].path) * unit_ / mean_flight_);
   }
@@ -159,7 +161,7 @@ void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
 
 void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
   visits_.clear();
-  FlyAhead(geometry_, flights, orders, from, to_, visits_);
+  FlyAhead(geometry_, gas_, flights, orders, from, to_, visits_);
   for (const Visit& visit : visits_) Compare(visit);
   for (FlightOrder& order : orders) {
     if (to_[order.ball].has_escaped) Stop(order);
@@ -170,43 +172,34 @@ void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const
 void LaneGas::Stop(FlightOrder& order) {
   ReplicaOf(order.ball).meter->CountEscape();
   ++versions_[order.ball];
-  Ball& ball = balls_[order.ball];
+  BallInTime& ball = gas_.balls[order.ball];
   ball.speed = kAtRest;
   ball.since = now_;
-  ball.contact_time = kNever;
+  ball.next_contact = kNever;
   from_[order.ball] = to_[order.ball] = PlacedBall(geometry_, {0, 0}, {1, 0});
   order.has_arrived = true;
 }
 
 // ---- contacts ----
 
-double LaneGas::PhaseAt(const Piston& piston, double time, Direction seen) const {
-  const double half_turn = SignOf(seen) < 0 ? wave_.stroke() : 0;
-  const double phase = piston.phase + half_turn + piston.speed * (time - piston.since);
-  const double periods = phase / (2 * wave_.stroke());
-  return 2 * wave_.stroke() * (periods - std::floor(periods));
-}
-
 // Whether ball and piston meet in this visit, by the window's end and before the ball meets another
 // one. What was before the piston's last change has been done. Nothing here depends on the window.
 void LaneGas::Compare(const Visit& visit) {
-  Ball& ball = balls_[visit.ball];
+  BallInTime& ball = gas_.balls[visit.ball];
   const double begin = ball.since + visit.path / ball.speed;
-  if (begin >= ball.contact_time) return;
-  const Piston& piston = pistons_[ball.pistons[static_cast<size_t>(visit.piston)]];
+  if (begin >= ball.next_contact) return;
+  const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(visit.piston)]];
   const double start = std::max(begin, piston.since), gone = (start - begin) * ball.speed;
   if (gone > visit.length) return;
   const double ux = SeenToward(visit.piston, visit.velocity).x();
   const double x = SeenToward(visit.piston, visit.position).x() + ux * gone - wave_.left();
-  const double phase = PhaseAt(piston, start, visit.piston), ratio = piston.speed / ball.speed;
-  const double length = visit.length - gone;
-  if (!wave_.MayMeet(phase, ratio, x, ux, length, kReachSlack)) return;
   const std::optional<PistonWave::Meeting> meeting =
-      wave_.FirstMeeting(phase, ratio, x, ux, length);
+      wave_.FirstMeeting(piston.PhaseAt(start, visit.piston, wave_.stroke()),
+                         piston.speed / ball.speed, x, ux, visit.length - gone);
   if (!meeting) return;
   const double time = start + meeting->way / ball.speed;
-  if (time >= ball.contact_time || time > end_) return;
-  ball.contact_time = time;
+  if (time >= ball.next_contact || time > end_) return;
+  ball.next_contact = time;
   meetings_.push_back({visit.position + visit.velocity * (gone + meeting->way), visit.velocity,
                        visit.piston, meeting->piston_goes_right});
   ++versions_[visit.ball];
@@ -218,10 +211,10 @@ void LaneGas::FindArrival(uint32_t number) {
   const ThermalWalls& walls = replicas_[number / pistons_each_].walls;
   const int64_t local = number % pistons_each_;
   if (!walls.Has(local)) return;
-  const Piston& piston = pistons_[number];
+  const PistonInTime& piston = gas_.pistons[number];
   const double wall = walls.IsHot(local) ? 2 * wave_.stroke() : wave_.stroke();
   const double phase = piston.phase < wall ? piston.phase : piston.phase - 2 * wave_.stroke();
-  const auto body = static_cast<uint32_t>(balls_.size() + number);
+  const auto body = static_cast<uint32_t>(gas_.balls.size() + number);
   ++versions_[body];
   Push({.time = piston.since + (wall - phase) / piston.speed, .body = body});
 }
@@ -232,14 +225,14 @@ void LaneGas::Push(Entry entry) {
 }
 
 void LaneGas::LeaveThermalWall(const Entry& entry) {
-  const auto number = static_cast<uint32_t>(entry.body - balls_.size());
+  const auto number = static_cast<uint32_t>(entry.body - gas_.balls.size());
   const int64_t local = number % pistons_each_;
   Replica& replica = replicas_[number / pistons_each_];
   const bool is_hot = replica.walls.IsHot(local);
-  Piston& piston = pistons_[number];
-  piston = {.phase = is_hot ? 0 : wave_.stroke(),
+  PistonInTime& piston = gas_.pistons[number];
+  piston = {.since = entry.time,
             .speed = replica.walls.DrawSpeed(local),
-            .since = entry.time};
+            .phase = is_hot ? 0 : wave_.stroke()};
   replica.meter->SetPiston(entry.time, local, piston.speed * piston.speed / 2);
   FindArrival(number);
   const uint32_t ball = BallOf(number, is_hot ? Direction::kLeft : Direction::kRight);
@@ -249,11 +242,11 @@ void LaneGas::LeaveThermalWall(const Entry& entry) {
 // The pair's exchange, in the cell turned until the piston is on the right.
 void LaneGas::Exchange(const Entry& entry) {
   const uint32_t number = entry.body;
-  Ball& ball = balls_[number];
+  BallInTime& ball = gas_.balls[number];
   const Meeting meeting = meetings_[entry.meeting];
   const Direction direction = meeting.direction;
   const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
-  Piston& piston = pistons_[piston_number];
+  PistonInTime& piston = gas_.pistons[piston_number];
   PairState before = {.position = SeenToward(direction, meeting.position),
                       .direction = SeenToward(direction, meeting.velocity),
                       .ball_speed = ball.speed > kAtRest ? ball.speed : 0};
@@ -262,9 +255,9 @@ void LaneGas::Exchange(const Entry& entry) {
   const PairState after = AfterExchange(before, std::sqrt(2 * EnergyOf(before)));
 
   const double half_turn = SignOf(direction) < 0 ? wave_.stroke() : 0;
-  piston = {.phase = std::fmod(wave_.Phase(after) + half_turn, 2 * wave_.stroke()),
+  piston = {.since = entry.time,
             .speed = std::fabs(after.piston_velocity),
-            .since = entry.time};
+            .phase = std::fmod(wave_.Phase(after) + half_turn, 2 * wave_.stroke())};
   ball.speed = std::max(after.ball_speed, kAtRest);
   ball.since = entry.time;
   from_[number] = PlacedBall(geometry_, SeenFrom(direction, after.position),

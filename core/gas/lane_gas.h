@@ -41,19 +41,6 @@ class LaneGas : public GasRun {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
-  // Since its last exchange, or the start.
-  struct Ball {
-    double speed = 0;
-    double since = 0;
-    double contact_time = 0;               // its next one, until the window's end
-    std::array<uint32_t, 4> pistons = {};  // by direction
-  };
-  // Its phase at `since` is that of PistonWave, seen from the ball before it.
-  struct Piston {
-    double phase = 0;
-    double speed = 0;
-    double since = 0;
-  };
   // A ball meets the piston that it sees in `direction`.
   struct Meeting {
     Eigen::Vector2d position;
@@ -95,7 +82,6 @@ class LaneGas : public GasRun {
   void Exchange(const Entry& entry);
   void LeaveThermalWall(const Entry& entry);
 
-  double PhaseAt(const Piston& piston, double time, Direction seen) const;
   Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
   uint32_t BallOf(uint32_t piston, Direction direction) const;  // kNone if there is none
 
@@ -110,8 +96,7 @@ class LaneGas : public GasRun {
   // By ball. At the window's beginning, or the last exchange in it; and at its end, each before the
   // flight in which that is.
   std::vector<FlyingBall> from_, to_;
-  std::vector<Ball> balls_;
-  std::vector<Piston> pistons_;
+  GasInTime gas_;
   std::vector<uint32_t> versions_;                                        // by ball, then by piston
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
   std::vector<Meeting> meetings_;

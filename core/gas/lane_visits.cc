@@ -11,6 +11,7 @@
 
 #include "core/billiard/exchange.h"
 #include "core/billiard/lane_burst-inl.h"
+#include "core/billiard/piston_wave.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
@@ -22,8 +23,13 @@ static_assert(kReachSlack == kSlack<double>);
 
 class FlightsAhead {
  public:
-  FlightsAhead(const GasGeometry& geometry, size_t flights, std::span<FlightOrder> orders)
+  FlightsAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
+               std::span<FlightOrder> orders)
       : geometry_(geometry),
+        gas_(gas),
+        wave_(geometry.pair()),
+        left_(wave_.left() - kReachSlack),
+        unit_(FlyingUnit(geometry)),
         flights_(flights),
         orders_(orders),
         vectors_(orders.size() <= Width() ? 1 : kVectors),
@@ -99,7 +105,7 @@ class FlightsAhead {
     return FlyBurst(constants_, flights_, reach, slots_, in_reach_);
   }
 
-  // The flights that began by `until`.
+  // Of the flights that began by `until`.
   void Record(std::vector<Visit>& visits) const {
     for (size_t t = 0; t < flights_ * vectors_; ++t) {
       const size_t first = t % vectors_ * Width();
@@ -109,30 +115,66 @@ class FlightsAhead {
         if (first + lane >= orders_.size()) break;
         const FlightOrder& order = orders_[first + lane];
         if (slots_[t].path[lane] > order.until) continue;
-        RecordFlight(order.ball, lane, slots_[t], slots_[t + vectors_], visits);
+        LookForPistons(order.ball, lane, slots_[t], slots_[t + vectors_], visits);
       }
     }
   }
 
-  void RecordFlight(uint32_t ball, size_t lane, const Balls<double>& from, const Balls<double>& to,
-                    std::vector<Visit>& visits) const {
-    const double inverse = 1 / constants_.scale;
-    const LaneFrame frame = Scaled(from.Frame(lane), inverse);
-    const double length = (to.path[lane] - from.path[lane]) * inverse;
-    const Eigen::Vector2d begin = PositionInCell(frame);
+  // Cheap, because of hundred flights that come here one meets a piston.
+  HWY_INLINE void LookForPistons(uint32_t number, size_t lane, const Balls<double>& from,
+                                 const Balls<double>& to, std::vector<Visit>& visits) const {
+    const double h = from.h[lane] * unit_, e = from.e[lane] * unit_;
+    const double c = from.c[lane] * unit_, s = from.s[lane] * unit_;
+    const double ux = h + e, uy = h - e;
+    const double x = s * ux + c * uy - 0.5, y = s * uy - c * ux - 0.5;
+    const double path = from.path[lane] * unit_;
+    const double length = to.path[lane] * unit_ - path;
+    const BallInTime& ball = gas_.balls[number];
+    const auto look = [&](double place, double velocity, uint32_t toward) HWY_ATTR {
+      if (std::max(place, place + velocity * length) < left_) return;
+      const Direction direction = DirectionOf(from, lane, toward);
+      const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
+      const double start = ball.since + path / ball.speed;
+      const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
+      const double phase = piston.PhaseAt(begin, direction, wave_.stroke());
+      if (!wave_.MayMeet(phase, piston.speed / ball.speed, place + velocity * gone - wave_.left(),
+                         velocity, length - gone, kReachSlack)) {
+        return;
+      }
+      RecordFlight(number, lane, from, length, direction, visits);
+    };
+    const bool is_lattice = geometry_.shape().is_lattice;
+    const bool is_turned = (from.ab >> lane & 1) != 0;  // the cell's right is along y of the frame
+    if (is_lattice || !is_turned) {
+      look(x, ux, 0);
+      look(-x, -ux, 2);
+    }
+    if (is_lattice || is_turned) {
+      look(y, uy, 1);
+      look(-y, -uy, 3);
+    }
+  }
+
+  // The direction in the cell of one of the frame's axes, by quarter turns from its x axis. The
+  // cell's right is x of the frame, by a quarter turn on if ab is set, and opposite if a is set.
+  static Direction DirectionOf(const Balls<double>& balls, size_t lane, uint32_t toward) {
+    const auto bit = [lane](uint32_t bits) { return bits >> lane & 1; };
+    const uint32_t right = bit(balls.ab) + 2 * bit(balls.a);
+    const uint32_t turns = toward - right;
+    return static_cast<Direction>((bit(balls.m) != 0 ? 0 - turns : turns) & 3);
+  }
+
+  void RecordFlight(uint32_t ball, size_t lane, const Balls<double>& from, double length,
+                    Direction direction, std::vector<Visit>& visits) const {
+    const LaneFrame frame = Scaled(from.Frame(lane), unit_);
     Eigen::Vector2d velocity = DirectionInCell(frame);
     velocity *= OneOverLength(velocity);
-    const Eigen::Vector2d end = begin + velocity * length;
-    const double left = geometry_.pair().piston_left() - kReachSlack;
-    const auto record = [&](double nearest, Direction direction) {
-      if (nearest < left) return;
-      visits.push_back({from.path[lane] * inverse, length, begin, velocity, ball, direction});
-    };
-    record(std::max(begin.x(), end.x()), Direction::kRight);
-    record(-std::min(begin.x(), end.x()), Direction::kLeft);
-    if (!geometry_.shape().is_lattice) return;
-    record(std::max(begin.y(), end.y()), Direction::kUp);
-    record(-std::min(begin.y(), end.y()), Direction::kDown);
+    visits.push_back({.path = from.path[lane] * unit_,
+                      .length = length,
+                      .position = PositionInCell(frame),
+                      .velocity = velocity,
+                      .ball = ball,
+                      .piston = direction});
   }
 
   bool HasEscaped(size_t i) const {
@@ -144,6 +186,10 @@ class FlightsAhead {
   }
 
   const GasGeometry& geometry_;
+  const GasInTime& gas_;
+  PistonWave wave_;
+  double left_;
+  double unit_;
   size_t flights_;
   std::span<FlightOrder> orders_;
   size_t vectors_;
@@ -152,12 +198,12 @@ class FlightsAhead {
   uint16_t in_reach_[kMostSteps + kVectors];
 };
 
-void FlyAheadInLanes(const GasGeometry& geometry, size_t flights, std::span<FlightOrder> orders,
-                     std::span<const FlyingBall> from, std::span<FlyingBall> to,
-                     std::vector<Visit>& visits) {
+void FlyAheadInLanes(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
+                     std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+                     std::span<FlyingBall> to, std::vector<Visit>& visits) {
   for (size_t first = 0; first < orders.size(); first += FlightsAhead::Count()) {
     const size_t count = std::min(FlightsAhead::Count(), orders.size() - first);
-    FlightsAhead(geometry, flights, orders.subspan(first, count)).Fly(from, to, visits);
+    FlightsAhead(geometry, gas, flights, orders.subspan(first, count)).Fly(from, to, visits);
   }
 }
 
@@ -189,10 +235,10 @@ FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& positi
           .has_escaped = false};
 }
 
-void FlyAhead(const GasGeometry& geometry, size_t flights, std::span<FlightOrder> orders,
-              std::span<const FlyingBall> from, std::span<FlyingBall> to,
-              std::vector<Visit>& visits) {
-  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(geometry, flights, orders, from, to, visits);
+void FlyAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
+              std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+              std::span<FlyingBall> to, std::vector<Visit>& visits) {
+  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(geometry, gas, flights, orders, from, to, visits);
 }
 
 }  // namespace ballpiston

@@ -1,9 +1,10 @@
-// Balls fly ahead in vector lanes, whatever the pistons do, and leave a record of every flight in
-// which they are where a piston can be.
+// Balls fly ahead in vector lanes, past the pistons, and leave a record of every flight in which they
+// may meet one of them as it moves now.
 #ifndef BALLPISTON_CORE_GAS_LANE_VISITS_H_
 #define BALLPISTON_CORE_GAS_LANE_VISITS_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,7 +32,31 @@ double FlyingUnit(const GasGeometry& geometry);
 FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& position,
                       const Eigen::Vector2d& direction);
 
-// A flight that begins or ends in reach of the piston in a direction of the cell. In cells.
+// A ball since its last exchange, or its start.
+struct BallInTime {
+  double since = 0;
+  double speed = 0;
+  double next_contact = 0;               // the first one that is known
+  std::array<uint32_t, 4> pistons = {};  // by direction
+};
+
+// A piston since its last change. Its phase then is that of PistonWave, seen from the ball before it.
+struct PistonInTime {
+  double since = 0;
+  double speed = 0;
+  double phase = 0;
+
+  // As the ball in the opposite direction sees it, at a later time.
+  double PhaseAt(double time, Direction seen, double stroke) const {
+    const double way = phase + (SignOf(seen) < 0 ? stroke : 0) + speed * (time - since);
+    const double periods = way / (2 * stroke);
+    // The cast is exact below 2^63 and costs less than std::floor.
+    return periods < 0x1p62 ? way - 2 * stroke * static_cast<double>(static_cast<int64_t>(periods))
+                            : 0;
+  }
+};
+
+// A flight in which a ball may meet the piston in a direction of its cell. In cells.
 struct Visit {
   double path = 0;    // of the ball before it
   double length = 0;  // its own
@@ -55,13 +80,19 @@ inline constexpr size_t kMostBallsAhead = 48;
 // contact.
 inline constexpr double kReachSlack = 1e-11;
 
+// All balls and pistons of some gases.
+struct GasInTime {
+  std::vector<BallInTime> balls;
+  std::vector<PistonInTime> pistons;
+};
+
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each, and adds
-// their visits, in the order of each ball's path. A ball that passes `until` has arrived: it is
-// left before the flight in which it does. `to` may be `from`. A ball's numbers do not depend on
-// the others, nor on how flights are divided between calls.
-void FlyAhead(const GasGeometry& geometry, size_t flights, std::span<FlightOrder> orders,
-              std::span<const FlyingBall> from, std::span<FlyingBall> to,
-              std::vector<Visit>& visits);
+// their visits, in the order of each ball's path. A ball that passes `until` has arrived: it is left
+// before the flight in which it does. `to` may be `from`. A ball's numbers do not depend on the
+// others, nor on how flights are divided between calls.
+void FlyAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
+              std::span<FlightOrder> orders, std::span<const FlyingBall> from,
+              std::span<FlyingBall> to, std::vector<Visit>& visits);
 
 }  // namespace ballpiston
 
