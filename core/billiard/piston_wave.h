@@ -16,7 +16,9 @@ namespace ballpiston {
 class PistonWave {
  public:
   explicit PistonWave(const PairGeometry& geometry)
-      : left_(geometry.piston_left()), stroke_(geometry.piston_right() - geometry.piston_left()) {}
+      : left_(geometry.piston_left()),
+        stroke_(geometry.piston_right() - geometry.piston_left()),
+        frequency_(1 / (2 * stroke_)) {}
 
   double left() const { return left_; }
   double stroke() const { return stroke_; }
@@ -28,6 +30,13 @@ class PistonWave {
   }
   double Position(double phase) const {
     return left_ + (phase < stroke_ ? phase : 2 * stroke_ - phase);
+  }
+  // The phase after a way >= 0 from phase 0; 0 or 2 stroke may be off by rounding.
+  double Reduced(double way) const {
+    const double turns = way * frequency_;
+    // The cast costs less than std::floor; beyond, no digit of the phase is left.
+    return turns < 0x1p52 ? way - 2 * stroke_ * static_cast<double>(static_cast<int64_t>(turns))
+                          : 0;
   }
   double Velocity(double phase, double speed) const { return phase < stroke_ ? speed : -speed; }
 
@@ -69,14 +78,12 @@ class PistonWave {
   // left wall. So they meet if the ball ends beyond the piston, or is right of that wall when the
   // piston turns there for the first or the last time. `slack` is a length that rounding may hide.
   bool MayMeet(double phase, double ratio, double x, double ux, double length, double slack) const {
-    const double period = 2 * stroke_, way = ratio * length, after = phase + way;
-    const double turns = after < 0x1p52 * period
-                             ? static_cast<double>(static_cast<int64_t>(after / period))
-                             : after / period;
-    const double last = after - turns * period, end = x + ux * length;
+    const double period = 2 * stroke_, after = phase + ratio * length, end = x + ux * length;
+    const double last = Reduced(after);
     const bool ends_beyond = end > std::min(last, period - last) - slack;
     const double at_first = x * ratio + ux * (period - phase), at_last = end * ratio - ux * last;
-    return ends_beyond | ((turns > 0) & (std::max(at_first, at_last) > -slack * ratio));
+    return ends_beyond |
+           ((after >= period - slack) & (std::max(at_first, at_last) > -slack * ratio));
   }
 
   // Walls hit while it goes `way` further, and 2^63 if there are more.
@@ -98,6 +105,7 @@ class PistonWave {
 
   double left_;
   double stroke_;
+  double frequency_;  // turns at the left wall in a unit of its way
 };
 
 }  // namespace ballpiston

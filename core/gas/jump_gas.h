@@ -4,12 +4,13 @@
 // follow the kernel W of the pair (markov/jump_process.h), which is homogeneous: rates scale with
 // the root of the energy.
 //
-// Sampled by thinning. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and v_p/2. So
-// each body proposes exchanges at a rate that its speed alone decides, and a proposal is accepted
-// with the ratio of the two: four in five are. Bodies stand in classes of rates between 2^k and
-// 2^(k+1), so one is drawn at its rate in a time that does not depend on their number, and sums of
-// rates are exact. An outermost piston has a new thermal velocity at every proposal, because
-// between two of its exchanges it hits its thermal wall many times.
+// Sampled by thinning, twice. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and
+// v_p/2. So each body proposes exchanges at a rate that its speed alone decides, and a proposal is
+// accepted with the ratio of the two: four in five are. And a body is drawn at that rate as any
+// body at all, kept with the ratio of its speed to the largest one: one in four is. So an exchange
+// costs nearly as much in a large gas as in a small one, until memory is far. An outermost piston
+// has a new thermal velocity at every proposal, because between two of its exchanges it hits its
+// thermal wall many times.
 //
 // Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>,
 // at temperature T in the mean density sqrt(T/pi).
@@ -18,6 +19,7 @@
 #ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
 #define BALLPISTON_CORE_GAS_JUMP_GAS_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,7 +28,6 @@
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
 #include "core/gas/thermal_walls.h"
-#include "core/gas/weighted_bodies.h"
 #include "core/sampling/counter_random.h"
 
 namespace ballpiston {
@@ -52,23 +53,46 @@ class JumpGas {
     bool is_accepted = false;
   };
 
+  // Balls, or pistons.
+  struct Kind {
+    double largest = 0;  // speed, or above
+    double before = 0;   // rate of the proposals by other kinds before
+    double rate = 0;     // of proposals
+    double bodies_per_rate = 0;
+    size_t first = 0;
+    size_t last = 0;
+  };
+
+  struct Chosen {
+    size_t body;
+    double least_speed;  // the body proposes if it is faster
+  };
+
   void FindNext();
-  void Propose(size_t body);
+  double NextPlace();
+  Chosen BodyAt(double place) const;
+  void Propose(double place);
   void ByBall(int64_t ball);
   void ByPiston(int64_t piston);
   void Accept();
   double DrawPistonVelocity(int64_t piston);
-  void SetBallWeight(int64_t ball);
-  void SetPistonWeight(int64_t piston);
+  void SetSpeed(size_t body, double speed);
+  void FindLargest();
+  void SetRates();
 
   GasGeometry geometry_;
   double density_;
   ThermalWalls walls_;
   CounterRandom random_;
-  std::vector<double> balls_;    // speeds
-  std::vector<double> pistons_;  // speeds; of the outermost ones none
-  WeightedBodies weights_;
-  double time_ = 0;  // of the next exchange
+  size_t balls_;
+  // Of balls, then of pistons. Of an outermost piston it is the one that proposes as often.
+  std::vector<double> speeds_;
+  std::array<Kind, 2> kinds_;           // balls, pistons
+  double rate_ = 0;                     // of all proposals
+  std::array<double, 32> places_ = {};  // drawn ahead, in units of rate_
+  size_t used_places_ = 32;
+  size_t changes_ = 0;  // since the largest speeds were found
+  double time_ = 0;     // of the next exchange
   Proposal next_ = {};
 };
 

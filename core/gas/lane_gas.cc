@@ -18,8 +18,8 @@ namespace {
 // A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
 constexpr double kAtRest = 1e-18;
 
-// A window takes some time of its own for each ball, as long as this number of balls' flights one by
-// one; and flights behind an exchange are lost and flown again, one by one. So the time is least
+// A window takes some time of its own for each ball, as long as this number of balls' flights one
+// by one; and flights behind an exchange are lost and flown again, one by one. So the time is least
 // where a ball flies ahead the root of this number times the flights between two of its exchanges.
 constexpr double kFlightsOfAWindow = 8;
 constexpr double kMostFlightsInAWindow = 64;
@@ -53,7 +53,8 @@ LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
 void LaneGas::Place(const GasState& state) {
   for (const GasBall& ball : state.balls) {
     to_.push_back(PlacedBall(geometry_, ball.position, ball.direction));
-    gas_.balls.push_back({.speed = std::max(ball.speed, kAtRest)});
+    const double speed = std::max(ball.speed, kAtRest);
+    gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
   }
   for (const GasPiston& piston : state.pistons) {
     const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
@@ -67,7 +68,8 @@ void LaneGas::FindPistons() {
     for (int i = 0; i < geometry_.directions(); ++i) {
       const Direction direction = geometry_.DirectionAt(i);
       const int64_t piston = geometry_.PistonOf(ball % balls_each_, direction);
-      gas_.balls[ball].pistons[static_cast<size_t>(direction)] = first + static_cast<uint32_t>(piston);
+      gas_.balls[ball].pistons[static_cast<size_t>(direction)] =
+          first + static_cast<uint32_t>(piston);
     }
   }
 }
@@ -174,6 +176,7 @@ void LaneGas::Stop(FlightOrder& order) {
   ++versions_[order.ball];
   BallInTime& ball = gas_.balls[order.ball];
   ball.speed = kAtRest;
+  ball.slowness = 1 / kAtRest;
   ball.since = now_;
   ball.next_contact = kNever;
   from_[order.ball] = to_[order.ball] = PlacedBall(geometry_, {0, 0}, {1, 0});
@@ -186,7 +189,7 @@ void LaneGas::Stop(FlightOrder& order) {
 // one. What was before the piston's last change has been done. Nothing here depends on the window.
 void LaneGas::Compare(const Visit& visit) {
   BallInTime& ball = gas_.balls[visit.ball];
-  const double begin = ball.since + visit.path / ball.speed;
+  const double begin = ball.since + visit.path * ball.slowness;
   if (begin >= ball.next_contact) return;
   const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(visit.piston)]];
   const double start = std::max(begin, piston.since), gone = (start - begin) * ball.speed;
@@ -194,10 +197,10 @@ void LaneGas::Compare(const Visit& visit) {
   const double ux = SeenToward(visit.piston, visit.velocity).x();
   const double x = SeenToward(visit.piston, visit.position).x() + ux * gone - wave_.left();
   const std::optional<PistonWave::Meeting> meeting =
-      wave_.FirstMeeting(piston.PhaseAt(start, visit.piston, wave_.stroke()),
-                         piston.speed / ball.speed, x, ux, visit.length - gone);
+      wave_.FirstMeeting(piston.PhaseAt(start, visit.piston, wave_), piston.speed * ball.slowness,
+                         x, ux, visit.length - gone);
   if (!meeting) return;
-  const double time = start + meeting->way / ball.speed;
+  const double time = start + meeting->way * ball.slowness;
   if (time >= ball.next_contact || time > end_) return;
   ball.next_contact = time;
   meetings_.push_back({visit.position + visit.velocity * (gone + meeting->way), visit.velocity,
@@ -259,6 +262,7 @@ void LaneGas::Exchange(const Entry& entry) {
             .speed = std::fabs(after.piston_velocity),
             .phase = std::fmod(wave_.Phase(after) + half_turn, 2 * wave_.stroke())};
   ball.speed = std::max(after.ball_speed, kAtRest);
+  ball.slowness = 1 / ball.speed;
   ball.since = entry.time;
   from_[number] = PlacedBall(geometry_, SeenFrom(direction, after.position),
                              SeenFrom(direction, after.direction));

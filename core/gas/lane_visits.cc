@@ -134,11 +134,12 @@ class FlightsAhead {
       if (std::max(place, place + velocity * length) < left_) return;
       const Direction direction = DirectionOf(from, lane, toward);
       const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
-      const double start = ball.since + path / ball.speed;
+      const double start = ball.since + path * ball.slowness;
       const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
-      const double phase = piston.PhaseAt(begin, direction, wave_.stroke());
-      if (!wave_.MayMeet(phase, piston.speed / ball.speed, place + velocity * gone - wave_.left(),
-                         velocity, length - gone, kReachSlack)) {
+      const double phase = piston.PhaseAt(begin, direction, wave_);
+      if (!wave_.MayMeet(phase, piston.speed * ball.slowness,
+                         place + velocity * gone - wave_.left(), velocity, length - gone,
+                         kReachSlack)) {
         return;
       }
       RecordFlight(number, lane, from, length, direction, visits);

@@ -1,5 +1,5 @@
-// Balls fly ahead in vector lanes, past the pistons, and leave a record of every flight in which they
-// may meet one of them as it moves now.
+// Balls fly ahead in vector lanes, past the pistons, and leave a record of every flight in which
+// they may meet one of them as it moves now.
 #ifndef BALLPISTON_CORE_GAS_LANE_VISITS_H_
 #define BALLPISTON_CORE_GAS_LANE_VISITS_H_
 
@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/billiard/piston_wave.h"
 #include "core/gas/gas_geometry.h"
 
 namespace ballpiston {
@@ -36,23 +37,21 @@ FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& positi
 struct BallInTime {
   double since = 0;
   double speed = 0;
+  double slowness = 0;                   // 1/speed
   double next_contact = 0;               // the first one that is known
   std::array<uint32_t, 4> pistons = {};  // by direction
 };
 
-// A piston since its last change. Its phase then is that of PistonWave, seen from the ball before it.
+// A piston since its last change. Its phase then is that of PistonWave, seen from the ball before
+// it.
 struct PistonInTime {
   double since = 0;
   double speed = 0;
   double phase = 0;
 
   // As the ball in the opposite direction sees it, at a later time.
-  double PhaseAt(double time, Direction seen, double stroke) const {
-    const double way = phase + (SignOf(seen) < 0 ? stroke : 0) + speed * (time - since);
-    const double periods = way / (2 * stroke);
-    // The cast is exact below 2^63 and costs less than std::floor.
-    return periods < 0x1p62 ? way - 2 * stroke * static_cast<double>(static_cast<int64_t>(periods))
-                            : 0;
+  double PhaseAt(double time, Direction seen, const PistonWave& wave) const {
+    return wave.Reduced(phase + (SignOf(seen) < 0 ? wave.stroke() : 0) + speed * (time - since));
   }
 };
 
@@ -87,9 +86,9 @@ struct GasInTime {
 };
 
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each, and adds
-// their visits, in the order of each ball's path. A ball that passes `until` has arrived: it is left
-// before the flight in which it does. `to` may be `from`. A ball's numbers do not depend on the
-// others, nor on how flights are divided between calls.
+// their visits, in the order of each ball's path. A ball that passes `until` has arrived: it is
+// left before the flight in which it does. `to` may be `from`. A ball's numbers do not depend on
+// the others, nor on how flights are divided between calls.
 void FlyAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
               std::span<FlightOrder> orders, std::span<const FlyingBall> from,
               std::span<FlyingBall> to, std::vector<Visit>& visits);
