@@ -24,6 +24,7 @@ constexpr double kAtRest = 1e-18;
 constexpr double kFlightsOfAWindow = 8;
 constexpr double kMostFlightsInAWindow = 64;
 constexpr size_t kFlightsTogether = 12;
+constexpr uint32_t kBallsAtATime = 32 * kMostBallsAhead;
 
 double MeanFlight(const PairGeometry& pair) {
   const PairMeasures measures = Measures(pair);
@@ -34,11 +35,9 @@ double MeanFlight(const PairGeometry& pair) {
 }  // namespace
 
 LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
-    : geometry_(geometry),
-      wave_(geometry.pair()),
+    : gas_(geometry),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
-      unit_(FlyingUnit(geometry)),
       mean_flight_(MeanFlight(geometry.pair())) {
   for (GasStart& start : replicas) {
     Place(start.state);
@@ -52,22 +51,22 @@ LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
 
 void LaneGas::Place(const GasState& state) {
   for (const GasBall& ball : state.balls) {
-    to_.push_back(PlacedBall(geometry_, ball.position, ball.direction));
+    to_.push_back(PlacedBall(gas_, ball.position, ball.direction));
     const double speed = std::max(ball.speed, kAtRest);
     gas_.balls.push_back({.speed = speed, .slowness = 1 / speed});
   }
   for (const GasPiston& piston : state.pistons) {
     const PairState seen = {.piston = 0.5 + piston.offset, .piston_velocity = piston.velocity};
-    gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = wave_.Phase(seen)});
+    gas_.pistons.push_back({.speed = std::fabs(piston.velocity), .phase = gas_.wave.Phase(seen)});
   }
 }
 
 void LaneGas::FindPistons() {
   for (uint32_t ball = 0; ball < gas_.balls.size(); ++ball) {
     const uint32_t first = ball / balls_each_ * pistons_each_;
-    for (int i = 0; i < geometry_.directions(); ++i) {
-      const Direction direction = geometry_.DirectionAt(i);
-      const int64_t piston = geometry_.PistonOf(ball % balls_each_, direction);
+    for (int i = 0; i < gas_.geometry.directions(); ++i) {
+      const Direction direction = gas_.geometry.DirectionAt(i);
+      const int64_t piston = gas_.geometry.PistonOf(ball % balls_each_, direction);
       gas_.balls[ball].pistons[static_cast<size_t>(direction)] =
           first + static_cast<uint32_t>(piston);
     }
@@ -80,8 +79,8 @@ void LaneGas::ChooseWindow() {
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
   const double temperature = energy / static_cast<double>(gas_.balls.size());
   const double flights = std::sqrt(temperature * std::numbers::pi / 2) / mean_flight_;
-  const double exchanges =
-      geometry_.directions() * InfiniteGasExchangeRate(geometry_, std::max(temperature, kAtRest));
+  const double exchanges = gas_.geometry.directions() *
+                           InfiniteGasExchangeRate(gas_.geometry, std::max(temperature, kAtRest));
   const double best = std::sqrt(kFlightsOfAWindow * flights / exchanges);
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);
 }
@@ -96,7 +95,7 @@ void LaneGas::AdvanceTo(double time) {
 
 void LaneGas::AdvanceWindow() {
   FlyAll();
-  if (geometry_.ends() == GasEnds::kReservoirs) {
+  if (gas_.geometry.ends() == GasEnds::kReservoirs) {
     for (uint32_t piston = 0; piston < gas_.pistons.size(); ++piston) FindArrival(piston);
   }
   while (!queue_.empty()) {
@@ -118,24 +117,48 @@ void LaneGas::Handle(const Entry& entry) {
 
 // ---- flights ----
 
-FlightOrder LaneGas::OrderFor(uint32_t ball) const {
-  return {.ball = ball, .until = (end_ - gas_.balls[ball].since) * gas_.balls[ball].speed / unit_};
+FlightOrder LaneGas::OrderFor(uint32_t number) const {
+  const BallInTime& ball = gas_.balls[number];
+  return {.ball = number,
+          .until = (end_ - ball.since) * ball.speed / gas_.unit,
+          .until_time = end_,
+          .from_time = now_};
 }
 
 void LaneGas::FlyAll() {
   std::swap(from_, to_);
   meetings_.clear();
-  orders_.clear();
-  for (uint32_t ball = 0; ball < gas_.balls.size(); ++ball) {
-    gas_.balls[ball].next_contact = kNever;
-    orders_.push_back(OrderFor(ball));
+  const auto balls = static_cast<uint32_t>(gas_.balls.size());
+  for (uint32_t first = 0; first < balls; first += kBallsAtATime) {
+    orders_.clear();
+    for (uint32_t ball = first; ball < std::min(first + kBallsAtATime, balls); ++ball) {
+      orders_.push_back(OrderFor(ball));
+    }
+    FlyOrders(kFlightsTogether);
   }
+}
+
+// From their last places.
+void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
+  orders_.clear();
+  double flights = 0;
+  for (const uint32_t ball : balls) {
+    ++versions_[ball];
+    orders_.push_back(OrderFor(ball));
+    const double left = (orders_.back().until - from_[ball].path) * gas_.unit;
+    flights = std::max(flights, std::ceil(left / mean_flight_));
+  }
+  FlyOrders(static_cast<size_t>(std::min(flights + 1, double{kMostFlightsAhead})));
+}
+
+// Until all have arrived.
+void LaneGas::FlyOrders(size_t flights) {
   for (bool is_first = true; !orders_.empty(); is_first = false) {
     size_t kept = 0;
     for (size_t first = 0; first < orders_.size(); first += kMostBallsAhead) {
-      const size_t count = std::min(kMostBallsAhead, orders_.size() - first);
-      const std::span<FlightOrder> orders(&orders_[first], count);
-      Fly(kFlightsTogether, orders, is_first ? from_ : to_);
+      const std::span<FlightOrder> orders(&orders_[first],
+                                          std::min(kMostBallsAhead, orders_.size() - first));
+      Fly(flights, orders, is_first ? from_ : to_);
       for (const FlightOrder& order : orders) {
         if (!order.has_arrived) orders_[kept++] = order;
       }
@@ -144,29 +167,13 @@ void LaneGas::FlyAll() {
   }
 }
 
-// From their last places, but what was before now_ has been done.
-void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
-  orders_.clear();
-  double flights = 1;
-  for (const uint32_t ball : balls) {
-    ++versions_[ball];
-    gas_.balls[ball].next_contact = kNever;
-    orders_.push_back(OrderFor(ball));
-    flights = std::max(flights, (orders_.back().until - from_[ball].path) * unit_ / mean_flight_);
-  }
-  for (bool is_first = true; !orders_.empty(); is_first = false) {
-    const double ahead = std::min(std::ceil(flights) + 1, double{kMostFlightsAhead});
-    Fly(static_cast<size_t>(ahead), orders_, is_first ? from_ : to_);
-    std::erase_if(orders_, [](const FlightOrder& order) { return order.has_arrived; });
-  }
-}
-
 void LaneGas::Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from) {
-  visits_.clear();
-  FlyAhead(geometry_, gas_, flights, orders, from, to_, visits_);
-  for (const Visit& visit : visits_) Compare(visit);
+  FlyAhead(gas_, flights, orders, from, to_);
   for (FlightOrder& order : orders) {
     if (to_[order.ball].has_escaped) Stop(order);
+    if (!order.has_arrived || !order.first) continue;
+    meetings_.push_back(*order.first);
+    Push({.time = order.first->time, .body = order.ball, .meeting = meetings_.size() - 1});
   }
 }
 
@@ -178,36 +185,11 @@ void LaneGas::Stop(FlightOrder& order) {
   ball.speed = kAtRest;
   ball.slowness = 1 / kAtRest;
   ball.since = now_;
-  ball.next_contact = kNever;
-  from_[order.ball] = to_[order.ball] = PlacedBall(geometry_, {0, 0}, {1, 0});
+  from_[order.ball] = to_[order.ball] = PlacedBall(gas_, {0, 0}, {1, 0});
   order.has_arrived = true;
 }
 
 // ---- contacts ----
-
-// Whether ball and piston meet in this visit, by the window's end and before the ball meets another
-// one. What was before the piston's last change has been done. Nothing here depends on the window.
-void LaneGas::Compare(const Visit& visit) {
-  BallInTime& ball = gas_.balls[visit.ball];
-  const double begin = ball.since + visit.path * ball.slowness;
-  if (begin >= ball.next_contact) return;
-  const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(visit.piston)]];
-  const double start = std::max(begin, piston.since), gone = (start - begin) * ball.speed;
-  if (gone > visit.length) return;
-  const double ux = SeenToward(visit.piston, visit.velocity).x();
-  const double x = SeenToward(visit.piston, visit.position).x() + ux * gone - wave_.left();
-  const std::optional<PistonWave::Meeting> meeting =
-      wave_.FirstMeeting(piston.PhaseAt(start, visit.piston, wave_), piston.speed * ball.slowness,
-                         x, ux, visit.length - gone);
-  if (!meeting) return;
-  const double time = start + meeting->way * ball.slowness;
-  if (time >= ball.next_contact || time > end_) return;
-  ball.next_contact = time;
-  meetings_.push_back({visit.position + visit.velocity * (gone + meeting->way), visit.velocity,
-                       visit.piston, meeting->piston_goes_right});
-  ++versions_[visit.ball];
-  Push({.time = time, .body = visit.ball, .meeting = meetings_.size() - 1});
-}
 
 // An outermost piston's next arrival at its thermal wall, until the window's end.
 void LaneGas::FindArrival(uint32_t number) {
@@ -215,8 +197,8 @@ void LaneGas::FindArrival(uint32_t number) {
   const int64_t local = number % pistons_each_;
   if (!walls.Has(local)) return;
   const PistonInTime& piston = gas_.pistons[number];
-  const double wall = walls.IsHot(local) ? 2 * wave_.stroke() : wave_.stroke();
-  const double phase = piston.phase < wall ? piston.phase : piston.phase - 2 * wave_.stroke();
+  const double wall = walls.IsHot(local) ? 2 * gas_.wave.stroke() : gas_.wave.stroke();
+  const double phase = piston.phase < wall ? piston.phase : piston.phase - 2 * gas_.wave.stroke();
   const auto body = static_cast<uint32_t>(gas_.balls.size() + number);
   ++versions_[body];
   Push({.time = piston.since + (wall - phase) / piston.speed, .body = body});
@@ -235,7 +217,7 @@ void LaneGas::LeaveThermalWall(const Entry& entry) {
   PistonInTime& piston = gas_.pistons[number];
   piston = {.since = entry.time,
             .speed = replica.walls.DrawSpeed(local),
-            .phase = is_hot ? 0 : wave_.stroke()};
+            .phase = is_hot ? 0 : gas_.wave.stroke()};
   replica.meter->SetPiston(entry.time, local, piston.speed * piston.speed / 2);
   FindArrival(number);
   const uint32_t ball = BallOf(number, is_hot ? Direction::kLeft : Direction::kRight);
@@ -246,7 +228,7 @@ void LaneGas::LeaveThermalWall(const Entry& entry) {
 void LaneGas::Exchange(const Entry& entry) {
   const uint32_t number = entry.body;
   BallInTime& ball = gas_.balls[number];
-  const Meeting meeting = meetings_[entry.meeting];
+  const MeetingInTime meeting = meetings_[entry.meeting];
   const Direction direction = meeting.direction;
   const uint32_t piston_number = ball.pistons[static_cast<size_t>(direction)];
   PistonInTime& piston = gas_.pistons[piston_number];
@@ -257,15 +239,15 @@ void LaneGas::Exchange(const Entry& entry) {
   before.piston_velocity = meeting.piston_goes_right ? piston.speed : -piston.speed;
   const PairState after = AfterExchange(before, std::sqrt(2 * EnergyOf(before)));
 
-  const double half_turn = SignOf(direction) < 0 ? wave_.stroke() : 0;
+  const double half_turn = SignOf(direction) < 0 ? gas_.wave.stroke() : 0;
   piston = {.since = entry.time,
             .speed = std::fabs(after.piston_velocity),
-            .phase = std::fmod(wave_.Phase(after) + half_turn, 2 * wave_.stroke())};
+            .phase = std::fmod(gas_.wave.Phase(after) + half_turn, 2 * gas_.wave.stroke())};
   ball.speed = std::max(after.ball_speed, kAtRest);
   ball.slowness = 1 / ball.speed;
   ball.since = entry.time;
-  from_[number] = PlacedBall(geometry_, SeenFrom(direction, after.position),
-                             SeenFrom(direction, after.direction));
+  from_[number] =
+      PlacedBall(gas_, SeenFrom(direction, after.position), SeenFrom(direction, after.direction));
   ReplicaOf(number).meter->Exchange({.time = entry.time,
                                      .ball = number % balls_each_,
                                      .piston = piston_number % pistons_each_,
@@ -280,7 +262,7 @@ void LaneGas::Exchange(const Entry& entry) {
 
 uint32_t LaneGas::BallOf(uint32_t piston, Direction direction) const {
   const uint32_t replica = piston / pistons_each_;
-  const int64_t ball = geometry_.BallOf(piston % pistons_each_, direction);
+  const int64_t ball = gas_.geometry.BallOf(piston % pistons_each_, direction);
   return ball == GasGeometry::kNoBall ? kNone : replica * balls_each_ + static_cast<uint32_t>(ball);
 }
 

@@ -41,13 +41,6 @@ class LaneGas : public GasRun {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
-  // A ball meets the piston that it sees in `direction`.
-  struct Meeting {
-    Eigen::Vector2d position;
-    Eigen::Vector2d velocity;  // of length 1
-    Direction direction;
-    bool piston_goes_right;  // as the ball sees it
-  };
   // A ball's contact, or an outermost piston's arrival at its thermal wall.
   struct Entry {
     double time = 0;
@@ -71,9 +64,9 @@ class LaneGas : public GasRun {
   void AdvanceWindow();  // to end_
   void FlyAll();
   void FlyAgain(std::span<const uint32_t> balls);
+  void FlyOrders(size_t flights);
   void Fly(size_t flights, std::span<FlightOrder> orders, std::span<const FlyingBall> from);
   FlightOrder OrderFor(uint32_t ball) const;
-  void Compare(const Visit& visit);
   void Stop(FlightOrder& order);
 
   void FindArrival(uint32_t piston);
@@ -85,11 +78,8 @@ class LaneGas : public GasRun {
   Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
   uint32_t BallOf(uint32_t piston, Direction direction) const;  // kNone if there is none
 
-  GasGeometry geometry_;
-  PistonWave wave_;
   uint32_t balls_each_;  // of a replica
   uint32_t pistons_each_;
-  double unit_;  // of the lanes
   double mean_flight_;
   double window_ = 0;  // of time
   std::vector<Replica> replicas_;
@@ -99,9 +89,8 @@ class LaneGas : public GasRun {
   GasInTime gas_;
   std::vector<uint32_t> versions_;                                        // by ball, then by piston
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
-  std::vector<Meeting> meetings_;
+  std::vector<MeetingInTime> meetings_;
   std::vector<FlightOrder> orders_;
-  std::vector<Visit> visits_;
   double now_ = 0;  // what was before has been done
   double end_ = 0;  // of the window
 };

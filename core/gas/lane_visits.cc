@@ -23,28 +23,24 @@ static_assert(kReachSlack == kSlack<double>);
 
 class FlightsAhead {
  public:
-  FlightsAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
-               std::span<FlightOrder> orders)
-      : geometry_(geometry),
-        gas_(gas),
-        wave_(geometry.pair()),
-        left_(wave_.left() - kReachSlack),
-        unit_(FlyingUnit(geometry)),
+  FlightsAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders)
+      : gas_(gas),
+        is_lattice_(gas.geometry.shape().is_lattice),
         flights_(flights),
         orders_(orders),
         vectors_(orders.size() <= Width() ? 1 : kVectors),
-        constants_(geometry.pair()) {}
+        constants_(gas.geometry.pair()) {}
 
   static size_t Width() { return hn::Lanes(hn::ScalableTag<double>()); }
   static size_t Count() { return kVectors * Width(); }
 
-  void Fly(std::span<const FlyingBall> from, std::span<FlyingBall> to, std::vector<Visit>& visits) {
+  void Fly(std::span<const FlyingBall> from, std::span<FlyingBall> to) {
     for (size_t i = 0; i < vectors_ * Width(); ++i) {
       Load(i, from[orders_[std::min(i, orders_.size() - 1)].ball]);
     }
     const bool left_cell = FlyVectors();
     for (size_t i = 0; i < orders_.size(); ++i) Store(i, left_cell, to[orders_[i].ball]);
-    Record(visits);
+    FindMeetings();
   }
 
  private:
@@ -84,20 +80,18 @@ class FlightsAhead {
   }
 
   bool FlyVectors() {
-    if (geometry_.shape().is_lattice) {
-      return FlyWatched([edge = Edge()](const Balls<double>& balls) HWY_ATTR {
+    if (is_lattice_) {
+      return FlyWatched([edge = gas_.edge](const Balls<double>& balls) HWY_ATTR {
         const TipsInReach tips = TipsOf(balls, edge);
         return tips.above | tips.below;
       });
     }
     // The cell's right is along x of the frame where a and b are equal.
-    return FlyWatched([edge = Edge()](const Balls<double>& balls) HWY_ATTR {
+    return FlyWatched([edge = gas_.edge](const Balls<double>& balls) HWY_ATTR {
       const TipsInReach tips = TipsOf(balls, edge);
       return tips.below ^ (balls.ab & (tips.below ^ tips.above));
     });
   }
-
-  double Edge() const { return EdgeOfReach<double>(geometry_.pair(), constants_.scale); }
 
   template <class Reach>
   bool FlyWatched(const Reach& reach) {
@@ -105,55 +99,78 @@ class FlightsAhead {
     return FlyBurst(constants_, flights_, reach, slots_, in_reach_);
   }
 
-  // Of the flights that began by `until`.
-  void Record(std::vector<Visit>& visits) const {
+  // In the order of each ball's path.
+  void FindMeetings() const {
     for (size_t t = 0; t < flights_ * vectors_; ++t) {
       const size_t first = t % vectors_ * Width();
       uint32_t lanes = in_reach_[t] | in_reach_[t + vectors_];
       for (; lanes != 0; lanes &= lanes - 1) {
         const size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes);
         if (first + lane >= orders_.size()) break;
-        const FlightOrder& order = orders_[first + lane];
-        if (slots_[t].path[lane] > order.until) continue;
-        LookForPistons(order.ball, lane, slots_[t], slots_[t + vectors_], visits);
+        FlightOrder& order = orders_[first + lane];
+        if (order.first || slots_[t].path[lane] > order.until) continue;
+        LookForPistons(lane, slots_[t], slots_[t + vectors_], order);
       }
     }
   }
 
-  // Cheap, because of hundred flights that come here one meets a piston.
-  HWY_INLINE void LookForPistons(uint32_t number, size_t lane, const Balls<double>& from,
-                                 const Balls<double>& to, std::vector<Visit>& visits) const {
-    const double h = from.h[lane] * unit_, e = from.e[lane] * unit_;
-    const double c = from.c[lane] * unit_, s = from.s[lane] * unit_;
+  HWY_INLINE void LookForPistons(size_t lane, const Balls<double>& from, const Balls<double>& to,
+                                 FlightOrder& order) const {
+    const double unit = gas_.unit;
+    const BallInTime& ball = gas_.balls[order.ball];
+    const double path = from.path[lane] * unit, length = to.path[lane] * unit - path;
+    const double start = ball.since + path * ball.slowness;
+    if (start + length * ball.slowness < order.from_time) return;
+    const double h = from.h[lane] * unit, e = from.e[lane] * unit;
+    const double c = from.c[lane] * unit, s = from.s[lane] * unit;
     const double ux = h + e, uy = h - e;
     const double x = s * ux + c * uy - 0.5, y = s * uy - c * ux - 0.5;
-    const double path = from.path[lane] * unit_;
-    const double length = to.path[lane] * unit_ - path;
-    const BallInTime& ball = gas_.balls[number];
     const auto look = [&](double place, double velocity, uint32_t toward) HWY_ATTR {
-      if (std::max(place, place + velocity * length) < left_) return;
-      const Direction direction = DirectionOf(from, lane, toward);
-      const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
-      const double start = ball.since + path * ball.slowness;
-      const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
-      const double phase = piston.PhaseAt(begin, direction, wave_);
-      if (!wave_.MayMeet(phase, piston.speed * ball.slowness,
-                         place + velocity * gone - wave_.left(), velocity, length - gone,
-                         kReachSlack)) {
-        return;
-      }
-      RecordFlight(number, lane, from, length, direction, visits);
+      if (std::max(place, place + velocity * length) < gas_.wave.left() - kReachSlack) return;
+      Compare(place, velocity, length, start, toward, lane, from, order);
     };
-    const bool is_lattice = geometry_.shape().is_lattice;
     const bool is_turned = (from.ab >> lane & 1) != 0;  // the cell's right is along y of the frame
-    if (is_lattice || !is_turned) {
+    if (is_lattice_ || !is_turned) {
       look(x, ux, 0);
       look(-x, -ux, 2);
     }
-    if (is_lattice || is_turned) {
+    if (is_lattice_ || is_turned) {
       look(y, uy, 1);
       look(-y, -uy, 3);
     }
+  }
+
+  // Whether ball and piston meet in a flight from `place` on, toward one of the frame's axes. What
+  // was before the piston's last change has been done; so nothing here depends on when it is asked.
+  HWY_INLINE void Compare(double place, double velocity, double length, double start,
+                          uint32_t toward, size_t lane, const Balls<double>& from,
+                          FlightOrder& order) const {
+    const PistonWave& wave = gas_.wave;
+    const BallInTime& ball = gas_.balls[order.ball];
+    const Direction direction = DirectionOf(from, lane, toward);
+    const PistonInTime& piston = gas_.pistons[ball.pistons[static_cast<size_t>(direction)]];
+    const double begin = std::max(start, piston.since), gone = (begin - start) * ball.speed;
+    const double phase = piston.PhaseAt(begin, direction, wave);
+    const double ratio = piston.speed * ball.slowness;
+    const double x = place + velocity * gone - wave.left();
+    if (!wave.MayMeet(phase, ratio, x, velocity, length - gone, kReachSlack)) return;
+    const auto meeting = wave.FirstMeeting(phase, ratio, x, velocity, length - gone);
+    if (!meeting) return;
+    const double time = begin + meeting->way * ball.slowness;
+    if (time > order.until_time || (order.first && order.first->time <= time)) return;
+    order.first = MeetingAt(lane, from, gone + meeting->way, direction);
+    order.first->time = time;
+    order.first->piston_goes_right = meeting->piston_goes_right;
+  }
+
+  MeetingInTime MeetingAt(size_t lane, const Balls<double>& from, double way,
+                          Direction direction) const {
+    const LaneFrame frame = Scaled(from.Frame(lane), gas_.unit);
+    Eigen::Vector2d velocity = DirectionInCell(frame);
+    velocity *= OneOverLength(velocity);
+    return {.position = PositionInCell(frame) + velocity * way,
+            .velocity = velocity,
+            .direction = direction};
   }
 
   // The direction in the cell of one of the frame's axes, by quarter turns from its x axis. The
@@ -165,19 +182,6 @@ class FlightsAhead {
     return static_cast<Direction>((bit(balls.m) != 0 ? 0 - turns : turns) & 3);
   }
 
-  void RecordFlight(uint32_t ball, size_t lane, const Balls<double>& from, double length,
-                    Direction direction, std::vector<Visit>& visits) const {
-    const LaneFrame frame = Scaled(from.Frame(lane), unit_);
-    Eigen::Vector2d velocity = DirectionInCell(frame);
-    velocity *= OneOverLength(velocity);
-    visits.push_back({.path = from.path[lane] * unit_,
-                      .length = length,
-                      .position = PositionInCell(frame),
-                      .velocity = velocity,
-                      .ball = ball,
-                      .piston = direction});
-  }
-
   bool HasEscaped(size_t i) const {
     for (size_t t = i / Width() + vectors_; t < (flights_ + 1) * vectors_; t += vectors_) {
       const double c = slots_[t].c[i % Width()];
@@ -186,11 +190,8 @@ class FlightsAhead {
     return false;
   }
 
-  const GasGeometry& geometry_;
   const GasInTime& gas_;
-  PistonWave wave_;
-  double left_;
-  double unit_;
+  bool is_lattice_;
   size_t flights_;
   std::span<FlightOrder> orders_;
   size_t vectors_;
@@ -199,13 +200,16 @@ class FlightsAhead {
   uint16_t in_reach_[kMostSteps + kVectors];
 };
 
-void FlyAheadInLanes(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
-                     std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-                     std::span<FlyingBall> to, std::vector<Visit>& visits) {
+void FlyAheadInLanes(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
+                     std::span<const FlyingBall> from, std::span<FlyingBall> to) {
   for (size_t first = 0; first < orders.size(); first += FlightsAhead::Count()) {
     const size_t count = std::min(FlightsAhead::Count(), orders.size() - first);
-    FlightsAhead(geometry, gas, flights, orders.subspan(first, count)).Fly(from, to, visits);
+    FlightsAhead(gas, flights, orders.subspan(first, count)).Fly(from, to);
   }
+}
+
+double EdgeInLanes(const PairGeometry& pair, double unit) {
+  return EdgeOfReach<double>(pair, 1 / unit);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -215,14 +219,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ballpiston {
 
+HWY_EXPORT(EdgeInLanes);
 HWY_EXPORT(FlyAheadInLanes);
 
-double FlyingUnit(const GasGeometry& geometry) { return geometry.pair().rho() / M_SQRT2; }
+GasInTime::GasInTime(const GasGeometry& g)
+    : geometry(g),
+      wave(g.pair()),
+      unit(g.pair().rho() / M_SQRT2),
+      edge(HWY_DYNAMIC_DISPATCH(EdgeInLanes)(g.pair(), unit)) {}
 
-FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& position,
+FlyingBall PlacedBall(const GasInTime& gas, const Eigen::Vector2d& position,
                       const Eigen::Vector2d& direction) {
-  const double left = geometry.pair().piston_left() - kReachSlack;
-  const LaneFrame frame = Scaled(FrameOfBall(position, direction), 1 / FlyingUnit(geometry));
+  const double left = gas.wave.left() - kReachSlack;
+  const LaneFrame frame = Scaled(FrameOfBall(position, direction), 1 / gas.unit);
   return {.h = frame.h,
           .e = frame.e,
           .c = frame.c,
@@ -232,14 +241,13 @@ FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& positi
           .ab = frame.a != frame.b,
           .m = frame.m < 0,
           .is_in_reach = std::fabs(position.x()) >= left ||
-                         (geometry.shape().is_lattice && std::fabs(position.y()) >= left),
+                         (gas.geometry.shape().is_lattice && std::fabs(position.y()) >= left),
           .has_escaped = false};
 }
 
-void FlyAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
-              std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-              std::span<FlyingBall> to, std::vector<Visit>& visits) {
-  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(geometry, gas, flights, orders, from, to, visits);
+void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
+              std::span<const FlyingBall> from, std::span<FlyingBall> to) {
+  HWY_DYNAMIC_DISPATCH(FlyAheadInLanes)(gas, flights, orders, from, to);
 }
 
 }  // namespace ballpiston

@@ -1,5 +1,5 @@
-// Balls fly ahead in vector lanes, past the pistons, and leave a record of every flight in which
-// they may meet one of them as it moves now.
+// Balls fly ahead in vector lanes, and find where they first meet one of the pistons as these move
+// now.
 #ifndef BALLPISTON_CORE_GAS_LANE_VISITS_H_
 #define BALLPISTON_CORE_GAS_LANE_VISITS_H_
 
@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,19 +27,11 @@ struct FlyingBall {
   bool has_escaped;
 };
 
-// The lanes' unit of length, in cells.
-double FlyingUnit(const GasGeometry& geometry);
-
-// A ball anywhere in the cell.
-FlyingBall PlacedBall(const GasGeometry& geometry, const Eigen::Vector2d& position,
-                      const Eigen::Vector2d& direction);
-
 // A ball since its last exchange, or its start.
 struct BallInTime {
   double since = 0;
   double speed = 0;
   double slowness = 0;                   // 1/speed
-  double next_contact = 0;               // the first one that is known
   std::array<uint32_t, 4> pistons = {};  // by direction
 };
 
@@ -55,21 +48,35 @@ struct PistonInTime {
   }
 };
 
-// A flight in which a ball may meet the piston in a direction of its cell. In cells.
-struct Visit {
-  double path = 0;    // of the ball before it
-  double length = 0;  // its own
-  Eigen::Vector2d position = {0, 0};
-  Eigen::Vector2d velocity = {0, 0};  // of length 1
-  uint32_t ball = 0;
-  Direction piston = Direction::kRight;
+// All balls and pistons of some gases of one geometry.
+struct GasInTime {
+  explicit GasInTime(const GasGeometry& geometry);
+
+  GasGeometry geometry;
+  PistonWave wave;
+  double unit;  // the lanes' unit of length, in cells
+  double edge;  // of the pistons' reach, along an arc, in that unit
+  std::vector<BallInTime> balls;
+  std::vector<PistonInTime> pistons;
 };
 
-// A ball that is to fly. `until` is the path at which it may stop, in the lanes' units.
+// A ball meets the piston that it sees in `direction`.
+struct MeetingInTime {
+  double time = 0;
+  Eigen::Vector2d position = {0, 0};
+  Eigen::Vector2d velocity = {0, 0};  // of the ball, of length 1
+  Direction direction = Direction::kRight;
+  bool piston_goes_right = false;  // as the ball sees it
+};
+
+// A ball that is to fly.
 struct FlightOrder {
   uint32_t ball = 0;
-  double until = 0;
+  double until = 0;       // it may stop at this path, in the lanes' unit, which it has
+  double until_time = 0;  // at this time
+  double from_time = 0;   // what it met before does not count
   bool has_arrived = false;
+  std::optional<MeetingInTime> first = {};  // between the two times
 };
 
 inline constexpr size_t kMostFlightsAhead = 12;
@@ -79,19 +86,16 @@ inline constexpr size_t kMostBallsAhead = 48;
 // contact.
 inline constexpr double kReachSlack = 1e-11;
 
-// All balls and pistons of some gases.
-struct GasInTime {
-  std::vector<BallInTime> balls;
-  std::vector<PistonInTime> pistons;
-};
+// A ball anywhere in the cell.
+FlyingBall PlacedBall(const GasInTime& gas, const Eigen::Vector2d& position,
+                      const Eigen::Vector2d& direction);
 
-// Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each, and adds
-// their visits, in the order of each ball's path. A ball that passes `until` has arrived: it is
-// left before the flight in which it does. `to` may be `from`. A ball's numbers do not depend on
-// the others, nor on how flights are divided between calls.
-void FlyAhead(const GasGeometry& geometry, const GasInTime& gas, size_t flights,
-              std::span<FlightOrder> orders, std::span<const FlyingBall> from,
-              std::span<FlyingBall> to, std::vector<Visit>& visits);
+// Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball
+// that passes `until` has arrived: it is left before the flight in which it does. `to` may be
+// `from`. A ball's numbers do not depend on the others, nor on how flights are divided between
+// calls.
+void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
+              std::span<const FlyingBall> from, std::span<FlyingBall> to);
 
 }  // namespace ballpiston
 

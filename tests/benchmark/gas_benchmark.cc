@@ -1,0 +1,139 @@
+// The gas's engines side by side, in one run, on one core: wall hits, events and exchanges a
+// second, the bytes of a cell, and how the cost of an exchange or a hit grows with the number of
+// cells.
+//
+//   gas_benchmark
+//
+// Contenders take turns (turns.h). Wall hits and the pistons' are counted by their exact mean
+// rates.
+#include <malloc.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/closed_form/pair_measures.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_meter.h"
+#include "core/gas/gas_run.h"
+#include "core/geometry/paper.h"
+#include "server/processor_time.h"
+#include "tests/benchmark/turns.h"
+
+namespace ballpiston {
+namespace {
+
+double BytesInUse() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+// Of a ball, and of a piston, in a unit of time at temperature 1.
+double BallHits(const PairGeometry& pair) {
+  const PairMeasures measures = Measures(pair);
+  const double stroke = pair.lambda() + 2 * pair.delta();
+  return std::sqrt(std::numbers::pi / 2) * measures.area_ball_wall /
+         (std::numbers::pi * measures.cell_area * stroke);
+}
+double PistonHits(const PairGeometry& pair) {
+  return std::sqrt(2 / std::numbers::pi) / (pair.lambda() + 2 * pair.delta());
+}
+
+enum class Unit { kBallHits, kAllHits, kExchanges };
+
+// One gas in equilibrium, some time of it in each turn.
+class RunningGas {
+ public:
+  RunningGas(GasEngine engine, int64_t side, double delta, double slice, Unit unit)
+      : geometry_(
+            GasGeometry::Create(kPaperRho, delta, {side, side, true}, GasEnds::kPeriodic).value()),
+        slice_(slice),
+        unit_(unit) {
+    const GasRandom random(1, 2, 3);
+    CounterRandom of_start = random.OfStart();
+    GasState state = DrawGas(geometry_, TemperatureProfile(1), of_start);
+    meter_ = std::make_unique<GasMeter>(geometry_, state);
+    std::vector<GasStart> starts;
+    starts.push_back({std::move(state), ThermalWalls(), random, meter_.get()});
+    const double before = BytesInUse();
+    run_ = StartGases(engine, geometry_, std::move(starts));
+    run_->AdvanceTo(time_ = slice / 4);
+    bytes_ = (BytesInUse() - before) / static_cast<double>(geometry_.balls());
+  }
+
+  double Rate(uint64_t) const {
+    const uint64_t exchanges = meter_->exchanges();
+    const double begin = server::ThreadSeconds();
+    run_->AdvanceTo(time_ += slice_);
+    const double seconds = server::ThreadSeconds() - begin;
+    const auto balls = static_cast<double>(geometry_.balls());
+    const double pistons = static_cast<double>(geometry_.pistons());
+    double work = static_cast<double>(meter_->exchanges() - exchanges);
+    if (unit_ == Unit::kBallHits) work = slice_ * balls * BallHits(geometry_.pair());
+    if (unit_ == Unit::kAllHits) {
+      work +=
+          slice_ * (balls * BallHits(geometry_.pair()) + pistons * PistonHits(geometry_.pair()));
+    }
+    return work / seconds;
+  }
+
+  double bytes() const { return bytes_; }
+  double hits_of_events() const {  // ball-wall hits among all events
+    const double hits = BallHits(geometry_.pair());
+    return hits / (hits + geometry_.directions() / 2.0 * PistonHits(geometry_.pair()));
+  }
+
+ private:
+  GasGeometry geometry_;
+  double slice_;
+  Unit unit_;
+  std::unique_ptr<GasMeter> meter_;
+  std::unique_ptr<GasRun> run_;
+  mutable double time_ = 0;
+  double bytes_ = 0;
+};
+
+void ShowSpeed(double delta) {
+  std::vector<RunningGas> gases;
+  gases.emplace_back(GasEngine::kLanes, 100, delta, 50, Unit::kBallHits);
+  gases.emplace_back(GasEngine::kReference, 100, delta, 3, Unit::kAllHits);
+  gases.emplace_back(GasEngine::kJumps, 100, delta, 0.01 / (delta * delta), Unit::kExchanges);
+  const Turns turns(gases, 12);
+  const double reference = turns.Best(1) * gases[1].hits_of_events();
+  std::printf(
+      "100x100, delta %-6g lanes %6.1f million wall hits/s   reference %5.2f million events/s: "
+      "%5.1f "
+      "times   jump process %5.2f million exchanges/s",
+      delta, turns.Best(0) / 1e6, turns.Best(1) / 1e6, turns.Best(0) / reference,
+      turns.Best(2) / 1e6);
+  ShowDisturbance(turns);
+  std::printf("\n");
+}
+
+// From 32^2 to 1000^2 cells.
+void ShowGrowth(const char* name, GasEngine engine, double slice, Unit unit) {
+  constexpr double kDelta = 0.025;
+  std::vector<RunningGas> gases;
+  gases.emplace_back(engine, 32, kDelta, slice * 1000, unit);
+  gases.emplace_back(engine, 1000, kDelta, slice, unit);
+  const Turns turns(gases, 8);
+  std::printf("%-13s delta %g: %.0f bytes a cell; cost at 1,000,000 cells %.2f times that at 1024",
+              name, kDelta, gases[1].bytes(), turns.Best(0) / turns.Best(1));
+  ShowDisturbance(turns);
+  std::printf("\n");
+}
+
+}  // namespace
+}  // namespace ballpiston
+
+int main() {
+  for (const double delta : {0.025, 0.05, 0.1, 0.2}) ballpiston::ShowSpeed(delta);
+  ballpiston::ShowGrowth("lanes", ballpiston::GasEngine::kLanes, 4, ballpiston::Unit::kBallHits);
+  ballpiston::ShowGrowth("jump process", ballpiston::GasEngine::kJumps, 30,
+                         ballpiston::Unit::kExchanges);
+}
