@@ -39,14 +39,15 @@ class ChainByQuadrature {
     for (size_t part = 0; part < kParts; ++part) {
       const Quad middle = (ends[part] + ends[part + 1]) / 2;
       const Quad half_width = (ends[part + 1] - ends[part]) / 2;
-      for (const GaussNode& node : GaussNodes()) {
-        AddNode(middle + half_width * node.x, node.weight * half_width);
+      for (const GaussNode& node : GaussNodes()) {  // from the right to the left
+        AddNode(middle - half_width * node.x, node.weight * half_width);
       }
     }
   }
 
   double cell_area() const { return static_cast<double>(cell_area_); }
   double stroke() const { return static_cast<double>(lambda_ + 2 * delta_); }
+  // Ascending.
   const Vector& offsets() const { return offsets_; }
 
   // Mean fraction of a cell that a piston takes from the cell on one of its sides.
