@@ -108,7 +108,7 @@ TEST(JumpGas, PairsAreTheJumpProcess) {
       ++counts[2 * first.ball + first.piston];
       const double eb = e.balls[first.ball], ep = e.pistons[first.piston];
       places.push_back(KernelDistribution(eb, ep).Below(first.piston_energy));
-      ASSERT_NEAR(first.ball_energy + first.piston_energy, eb + ep, 4e-16 * (eb + ep));
+      ASSERT_NEAR(first.ball_energy + first.piston_energy, eb + ep, 1e-15 * (eb + ep));
     }
     EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
     EXPECT_LT(oracle::KolmogorovSmirnov(places, [](double x) { return x; }), 2.3);
