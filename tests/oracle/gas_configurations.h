@@ -62,9 +62,7 @@ class ChainByQuadrature {
   }
 
   // Densities of a piston's offset at the nodes, times their weights; they sum to 1.
-  Vector LawInRing(int cells) const {
-    return Normalised(Power(Kernel(), cells).diagonal());
-  }
+  Vector LawInRing(int cells) const { return Normalised(Power(Kernel(), cells).diagonal()); }
   // In a chain between reservoirs, of the piston with so many cells on its left.
   Vector LawInChain(int cells, int on_left) const {
     const Matrix left = Power(Kernel(), on_left), right = Power(Kernel(), cells - on_left);

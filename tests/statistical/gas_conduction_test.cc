@@ -75,19 +75,17 @@ TEST(GasConduction, JumpsOfEightCellsCarryTheReferencesCurrent) {
   const double unit = UnitOfRates(gas);
   EXPECT_LT(StandardErrorsOff(samples.current, 0.030476 * unit, 0.000255 * unit), 4)
       << samples.current.mean / unit;
-  EXPECT_LT(samples.current.StandardError().value(), 0.015 * samples.current.mean);
+  EXPECT_LT(samples.current.StandardError().value(), 0.025 * samples.current.mean);
 }
 
 TEST(GasConduction, ABilliardOfTwoCellsCarriesTheReferencesCurrent) {
-  const GasSamples samples =
-      Conduct(GasEngine::kReference, ChainOf(0.15, "2"), 2, 1, 2000, 500);
+  const GasSamples samples = Conduct(GasEngine::kReference, ChainOf(0.15, "2"), 2, 1, 2000, 500);
   EXPECT_LT(StandardErrorsOff(samples.current, 0.019931, 0.000150), 4) << samples.current.mean;
   EXPECT_LT(samples.current.StandardError().value(), 0.03 * samples.current.mean);
   ExpectTemperatures(samples, {1.752, 1.269, 1.976, 1.512, 1.021});
 }
 
-// Each row of a lattice is a chain beside others: by symmetry no row carries more than another, and
-// a current between a hot and a cold side flows from the hot one.
+// The current is more than ten of its standard errors.
 TEST(GasConduction, HeatFlowsFromHotToCold) {
   for (const GasEngine engine : {GasEngine::kReference, GasEngine::kJumps}) {
     for (const char* shape : {"1", "2x2"}) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <tuple>
 #include <vector>
 
@@ -40,7 +39,7 @@ void ExpectGammaHalf(const std::vector<double>& energies) {
 class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, const char*>> {};
 
 // The mean over the canonical ensemble, of many replicas. The rate is off by four standard errors,
-// some 0.4 % each, in 6e-5 of all cases; the energies of all bodies at the end are independent.
+// 0.2 % to 0.6 % each, in 6e-5 of all cases; the energies of all bodies at the end are independent.
 // Together 2e-4 false alarms each.
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   const auto& [engine, shape] = GetParam();
@@ -50,17 +49,20 @@ TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
       Measure({.engine = engine, .geometry = gas, .replicas = replicas, .duration = 50}, kGasSeed);
   const double exact = GasExchangeRate(gas, 1);
   EXPECT_LT(StandardErrorsOff(samples.rate, exact), 4) << samples.rate.mean << " not " << exact;
-  EXPECT_LT(samples.rate.StandardError().value(), 0.006 * exact);
+  EXPECT_LT(samples.rate.StandardError().value(), 0.007 * exact);
   const auto balls = static_cast<size_t>(gas.balls());
   ExpectGammaOne(EnergiesOf(samples, 0, balls));
   ExpectGammaHalf(EnergiesOf(samples, balls, samples.last.size()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, GasInEquilibriumOf,
-                         testing::Combine(testing::Values(GasEngine::kReference,
-                                                          GasEngine::kJumps),
+                         testing::Combine(testing::Values(GasEngine::kReference, GasEngine::kJumps),
                                           testing::Values("1", "2", "5", "1x1", "2x1", "1x3",
                                                           "4x4")));
+// The lanes are slow in small gases.
+INSTANTIATE_TEST_SUITE_P(Lanes, GasInEquilibriumOf,
+                         testing::Combine(testing::Values(GasEngine::kLanes),
+                                          testing::Values("2", "1x1", "4x4")));
 
 // After a hundred exchanges of each contact, of one large gas. False alarms: 1e-4.
 TEST(JumpGas, KeepsTheGammaLaws) {

@@ -22,9 +22,9 @@ namespace ballpiston {
 
 // Of all replicas.
 struct GasSamples {
-  Moments rate;                           // exchanges of a contact in a unit of time
-  Moments current;                        // through the cross-section of the gas
-  std::vector<Moments> temperatures;      // of balls, then of pistons: twice that of a piston's mean
+  Moments rate;                       // exchanges of a contact in a unit of time
+  Moments current;                    // through the cross-section of the gas
+  std::vector<Moments> temperatures;  // of balls, then of pistons: twice that of a piston's mean
   std::vector<std::vector<double>> last;  // energies at the end of the window, by body
 };
 
@@ -57,7 +57,7 @@ inline GasSamples Measure(const GasTask& task, uint64_t seed) {
     meter.Begin(task.begin);
     run->AdvanceTo(task.begin + task.duration);
     meter.End(task.begin + task.duration);
-    EXPECT_EQ(run->escapes(), 0u);
+    EXPECT_EQ(meter.escapes(), 0u);
     samples.rate.Add(static_cast<double>(meter.exchanges()) / task.duration /
                      static_cast<double>(gas.contacts()));
     // Every cell has two contacts along x for each row, and each of them carries the current.

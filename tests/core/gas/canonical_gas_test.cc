@@ -28,15 +28,16 @@ GasGeometry CrowdedGas(const char* shape, GasEnds ends = GasEnds::kPeriodic) {
 
 std::vector<GasState> StatesOf(const GasGeometry& gas, uint64_t seed) {
   std::vector<GasState> states;
-  for (uint64_t i = 0; i < kConfigurations; ++i) states.push_back(GasInEquilibrium(gas, 1, seed, i));
+  for (uint64_t i = 0; i < kConfigurations; ++i)
+    states.push_back(GasInEquilibrium(gas, 1, seed, i));
   return states;
 }
 
 // The distribution function that belongs to densities at the nodes of the oracle, times their
 // weights. The density is smooth between two nodes, so half of a node's weight lies below it; the
 // error is some 1e-4, a twentieth of what the test can see.
-double BelowAt(const oracle::ChainByQuadrature& chain,
-               const oracle::ChainByQuadrature::Vector& law, double offset) {
+double BelowAt(const oracle::ChainByQuadrature& chain, const oracle::ChainByQuadrature::Vector& law,
+               double offset) {
   double sum = 0, last_x = chain.offsets()[0], last_below = 0;
   for (int i = 0; i < chain.kNodes; ++i) {
     const double x = chain.offsets()[i], below = sum + law[i] / 2;
@@ -61,8 +62,8 @@ void ExpectOffsetsOf(const oracle::ChainByQuadrature& chain,
     offsets.push_back(offset);
     ++parts[offset < -edge ? 0 : offset < edge ? 1 : 2];
   }
-  EXPECT_LT(oracle::KolmogorovSmirnov(
-                offsets, [&](double offset) { return BelowAt(chain, law, offset); }),
+  EXPECT_LT(oracle::KolmogorovSmirnov(offsets,
+                                      [&](double offset) { return BelowAt(chain, law, offset); }),
             2.3);
   const std::vector<double> exact = {chain.InPart(law, 0), chain.InPart(law, 1),
                                      chain.InPart(law, 2)};
@@ -83,8 +84,7 @@ TEST(CanonicalGas, PistonsHaveTheirExactLaw) {
     const GasGeometry open = CrowdedGas(std::to_string(cells).c_str(), GasEnds::kReservoirs);
     const std::vector<GasState> states = StatesOf(open, 62);
     for (int piston = 0; piston <= cells; ++piston) {
-      ExpectOffsetsOf(chain, chain.LawInChain(cells, piston), states,
-                      static_cast<size_t>(piston));
+      ExpectOffsetsOf(chain, chain.LawInChain(cells, piston), states, static_cast<size_t>(piston));
     }
   }
 }
@@ -160,11 +160,10 @@ TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
     const char* shape;
     GasEnds ends;
   };
-  for (const Case& gas_case :
-       {Case{"1", GasEnds::kPeriodic}, Case{"2", GasEnds::kPeriodic},
-        Case{"2", GasEnds::kReservoirs}, Case{"1x1", GasEnds::kPeriodic},
-        Case{"2x1", GasEnds::kPeriodic}, Case{"2x2", GasEnds::kPeriodic},
-        Case{"2x2", GasEnds::kReservoirs}}) {
+  for (const Case& gas_case : {Case{"1", GasEnds::kPeriodic}, Case{"2", GasEnds::kPeriodic},
+                               Case{"2", GasEnds::kReservoirs}, Case{"1x1", GasEnds::kPeriodic},
+                               Case{"2x1", GasEnds::kPeriodic}, Case{"2x2", GasEnds::kPeriodic},
+                               Case{"2x2", GasEnds::kReservoirs}}) {
     SCOPED_TRACE(gas_case.shape);
     const GasGeometry gas = CrowdedGas(gas_case.shape, gas_case.ends);
     Observed drawn, expected;
@@ -191,7 +190,8 @@ TEST(CanonicalGas, NoBallIsBeyondAPiston) {
           ASSERT_EQ(state.balls.size(), static_cast<size_t>(gas.balls()));
           ASSERT_EQ(state.pistons.size(), static_cast<size_t>(gas.pistons()));
           ASSERT_FALSE(HasBallBeyondPiston(gas, state)) << rho << " " << shape;
-          for (const GasBall& ball : state.balls) ASSERT_TRUE(InsideCell(gas.pair(), ball.position));
+          for (const GasBall& ball : state.balls)
+            ASSERT_TRUE(InsideCell(gas.pair(), ball.position));
           for (const GasPiston& p : state.pistons) ASSERT_LE(std::fabs(p.offset), gas.reach());
         }
       }

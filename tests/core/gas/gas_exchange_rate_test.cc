@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -63,7 +64,8 @@ TEST(GasExchangeRate, ToriCountEveryConfiguration) {
 
 // A piston has one cell on both of its sides: Z = 1 - 4 z.
 TEST(GasExchangeRate, TheSmallestTorusInClosedForm) {
-  for (const double z : {0.0, 1e-3, 0.02}) ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
+  for (const double z : {0.0, 1e-3, 0.02})
+    ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
 }
 
 // F is 1 where no piston takes anything from a cell.
@@ -86,7 +88,8 @@ TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
         const double factor =
             is_lattice ? oracle::TorusByStates(n, n, z) : CrowdingFactor({n, 1, false}, z);
         const double difference = std::fabs(factor / infinite - 1);
-        EXPECT_LT(difference, std::fmax(before / 10, kGasExchangeRateRelativeError)) << "z " << z << " size " << n;
+        EXPECT_LT(difference, std::fmax(before / 10, kGasExchangeRateRelativeError))
+            << "z " << z << " size " << n;
         before = difference;
       }
       EXPECT_LT(before, kGasExchangeRateRelativeError);
@@ -117,8 +120,7 @@ TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
 TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
   double largest = 0;
   for (double rho = 0.5001; rho < kMaxRho; rho += 0.005) {
-    largest = std::fmax(largest,
-                        oracle::ChainByQuadrature(rho, GasDeltaBound(rho)).MeanFraction());
+    largest = std::fmax(largest, oracle::ChainByQuadrature(rho, GasDeltaBound(rho)).MeanFraction());
   }
   EXPECT_LT(largest, 0.02);
   EXPECT_GT(largest, 0.01);
@@ -167,7 +169,8 @@ TEST(GasExchangeRate, AgreesWithSampledConfigurations) {
     // The area up to a depth, between the points of a table.
     constexpr size_t kPoints = 400;
     std::vector<double> areas;
-    for (size_t i = 0; i <= kPoints; ++i) areas.push_back(area_to(pair.delta() * static_cast<double>(i) / kPoints));
+    for (size_t i = 0; i <= kPoints; ++i)
+      areas.push_back(area_to(pair.delta() * static_cast<double>(i) / kPoints));
     const auto area = [&](double depth) {
       const double place = depth / pair.delta() * kPoints;
       const auto i = std::min(static_cast<size_t>(place), kPoints - 1);
@@ -196,8 +199,8 @@ TEST(GasExchangeRate, AgreesWithSampledConfigurations) {
 }
 
 // In the canonical ensemble the energy E of k pairs of velocity components, T each, has the law
-// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates and standard errors of an independent
-// program, tests/data/gas.csv; four of them: 6e-5 false alarms each.
+// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates and standard errors of an
+// independent program, tests/data/gas.csv; four of them: 6e-5 false alarms each.
 TEST(GasExchangeRate, AgreesWithAnIndependentProgram) {
   const auto at_fixed_energy = [](const GasGeometry& gas) {
     const double k = static_cast<double>(gas.balls()) + static_cast<double>(gas.pistons()) / 2;

@@ -102,7 +102,8 @@ TEST(GasGeometry, NeighboursShareAPiston) {
       for (int64_t column = 0; column < columns; ++column) {
         const int64_t ball = row * columns + column;
         const bool is_last = column + 1 == columns && gas.ends() == GasEnds::kReservoirs;
-        const int64_t right = is_last ? GasGeometry::kNoBall : row * columns + (column + 1) % columns;
+        const int64_t right =
+            is_last ? GasGeometry::kNoBall : row * columns + (column + 1) % columns;
         EXPECT_EQ(gas.BallOf(gas.PistonOf(ball, Direction::kRight), Direction::kLeft), right)
             << NameOf(gas);
         if (!is_lattice) continue;
@@ -122,8 +123,8 @@ TEST(GasGeometry, PistonsStandHalfACellFromTheirBalls) {
       const auto x = static_cast<double>(ball % gas.shape().columns) + 0.5;
       EXPECT_EQ(gas.PositionOfPiston(gas.PistonOf(ball, Direction::kLeft)), x - 0.5);
       const double right = gas.PositionOfPiston(gas.PistonOf(ball, Direction::kRight));
-      const bool is_round = gas.ends() == GasEnds::kPeriodic &&
-                            x + 0.5 == static_cast<double>(gas.shape().columns);
+      const bool is_round =
+          gas.ends() == GasEnds::kPeriodic && x + 0.5 == static_cast<double>(gas.shape().columns);
       EXPECT_EQ(right, is_round ? 0 : x + 0.5) << NameOf(gas);
       if (!gas.shape().is_lattice) continue;
       EXPECT_EQ(gas.PositionOfPiston(gas.PistonOf(ball, Direction::kUp)), x);
@@ -142,18 +143,18 @@ TEST(GasGeometry, DeltaIsBoundByTheGas) {
       EXPECT_EQ(gas.pair().rho(), rho);
     }
     // Within the slack it becomes the bound.
-    ASSERT_OK_AND_ASSIGN(const GasGeometry gas, GasGeometry::Create(rho, bound * (1 + 9e-13), {},
-                                                                    GasEnds::kPeriodic));
+    ASSERT_OK_AND_ASSIGN(const GasGeometry gas,
+                         GasGeometry::Create(rho, bound * (1 + 9e-13), {}, GasEnds::kPeriodic));
     EXPECT_EQ(gas.pair().delta(), bound);
     for (const double delta :
          {bound * (1 + 2e-12), 1.1 * bound, 0.0, -0.1, std::numeric_limits<double>::infinity(),
           std::numeric_limits<double>::quiet_NaN()}) {
-      EXPECT_THAT(GasGeometry::Create(rho, delta, {}, GasEnds::kPeriodic),
-                  StatusIs(absl::StatusCode::kInvalidArgument,
-                           AllOf(HasSubstr("delta is " + NumberText(delta)),
-                                 HasSubstr("0 < delta <= rho/sqrt(2) - lambda/2 = " +
-                                           NumberText(bound)),
-                                 HasSubstr("the bound of a gas"))));
+      EXPECT_THAT(
+          GasGeometry::Create(rho, delta, {}, GasEnds::kPeriodic),
+          StatusIs(absl::StatusCode::kInvalidArgument,
+                   AllOf(HasSubstr("delta is " + NumberText(delta)),
+                         HasSubstr("0 < delta <= rho/sqrt(2) - lambda/2 = " + NumberText(bound)),
+                         HasSubstr("the bound of a gas"))));
     }
   }
 }
@@ -165,9 +166,11 @@ TEST(GasGeometry, ThePapersDeltaIsAccepted) {
 }
 
 TEST(GasGeometry, RadiiOutsideTheDomainAreRefused) {
-  for (const double rho : {0.5, 0.3, -0.6, kMaxRho, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THAT(GasGeometry::Create(rho, 0.1, {}, GasEnds::kPeriodic),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rho is " + NumberText(rho))));
+  for (const double rho :
+       {0.5, 0.3, -0.6, kMaxRho, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THAT(
+        GasGeometry::Create(rho, 0.1, {}, GasEnds::kPeriodic),
+        StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rho is " + NumberText(rho))));
   }
 }
 
@@ -175,8 +178,8 @@ TEST(GasGeometry, RadiiOutsideTheDomainAreRefused) {
 TEST(GasGeometry, PistonsAtTheBoundTouch) {
   for (const double rho : {0.5 + 1e-9, 0.501, kPaperRho, 0.6, 0.7}) {
     const GasGeometry gas = GasOf(rho, GasDeltaBound(rho), "2x2");
-    const double way = gas.reach();                                 // from the edge into the cell
-    const double height = 0.5 - std::sqrt(rho * rho - way * way);   // half of the piston's there
+    const double way = gas.reach();                                // from the edge into the cell
+    const double height = 0.5 - std::sqrt(rho * rho - way * way);  // half of the piston's there
     EXPECT_NEAR(0.5 - way, height, 1e-15) << rho;
     EXPECT_EQ(gas.reach(), gas.pair().lambda() / 2 + gas.pair().delta());
   }

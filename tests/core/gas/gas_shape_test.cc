@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -32,17 +31,37 @@ TEST(GasShape, ARowOfALatticeIsNotAChain) {
 }
 
 TEST(GasShape, MalformedTextsAreRefusedWithTheirText) {
-  for (const std::string text :
-       {"",      "0",     "x",       "4x",        "x4",    "4x0",
-        "0x4",   "-3",    "+3",      " 4",        "4 ",    "4\n",
-        "4X4",   "1e3",   "4.0",     "0x10",      "4x4x4", "4xx4",
-        "4x-1",  "4 x 4", "1000001", "1001x1000", "four",  "99999999999999999999",
-        "4,4",   "4x99999999999999999999",        "99999999999999999999x4",
-        "4294967296x4294967296"}) {
-    EXPECT_THAT(ParseGasShape(text),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         AllOf(HasSubstr("cells is \"" + text + "\""), HasSubstr("N or NxM"),
-                               HasSubstr("1000000"))));
+  for (const std::string text : {"",
+                                 "0",
+                                 "x",
+                                 "4x",
+                                 "x4",
+                                 "4x0",
+                                 "0x4",
+                                 "-3",
+                                 "+3",
+                                 " 4",
+                                 "4 ",
+                                 "4\n",
+                                 "4X4",
+                                 "1e3",
+                                 "4.0",
+                                 "0x10",
+                                 "4x4x4",
+                                 "4xx4",
+                                 "4x-1",
+                                 "4 x 4",
+                                 "1000001",
+                                 "1001x1000",
+                                 "four",
+                                 "99999999999999999999",
+                                 "4,4",
+                                 "4x99999999999999999999",
+                                 "99999999999999999999x4",
+                                 "4294967296x4294967296"}) {
+    EXPECT_THAT(ParseGasShape(text), StatusIs(absl::StatusCode::kInvalidArgument,
+                                              AllOf(HasSubstr("cells is \"" + text + "\""),
+                                                    HasSubstr("N or NxM"), HasSubstr("1000000"))));
   }
 }
 

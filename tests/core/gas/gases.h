@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "absl/strings/string_view.h"
 #include "core/gas/canonical_gas.h"

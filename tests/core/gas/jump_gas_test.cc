@@ -102,8 +102,8 @@ TEST(JumpGas, PairsAreTheJumpProcess) {
     std::vector<uint64_t> counts(4);
     for (uint64_t replica = 0; replica < kReplicas; ++replica) {
       const CounterRandom random(81, row, replica);
-      const FirstExchange first = Find(JumpGas(ring, kDensity, start, ThermalWalls(), random),
-                                       ring, start, 0.3 / sum);
+      const FirstExchange first =
+          Find(JumpGas(ring, kDensity, start, ThermalWalls(), random), ring, start, 0.3 / sum);
       times.push_back(first.time * sum);
       ++counts[2 * first.ball + first.piston];
       const double eb = e.balls[first.ball], ep = e.pistons[first.piston];
@@ -125,9 +125,9 @@ TEST(JumpGas, APistonThatABallSeesTwiceHasTwoContacts) {
   std::vector<double> times;
   for (uint64_t replica = 0; replica < kReplicas; ++replica) {
     const CounterRandom random(82, 0, replica);
-    times.push_back(sum * Find(JumpGas(torus, kDensity, start, ThermalWalls(), random), torus,
-                               start, 0.3 / sum)
-                              .time);
+    times.push_back(
+        sum * Find(JumpGas(torus, kDensity, start, ThermalWalls(), random), torus, start, 0.3 / sum)
+                  .time);
   }
   EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
 }
@@ -155,17 +155,16 @@ TEST(JumpGas, OutermostPistonsAreThermal) {
   std::vector<uint64_t> counts(2);
   for (uint64_t replica = 0; replica < kReplicas; ++replica) {
     const GasRandom random(83, 0, replica);
-    const FirstExchange first =
-        Find(JumpGas(chain, kDensity, start, ThermalWalls(chain, kHot, kCold, random),
-                     random.OfJumps()),
-             chain, start, 0.3 / (hot + cold));
+    const FirstExchange first = Find(
+        JumpGas(chain, kDensity, start, ThermalWalls(chain, kHot, kCold, random), random.OfJumps()),
+        chain, start, 0.3 / (hot + cold));
     times.push_back(first.time * (hot + cold));
     ++counts[first.piston];
     EXPECT_EQ(first.piston_energy, (first.piston == 0 ? kHot : kCold) / 2);
   }
   EXPECT_LT(oracle::KolmogorovSmirnov(times, Exponential), 2.3);
-  EXPECT_LT(oracle::ChiSquareScoreOf(counts, std::vector<double>{hot / (hot + cold),
-                                                                 cold / (hot + cold)}),
+  EXPECT_LT(oracle::ChiSquareScoreOf(counts,
+                                     std::vector<double>{hot / (hot + cold), cold / (hot + cold)}),
             4);
 }
 

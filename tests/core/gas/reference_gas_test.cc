@@ -45,8 +45,7 @@ GasState WithPair(const GasGeometry& gas, const PairState& pair, double speed, i
 PairState PairOf(const GasGeometry& gas, const GasState& state, double speed, int64_t ball,
                  Direction direction) {
   const GasBall& ball_here = state.balls[static_cast<size_t>(ball)];
-  const GasPiston& piston =
-      state.pistons[static_cast<size_t>(gas.PistonOf(ball, direction))];
+  const GasPiston& piston = state.pistons[static_cast<size_t>(gas.PistonOf(ball, direction))];
   const double sign = SignOf(direction);
   return {.position = SeenToward(direction, ball_here.position),
           .direction = SeenToward(direction, ball_here.direction),
@@ -93,8 +92,7 @@ TEST(ReferenceGas, OneBallAndOnePistonAreThePair) {
             ASSERT_EQ(event.piston, gas.PistonOf(ball, direction));
           }
           wall_hits += event.kind == EventKind::kBallWall;
-          const PairState there =
-              PairOf(gas, moving.StateAt(event.time), kSpeed, ball, direction);
+          const PairState there = PairOf(gas, moving.StateAt(event.time), kSpeed, ball, direction);
           ASSERT_NEAR((there.position - flow.state().position).norm(), 0, kTolerance);
           ASSERT_NEAR((there.direction - flow.state().direction).norm(), 0, kTolerance);
           ASSERT_NEAR(there.ball_speed, flow.state().ball_speed, kTolerance);
@@ -176,7 +174,8 @@ TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
           ASSERT_NE(event.kind, EventKind::kEscape) << i;
           ASSERT_GE(event.time, last - kSlack) << i;
           last = event.time;
-          if (moving.NextTime() < last) continue;  // rounding: the next event is at the same instant
+          if (moving.NextTime() < last)
+            continue;  // rounding: the next event is at the same instant
           const GasState state = moving.StateAt(last);
           for (int64_t ball = 0; ball < gas.balls(); ++ball) {
             const GasBall& here = state.balls[static_cast<size_t>(ball)];
@@ -284,7 +283,8 @@ TEST(ReferenceGas, OnlyThermalWallsChangeAPistonsSpeed) {
     ASSERT_EQ(now.offset, std::copysign(gas.reach(), was.velocity));
     ASSERT_LT(now.velocity * was.velocity, 0);
     // The hot wall is on the left of the leftmost pistons, the cold one on the right.
-    const bool at_left_wall = walls.Has(event.piston) && walls.IsHot(event.piston) && was.velocity < 0;
+    const bool at_left_wall =
+        walls.Has(event.piston) && walls.IsHot(event.piston) && was.velocity < 0;
     const bool at_right_wall =
         walls.Has(event.piston) && !walls.IsHot(event.piston) && was.velocity > 0;
     if (at_left_wall || at_right_wall) {

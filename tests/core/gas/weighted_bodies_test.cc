@@ -42,7 +42,8 @@ double ScoreOfDraws(const WeightedBodies& bodies, const std::vector<double>& wei
   }
   std::vector<double> probabilities;
   double none = 1;
-  for (const double weight : weights) none -= weight / bound, probabilities.push_back(weight / bound);
+  for (const double weight : weights)
+    none -= weight / bound, probabilities.push_back(weight / bound);
   probabilities.push_back(none);
   return oracle::ChiSquareScoreOf(counts, probabilities);
 }
