@@ -1,0 +1,304 @@
+#include "core/gas/canonical_gas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/geometry/pair_state.h"
+#include "tests/core/gas/gases.h"
+#include "tests/oracle/gas_configurations.h"
+#include "tests/oracle/one_sample.h"
+#include "tests/oracle/two_sample.h"
+
+namespace ballpiston {
+namespace {
+
+// Crowded: a piston takes 1.8 % of a cell on either side, and is inside of one half of its time.
+constexpr double kCrowdedRho = 0.52;
+constexpr uint64_t kConfigurations = 100'000;
+
+GasGeometry CrowdedGas(const char* shape, GasEnds ends = GasEnds::kPeriodic) {
+  return GasAtShare(kCrowdedRho, 1, shape, ends);
+}
+
+std::vector<GasState> StatesOf(const GasGeometry& gas, uint64_t seed) {
+  std::vector<GasState> states;
+  for (uint64_t i = 0; i < kConfigurations; ++i)
+    states.push_back(GasInEquilibrium(gas, 1, seed, i));
+  return states;
+}
+
+// The distribution function that belongs to densities at the nodes of the oracle, times their
+// weights. The density is smooth between two nodes, so half of a node's weight lies below it; the
+// error is some 1e-4, a twentieth of what the test can see.
+double BelowAt(const oracle::ChainByQuadrature& chain, const oracle::ChainByQuadrature::Vector& law,
+               double offset) {
+  double sum = 0, last_x = chain.offsets()[0], last_below = 0;
+  for (int i = 0; i < chain.kNodes; ++i) {
+    const double x = chain.offsets()[i], below = sum + law[i] / 2;
+    if (x > offset) {
+      return i == 0 ? 0 : last_below + (below - last_below) * (offset - last_x) / (x - last_x);
+    }
+    sum += law[i], last_x = x, last_below = below;
+  }
+  return last_below;
+}
+
+// Of the offsets of one piston: Kolmogorov's and Smirnov's distance, and the numbers in the three
+// parts of its way. False alarms: 5e-5 and 3e-5 for each piston.
+void ExpectOffsetsOf(const oracle::ChainByQuadrature& chain,
+                     const oracle::ChainByQuadrature::Vector& law,
+                     const std::vector<GasState>& states, size_t piston) {
+  const double edge = Lambda(kCrowdedRho) / 2;
+  std::vector<double> offsets;
+  std::vector<uint64_t> parts(3);
+  for (const GasState& state : states) {
+    const double offset = state.pistons[piston].offset;
+    offsets.push_back(offset);
+    ++parts[offset < -edge ? 0 : offset < edge ? 1 : 2];
+  }
+  EXPECT_LT(oracle::KolmogorovSmirnov(offsets,
+                                      [&](double offset) { return BelowAt(chain, law, offset); }),
+            2.3);
+  const std::vector<double> exact = {chain.InPart(law, 0), chain.InPart(law, 1),
+                                     chain.InPart(law, 2)};
+  EXPECT_LT(oracle::ChiSquareScoreOf(parts, exact), 4);
+}
+
+TEST(CanonicalGas, PistonsHaveTheirExactLaw) {
+  const oracle::ChainByQuadrature chain(kCrowdedRho, GasDeltaBound(kCrowdedRho));
+  for (const int cells : {1, 2, 5}) {
+    SCOPED_TRACE(cells);
+    const GasGeometry ring = CrowdedGas(std::to_string(cells).c_str());
+    const std::vector<GasState> states = StatesOf(ring, 61);
+    ExpectOffsetsOf(chain, chain.LawInRing(cells), states, 0);
+    ExpectOffsetsOf(chain, chain.LawInRing(cells), states, static_cast<size_t>(cells) - 1);
+  }
+  for (const int cells : {1, 3}) {
+    SCOPED_TRACE(cells);
+    const GasGeometry open = CrowdedGas(std::to_string(cells).c_str(), GasEnds::kReservoirs);
+    const std::vector<GasState> states = StatesOf(open, 62);
+    for (int piston = 0; piston <= cells; ++piston) {
+      ExpectOffsetsOf(chain, chain.LawInChain(cells, piston), states, static_cast<size_t>(piston));
+    }
+  }
+}
+
+// A piston between uniform places, as if it took nothing from any cell: the law of a ring of one
+// cell is farther from it than the tests allow.
+TEST(CanonicalGas, AnotherLawOfPistonsIsDetected) {
+  const double reach = CrowdedGas("1").reach();
+  std::vector<double> offsets;
+  for (const GasState& state : StatesOf(CrowdedGas("1"), 61)) {
+    offsets.push_back(state.pistons[0].offset);
+  }
+  EXPECT_GT(oracle::KolmogorovSmirnov(offsets, [&](double x) { return 0.5 + x / (2 * reach); }), 3);
+}
+
+bool HasBallBeyondPiston(const GasGeometry& gas, const GasState& state) {
+  for (int64_t ball = 0; ball < gas.balls(); ++ball) {
+    for (int i = 0; i < gas.directions(); ++i) {
+      if (GapTo(gas, state, ball, gas.DirectionAt(i)) <= 0) return true;
+    }
+  }
+  return false;
+}
+
+// All places drawn again until no ball is beyond a piston: the definition.
+GasState DrawnAsAWhole(const GasGeometry& gas, CounterRandom& random) {
+  GasState state;
+  state.balls.resize(static_cast<size_t>(gas.balls()));
+  state.pistons.resize(static_cast<size_t>(gas.pistons()));
+  do {
+    for (GasBall& ball : state.balls) {
+      do {
+        ball.position = {random.Uniform() - 0.5, random.Uniform() - 0.5};
+      } while (!InsideCell(gas.pair(), ball.position));
+    }
+    for (GasPiston& piston : state.pistons) {
+      piston.offset = (2 * random.Uniform() - 1) * gas.reach();
+    }
+  } while (HasBallBeyondPiston(gas, state));
+  return state;
+}
+
+// What the two samples are compared in: pistons inside cells; pistons inside of the first cell;
+// places of a ball and a piston; the narrowest gap.
+struct Observed {
+  std::vector<uint64_t> inside_cells = std::vector<uint64_t>(20);
+  std::vector<uint64_t> inside_first = std::vector<uint64_t>(5);
+  std::vector<double> ball, piston, narrowest;
+
+  void Add(const GasGeometry& gas, const GasState& state) {
+    const double edge = gas.pair().lambda() / 2;
+    const auto is_inside = [&](const GasPiston& p) { return std::fabs(p.offset) > edge; };
+    ++inside_cells[static_cast<size_t>(
+        std::count_if(state.pistons.begin(), state.pistons.end(), is_inside))];
+    size_t inside = 0;
+    double gap = 1;
+    for (int i = 0; i < gas.directions(); ++i) {
+      const Direction direction = gas.DirectionAt(i);
+      const auto number = static_cast<size_t>(gas.PistonOf(0, direction));
+      inside += SignOf(direction) * state.pistons[number].offset < -edge;
+      gap = std::min(gap, GapTo(gas, state, 0, direction));
+    }
+    ++inside_first[inside];
+    ball.push_back(state.balls[0].position.x());
+    piston.push_back(state.pistons.back().offset);
+    narrowest.push_back(gap);
+  }
+};
+
+// False alarms: 2e-4 a shape.
+TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
+  struct Case {
+    const char* shape;
+    GasEnds ends;
+  };
+  for (const Case& gas_case : {Case{"1", GasEnds::kPeriodic}, Case{"2", GasEnds::kPeriodic},
+                               Case{"2", GasEnds::kReservoirs}, Case{"1x1", GasEnds::kPeriodic},
+                               Case{"2x1", GasEnds::kPeriodic}, Case{"2x2", GasEnds::kPeriodic},
+                               Case{"2x2", GasEnds::kReservoirs}}) {
+    SCOPED_TRACE(gas_case.shape);
+    const GasGeometry gas = CrowdedGas(gas_case.shape, gas_case.ends);
+    Observed drawn, expected;
+    for (uint64_t i = 0; i < kConfigurations / 2; ++i) {
+      drawn.Add(gas, GasInEquilibrium(gas, 1, 63, i));
+      CounterRandom random(64, 0, i);
+      expected.Add(gas, DrawnAsAWhole(gas, random));
+    }
+    EXPECT_LT(oracle::ChiSquareScore(drawn.inside_cells, expected.inside_cells), 4);
+    EXPECT_LT(oracle::ChiSquareScore(drawn.inside_first, expected.inside_first), 4);
+    EXPECT_LT(oracle::KolmogorovSmirnov(drawn.ball, expected.ball), 2.3);
+    EXPECT_LT(oracle::KolmogorovSmirnov(drawn.piston, expected.piston), 2.3);
+    EXPECT_LT(oracle::KolmogorovSmirnov(drawn.narrowest, expected.narrowest), 2.3);
+  }
+}
+
+TEST(CanonicalGas, NoBallIsBeyondAPiston) {
+  for (const double rho : {0.5 + 1e-6, 0.52, 0.6, 0.7}) {
+    for (const char* shape : {"1", "2", "50", "1x1", "1x7", "20x20"}) {
+      for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+        const GasGeometry gas = GasAtShare(rho, 1, shape, ends);
+        for (uint64_t sample = 0; sample < 20; ++sample) {
+          const GasState state = GasInEquilibrium(gas, 1, 65, sample);
+          ASSERT_EQ(state.balls.size(), static_cast<size_t>(gas.balls()));
+          ASSERT_EQ(state.pistons.size(), static_cast<size_t>(gas.pistons()));
+          ASSERT_FALSE(HasBallBeyondPiston(gas, state)) << rho << " " << shape;
+          for (const GasBall& ball : state.balls)
+            ASSERT_TRUE(InsideCell(gas.pair(), ball.position));
+          for (const GasPiston& p : state.pistons) ASSERT_LE(std::fabs(p.offset), gas.reach());
+        }
+      }
+    }
+  }
+}
+
+// Distribution functions of Gamma(1) and Gamma(1/2).
+double GammaOne(double x) { return -std::expm1(-x); }
+double GammaHalf(double x) { return std::erf(std::sqrt(x)); }
+double UniformOnCircle(double angle) { return 0.5 + angle / (2 * std::numbers::pi); }
+
+// Each distance exceeds 2.3 in 5e-5 of all cases; the sign of a piston's velocity is off by four
+// standard errors in 6e-5.
+TEST(CanonicalGas, EnergiesHaveTheirGammaLaws) {
+  for (const double temperature : {1e-3, 1.0, 40.0}) {
+    const GasGeometry gas = CrowdedGas("200x100");
+    const GasState state = GasInEquilibrium(gas, temperature, 66, 0);
+    std::vector<double> balls, angles, pistons;
+    double to_plus = 0;
+    for (const GasBall& ball : state.balls) {
+      balls.push_back(EnergyOf(ball) / temperature);
+      angles.push_back(std::atan2(ball.direction.y(), ball.direction.x()));
+      EXPECT_NEAR(ball.direction.norm(), 1, 4e-16);
+    }
+    for (const GasPiston& piston : state.pistons) {
+      pistons.push_back(EnergyOf(piston) / temperature);
+      to_plus += piston.velocity > 0;
+    }
+    EXPECT_LT(oracle::KolmogorovSmirnov(balls, GammaOne), 2.3);
+    EXPECT_LT(oracle::KolmogorovSmirnov(angles, UniformOnCircle), 2.3);
+    EXPECT_LT(oracle::KolmogorovSmirnov(pistons, GammaHalf), 2.3);
+    EXPECT_GT(oracle::KolmogorovSmirnov(pistons, GammaOne), 5);
+    const auto n = static_cast<double>(pistons.size());
+    EXPECT_LT(std::fabs(2 * to_plus / n - 1) * std::sqrt(n), 4);
+  }
+}
+
+// Energies divided by the temperatures where bodies are.
+TEST(CanonicalGas, TemperaturesFollowTheProfile) {
+  const GasGeometry gas = CrowdedGas("100x100", GasEnds::kReservoirs);
+  const TemperatureProfile profile(9, 1, 100);
+  CounterRandom random(67, 0, 0);
+  const GasState state = DrawGas(gas, profile, random);
+  std::vector<double> balls, pistons;
+  for (size_t i = 0; i < state.balls.size(); ++i) {
+    balls.push_back(EnergyOf(state.balls[i]) / profile.At(static_cast<double>(i % 100) + 0.5));
+  }
+  for (size_t i = 0; i < state.pistons.size(); ++i) {
+    const double x = gas.PositionOfPiston(static_cast<int64_t>(i));
+    pistons.push_back(EnergyOf(state.pistons[i]) / profile.At(x));
+  }
+  EXPECT_LT(oracle::KolmogorovSmirnov(balls, GammaOne), 2.3);
+  EXPECT_LT(oracle::KolmogorovSmirnov(pistons, GammaHalf), 2.3);
+}
+
+// The speed after a thermal wall has v^2/(2 T) of law Gamma(1), a thermal velocity Gamma(1/2).
+TEST(CanonicalGas, SpeedsOfThermalWallsHaveTheFluxLaw) {
+  CounterRandom random(68, 0, 0);
+  std::vector<double> flux, thermal;
+  for (int i = 0; i < 50'000; ++i) {
+    const double speed = DrawFluxSpeed(3, random), velocity = DrawThermalVelocity(3, random);
+    EXPECT_GT(speed, 0);
+    flux.push_back(speed * speed / 6);
+    thermal.push_back(velocity * velocity / 6);
+  }
+  EXPECT_LT(oracle::KolmogorovSmirnov(flux, GammaOne), 2.3);
+  EXPECT_LT(oracle::KolmogorovSmirnov(thermal, GammaHalf), 2.3);
+}
+
+TEST(CanonicalGas, SameNumbersForTheSameRandomSequence) {
+  const GasGeometry gas = CrowdedGas("5x4");
+  const GasState first = GasInEquilibrium(gas, 1, 69, 3), second = GasInEquilibrium(gas, 1, 69, 3);
+  const GasState other = GasInEquilibrium(gas, 1, 69, 4);
+  for (size_t i = 0; i < first.balls.size(); ++i) {
+    EXPECT_EQ(first.balls[i].position, second.balls[i].position);
+    EXPECT_NE(first.balls[i].position, other.balls[i].position);
+    EXPECT_EQ(first.balls[i].speed, second.balls[i].speed);
+  }
+}
+
+TEST(TemperatureProfile, PowerThreeHalvesIsLinear) {
+  for (const double cold : {1.0, 0.5, 1e-3}) {
+    const TemperatureProfile profile(2, cold, 7);
+    const double top = std::pow(2, 1.5), bottom = std::pow(cold, 1.5);
+    for (int i = 0; i <= 28; ++i) {
+      const double x = i / 4.0;
+      EXPECT_NEAR(std::pow(profile.At(x), 1.5), top + (bottom - top) * x / 7, 1e-15 * top);
+    }
+  }
+}
+
+// The cold end carries the rounding of 1 - (1 - (cold/hot)^1.5).
+TEST(TemperatureProfile, EndsHaveTheirTemperatures) {
+  for (const double cold : {2.0, 1.0, 0.5, 0.1}) {
+    const TemperatureProfile profile(2, cold, 1000);
+    EXPECT_EQ(profile.At(0), 2);
+    EXPECT_NEAR(profile.At(1000) / cold, 1, 4e-16 * std::pow(2 / cold, 1.5));
+  }
+}
+
+TEST(TemperatureProfile, IsFlatBetweenEqualTemperatures) {
+  for (const double x : {0.0, 0.3, 1.0}) {
+    EXPECT_EQ(TemperatureProfile(3).At(x), 3);
+    EXPECT_EQ(TemperatureProfile(3, 3, 1).At(x), 3);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

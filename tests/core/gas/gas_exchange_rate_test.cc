@@ -1,0 +1,214 @@
+#include "core/gas/gas_exchange_rate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/closed_form/exchange_rate.h"
+#include "core/geometry/cell_profile.h"
+#include "core/geometry/paper.h"
+#include "core/statistics/moments.h"
+#include "tests/core/gas/gases.h"
+#include "tests/oracle/gas_configurations.h"
+
+namespace ballpiston {
+namespace {
+
+double PairRate(const GasGeometry& gas) { return ExchangeRate(Measures(gas.pair()), 1); }
+
+// How far two rates differ, relatively. Oracles in double add the rounding of some 1e5 operations.
+constexpr double kOracleError = 2e-14;
+void ExpectSameRate(double rate, double exact) {
+  EXPECT_NEAR(rate / exact, 1, kGasExchangeRateRelativeError + kOracleError);
+}
+
+TEST(GasExchangeRate, RingsAreTracesOfTheirTransferOperator) {
+  for (const double rho : {0.5001, 0.51, kPaperRho, 0.6, 0.7}) {
+    for (const double share : {1.0, 0.5, 0.1}) {
+      const double delta = share * GasDeltaBound(rho);
+      const oracle::ChainByQuadrature chain(rho, delta);
+      for (const int cells : {1, 2, 3, 6, 50}) {
+        SCOPED_TRACE(absl::StrCat("rho ", rho, " delta ", delta, " cells ", cells));
+        const GasGeometry gas = GasOf(rho, delta, absl::StrCat(cells));
+        ExpectSameRate(GasExchangeRate(gas, 1), chain.RateOfRing(cells, 1));
+      }
+    }
+  }
+}
+
+TEST(GasExchangeRate, TheTemperatureIsAFactorSqrtT) {
+  for (const char* shape : {"3", "3x2"}) {
+    const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
+    EXPECT_DOUBLE_EQ(GasExchangeRate(gas, 6.25), 2.5 * GasExchangeRate(gas, 1));
+    EXPECT_DOUBLE_EQ(InfiniteGasExchangeRate(gas, 6.25), 2.5 * InfiniteGasExchangeRate(gas, 1));
+  }
+}
+
+TEST(GasExchangeRate, ToriCountEveryConfiguration) {
+  for (const double z : {1e-6, 1e-3, 0.01, 0.02}) {
+    for (int columns = 1; columns <= 7; ++columns) {
+      for (int rows = 1; rows <= 5; ++rows) {
+        SCOPED_TRACE(absl::StrCat(columns, "x", rows, " z ", z));
+        const double factor = CrowdingFactor({columns, rows, true}, z);
+        ExpectSameRate(factor, oracle::TorusByStates(columns, rows, z));
+        EXPECT_EQ(factor, CrowdingFactor({rows, columns, true}, z));
+      }
+    }
+  }
+}
+
+// A piston has one cell on both of its sides: Z = 1 - 4 z.
+TEST(GasExchangeRate, TheSmallestTorusInClosedForm) {
+  for (const double z : {0.0, 1e-3, 0.02})
+    ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
+}
+
+// F is 1 where no piston takes anything from a cell.
+TEST(GasExchangeRate, WithoutCrowdingTheFactorIsOne) {
+  for (const char* shape : {"1", "2", "1000000", "1x1", "2x3", "9x7", "1000x1000", "1x1000000"}) {
+    ExpectSameRate(CrowdingFactor(ShapeNamed(shape), 0), 1);
+  }
+  ExpectSameRate(InfiniteCrowdingFactor(false, 0), 1);
+  ExpectSameRate(InfiniteCrowdingFactor(true, 0), 1);
+}
+
+// What a finite gas adds falls by a factor of at least ten from one size to the next, down to the
+// error of the infinite lattice.
+TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
+  for (const double z : {0.005, 0.02}) {
+    for (const bool is_lattice : {false, true}) {
+      const double infinite = InfiniteCrowdingFactor(is_lattice, z);
+      double before = 1;
+      for (int n = 1; n <= 7; ++n) {
+        const double factor =
+            is_lattice ? oracle::TorusByStates(n, n, z) : CrowdingFactor({n, 1, false}, z);
+        const double difference = std::fabs(factor / infinite - 1);
+        EXPECT_LT(difference, std::fmax(before / 10, kGasExchangeRateRelativeError))
+            << "z " << z << " size " << n;
+        before = difference;
+      }
+      EXPECT_LT(before, kGasExchangeRateRelativeError);
+      for (const int n : {8, 9, 20, 1000}) {
+        const GasShape shape = {n, is_lattice ? n : 1, is_lattice};
+        ExpectSameRate(CrowdingFactor(shape, z), infinite);
+      }
+    }
+  }
+}
+
+// A tube, long on one side and narrow on the other, is not the infinite lattice.
+TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
+  for (const double z : {0.005, 0.02}) {
+    for (int width = 1; width <= 5; ++width) {
+      const double exact = oracle::TorusByStates(40, width, z);
+      for (const int length : {8, 40, 1000}) {
+        ExpectSameRate(CrowdingFactor({length, width, true}, z), exact);
+        ExpectSameRate(CrowdingFactor({width, length, true}, z), exact);
+      }
+    }
+    EXPECT_GT(std::fabs(CrowdingFactor({40, 2, true}, z) / InfiniteCrowdingFactor(true, z) - 1),
+              1e-8);
+  }
+}
+
+// The domain 0 <= z <= 0.02 covers all geometries.
+TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
+  double largest = 0;
+  for (double rho = 0.5001; rho < kMaxRho; rho += 0.005) {
+    largest = std::fmax(largest, oracle::ChainByQuadrature(rho, GasDeltaBound(rho)).MeanFraction());
+  }
+  EXPECT_LT(largest, 0.02);
+  EXPECT_GT(largest, 0.01);
+}
+
+TEST(GasExchangeRate, ExceedsThePairsRateAsTheHeaderSays) {
+  const GasGeometry chain = GasOf(kPaperRho, 0.2, "3"), lattice = GasOf(kPaperRho, 0.2, "2x2");
+  EXPECT_NEAR(InfiniteGasExchangeRate(chain, 1) / PairRate(chain), 1.0240, 5e-5);
+  EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);
+}
+
+double ExcessAt(double delta, const char* shape) {
+  const GasGeometry gas = GasOf(kPaperRho, delta, shape);
+  return InfiniteGasExchangeRate(gas, 1) / PairRate(gas) - 1;
+}
+
+// To first order the excess is z in a chain and 2 z in a lattice, z = delta^3/3 (1 + O(delta)).
+TEST(GasExchangeRate, TheExcessFallsAsDeltaCubed) {
+  for (const char* shape : {"3", "2x2"}) {
+    double before = 1;
+    for (const double delta : {0.02, 0.01, 0.005}) {
+      const double distance = std::fabs(ExcessAt(delta, shape) / ExcessAt(delta / 2, shape) - 8);
+      EXPECT_LT(distance, 0.6 * before) << shape << " " << delta;
+      before = distance;
+    }
+    EXPECT_LT(before, 0.1);
+  }
+}
+
+// Given the pistons, a ball is anywhere in its free area. So the mean of (height of the piston in
+// the cell)/(free area) is the density on the collision surface of a contact. Four standard errors:
+// 6e-5 false alarms each. They are 0.05 % of the rate; the pair's rate is 2 to 5 % off.
+TEST(GasExchangeRate, AgreesWithSampledConfigurations) {
+  for (const char* shape : {"1", "2", "1x1", "2x1", "2x2", "3x3"}) {
+    const GasGeometry gas = GasAtShare(0.52, 1, shape);
+    const PairGeometry& pair = gas.pair();
+    const double cell = CellArea(pair.rho());
+    const auto depth_in = [&](const GasState& state, int64_t ball, Direction direction) {
+      const auto piston = static_cast<size_t>(gas.PistonOf(ball, direction));
+      return -pair.lambda() / 2 - SignOf(direction) * state.pistons[piston].offset;
+    };
+    const auto area_to = [&](double depth) {
+      return static_cast<double>(oracle::Integrate(
+          [&](Quad t) { return 2 * HalfHeight(pair.lambda(), static_cast<double>(t)); }, 0, depth));
+    };
+    // The area up to a depth, between the points of a table.
+    constexpr size_t kPoints = 400;
+    std::vector<double> areas;
+    for (size_t i = 0; i <= kPoints; ++i)
+      areas.push_back(area_to(pair.delta() * static_cast<double>(i) / kPoints));
+    const auto area = [&](double depth) {
+      const double place = depth / pair.delta() * kPoints;
+      const auto i = std::min(static_cast<size_t>(place), kPoints - 1);
+      return areas[i] + (place - static_cast<double>(i)) * (areas[i + 1] - areas[i]);
+    };
+    Moments density;
+    for (uint64_t sample = 0; sample < 100'000 / static_cast<uint64_t>(gas.balls()); ++sample) {
+      const GasState state = GasInEquilibrium(gas, 1, 51, sample);
+      double sum = 0;
+      for (int64_t ball = 0; ball < gas.balls(); ++ball) {
+        double heights = 0, free = cell;
+        for (int i = 0; i < gas.directions(); ++i) {
+          const double depth = depth_in(state, ball, gas.DirectionAt(i));
+          if (depth <= 0) continue;
+          heights += 2 * HalfHeight(pair.lambda(), depth);
+          free -= area(depth);
+        }
+        sum += heights / free;
+      }
+      density.Add(sum / static_cast<double>(gas.contacts()));
+    }
+    const double exact = GasExchangeRate(gas, 1) * std::sqrt(std::numbers::pi);
+    EXPECT_LT(std::fabs(density.mean - exact), 4 * density.StandardError().value()) << shape;
+    EXPECT_LT(density.StandardError().value(), 0.006 * exact);
+  }
+}
+
+// In the canonical ensemble the energy E of k pairs of velocity components, T each, has the law
+// Gamma(k): the mean of sqrt(E) is sqrt(T) Gamma(k + 1/2)/Gamma(k). Rates and standard errors of an
+// independent program, tests/data/gas.csv; four of them: 6e-5 false alarms each.
+TEST(GasExchangeRate, AgreesWithAnIndependentProgram) {
+  const auto at_fixed_energy = [](const GasGeometry& gas) {
+    const double k = static_cast<double>(gas.balls()) + static_cast<double>(gas.pistons()) / 2;
+    return GasExchangeRate(gas, 1) * std::sqrt(k) * std::exp(std::lgamma(k) - std::lgamma(k + 0.5));
+  };
+  EXPECT_NEAR(at_fixed_energy(GasOf(0.6, 0.08, "6")), 0.068620, 4 * 0.0002);
+  EXPECT_NEAR(at_fixed_energy(GasOf(0.6, 0.08, "4x4")), 0.068064, 4 * 0.00015);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,128 @@
+#include "core/gas/gas_run.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/paper.h"
+#include "tests/core/gas/gases.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr double kWarmUp = 7, kEnd = 60;
+
+// Replicas of a gas between unequal reservoirs, or of a periodic one.
+class Replicas {
+ public:
+  Replicas(GasEngine engine, const GasGeometry& geometry, uint64_t first, uint64_t count) {
+    std::vector<GasStart> starts;
+    for (uint64_t replica = first; replica < first + count; ++replica) {
+      const GasRandom random(91, 0, replica);
+      CounterRandom of_start = random.OfStart();
+      const GasState state = DrawGas(geometry, TemperatureProfile(1), of_start);
+      ThermalWalls walls(geometry, 2, 1, random);
+      starts.push_back({state, std::move(walls), random, &meters_.emplace_back(geometry, state)});
+    }
+    run_ = StartGases(engine, geometry, std::move(starts));
+  }
+
+  // The window of measurement in so many calls.
+  std::vector<uint64_t> BitsAfter(int calls) {
+    run_->AdvanceTo(kWarmUp);
+    for (GasMeter& meter : meters_) meter.Begin(kWarmUp);
+    for (int i = 1; i <= calls; ++i) run_->AdvanceTo(kWarmUp + (kEnd - kWarmUp) * i / calls);
+    std::vector<uint64_t> bits;
+    for (GasMeter& meter : meters_) {
+      meter.End(kEnd);
+      EXPECT_EQ(meter.escapes(), 0u);
+      bits.push_back(meter.exchanges());
+      bits.push_back(std::bit_cast<uint64_t>(meter.carried()));
+      for (size_t body = 0; body < meter.bodies(); ++body) {
+        bits.push_back(std::bit_cast<uint64_t>(meter.Energy(body)));
+        bits.push_back(std::bit_cast<uint64_t>(meter.MeanEnergy(body)));
+      }
+    }
+    return bits;
+  }
+
+ private:
+  std::deque<GasMeter> meters_;  // the run has their addresses
+  std::unique_ptr<GasRun> run_;
+};
+
+class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};
+
+TEST_P(GasRunOfEngine, ManyShortCallsGiveTheBitsOfOne) {
+  for (const char* shape : {"1", "2", "3x2"}) {
+    for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+      const GasGeometry gas = GasOf(kPaperRho, 0.2, shape, ends);
+      const std::vector<uint64_t> whole = Replicas(GetParam(), gas, 0, 3).BitsAfter(1);
+      for (const int calls : {2, 7, 1000}) {
+        EXPECT_EQ(Replicas(GetParam(), gas, 0, 3).BitsAfter(calls), whole) << shape;
+      }
+    }
+  }
+}
+
+TEST_P(GasRunOfEngine, ReplicasDoNotDependOnTheirNeighbours) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3", GasEnds::kReservoirs);
+  const std::vector<uint64_t> together = Replicas(GetParam(), gas, 0, 5).BitsAfter(1);
+  std::vector<uint64_t> alone;
+  for (uint64_t replica = 0; replica < 5; ++replica) {
+    const std::vector<uint64_t> bits = Replicas(GetParam(), gas, replica, 1).BitsAfter(3);
+    alone.insert(alone.end(), bits.begin(), bits.end());
+  }
+  EXPECT_EQ(alone, together);
+}
+
+INSTANTIATE_TEST_SUITE_P(GasRun, GasRunOfEngine,
+                         testing::Values(GasEngine::kReference, GasEngine::kLanes,
+                                         GasEngine::kJumps));
+
+// A hand-made history: ball 0 has energy 1 until 1, then 3; it sees piston 1 on its right.
+TEST(GasMeter, CountsAndAverages) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3");
+  GasState start;
+  start.balls.resize(3, {.speed = std::sqrt(2.0)});
+  start.pistons.resize(3);
+  GasMeter meter(gas, start);
+  ASSERT_EQ(meter.balls(), 3u);
+  ASSERT_EQ(meter.bodies(), 6u);
+  meter.Exchange({0.5, 1, 2, Direction::kRight, 7, 7});  // before the window
+  meter.Begin(0.5);
+  meter.Exchange({1, 0, 1, Direction::kRight, 3, 0.5});  // 2 from the right to the left
+  meter.Exchange({2, 2, 2, Direction::kLeft, 0.75, 1});  // 1/4 to the left
+  meter.SetPiston(2.5, 0, 9);
+  meter.End(4.5);
+  EXPECT_EQ(meter.exchanges(), 2u);
+  EXPECT_DOUBLE_EQ(meter.duration(), 4);
+  EXPECT_NEAR(meter.carried(), -2 - 0.25, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(0), (0.5 * 1 + 3.5 * 3) / 4, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(1), 7, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(2), (1.5 * 1 + 2.5 * 0.75) / 4, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(3), 2 * 9 / 4.0, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(4), 3.5 * 0.5 / 4, 1e-15);
+  EXPECT_NEAR(meter.MeanEnergy(5), (1.5 * 7 + 2.5 * 1) / 4, 1e-15);
+  EXPECT_EQ(meter.Energy(0), 3);
+}
+
+TEST(GasMeter, EnergyThatCrossesTheColumnsIsNotCarriedAlongX) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
+  GasMeter meter(gas, GasInEquilibrium(gas, 1, 92, 0));
+  meter.Begin(0);
+  meter.Exchange({1, 0, gas.PistonOf(0, Direction::kUp), Direction::kUp, 3, 0.5});
+  meter.Exchange({2, 0, gas.PistonOf(0, Direction::kDown), Direction::kDown, 1, 0.5});
+  meter.End(3);
+  EXPECT_EQ(meter.carried(), 0);
+  EXPECT_EQ(meter.exchanges(), 2u);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,54 @@
+// Gases for tests. They have to be valid.
+#ifndef BALLPISTON_TESTS_CORE_GAS_GASES_H_
+#define BALLPISTON_TESTS_CORE_GAS_GASES_H_
+
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/strings/string_view.h"
+#include "core/gas/canonical_gas.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_shape.h"
+#include "core/gas/gas_state.h"
+#include "core/sampling/counter_random.h"
+
+namespace ballpiston {
+
+inline GasShape ShapeNamed(absl::string_view text) { return ParseGasShape(text).value(); }
+
+inline GasGeometry GasOf(double rho, double delta, absl::string_view shape,
+                         GasEnds ends = GasEnds::kPeriodic) {
+  return GasGeometry::Create(rho, delta, ShapeNamed(shape), ends).value();
+}
+
+// delta is `share` times its bound.
+inline GasGeometry GasAtShare(double rho, double share, absl::string_view shape,
+                              GasEnds ends = GasEnds::kPeriodic) {
+  return GasOf(rho, share * GasDeltaBound(rho), shape, ends);
+}
+
+inline GasState GasInEquilibrium(const GasGeometry& geometry, double temperature, uint64_t seed,
+                                 uint64_t sample) {
+  CounterRandom random(seed, 0, sample);
+  return DrawGas(geometry, TemperatureProfile(temperature), random);
+}
+
+// How far the ball is from the piston that it sees in this direction: negative beyond it.
+inline double GapTo(const GasGeometry& geometry, const GasState& state, int64_t ball,
+                    Direction direction) {
+  const auto& position = state.balls[static_cast<size_t>(ball)].position;
+  const auto piston = static_cast<size_t>(geometry.PistonOf(ball, direction));
+  return 0.5 + SignOf(direction) * state.pistons[piston].offset -
+         SeenToward(direction, position).x();
+}
+
+inline double EnergyOf(const GasState& state) {
+  double sum = 0;
+  for (const GasBall& ball : state.balls) sum += EnergyOf(ball);
+  for (const GasPiston& piston : state.pistons) sum += EnergyOf(piston);
+  return sum;
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_CORE_GAS_GASES_H_

@@ -1,0 +1,303 @@
+#include "core/gas/reference_gas.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/billiard/reference_flow.h"
+#include "core/geometry/pair_state.h"
+#include "core/geometry/paper.h"
+#include "core/sampling/invariant_measure.h"
+#include "tests/core/gas/gases.h"
+
+namespace ballpiston {
+namespace {
+
+ReferenceGas GasFrom(const GasGeometry& geometry, const GasState& state) {
+  return ReferenceGas(geometry, state, ThermalWalls());
+}
+
+GasState AtRest(const GasGeometry& gas) {
+  GasState state;
+  state.balls.resize(static_cast<size_t>(gas.balls()));
+  state.pistons.resize(static_cast<size_t>(gas.pistons()));
+  return state;
+}
+
+// A pair in the place of a ball and the piston that it sees in the direction, `speed` times as
+// fast.
+GasState WithPair(const GasGeometry& gas, const PairState& pair, double speed, int64_t ball,
+                  Direction direction) {
+  GasState state = AtRest(gas);
+  state.balls[static_cast<size_t>(ball)] = {.position = SeenFrom(direction, pair.position),
+                                            .direction = SeenFrom(direction, pair.direction),
+                                            .speed = speed * pair.ball_speed};
+  const double sign = SignOf(direction);
+  state.pistons[static_cast<size_t>(gas.PistonOf(ball, direction))] = {
+      .offset = sign * (pair.piston - 0.5), .velocity = sign * speed * pair.piston_velocity};
+  return state;
+}
+
+PairState PairOf(const GasGeometry& gas, const GasState& state, double speed, int64_t ball,
+                 Direction direction) {
+  const GasBall& ball_here = state.balls[static_cast<size_t>(ball)];
+  const GasPiston& piston = state.pistons[static_cast<size_t>(gas.PistonOf(ball, direction))];
+  const double sign = SignOf(direction);
+  return {.position = SeenToward(direction, ball_here.position),
+          .direction = SeenToward(direction, ball_here.direction),
+          .ball_speed = ball_here.speed / speed,
+          .piston = 0.5 + sign * piston.offset,
+          .piston_velocity = sign * piston.velocity / speed};
+}
+
+// All else rests: balls in the middle of their cells, pistons on their edges, where no ball comes.
+// An error of 1e-16 grows some threefold a wall hit, to some 1e-9 in 15.
+TEST(ReferenceGas, OneBallAndOnePistonAreThePair) {
+  constexpr double kSpeed = 3.7, kTolerance = 1e-8;
+  constexpr int kWallHits = 15;
+  int exchanges = 0;
+  for (const Direction direction :
+       {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
+    for (const char* shape : {"1x1", "3x3", "2x1"}) {
+      const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
+      for (uint64_t sample = 0; sample < 100; ++sample) {
+        SCOPED_TRACE(testing::Message() << "direction " << static_cast<int>(direction) << " shape "
+                                        << shape << " sample " << sample);
+        CounterRandom random(71, 0, sample);
+        const int64_t ball = static_cast<int64_t>(sample) % gas.balls();
+        const PairState start = DrawFromFlowMeasure(gas.pair(), random);
+        // In a cell that is its own neighbour the piston comes from the other side as well.
+        const bool is_alone = shape[IsAlongX(direction) ? 0 : 2] != '1';
+        ReferenceFlow flow(gas.pair(), start);
+        ReferenceGas moving = GasFrom(gas, WithPair(gas, start, kSpeed, ball, direction));
+        double time = 0;
+        for (int wall_hits = 0; wall_hits < kWallHits;) {
+          const Event expected = flow.Step();
+          time += expected.duration;
+          const GasEvent event = moving.Step();
+          if (!is_alone && event.kind == EventKind::kBallPiston && event.direction != direction) {
+            break;
+          }
+          ASSERT_EQ(event.kind, expected.kind);
+          ASSERT_NEAR(event.time * kSpeed, time, kTolerance * (1 + time));
+          if (event.kind == EventKind::kBallPiston) {
+            ++exchanges;
+            flow.ExchangeComponents();
+            ASSERT_EQ(event.direction, direction);
+            ASSERT_EQ(event.ball, ball);
+            ASSERT_EQ(event.piston, gas.PistonOf(ball, direction));
+          }
+          wall_hits += event.kind == EventKind::kBallWall;
+          const PairState there = PairOf(gas, moving.StateAt(event.time), kSpeed, ball, direction);
+          ASSERT_NEAR((there.position - flow.state().position).norm(), 0, kTolerance);
+          ASSERT_NEAR((there.direction - flow.state().direction).norm(), 0, kTolerance);
+          ASSERT_NEAR(there.ball_speed, flow.state().ball_speed, kTolerance);
+          ASSERT_NEAR(there.piston, flow.state().piston, kTolerance);
+          ASSERT_NEAR(there.piston_velocity, flow.state().piston_velocity, kTolerance);
+        }
+      }
+    }
+  }
+  EXPECT_GT(exchanges, 200);
+}
+
+GasState Reversed(GasState state) {
+  for (GasBall& ball : state.balls) ball.direction = -ball.direction;
+  for (GasPiston& piston : state.pistons) piston.velocity = -piston.velocity;
+  return state;
+}
+
+void RunTo(ReferenceGas& gas, double time) {
+  while (gas.NextTime() <= time) gas.Step();
+}
+
+// The gas runs for so long that each ball hits ten walls on average, and back. An error of 1e-16
+// grows threefold a wall hit on both ways, and an exchange hands it on to another ball. One ball in
+// a hundred is off by more than 1e-6: those that fly fast and graze discs.
+TEST(ReferenceGas, ReversedVelocitiesRetraceTheirWay) {
+  size_t off = 0, balls = 0, exchanges = 0;
+  for (const char* shape : {"1", "2", "12", "1x1", "4x3"}) {
+    const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
+    for (uint64_t sample = 0; sample < 20; ++sample) {
+      const GasState start = GasInEquilibrium(gas, 1, 72, sample);
+      ReferenceGas there = GasFrom(gas, start);
+      double end = 0;
+      for (int64_t hits = 0; hits < 10 * gas.balls();) {
+        const GasEvent event = there.Step();
+        hits += event.kind == EventKind::kBallWall;
+        exchanges += event.kind == EventKind::kBallPiston;
+        end = event.time;
+      }
+      end = (end + there.NextTime()) / 2;
+      ReferenceGas back = GasFrom(gas, Reversed(there.StateAt(end)));
+      RunTo(back, end);
+      const GasState reached = Reversed(back.StateAt(end));
+      for (size_t i = 0; i < start.balls.size(); ++i) {
+        const double error = (reached.balls[i].position - start.balls[i].position).norm();
+        ++balls;
+        off += error > 1e-6;
+      }
+    }
+  }
+  EXPECT_GT(exchanges, balls / 2);
+  EXPECT_LT(off, balls / 20);
+}
+
+// Speeds carry an ulp from each exchange, at random.
+TEST(ReferenceGas, EnergyStays) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "8x8");
+  const GasState start = GasInEquilibrium(gas, 1, 73, 0);
+  ReferenceGas moving = GasFrom(gas, start);
+  double time = 0;
+  for (int i = 0; i < 1'000'000; ++i) time = moving.Step().time;
+  EXPECT_NEAR(EnergyOf(moving.StateAt(time)) / EnergyOf(start), 1, 1e-13);
+}
+
+// Slacks: an ulp of a place in a cell, some more where two discs are nearly tangent, as in
+// reference_flow_test.cc. A place is that of the last event moved on, which rounds again.
+TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
+  constexpr double kSlack = 1e-13;
+  for (const double rho : {0.5 + 1e-9, 0.501, kPaperRho, 0.6, 0.7}) {
+    for (const char* shape : {"1", "3", "1x1", "3x2"}) {
+      for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
+        const GasGeometry gas = GasAtShare(rho, 1, shape, ends);
+        SCOPED_TRACE(testing::Message() << "rho " << rho << " shape " << shape);
+        const GasRandom random(74, 0, 0);
+        ReferenceGas moving(gas, GasInEquilibrium(gas, 1, 74, 0), ThermalWalls(gas, 2, 1, random));
+        double last = 0;
+        for (int i = 0; i < 5000; ++i) {
+          const GasEvent event = moving.Step();
+          ASSERT_NE(event.kind, EventKind::kEscape) << i;
+          ASSERT_GE(event.time, last - kSlack) << i;
+          last = event.time;
+          if (moving.NextTime() < last)
+            continue;  // rounding: the next event is at the same instant
+          const GasState state = moving.StateAt(last);
+          for (int64_t ball = 0; ball < gas.balls(); ++ball) {
+            const GasBall& here = state.balls[static_cast<size_t>(ball)];
+            ASSERT_TRUE(InsideCell(gas.pair(), here.position, kSlack)) << "event " << i;
+            ASSERT_NEAR(here.direction.norm(), 1, 1e-15);
+            for (int k = 0; k < gas.directions(); ++k) {
+              ASSERT_GE(GapTo(gas, state, ball, gas.DirectionAt(k)), -kSlack) << "event " << i;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferenceGas, AGasAtRestHasNoEvents) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
+  EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
+}
+
+TEST(ReferenceGas, ARestingPistonIsHitWhereItStands) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
+  for (const Direction direction :
+       {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
+    const PairState start = {.position = {0, 0},
+                             .direction = {1, 0},
+                             .ball_speed = 2,
+                             .piston = 0.2,
+                             .piston_velocity = 0};
+    ReferenceGas moving = GasFrom(gas, WithPair(gas, start, 1, 4, direction));
+    const GasEvent event = moving.Step();
+    EXPECT_EQ(event.kind, EventKind::kBallPiston);
+    EXPECT_EQ(event.direction, direction);
+    EXPECT_NEAR(event.time, 0.1, 1e-15);
+    EXPECT_EQ(moving.BallEnergy(4), 0);
+    EXPECT_EQ(moving.PistonEnergy(gas.PistonOf(4, direction)), 2);
+  }
+}
+
+TEST(ReferenceGas, ABallAtRestInReachOfAPistonIsMet) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
+  for (const Direction direction :
+       {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
+    const PairState start = {.position = {0.2, 0},
+                             .direction = {0, 1},
+                             .ball_speed = 0,
+                             .piston = 0.25,
+                             .piston_velocity = 1};
+    ReferenceGas moving = GasFrom(gas, WithPair(gas, start, 1, 4, direction));
+    EXPECT_EQ(moving.Step().kind, EventKind::kPistonWall);
+    const GasEvent event = moving.Step();
+    EXPECT_EQ(event.kind, EventKind::kBallPiston);
+    // From 0.25 to the far end and back to 0.2.
+    const double way = 2 * gas.pair().piston_right() - 0.25 - 0.2;
+    EXPECT_NEAR(event.time, way, 1e-15);
+    EXPECT_EQ(moving.BallEnergy(4), 0.5);
+    EXPECT_EQ(moving.PistonEnergy(event.piston), 0);
+    const GasBall ball = moving.BallAt(4, event.time);
+    EXPECT_EQ(SeenToward(direction, ball.direction).x(), -1);
+  }
+}
+
+// At the end of its way, within rounding, the piston comes no nearer.
+TEST(ReferenceGas, ABallAtRestIsMetWhereThePistonTurns) {
+  const GasGeometry gas = GasAtShare(0.6, 0.3, "3");
+  const PairState start = {.position = {0.5 - gas.reach(), 0},
+                           .direction = {1, 0},
+                           .ball_speed = 0,
+                           .piston = 0.5,
+                           .piston_velocity = -1};
+  for (const Direction direction : {Direction::kRight, Direction::kLeft}) {
+    ReferenceGas moving = GasFrom(gas, WithPair(gas, start, 1, 1, direction));
+    EXPECT_EQ(moving.Step().kind, EventKind::kBallPiston);
+  }
+}
+
+// One piston, one ball, both sides: it comes round and meets the ball in the other direction.
+TEST(ReferenceGas, InARingOfOneCellThePistonMeetsItsBallFromBothSides) {
+  const GasGeometry ring = GasOf(kPaperRho, 0.2, "1");
+  ReferenceGas moving = GasFrom(ring, GasInEquilibrium(ring, 1, 75, 0));
+  int met[4] = {0, 0, 0, 0};
+  for (int i = 0; i < 20'000; ++i) {
+    const GasEvent event = moving.Step();
+    if (event.kind == EventKind::kBallPiston) ++met[static_cast<int>(event.direction)];
+  }
+  EXPECT_GT(met[static_cast<int>(Direction::kRight)], 100);
+  EXPECT_GT(met[static_cast<int>(Direction::kLeft)], 100);
+}
+
+// A piston that leaves a thermal wall has a new speed; every other one keeps its speed.
+TEST(ReferenceGas, OnlyThermalWallsChangeAPistonsSpeed) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2", GasEnds::kReservoirs);
+  const GasRandom random(76, 0, 0);
+  const ThermalWalls walls(gas, 2, 1, random);
+  ReferenceGas moving(gas, GasInEquilibrium(gas, 1, 76, 0), walls);
+  int changed = 0, kept = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double time = moving.NextTime();
+    std::vector<GasPiston> before;
+    for (int64_t p = 0; p < gas.pistons(); ++p) before.push_back(moving.PistonAt(p, time));
+    const GasEvent event = moving.Step();
+    if (event.kind != EventKind::kPistonWall) continue;
+    const GasPiston& was = before[static_cast<size_t>(event.piston)];
+    const GasPiston now = moving.PistonAt(event.piston, event.time);
+    ASSERT_EQ(now.offset, std::copysign(gas.reach(), was.velocity));
+    ASSERT_LT(now.velocity * was.velocity, 0);
+    // The hot wall is on the left of the leftmost pistons, the cold one on the right.
+    const bool at_left_wall =
+        walls.Has(event.piston) && walls.IsHot(event.piston) && was.velocity < 0;
+    const bool at_right_wall =
+        walls.Has(event.piston) && !walls.IsHot(event.piston) && was.velocity > 0;
+    if (at_left_wall || at_right_wall) {
+      ASSERT_NE(now.velocity, -was.velocity);
+      ++changed;
+    } else {
+      ASSERT_EQ(now.velocity, -was.velocity);
+      ++kept;
+    }
+  }
+  EXPECT_GT(changed, 100);
+  EXPECT_GT(kept, 100);
+}
+
+}  // namespace
+}  // namespace ballpiston

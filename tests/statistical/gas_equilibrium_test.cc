@@ -1,0 +1,107 @@
+// Gases in equilibrium: exchange rates, laws of energies, and a chain between equal reservoirs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "core/gas/gas_exchange_rate.h"
+#include "core/gas/gas_run.h"
+#include "core/geometry/paper.h"
+#include "tests/core/gas/gases.h"
+#include "tests/oracle/one_sample.h"
+#include "tests/statistical/gas_samples.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr uint64_t kGasSeed = 21;
+
+std::vector<double> EnergiesOf(const GasSamples& samples, size_t first, size_t last) {
+  std::vector<double> energies;
+  for (size_t body = first; body < last; ++body) {
+    energies.insert(energies.end(), samples.last[body].begin(), samples.last[body].end());
+  }
+  return energies;
+}
+
+// Energies in units of T. Each distance exceeds 2.3 in 5e-5 of all cases.
+void ExpectGammaOne(const std::vector<double>& energies) {
+  EXPECT_LT(oracle::KolmogorovSmirnov(energies, [](double e) { return -std::expm1(-e); }), 2.3);
+}
+void ExpectGammaHalf(const std::vector<double>& energies) {
+  EXPECT_LT(oracle::KolmogorovSmirnov(energies, [](double e) { return std::erf(std::sqrt(e)); }),
+            2.3);
+}
+
+class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, const char*>> {};
+
+// The mean over the canonical ensemble, of many replicas. The rate is off by four standard errors,
+// 0.2 % to 0.6 % each, in 6e-5 of all cases; the energies of all bodies at the end are independent.
+// Together 2e-4 false alarms each.
+TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
+  const auto& [engine, shape] = GetParam();
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
+  const auto replicas = static_cast<uint64_t>(20'000 / gas.contacts());
+  const GasSamples samples =
+      Measure({.engine = engine, .geometry = gas, .replicas = replicas, .duration = 50}, kGasSeed);
+  const double exact = GasExchangeRate(gas, 1);
+  EXPECT_LT(StandardErrorsOff(samples.rate, exact), 4) << samples.rate.mean << " not " << exact;
+  EXPECT_LT(samples.rate.StandardError().value(), 0.007 * exact);
+  const auto balls = static_cast<size_t>(gas.balls());
+  ExpectGammaOne(EnergiesOf(samples, 0, balls));
+  ExpectGammaHalf(EnergiesOf(samples, balls, samples.last.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, GasInEquilibriumOf,
+                         testing::Combine(testing::Values(GasEngine::kReference, GasEngine::kJumps),
+                                          testing::Values("1", "2", "5", "1x1", "2x1", "1x3",
+                                                          "4x4")));
+// The lanes are slow in small gases.
+INSTANTIATE_TEST_SUITE_P(Lanes, GasInEquilibriumOf,
+                         testing::Combine(testing::Values(GasEngine::kLanes),
+                                          testing::Values("2", "1x1", "4x4")));
+
+// After a hundred exchanges of each contact, of one large gas. False alarms: 1e-4.
+TEST(JumpGas, KeepsTheGammaLaws) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, "100x40");
+  const GasSamples samples = Measure(
+      {.engine = GasEngine::kJumps, .geometry = gas, .replicas = 2, .duration = 1000}, kGasSeed);
+  EXPECT_LT(std::fabs(samples.rate.mean / GasExchangeRate(gas, 1) - 1), 0.02);
+  ExpectGammaOne(EnergiesOf(samples, 0, 4000));
+  ExpectGammaHalf(EnergiesOf(samples, 4000, samples.last.size()));
+}
+
+// No current and one temperature, each within four standard errors; the balls next to the
+// reservoirs at the end of the run have the law Gamma(1). False alarms: 9e-4.
+void ExpectEquilibriumBetweenEqualReservoirs(GasEngine engine, uint64_t replicas,
+                                             const char* shape) {
+  const GasGeometry gas = GasOf(kPaperRho, 0.2, shape, GasEnds::kReservoirs);
+  const GasSamples samples = Measure(
+      {.engine = engine, .geometry = gas, .replicas = replicas, .begin = 20, .duration = 150},
+      kGasSeed + 1);
+  EXPECT_LT(StandardErrorsOff(samples.current, 0), 4);
+  EXPECT_LT(StandardErrorsOff(samples.rate, InfiniteGasExchangeRate(gas, 1)), 4);
+  const auto balls = static_cast<size_t>(gas.balls());
+  for (size_t body = 0; body < samples.temperatures.size(); ++body) {
+    // Of an outermost piston the jump process knows the mean alone.
+    const Moments& temperature = samples.temperatures[body];
+    if (temperature.m2 < 1e-6) continue;
+    EXPECT_LT(StandardErrorsOff(temperature, 1), 4) << "body " << body;
+  }
+  ExpectGammaOne(samples.last[0]);
+  ExpectGammaOne(samples.last[balls - 1]);
+}
+
+TEST(JumpGas, EqualReservoirsAreAnEquilibrium) {
+  ExpectEquilibriumBetweenEqualReservoirs(GasEngine::kJumps, 10'000, "3");
+}
+
+TEST(ReferenceGas, EqualReservoirsAreAnEquilibrium) {
+  ExpectEquilibriumBetweenEqualReservoirs(GasEngine::kReference, 2000, "3");
+}
+
+}  // namespace
+}  // namespace ballpiston
