@@ -94,7 +94,7 @@ class GasEquilibrium : public GasExperiment {
 
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return Mean("exchange_rate", merged, 0, std::sqrt(temperature_),
-                GasExchangeRate(geometry(), temperature_));
+                std::sqrt(temperature_) * exchange_rate());
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {

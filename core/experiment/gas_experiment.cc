@@ -56,7 +56,8 @@ class GasBlocks : public BlockRun {
     slice_ = experiment_.times().Total() / std::ceil(seconds / kSecondsOfASlice);
     time_ = 0;
     is_measuring_ = false;
-    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), std::move(starts));
+    run_ = StartGases(experiment_.gas_engine(), experiment_.geometry(), experiment_.exchange_rate(),
+                      std::move(starts));
     return true;
   }
 

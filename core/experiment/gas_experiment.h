@@ -9,6 +9,7 @@
 
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_experiment.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
@@ -44,6 +45,8 @@ class GasExperiment : public PointExperiment {
   GasEngine gas_engine() const;
   const GasGeometry& geometry() const { return geometry_; }
   const GasTimes& times() const { return times_; }
+  // At temperature 1.
+  double exchange_rate() const { return exchange_rate_; }
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
   virtual GasState Draw(CounterRandom& random) const = 0;
   virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
@@ -53,11 +56,15 @@ class GasExperiment : public PointExperiment {
  protected:
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
                 const GasTimes& times)
-      : PointExperiment(spec, point), geometry_(geometry), times_(times) {}
+      : PointExperiment(spec, point),
+        geometry_(geometry),
+        times_(times),
+        exchange_rate_(GasExchangeRate(geometry, 1)) {}
 
  private:
   GasGeometry geometry_;
   GasTimes times_;
+  double exchange_rate_;
 };
 
 }  // namespace ballpiston

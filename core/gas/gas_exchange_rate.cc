@@ -115,7 +115,7 @@ double FactorOfTorus(int columns, int rows, double z) {
 
 // Infinitely many columns: the largest eigenvalue.
 double FactorOfTube(int rows, double z) {
-  constexpr int kColumns = 24;  // the next eigenvalue is some z times the largest
+  constexpr int kColumns = 9;  // the next eigenvalue is some z times the largest
   Columns lattice(rows, z);
   lattice.BeginWith(0);
   for (int column = 0; column < kColumns; ++column) lattice.AddColumn();
@@ -160,6 +160,8 @@ double InfiniteCrowdingFactor(bool is_lattice, double z) {
 }
 
 double GasExchangeRate(const GasGeometry& geometry, double temperature) {
+  if (geometry.ends() == GasEnds::kReservoirs)
+    return InfiniteGasExchangeRate(geometry, temperature);
   const Crowding crowding = CrowdingOf(geometry.pair());
   return std::sqrt(temperature) * crowding.rate * CrowdingFactor(geometry.shape(), crowding.z);
 }

@@ -25,7 +25,7 @@ namespace ballpiston {
 
 inline constexpr double kGasExchangeRateRelativeError = 1e-12;
 
-// Of the periodic gas of this shape.
+// Of the periodic gas of this shape. Between reservoirs it is that of the infinite gas.
 double GasExchangeRate(const GasGeometry& geometry, double temperature);
 
 // Of the infinite chain or lattice.

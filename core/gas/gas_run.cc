@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/jump_gas.h"
 #include "core/gas/lane_gas.h"
 #include "core/gas/reference_gas.h"
@@ -51,9 +50,10 @@ class ReferenceRun : public GasRun {
 
 class JumpRun : public GasRun {
  public:
-  JumpRun(const GasGeometry& geometry, std::vector<GasStart> replicas) {
-    const double density = std::sqrt(std::numbers::pi) * RateOf(geometry);
+  JumpRun(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas) {
+    const double density = std::sqrt(std::numbers::pi) * exchange_rate;
     for (GasStart& start : replicas) {
+      SetOutermost(geometry, start);
       const CounterRandom random = start.random.OfJumps();
       replicas_.push_back(
           {JumpGas(geometry, density, start.state, std::move(start.walls), random), start.meter});
@@ -70,10 +70,12 @@ class JumpRun : public GasRun {
     GasMeter* meter;
   };
 
-  // At temperature 1.
-  static double RateOf(const GasGeometry& geometry) {
-    return geometry.ends() == GasEnds::kPeriodic ? GasExchangeRate(geometry, 1)
-                                                 : InfiniteGasExchangeRate(geometry, 1);
+  // The outermost pistons have their mean energy from the start.
+  static void SetOutermost(const GasGeometry& geometry, const GasStart& start) {
+    for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
+      if (!start.walls.Has(piston)) continue;
+      start.meter->SetPiston(0, piston, start.walls.TemperatureAt(piston) / 2);
+    }
   }
 
   std::vector<Replica> replicas_;
@@ -82,12 +84,12 @@ class JumpRun : public GasRun {
 }  // namespace
 
 std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
-                                   std::vector<GasStart> replicas) {
+                                   double exchange_rate, std::vector<GasStart> replicas) {
   switch (engine) {
     case GasEngine::kJumps:
-      return std::make_unique<JumpRun>(geometry, std::move(replicas));
+      return std::make_unique<JumpRun>(geometry, exchange_rate, std::move(replicas));
     case GasEngine::kLanes:
-      return std::make_unique<LaneGas>(geometry, std::move(replicas));
+      return std::make_unique<LaneGas>(geometry, exchange_rate, std::move(replicas));
     case GasEngine::kReference:
       break;
   }

@@ -37,8 +37,10 @@ class GasRun {
   virtual void AdvanceTo(double time) = 0;
 };
 
+// `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). The jump process takes
+// its rates from it, the lanes take from it how far balls fly ahead, which changes no result.
 std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
-                                   std::vector<GasStart> replicas);
+                                   double exchange_rate, std::vector<GasStart> replicas);
 
 }  // namespace ballpiston
 

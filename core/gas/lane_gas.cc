@@ -9,7 +9,6 @@
 
 #include "core/billiard/exchange.h"
 #include "core/closed_form/pair_measures.h"
-#include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/pair_state.h"
 
 namespace ballpiston {
@@ -34,7 +33,7 @@ double MeanFlight(const PairGeometry& pair) {
 
 }  // namespace
 
-LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
+LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
     : gas_(geometry),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
@@ -46,7 +45,7 @@ LaneGas::LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas)
   FindPistons();
   from_ = to_;
   versions_.resize(gas_.balls.size() + gas_.pistons.size());
-  ChooseWindow();
+  ChooseWindow(exchange_rate);
 }
 
 void LaneGas::Place(const GasState& state) {
@@ -74,14 +73,13 @@ void LaneGas::FindPistons() {
 }
 
 // For the mean energy of the balls; the results do not depend on it.
-void LaneGas::ChooseWindow() {
+void LaneGas::ChooseWindow(double exchange_rate) {
   double energy = 0;
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
   const double temperature = energy / static_cast<double>(gas_.balls.size());
   const double flights = std::sqrt(temperature * std::numbers::pi / 2) / mean_flight_;
-  const double exchanges = gas_.geometry.directions() *
-                           InfiniteGasExchangeRate(gas_.geometry, std::max(temperature, kAtRest));
-  const double best = std::sqrt(kFlightsOfAWindow * flights / exchanges);
+  const double exchanges = gas_.geometry.directions() * exchange_rate * std::sqrt(temperature);
+  const double best = std::sqrt(kFlightsOfAWindow * flights / std::max(exchanges, kAtRest));
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);
 }
 

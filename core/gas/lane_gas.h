@@ -33,7 +33,7 @@ namespace ballpiston {
 
 class LaneGas : public GasRun {
  public:
-  LaneGas(const GasGeometry& geometry, std::vector<GasStart> replicas);
+  LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas);
 
   void AdvanceTo(double time) override;
 
@@ -59,7 +59,7 @@ class LaneGas : public GasRun {
 
   void Place(const GasState& state);
   void FindPistons();
-  void ChooseWindow();
+  void ChooseWindow(double exchange_rate);
 
   void AdvanceWindow();  // to end_
   void FlyAll();

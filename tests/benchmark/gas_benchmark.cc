@@ -18,6 +18,7 @@
 
 #include "core/closed_form/pair_measures.h"
 #include "core/gas/canonical_gas.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
@@ -61,7 +62,7 @@ class RunningGas {
     std::vector<GasStart> starts;
     starts.push_back({std::move(state), ThermalWalls(), random, meter_.get()});
     const double before = BytesInUse();
-    run_ = StartGases(engine, geometry_, std::move(starts));
+    run_ = StartGases(engine, geometry_, GasExchangeRate(geometry_, 1), std::move(starts));
     run_->AdvanceTo(time_ = slice / 4);
     bytes_ = (BytesInUse() - before) / static_cast<double>(geometry_.balls());
   }

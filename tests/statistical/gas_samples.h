@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/gas/canonical_gas.h"
+#include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
@@ -52,7 +53,8 @@ inline GasSamples Measure(const GasTask& task, uint64_t seed) {
     std::vector<GasStart> starts;
     starts.push_back(
         {std::move(state), ThermalWalls(gas, task.hot, task.cold, random), random, &meter});
-    const std::unique_ptr<GasRun> run = StartGases(task.engine, gas, std::move(starts));
+    const std::unique_ptr<GasRun> run =
+        StartGases(task.engine, gas, GasExchangeRate(gas, 1), std::move(starts));
     run->AdvanceTo(task.begin);
     meter.Begin(task.begin);
     run->AdvanceTo(task.begin + task.duration);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/paper.h"
 #include "tests/core/gas/gases.h"
 
@@ -30,7 +31,7 @@ class Replicas {
       ThermalWalls walls(geometry, 2, 1, random);
       starts.push_back({state, std::move(walls), random, &meters_.emplace_back(geometry, state)});
     }
-    run_ = StartGases(engine, geometry, std::move(starts));
+    run_ = StartGases(engine, geometry, GasExchangeRate(geometry, 1), std::move(starts));
   }
 
   // The window of measurement in so many calls.
