@@ -27,9 +27,6 @@ enum class TargetUnit { kSamples, kCollisions, kEither };
 
 // How far the limit delta -> 0 is from the billiard, in the experiment's first estimate.
 struct LimitError {
-  Model model;  // of the limit, that AUTO chooses: the cheapest one
-  // Whether a pilot checks the bound (model_choice/limit_error.h); else the bound stands alone.
-  bool has_pilots;
   bool (*is_known)(const PointParameters& point);
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
 };

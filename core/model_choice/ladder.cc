@@ -42,8 +42,6 @@ class Question {
   // Whether a bound of the limit's error is known.
   bool HasLimitError() const { return HasLimit() && experiment().limit_error->is_known(point_); }
   double ExpectedLimitError() const { return experiment().limit_error->expected(point_); }
-  bool HasPilots() const { return experiment().limit_error->has_pilots; }
-  Model ModelOfLimit() const { return experiment().limit_error->model; }
 
   // The model error of a billiard model: its error without the statistical error. Empty if the
   // first estimate has no relative error.
@@ -127,17 +125,7 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
       Rounded(place.delta));
 }
 
-Answer WithoutPilots(const Question& question) {
-  const double error = question.ExpectedLimitError();
-  const bool is_within = error <= *question.target().tolerance;
-  const std::string compared = absl::StrCat("the limit's error, up to ", Rounded(error), ", is ",
-                                            is_within ? "within" : "beyond", " the tolerance");
-  if (!is_within) return Billiard(question, compared);
-  return {question.ModelOfLimit(), compared, error};
-}
-
 std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
-  if (!question.HasPilots()) return WithoutPilots(question);
   if (const std::string why = WithoutAPilot(question); !why.empty()) {
     return Billiard(question, why);
   }
@@ -150,15 +138,13 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
   if (error > *question.target().tolerance) {
     return Billiard(question, absl::StrCat(found, ": beyond the tolerance"));
   }
-  return Answer{question.ModelOfLimit(), absl::StrCat(found, ": within the tolerance"), error};
+  return Answer{Model::kSpectrum, absl::StrCat(found, ": within the tolerance"), error};
 }
 
 // The model that has the smaller error within the budget. Runs no pilot, because a pilot would use
 // part of the budget.
 Answer ByBudget(const Question& question) {
-  const Model model = question.ModelOfLimit();
-  double limit = question.ExpectedLimitError();
-  if (model == Model::kMarkov) limit += question.ErrorOf(question.SamplesInBudget(model));
+  const double limit = question.ExpectedLimitError();
   const double billiard = question.ErrorOf(question.SamplesInBudget(Model::kBilliard)) +
                           question.ErrorOfPrecision(Model::kBilliard).value_or(0);
   const std::string compared =
@@ -166,7 +152,7 @@ Answer ByBudget(const Question& question) {
                    ", the limit's up to ", Rounded(limit));
   const double enough = question.target().tolerance.value_or(0);
   if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
-  return {model, compared, question.ExpectedLimitError()};
+  return {Model::kSpectrum, compared, limit};
 }
 
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
@@ -229,11 +215,6 @@ void PredictSamples(const Question& question, Rung& rung) {
 void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
-  if (!question.HasPilots()) {
-    rung.model_error = question.ExpectedLimitError();
-    rung.reason = "the limit; so far off or less";
-    return;
-  }
   const PilotPlace place = PilotPlaceFor(question.point());
   const std::optional<Pilot> pilot = pilots(place);
   const bool known = pilot.has_value();
