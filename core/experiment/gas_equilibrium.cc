@@ -10,12 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
-#include <string>
-#include <utility>
+#include <optional>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/exact_estimate.h"
@@ -94,6 +96,10 @@ class GasEquilibrium : public GasExperiment {
 
   BlockResult EmptyResult() const override { return NoGasesMeasured(); }
 
+  uint64_t CountsOfASample() const override {
+    return static_cast<uint64_t>(std::max(geometry().balls(), geometry().pistons()));
+  }
+
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return Mean("exchange_rate", merged, 0, std::sqrt(temperature_),
                 GasExchangeRate(geometry(), temperature_));
@@ -113,12 +119,19 @@ class GasEquilibrium : public GasExperiment {
                                    .standard_error = divergence.standard_error,
                                    .noise_floor = divergence.noise_floor});
       summary.histograms.push_back(
-          {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = merged.histograms[i]});
+          {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = AtTemperature(merged, i)});
     }
     return summary;
   }
 
  private:
+  // Speeds scale with sqrt T.
+  Histogram AtTemperature(const BlockResult& merged, size_t index) const {
+    Histogram speeds = merged.histograms[index];
+    speeds.upper *= std::sqrt(temperature_);
+    return speeds;
+  }
+
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale,
                 double exact) const {
     const BatchMeans& measured = merged.batch_means[index];
