@@ -2,13 +2,14 @@
 //
 // Each replica starts from the local equilibrium in which T^(3/2) falls linearly, as it does where
 // the conductivity grows as sqrt T, relaxes for some of the longest relaxation times, which grow as
-// N^2, and is measured for some more. Replicas are independent, so their scatter gives the errors. A
-// replica runs at mean temperature 1: all of the gas scales.
+// N^2, and is measured for some more. Replicas are independent, so their scatter gives the errors.
+// A replica runs at mean temperature 1: all of the gas scales.
 //
 //   conductivity = J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))],  T = (hot + cold)/2
 //
 // is that at T of N cells in a row whose conductivity grows as sqrt T.
-//   batch means, a replica each  [0] energy carried through all contacts along x; these times duration
+//   batch means, a replica each  [0] energy carried through all contacts along x; these times
+//   duration
 //                                [1] exchanges, contacts times duration
 //                                [2] the balls' mean energies, balls  [3] twice the pistons'
 //   moments                      the mean temperature at each place of the profile
@@ -46,9 +47,9 @@ constexpr int64_t kMostColumnsApart = 128;  // of the profile; beyond, neighbour
 double MeanTemperature(const PointParameters& point) { return (point[kHot] + point[kCold]) / 2; }
 
 // pi^2 D/N^2 is the slowest rate, with the diffusivity D = conductivity/heat capacity: half of the
-// exchange rate over 3/2 for each cell of a chain, 2 of a lattice. It is slowest at the cold end, and
-// taken there. A reservoir colder than a tenth of the mean temperature counts as a tenth: only the
-// last 1 % of the gas is colder than that, because T^(3/2) is linear.
+// exchange rate over 3/2 for each cell of a chain, 2 of a lattice. It is slowest at the cold end,
+// and taken there. A reservoir colder than a tenth of the mean temperature counts as a tenth: only
+// the last 1 % of the gas is colder than that, because T^(3/2) is linear.
 double RelaxationTime(const GasGeometry& geometry, double cold) {
   constexpr double kColdest = 0.1;
   const double length = static_cast<double>(geometry.shape().columns) + 1;
@@ -100,8 +101,8 @@ std::vector<Place> PlacesOf(const GasGeometry& geometry) {
 
 class GasConduction : public GasExperiment {
  public:
-  GasConduction(const EnsembleSpec& spec, const PointParameters& point,
-                const GasGeometry& geometry, const ConductionTimes& times)
+  GasConduction(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+                const ConductionTimes& times)
       : GasExperiment(spec, point, geometry, times.times),
         temperature_(MeanTemperature(point)),
         hot_(point[kHot] / temperature_),
@@ -230,8 +231,7 @@ ConductionTimes TimesAt(Model model, const PointParameters& point) {
 
 std::unique_ptr<PointExperiment> CreateGasConduction(const EnsembleSpec& spec,
                                                      const PointParameters& point) {
-  return std::make_unique<GasConduction>(spec, point, OpenGasOf(point),
-                                         TimesAt(spec.model, point));
+  return std::make_unique<GasConduction>(spec, point, OpenGasOf(point), TimesAt(spec.model, point));
 }
 
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {

@@ -145,6 +145,13 @@ HitRates HitRatesOf(const PairGeometry& pair) {
           .of_a_piston = std::sqrt(2 / std::numbers::pi) / stroke};
 }
 
+// Hits of the outermost pistons at their thermal walls in a unit of time at temperature 1: every
+// second of their turns.
+double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
+  if (geometry.ends() == GasEnds::kPeriodic) return 0;
+  return static_cast<double>(geometry.shape().rows) * rates.of_a_piston;
+}
+
 }  // namespace
 
 GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends) {
@@ -158,26 +165,33 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
   }
 }
 
-// Measured with chains of 8, 100 and 10^4 cells and with 16x16 at deltas from 0.025 to 0.2, in units of
-// the pair's work: seconds follow within a factor of 1.6. In lanes a wall hit takes as long as 3.5 of
-// the pair's, and an exchange, after which two balls fly again, as long as a pair's collision and 800
-// hits. In the reference's queue an event takes as long as three of the pair's. A jump of the gas,
-// with the queue, takes as long as four jumps whose correlations are measured.
+// Measured with chains of 8, 100 and 10^4 cells and with 16x16 at deltas from 0.025 to 0.2, in
+// units of the pair's work:
+//   lanes      a wall hit is as much as four of the pair's; an exchange, after which two balls fly
+//              again, as a collision and 900 hits; a thermal wall, after which one does, as 600
+//              hits
+//   reference  an event is as much as 2.6 of the pair's with 16 bodies in the queue, 6.6 with
+//   20,000 jumps      an exchange is as much as 4.5 jumps of the pair, which are measured with
+//   correlations
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());
   const double exchanges =
       static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
-  if (model == Model::kMarkov) return {.starts = balls, .jumps = 4 * exchanges};
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 4.5 * exchanges};
   const HitRates rates = HitRatesOf(geometry.pair());
   const double ball_hits = rates.of_a_ball * balls * time;
   if (model == Model::kBilliardReference) {
-    return {.ball_wall = 3 * ball_hits,
-            .piston_wall = 3 * rates.of_a_piston * pistons * time,
-            .collisions = 3 * exchanges,
+    const double event = 1 + 1.3 * std::log10(balls + pistons);
+    return {.ball_wall = event * ball_hits,
+            .piston_wall = event * rates.of_a_piston * pistons * time,
+            .collisions = event * exchanges,
             .starts = balls};
   }
-  return {.ball_wall = 3.5 * ball_hits + 800 * exchanges, .collisions = exchanges, .starts = balls};
+  const double thermal_hits = ThermalHitsOf(geometry, rates) * time;
+  return {.ball_wall = 4 * ball_hits + 900 * exchanges + 600 * thermal_hits,
+          .collisions = exchanges,
+          .starts = balls};
 }
 
 GasEngine GasExperiment::gas_engine() const {

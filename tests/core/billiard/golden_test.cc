@@ -138,6 +138,13 @@ std::vector<EnsembleSpec> SpecsOf(Engine engine) {
       SpecOf(&kEnergyRelaxation, PaperPoint(0.2), {.samples = 100}),
       SpecOf(&kEnergyRelaxation, PaperPoint(0.2, 0.01), {.samples = 200}),
       SpecOf(&kMarkovProperty, PaperPoint(0.2), {.collisions = 5000})};
+  if (engine != Engine::kLanesSingle) {
+    for (const ExperimentKind* gas : {&kGasEquilibrium, &kGasConduction}) {
+      for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {
+        specs.push_back(SpecOf(gas, PaperGas(gas, 0.2, shape), {.samples = 64}));
+      }
+    }
+  }
   for (EnsembleSpec& spec : specs) {
     spec.seed = 42;
     spec.model = engine == Engine::kReference ? Model::kBilliardReference : Model::kBilliard;
@@ -202,6 +209,9 @@ std::string NameOf(absl::string_view made_by, const EnsembleSpec& spec) {
   if (!spec.grid[kExponent].empty()) absl::StrAppend(&name, " ", spec.grid[kExponent][0]);
   if (spec.experiment == &kEnergyRelaxation && !spec.grid[kEpsilon].empty()) {
     absl::StrAppend(&name, " from ", spec.grid[kEpsilon][0]);
+  }
+  if (IsOfAGas(spec.experiment)) {
+    absl::StrAppend(&name, " of ", Text(ShapeOf(spec.grid[kCells][0])), " cells");
   }
   return name;
 }

@@ -30,7 +30,7 @@ namespace {
 std::vector<EnsembleSpec> OneOfEach() {
   const PointParameters pair = PaperPoint(0.2);
   const Target samples = {.samples = 1000}, collisions = {.collisions = 2000};
-  const Target gases = {.samples = 200};
+  const Target gases = {.samples = 70};
   std::vector<EnsembleSpec> specs;
   for (const Model model : {Model::kAuto, Model::kBilliardReference, Model::kMarkov}) {
     for (const auto& [experiment, point, target] :

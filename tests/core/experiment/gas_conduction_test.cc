@@ -10,6 +10,7 @@
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "tests/core/experiment/gas_questions.h"
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
 
@@ -27,11 +28,7 @@ EnsembleSpec SpecBetween(double hot, double cold, const GasShape& shape = {.colu
   PointParameters point = PaperGas(&kGasConduction, 0.2, shape);
   point.Set(kHot, hot);
   point.Set(kCold, cold);
-  return SpecOf(&kGasConduction, point, {.samples = 200}, model, 7);
-}
-
-PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {
-  return PointExperiment::Create(spec, 0)->Summarize(merged);
+  return SpecOf(&kGasConduction, point, {.samples = 60}, model, 7);
 }
 
 std::vector<std::string> NamesOf(const PointSummary& summary) {
@@ -43,10 +40,9 @@ std::vector<std::string> NamesOf(const PointSummary& summary) {
 TEST(GasConduction, EstimatesFollowFromTheCurrent) {
   for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
     const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
-    EXPECT_EQ(NamesOf(summary),
-              (std::vector<std::string>{"heat_current", "conductivity", "conductivity_ratio",
-                                        "exchange_rate", "temperature_ball",
-                                        "temperature_piston"}));
+    EXPECT_EQ(NamesOf(summary), (std::vector<std::string>{
+                                    "heat_current", "conductivity", "conductivity_ratio",
+                                    "exchange_rate", "temperature_ball", "temperature_piston"}));
     // J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))] with N = 3, T = 2.
     const double per_current = 3 * std::sqrt(2.0) / (2.0 / 3 * (std::sqrt(27.0) - 1));
     const Estimate &current = summary.estimates[0], &conductivity = summary.estimates[1];
@@ -111,10 +107,9 @@ TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
     const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
     BlockResult merged = point->EmptyResult();
     for (BatchMeans& means : merged.batch_means) means.Add(1, 1);
+    const PointSummary summary = point->Summarize(merged);
     std::vector<double> positions;
-    for (const CurvePoint& at : point->Summarize(merged).curves[0].points) {
-      positions.push_back(at.at);
-    }
+    for (const CurvePoint& place : summary.curves[0].points) positions.push_back(place.at);
     EXPECT_EQ(positions.size(), merged.moments.size());
     EXPECT_TRUE(std::is_sorted(positions.begin(), positions.end()));
     return positions;
@@ -137,7 +132,8 @@ TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
     EXPECT_EQ(NamesOf(summary),
               (std::vector<std::string>{"heat_current", "exchange_rate", "temperature_ball",
                                         "temperature_piston"}));
-    // 3 models, 3 estimates and 7 places within 4.5 standard errors: one false alarm in 5,000 seeds.
+    // 3 models, 3 estimates and 7 places within 4.5 standard errors: one false alarm in 5,000
+    // seeds.
     EXPECT_EQ(summary.estimates[0].exact, 0);
     EXPECT_LT(std::fabs(*summary.estimates[0].ZScore()), 4.5) << Name(model);
     for (const size_t i : {2, 3}) {
@@ -168,9 +164,10 @@ TEST(GasConduction, ReplicasThatAreCutShortGiveNoErrorsAndSayWhy) {
   const auto point = PointExperiment::Create(SpecBetween(3, 1, {.columns = 30'000}), 0);
   const PointSummary summary = point->Summarize(SomeReplicas(*point));
   ASSERT_EQ(summary.remarks.size(), 1u);
-  EXPECT_THAT(summary.remarks[0],
-              AllOf(HasSubstr("replicas of 30000 cells in a row were followed for "),
-                    HasSubstr(" of the time that a stationary state takes: no errors can be given")));
+  EXPECT_THAT(
+      summary.remarks[0],
+      AllOf(HasSubstr("replicas of 30000 cells in a row were followed for "),
+            HasSubstr(" of the time that a stationary state takes: no errors can be given")));
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_FALSE(estimate.standard_error) << estimate.name;
   }
@@ -198,33 +195,31 @@ TEST(GasConduction, AReplicaIsFollowedForTheRelaxationTime) {
 
 // ---- bad input ----
 
-auto Names(const std::string& field, const std::string& text) {
-  return AllOf(Field(&FieldViolation::field, field),
-               Field(&FieldViolation::description, HasSubstr(text)));
-}
-
 TEST(GasConduction, HotBelowColdIsRejected) {
   EnsembleSpec spec = SpecBetween(2, 1);
   spec.grid[kHot] = {2, 0.5, 1, std::nextafter(1, 0)};
-  EXPECT_THAT(Violations(spec),
-              ElementsAre(Names("grid.hot[1]", "hot is 0.5, below cold = 1; permitted: hot >= cold"),
-                          Names("grid.hot[3]", "below cold = 1")));
+  EXPECT_THAT(
+      Violations(spec),
+      ElementsAre(Violates("grid.hot[1]", "hot is 0.5, below cold = 1; permitted: hot >= cold"),
+                  Violates("grid.hot[3]", "below cold = 1")));
   // A NaN among them does not hide the others.
   spec.grid[kHot] = {2};
   spec.grid[kCold] = {std::nan(""), 1, 3};
-  EXPECT_THAT(Violations(spec), testing::UnorderedElementsAre(
-                                    Names("grid.cold[0]", "nan"),
-                                    Names("grid.hot[0]", "hot is 2, below cold = 3")));
+  EXPECT_THAT(Violations(spec),
+              testing::UnorderedElementsAre(Violates("grid.cold[0]", "nan"),
+                                            Violates("grid.hot[0]", "hot is 2, below cold = 3")));
 }
 
 TEST(GasConduction, TemperaturesHaveToBePositive) {
   for (const double value : {0.0, -1.0, HUGE_VAL}) {
     EnsembleSpec spec = SpecBetween(2, 1);
     spec.grid[kCold] = {value};
-    EXPECT_THAT(Violations(spec), testing::Contains(Names("grid.cold[0]", "permitted: "))) << value;
+    EXPECT_THAT(Violations(spec), testing::Contains(Violates("grid.cold[0]", "permitted: ")))
+        << value;
     spec = SpecBetween(2, 1);
     spec.grid[kHot] = {value};
-    EXPECT_THAT(Violations(spec), testing::Contains(Names("grid.hot[0]", "permitted: "))) << value;
+    EXPECT_THAT(Violations(spec), testing::Contains(Violates("grid.hot[0]", "permitted: ")))
+        << value;
   }
 }
 
@@ -233,8 +228,9 @@ TEST(GasConduction, AToleranceOfNoCurrentIsRejected) {
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), IsEmpty());
   spec.grid[kHot] = {2, 1};
-  EXPECT_THAT(Violations(spec),
-              ElementsAre(Names("target.tolerance", "the heat current is 0 where hot = cold = 1")));
+  EXPECT_THAT(
+      Violations(spec),
+      ElementsAre(Violates("target.tolerance", "the heat current is 0 where hot = cold = 1")));
   spec.target = {.budget_seconds = 1};
   EXPECT_THAT(Violations(spec), IsEmpty());
 }

@@ -16,6 +16,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/ensemble/point_fold.h"
+#include "tests/core/experiment/gas_questions.h"
 #include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
@@ -33,9 +34,8 @@ std::vector<EnsembleSpec> OneOfEach(int64_t replicas) {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : kGases) {
     for (const Model model : kModelsOfGases) {
-      for (const GasShape& shape : {GasShape{3}, GasShape{2, 2, true}}) {
-        specs.push_back(
-            SpecOf(kind, PaperGas(kind, 0.2, shape), {.samples = replicas}, model, 42));
+      for (const GasShape& shape : {GasShape{2}, GasShape{2, 1, true}}) {
+        specs.push_back(SpecOf(kind, PaperGas(kind, 0.2, shape), {.samples = replicas}, model, 42));
       }
     }
   }
@@ -108,7 +108,8 @@ TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
     const auto point = PointExperiment::Create(spec, 0);
     BlockResult one_by_one = point->EmptyResult();
     const BlockResult together = *RunBlock(*point, {.samples = 4});
-    for (uint64_t i = 0; i < 4; ++i) one_by_one.Merge(*RunBlock(*point, {.first = i, .samples = 1}));
+    for (uint64_t i = 0; i < 4; ++i)
+      one_by_one.Merge(*RunBlock(*point, {.first = i, .samples = 1}));
     EXPECT_EQ(one_by_one.samples, together.samples);
     EXPECT_EQ(one_by_one.histograms, together.histograms);
     for (size_t i = 0; i < together.batch_means.size(); ++i) {
@@ -120,7 +121,7 @@ TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
 
 // From every number of merged blocks.
 TEST(GasExperiment, AResumedFoldHasTheSameBits) {
-  for (const EnsembleSpec& spec : OneOfEach(70)) {
+  for (const EnsembleSpec& spec : OneOfEach(66)) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
     const BlockResult whole = *FoldPoint(*point);
@@ -167,11 +168,6 @@ TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
 
 // ---- bad input ----
 
-auto Names(const std::string& field, const std::string& text) {
-  return AllOf(Field(&FieldViolation::field, field),
-               Field(&FieldViolation::description, HasSubstr(text)));
-}
-
 EnsembleSpec Valid(const ExperimentKind* kind) { return SpecOf(kind, PaperGas(kind, 0.1)); }
 
 TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
@@ -182,12 +178,13 @@ TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
     // The largest rho decides, and the pair's bound is larger.
     spec.grid[kRho] = {kPaperRho, 0.6};
     spec.grid[kDelta] = {0.09, 0.1, 0.16};
-    EXPECT_THAT(Violations(spec),
-                ElementsAre(AllOf(Names("grid.delta[1]", "rho = 0.6: 0 < delta <= "
-                                                         "rho/sqrt(2) - lambda/2 = 0.0925"),
-                                  Names("grid.delta[1]", "the bound of a gas, where no two "
-                                                         "pistons may overlap")),
-                            Names("grid.delta[2]", "the bound of a gas")));
+    EXPECT_THAT(Violations(spec), ElementsAre(AllOf(Violates("grid.delta[1]",
+                                                             "rho = 0.6: 0 < delta <= "
+                                                             "rho/sqrt(2) - lambda/2 = 0.0926"),
+                                                    Violates("grid.delta[1]",
+                                                             "the bound of a gas, where no two "
+                                                             "pistons may overlap")),
+                                              Violates("grid.delta[2]", "the bound of a gas")));
   }
 }
 
@@ -195,7 +192,7 @@ TEST(GasExperiment, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRejected) {
   for (const ExperimentKind* kind : kGases) {
     EnsembleSpec spec = Valid(kind);
     spec.grid[kDelta] = {1e-160};
-    EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]", "too small")));
+    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.delta[0]", "too small")));
   }
 }
 
@@ -204,7 +201,7 @@ TEST(GasExperiment, SinglePrecisionIsRejected) {
     EnsembleSpec spec = Valid(kind);
     spec.precision = Precision::kSingle;
     EXPECT_THAT(Violations(spec),
-                ElementsAre(Names("precision", "is single; permitted for a gas: double")));
+                ElementsAre(Violates("precision", "is single; permitted for a gas: double")));
   }
 }
 
@@ -213,12 +210,12 @@ TEST(GasExperiment, CellsThatAreNoShapeAreRejected) {
     EnsembleSpec spec = Valid(kind);
     for (const double code : {0.0, -1.0, 0.5, 1e9, 1e300, std::nan(""), HUGE_VAL}) {
       spec.grid[kCells] = {1, code};
-      EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.cells[1]", "1 to 1000000"))) << code;
+      EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells[1]", "1 to 1000000"))) << code;
     }
     spec.grid[kCells] = {1, 2, CodeOf({1000, 1000, true}), CodeOf({1, 1, true}), 1e6};
     EXPECT_THAT(Violations(spec), IsEmpty());
     spec.grid[kCells] = {};
-    EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.cells", "needs at least one")));
+    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells", "needs at least one")));
   }
 }
 
@@ -240,10 +237,10 @@ TEST(GasExperiment, AnotherExperimentsParametersAreRejected) {
   equilibrium.grid[kEpsilon] = {0.1};
   conduction.grid[kTemperature] = {1};
   EXPECT_THAT(Violations(equilibrium), testing::UnorderedElementsAre(
-                                           Names("grid.hot", "gas-equilibrium takes none"),
-                                           Names("grid.epsilon", "gas-equilibrium takes none")));
+                                           Violates("grid.hot", "gas-equilibrium takes none"),
+                                           Violates("grid.epsilon", "gas-equilibrium takes none")));
   EXPECT_THAT(Violations(conduction),
-              ElementsAre(Names("grid.temperature", "gas-conduction takes none")));
+              ElementsAre(Violates("grid.temperature", "gas-conduction takes none")));
 }
 
 }  // namespace
