@@ -10,6 +10,7 @@
 
 #include "core/closed_form/pair_measures.h"
 #include "core/experiment/pair_experiment.h"
+#include "core/experiment/without_last_bits.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_shape.h"
 
@@ -193,6 +194,12 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
           .collisions = exchanges,
           .starts = balls};
 }
+
+GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& point,
+                             const GasGeometry& geometry, const GasTimes& times)
+    : PointExperiment(spec, point),
+      geometry_(geometry),
+      times_{.relax = WithoutLastBits(times.relax), .measure = WithoutLastBits(times.measure)} {}
 
 GasEngine GasExperiment::gas_engine() const {
   switch (answer().model) {
