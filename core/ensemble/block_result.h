@@ -19,14 +19,14 @@ namespace ballpiston {
 
 struct Health {
   uint64_t escapes = 0;         // orbits that left the cell: anything but 0 is a defect
-  double max_energy_error = 0;  // largest |E - 1/2|/(1/2) seen
+  double max_energy_error = 0;  // largest |E/E0 - 1| seen; E0 = 1/2 of a pair
 
   void Merge(const Health& other);
   friend bool operator==(const Health&, const Health&) = default;
 };
 
 struct BlockResult {
-  uint64_t samples = 0;  // first hits, or ball-piston collisions
+  uint64_t samples = 0;  // first hits, ball-piston collisions, or replicas of a gas
   std::vector<Moments> moments;
   std::vector<BatchMeans> batch_means;
   std::vector<Histogram> histograms;

@@ -59,8 +59,9 @@ struct ExperimentKind {
 
   const LimitError* limit_error = nullptr;  // null: no bound is known
 
-  // The exact probabilities of the bins of each histogram; over all histograms they sum to 1. Null
-  // if the experiment has no histograms.
+  // The exact probabilities of the bins of each histogram. They sum to 1 over the histograms of one
+  // law: over both signs of the piston's velocity, and in each histogram of a gas. Null if no exact
+  // law of the histograms is known, or there are none.
   std::vector<std::vector<double>> (*expected_probabilities)(const PointParameters& point) =
       nullptr;
 

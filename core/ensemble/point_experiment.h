@@ -60,6 +60,9 @@ class PointExperiment {
   // The result before any block. It has the accumulators that every block has; merging needs them.
   virtual BlockResult EmptyResult() const = 0;
 
+  // The largest number of counts in one histogram that a sample adds.
+  virtual uint64_t CountsOfASample() const { return 1; }
+
   // The estimate that a tolerance refers to. This and Summarize require at least one merged block
   // if the plan has blocks.
   virtual Estimate FirstEstimate(const BlockResult& merged) const = 0;

@@ -26,10 +26,10 @@ struct Estimate {
   std::optional<double> ZScore() const;
 };
 
-// Counts of the ingoing angle for one sign of the piston's velocity.
+// Counts of the ingoing angle for one sign of the piston's velocity, or of a speed in a gas.
 struct SignedHistogram {
   std::string name;
-  int sigma = 0;
+  int sigma = 0;  // +1 or -1; of a gas 0
   Histogram histogram;
 };
 

@@ -15,10 +15,13 @@
 //   moments                      the mean temperature at each place of the profile
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -44,27 +47,28 @@ constexpr int64_t kMostColumnsApart = 128;  // of the profile; beyond, neighbour
 double MeanTemperature(const PointParameters& point) { return (point[kHot] + point[kCold]) / 2; }
 
 // pi^2 D/N^2 is the slowest rate, with the diffusivity D = conductivity/heat capacity: half of the
-// exchange rate over 3/2 for each cell of a chain, 2 of a lattice; slowest at the cold end.
+// exchange rate over 3/2 for each cell of a chain, 2 of a lattice. It is slowest at the cold end,
+// and taken there. A reservoir colder than a tenth of the mean temperature counts as a tenth: only
+// the last 1 % of the gas is colder than that, because T^(3/2) is linear.
 double RelaxationTime(const GasGeometry& geometry, double cold) {
+  constexpr double kColdest = 0.1;
   const double length = static_cast<double>(geometry.shape().columns) + 1;
   const double capacity = geometry.shape().is_lattice ? 2 : 1.5;
-  const double rate = InfiniteGasExchangeRate(geometry, cold);
+  const double rate = InfiniteGasExchangeRate(geometry, std::max(cold, kColdest));
   return 2 * capacity * length * length / (std::numbers::pi * std::numbers::pi * rate);
 }
 
 struct ConductionTimes {
   GasTimes times;
-  bool is_stationary;
+  double share;  // of the time that a stationary state takes; below 1 if replicas are cut short
 };
 
 ConductionTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold) {
-  // Near equal temperatures half of the mean is far below any mean that matters.
-  const double time = RelaxationTime(geometry, std::max(cold, 0.1));
+  const double time = RelaxationTime(geometry, cold);
   const double events =
       WorkOfReplica(model, geometry, (kRelaxTimes + kMeasureTimes) * time).Events();
   const double share = std::min(kMostEvents / events, 1.0);
-  return {{.relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time},
-          share == 1};
+  return {{.relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time}, share};
 }
 
 // Bodies of about the same x, whose mean temperature is one point of the profile.
@@ -73,32 +77,25 @@ struct Place {
   std::vector<size_t> bodies = {};
 };
 
-void AddBody(double position, size_t body, std::vector<Place>& places) {
-  const auto is_there = [position](const Place& place) { return place.position == position; };
-  auto place = std::find_if(places.begin(), places.end(), is_there);
-  if (place == places.end()) place = places.insert(places.end(), {position});
-  place->bodies.push_back(body);
-}
-
 // Balls stand at the middles of cells, pistons between them. Of a long gas, some columns share a
 // place, and of the pistons there are the outermost ones alone.
 std::vector<Place> PlacesOf(const GasGeometry& geometry) {
   const int64_t columns = geometry.shape().columns;
   const int64_t each = (columns + kMostColumnsApart - 1) / kMostColumnsApart;
-  std::vector<Place> places;
+  std::map<double, std::vector<size_t>> bodies;  // by position
   for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
     const int64_t first = ball % columns / each * each, last = std::min(first + each, columns);
-    AddBody(static_cast<double>(first + last) / 2, static_cast<size_t>(ball), places);
+    bodies[static_cast<double>(first + last) / 2].push_back(static_cast<size_t>(ball));
   }
   for (int64_t piston = 0; piston < geometry.pistons(); ++piston) {
     if (!geometry.IsAlongX(piston)) continue;
     const double position = geometry.PositionOfPiston(piston);
     const bool is_outermost = position == 0 || position == static_cast<double>(columns);
     if (each > 1 && !is_outermost) continue;
-    AddBody(position, static_cast<size_t>(geometry.balls() + piston), places);
+    bodies[position].push_back(static_cast<size_t>(geometry.balls() + piston));
   }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.position < b.position; });
+  std::vector<Place> places;
+  for (auto& [position, there] : bodies) places.push_back({position, std::move(there)});
   return places;
 }
 
@@ -110,7 +107,7 @@ class GasConduction : public GasExperiment {
         temperature_(MeanTemperature(point)),
         hot_(point[kHot] / temperature_),
         cold_(point[kCold] / temperature_),
-        is_stationary_(times.is_stationary),
+        share_(times.share),
         places_(PlacesOf(geometry)) {}
 
   GasState Draw(CounterRandom& random) const override {
@@ -122,8 +119,9 @@ class GasConduction : public GasExperiment {
   }
 
   void Measure(const GasMeter& meter, BlockResult& result) const override {
-    const double crossings = 2 * static_cast<double>(geometry().balls());  // contacts along x
-    result.batch_means[0].Add(meter.carried(), crossings * meter.duration());
+    // Each ball has a contact on its left and one on its right.
+    const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
+    result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
     result.batch_means[1].Add(static_cast<double>(meter.exchanges()),
                               static_cast<double>(geometry().contacts()) * meter.duration());
     double balls = 0, pistons = 0;
@@ -162,21 +160,17 @@ class GasConduction : public GasExperiment {
     summary.estimates.push_back(Mean("temperature_ball", merged, 2, temperature_));
     summary.estimates.push_back(Mean("temperature_piston", merged, 3, temperature_));
     summary.curves.push_back(Profile(merged));
-    if (!is_stationary_) {
+    if (share_ < 1) {
       summary.remarks.push_back(absl::StrFormat(
           "replicas of %.0f cells in a row were followed for %.2g of the time that a stationary "
           "state takes: no errors can be given",
-          Columns(), TimeShare()));
+          Columns(), share_));
     }
     return summary;
   }
 
  private:
   double Columns() const { return static_cast<double>(geometry().shape().columns); }
-  double TimeShare() const {
-    return times().Total() /
-           ((kRelaxTimes + kMeasureTimes) * RelaxationTime(geometry(), std::max(cold_, 0.1)));
-  }
   double StaticConductivityAt(double temperature) const {
     return InfiniteGasExchangeRate(geometry(), temperature) / 2;
   }
@@ -197,7 +191,7 @@ class GasConduction : public GasExperiment {
 
   std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
                              double scale) const {
-    if (!error || !is_stationary_) return std::nullopt;
+    if (!error || share_ < 1) return std::nullopt;
     return ToldError(static_cast<double>(merged.samples), *error * scale);
   }
 
@@ -223,7 +217,7 @@ class GasConduction : public GasExperiment {
   double temperature_;  // the mean; all else is in its units
   double hot_;
   double cold_;
-  bool is_stationary_;
+  double share_;  // of the time that a stationary state takes
   std::vector<Place> places_;
 };
 
@@ -243,13 +237,13 @@ std::unique_ptr<PointExperiment> CreateGasConduction(const EnsembleSpec& spec,
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   CheckGasGrid(spec, found);
   const std::vector<double>&hot = spec.grid[kHot], &cold = spec.grid[kCold];
-  if (cold.empty()) return;
-  const double coldest_hot = *std::max_element(cold.begin(), cold.end());
+  double largest_cold = 0;
+  for (const double value : cold) largest_cold = std::fmax(largest_cold, value);  // passes by NaN
   for (size_t i = 0; i < hot.size(); ++i) {
-    if (!(hot[i] < coldest_hot)) continue;
+    if (!(hot[i] < largest_cold)) continue;
     found.push_back({absl::StrFormat("grid.hot[%d]", i),
                      absl::StrFormat("hot is %s, below cold = %s; permitted: hot >= cold",
-                                     NumberText(hot[i]), NumberText(coldest_hot))});
+                                     NumberText(hot[i]), NumberText(largest_cold))});
   }
 }
 

@@ -10,12 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
-#include <string>
-#include <utility>
+#include <optional>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/exact_estimate.h"
@@ -71,7 +73,8 @@ class GasEquilibrium : public GasExperiment {
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point,
                  const GasGeometry& geometry)
       : GasExperiment(spec, point, geometry, TimesInEquilibrium(geometry)),
-        temperature_(point[kTemperature]) {}
+        temperature_(point[kTemperature]),
+        exact_rate_(GasExchangeRate(geometry, temperature_)) {}
 
   GasState Draw(CounterRandom& random) const override {
     return DrawGas(geometry(), TemperatureProfile(1), random);
@@ -92,9 +95,12 @@ class GasEquilibrium : public GasExperiment {
 
   BlockResult EmptyResult() const override { return NoGasesMeasured(); }
 
+  uint64_t CountsOfASample() const override {
+    return static_cast<uint64_t>(std::max(geometry().balls(), geometry().pistons()));
+  }
+
   Estimate FirstEstimate(const BlockResult& merged) const override {
-    return Mean("exchange_rate", merged, 0, std::sqrt(temperature_),
-                std::sqrt(temperature_) * exchange_rate());
+    return Mean("exchange_rate", merged, 0, std::sqrt(temperature_), exact_rate_);
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {
@@ -111,12 +117,19 @@ class GasEquilibrium : public GasExperiment {
                                    .standard_error = divergence.standard_error,
                                    .noise_floor = divergence.noise_floor});
       summary.histograms.push_back(
-          {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = merged.histograms[i]});
+          {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = AtTemperature(merged, i)});
     }
     return summary;
   }
 
  private:
+  // Speeds scale with sqrt T.
+  Histogram AtTemperature(const BlockResult& merged, size_t index) const {
+    Histogram speeds = merged.histograms[index];
+    speeds.upper *= std::sqrt(temperature_);
+    return speeds;
+  }
+
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale,
                 double exact) const {
     const BatchMeans& measured = merged.batch_means[index];
@@ -130,6 +143,7 @@ class GasEquilibrium : public GasExperiment {
   }
 
   double temperature_;
+  double exact_rate_;
 };
 
 GasGeometry PeriodicGasOf(const PointParameters& point) {

@@ -54,12 +54,9 @@ class GasExperiment : public PointExperiment {
   virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
+  // The times are rounded (without_last_bits.h): the C library has a part in them.
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-                const GasTimes& times)
-      : PointExperiment(spec, point),
-        geometry_(geometry),
-        times_(times),
-        exchange_rate_(GasExchangeRate(geometry, 1)) {}
+                const GasTimes& times);
 
  private:
   GasGeometry geometry_;

@@ -164,6 +164,13 @@ std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSo
   return Billiard(question, "without a tolerance the limit's error cannot be weighed");
 }
 
+std::string NothingCheaper(const ExperimentKind& experiment) {
+  if (!experiment.IsAnsweredBy(Model::kMarkov)) {
+    return absl::StrCat("nothing cheaper answers ", experiment.name);
+  }
+  return absl::StrCat("the limit's error is not known for ", experiment.name);
+}
+
 std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pilots) {
   const EnsembleSpec& spec = question.spec();
   if (spec.experiment->HasClosedForm()) {
@@ -171,7 +178,7 @@ std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pi
     return Billiard(question, "asked to verify the closed form");
   }
   if (question.HasLimit()) return AnswerNearTheLimit(question, pilots);
-  return Billiard(question, absl::StrCat("nothing cheaper answers ", spec.experiment->name));
+  return Billiard(question, NothingCheaper(*spec.experiment));
 }
 
 Answer ExplicitAnswer(const Question& question) {

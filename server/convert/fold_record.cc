@@ -45,18 +45,21 @@ Histogram HistogramOf(const storage::Counts& record) {
   return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
 }
 
-// As many in all bins together at the most: a sum of what is damaged may wrap.
-bool HoldsAtMost(uint64_t samples, const Histogram& histogram) {
+// Whether all bins together have at most so many counts. The sum of damaged counts may wrap, so it
+// is not computed.
+bool HoldsAtMost(uint64_t counts, const Histogram& histogram) {
   for (const uint64_t count : histogram.counts) {
-    if (count > samples) return false;
-    samples -= count;
+    if (count > counts) return false;
+    counts -= count;
   }
   return true;
 }
 
-bool CountsNoSampleTwice(const BlockResult& result) {
+// 10^12 samples of 2 10^6 counts each do not wrap.
+bool CountsNoSampleTwice(const PointExperiment& experiment, const BlockResult& result) {
+  const uint64_t counts = result.samples * experiment.CountsOfASample();
   return std::all_of(result.histograms.begin(), result.histograms.end(),
-                     [&](const Histogram& h) { return HoldsAtMost(result.samples, h); });
+                     [&](const Histogram& h) { return HoldsAtMost(counts, h); });
 }
 
 }  // namespace
@@ -88,7 +91,7 @@ namespace {
 bool IsPossible(const PointExperiment& experiment, const BlockResult& result, uint64_t planned) {
   if (planned == 0) return result == BlockResult();
   return result.samples <= planned && result.health.max_energy_error >= 0 &&  // not NaN either
-         CountsNoSampleTwice(result) && result.HasShapeOf(experiment.EmptyResult());
+         CountsNoSampleTwice(experiment, result) && result.HasShapeOf(experiment.EmptyResult());
 }
 
 bool IsPossible(const PointExperiment& experiment, const FoldState& state) {

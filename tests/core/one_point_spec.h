@@ -7,6 +7,7 @@
 
 #include "core/ensemble/ensemble_spec.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "core/geometry/paper.h"
 
 namespace ballpiston {
@@ -14,6 +15,22 @@ namespace ballpiston {
 inline PointParameters PaperPoint(double delta, std::optional<double> epsilon = {},
                                   std::optional<double> exponent = {}) {
   return {{kRho, kPaperRho}, {kDelta, delta}, {kEpsilon, epsilon}, {kExponent, exponent}};
+}
+
+// At the paper's rho; the reservoirs of `gas-conduction` are at 1.5 and 0.5.
+inline PointParameters PaperGas(const ExperimentKind* experiment, double delta,
+                                const GasShape& shape = {.columns = 2}) {
+  PointParameters point = {{kRho, kPaperRho}, {kDelta, delta}, {kCells, CodeOf(shape)}};
+  if (experiment == &kGasEquilibrium) point.Set(kTemperature, 2);
+  if (experiment == &kGasConduction) {
+    point.Set(kHot, 1.5);
+    point.Set(kCold, 0.5);
+  }
+  return point;
+}
+
+inline bool IsOfAGas(const ExperimentKind* experiment) {
+  return experiment == &kGasEquilibrium || experiment == &kGasConduction;
 }
 
 inline EnsembleSpec SpecOf(const ExperimentKind* experiment, const PointParameters& point,

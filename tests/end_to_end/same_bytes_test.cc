@@ -41,8 +41,8 @@ TEST(SameBytes, WithOneTwoAndEightWorkers) {
   EXPECT_EQ(PointsWithWorkers(8), one);
 }
 
-// The new experiments, each by every model that samples.
-TEST(SameBytes, OfRelaxationAndMarkovPropertyWithOneAndTwoWorkers) {
+// By every model that samples.
+TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
   const TestServer one(1), two(2);
   for (const std::string question :
        {"energy-relaxation --samples 2000 --delta 0.2,0.1",
@@ -50,7 +50,11 @@ TEST(SameBytes, OfRelaxationAndMarkovPropertyWithOneAndTwoWorkers) {
         "energy-relaxation --samples 4000 --delta 0.1 --model markov",
         "energy-relaxation --tolerance 0.1 --delta 0.1 --model markov",
         "markov-property --collisions 20000 --delta 0.2",
-        "markov-property --collisions 20000 --delta 0.2 --model markov"}) {
+        "markov-property --collisions 20000 --delta 0.2 --model markov",
+        "gas-equilibrium --verify --samples 300 --delta 0.2 --cells 4,2x3 --temperature 1",
+        "gas-equilibrium --model markov --samples 300 --delta 0.2 --cells 4 --temperature 1",
+        "gas-conduction --samples 200 --delta 0.2,0.1 --cells 3 --hot 1.5 --cold 0.5",
+        "gas-conduction --samples 200 --delta 0.2 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
     const Words words = Split("run " + question + " --rho 0.5296 --seed 3 --format json");
     const ProcessResult by_one = one.Client(words);
     ASSERT_THAT(by_one, ExitsWith(0));

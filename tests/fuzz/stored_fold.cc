@@ -6,6 +6,7 @@
 #include "core/ensemble/point_experiment.h"
 #include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "server/convert/fold_record.h"
 #include "server/convert/result_record.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -24,6 +25,11 @@ Experiments OneOfEach() {
   hit[kExponent] = {1};
   fast[kEpsilon] = {0.375};
   fast[kExponent] = {5};
+  Grid periodic = pair, conducting = pair;
+  periodic[kCells] = conducting[kCells] = {CodeOf({.columns = 4})};
+  periodic[kTemperature] = {2};
+  conducting[kHot] = {2};
+  conducting[kCold] = {1};
   const Target samples = {.samples = 1000}, collisions = {.collisions = 1000};
   Experiments experiments;
   for (const EnsembleSpec& spec : std::vector<EnsembleSpec>{
@@ -32,7 +38,9 @@ Experiments OneOfEach() {
            {.experiment = &kFirstHit, .grid = hit, .target = samples},
            {.experiment = &kFirstHit, .grid = fast, .target = samples},
            {.experiment = &kEnergyRelaxation, .grid = pair, .target = samples},
-           {.experiment = &kMarkovProperty, .grid = pair, .target = collisions}}) {
+           {.experiment = &kMarkovProperty, .grid = pair, .target = collisions},
+           {.experiment = &kGasEquilibrium, .grid = periodic, .target = samples},
+           {.experiment = &kGasConduction, .grid = conducting, .target = samples}}) {
     experiments.push_back(PointExperiment::Create(spec, 0));
   }
   return experiments;

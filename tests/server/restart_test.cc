@@ -62,9 +62,28 @@ v1::EnsembleSpec SmallMarkovProperty() {
   return spec;
 }
 
+v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleSpec::Model model) {
+  v1::EnsembleSpec spec = SmallRelaxation(model);
+  spec.set_experiment(experiment);
+  spec.mutable_grid()->add_cells("3");
+  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
+    spec.mutable_grid()->add_temperature(2);
+  } else {
+    spec.mutable_grid()->add_hot(2);
+    spec.mutable_grid()->add_cold(1);
+  }
+  spec.mutable_target()->set_samples(512);
+  return spec;
+}
+
 std::vector<v1::EnsembleSpec> AllExperiments() {
-  return {FirstHitByBilliard(), SmallEquilibrium(), SmallMeanFreeTime(),
-          SmallRelaxation(v1::EnsembleSpec::BILLIARD), SmallMarkovProperty()};
+  return {FirstHitByBilliard(),
+          SmallEquilibrium(),
+          SmallMeanFreeTime(),
+          SmallRelaxation(v1::EnsembleSpec::BILLIARD),
+          SmallMarkovProperty(),
+          SmallGas(v1::EnsembleSpec::GAS_EQUILIBRIUM, v1::EnsembleSpec::BILLIARD),
+          SmallGas(v1::EnsembleSpec::GAS_CONDUCTION, v1::EnsembleSpec::BILLIARD)};
 }
 
 // The results of a server. If `factory` is null, it runs the core's experiments.
@@ -78,6 +97,8 @@ TEST(Restart, TheSameBytesAtOneTwoAndEightWorkers) {
   std::vector<v1::EnsembleSpec> specs = AllExperiments();
   specs.push_back(SmallFirstHit());  // AUTO, which gives a reason
   specs.push_back(SmallRelaxation(v1::EnsembleSpec::MARKOV));
+  specs.push_back(SmallGas(v1::EnsembleSpec::GAS_EQUILIBRIUM, v1::EnsembleSpec::MARKOV));
+  specs.push_back(SmallGas(v1::EnsembleSpec::GAS_CONDUCTION, v1::EnsembleSpec::MARKOV));
   for (const v1::EnsembleSpec& spec : specs) {
     const std::vector<std::string> one = BytesAt(1, spec);
     EXPECT_FALSE(one.empty());

@@ -11,6 +11,7 @@
 
 #include "core/experiment/all_experiments.h"
 #include "core/geometry/pair_geometry.h"
+#include "tests/core/one_point_spec.h"
 
 namespace ballpiston {
 namespace {
@@ -267,6 +268,7 @@ TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
 // Beyond them it is not known how far its numbers are off (billiard/single_precision.h).
 TEST(EnsembleSpec, SinglePrecisionIsRefusedWhereItWasNotMeasured) {
   for (const ExperimentKind* experiment : kAllExperiments) {
+    if (IsOfAGas(experiment)) continue;  // it has no single precision
     EnsembleSpec spec = {.experiment = experiment, .precision = Precision::kSingle};
     if (experiment == &kConditionalMeanFreeTime || experiment == &kFirstHit) {
       spec.grid[kEpsilon] = {0.1};

@@ -40,6 +40,7 @@ inline EnsembleSpec Asked(const ExperimentKind* experiment, double delta,
   PointParameters point = PaperPoint(delta);
   if (experiment == &kConditionalMeanFreeTime) point = PaperPoint(delta, 0.125);
   if (experiment == &kFirstHit) point = PaperPoint(delta, 0.125, 1);
+  if (IsOfAGas(experiment)) point = PaperGas(experiment, delta);
   return SpecOf(experiment, point, target);
 }
 

@@ -24,6 +24,18 @@ EnsembleSpec Question(EnsembleSpec::Experiment experiment, EnsembleSpec::Model m
   return spec;
 }
 
+EnsembleSpec Gas(EnsembleSpec::Experiment experiment, EnsembleSpec::Model model) {
+  EnsembleSpec spec = Question(experiment, model, {0.2});
+  spec.mutable_grid()->add_cells("4");
+  if (experiment == EnsembleSpec::GAS_EQUILIBRIUM) {
+    spec.mutable_grid()->add_temperature(1);
+  } else {
+    spec.mutable_grid()->add_hot(1.5);
+    spec.mutable_grid()->add_cold(0.5);
+  }
+  return spec;
+}
+
 EnsembleSpec WithSamples(EnsembleSpec spec, int64_t samples) {
   spec.mutable_target()->set_samples(samples);
   return spec;
@@ -77,7 +89,9 @@ std::vector<EnsembleSpec> Questions() {
           WithSamples(Question(relaxation, markov, {0.1}), 1'000),
           WithTolerance(Question(relaxation, markov, {0.1}), 0.1),
           WithSamples(Question(relaxation, billiard, {0.2}), 500),
-          WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), 20'000)};
+          WithCollisions(Question(EnsembleSpec::MARKOV_PROPERTY, markov, {0.2}), 20'000),
+          WithSamples(Gas(EnsembleSpec::GAS_EQUILIBRIUM, billiard), 20'000),
+          WithSamples(Gas(EnsembleSpec::GAS_CONDUCTION, billiard), 5'000)};
 }
 
 std::vector<EnsembleSpec> LargeQuestions() {

@@ -57,6 +57,15 @@ v1::EnsembleSpec PlanQuestion(v1::EnsembleSpec::Experiment experiment) {
                            experiment == v1::EnsembleSpec::FIRST_HIT;
   if (from_energy) spec.mutable_grid()->add_epsilon(0.1);
   if (experiment == v1::EnsembleSpec::FIRST_HIT) spec.mutable_grid()->add_exponent(1);
+  if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
+    spec.mutable_grid()->add_cells("4x3");
+    spec.mutable_grid()->add_temperature(2);
+  }
+  if (experiment == v1::EnsembleSpec::GAS_CONDUCTION) {
+    spec.mutable_grid()->add_cells("4");
+    spec.mutable_grid()->add_hot(1.5);
+    spec.mutable_grid()->add_cold(0.5);
+  }
   return spec;
 }
 
@@ -74,7 +83,10 @@ const std::map<v1::EnsembleSpec::Experiment, ExpectedLadder>& LaddersOfAll() {
       {E::FIRST_HIT, {E::BILLIARD, {E::BILLIARD, E::BILLIARD_REFERENCE}}},
       {E::ENERGY_RELAXATION,
        {E::BILLIARD, {E::SPECTRUM, E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}},
-      {E::MARKOV_PROPERTY, {E::BILLIARD, {E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}}};
+      {E::MARKOV_PROPERTY, {E::BILLIARD, {E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}},
+      {E::GAS_EQUILIBRIUM,
+       {E::CLOSED_FORM, {E::CLOSED_FORM, E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}},
+      {E::GAS_CONDUCTION, {E::BILLIARD, {E::MARKOV, E::BILLIARD, E::BILLIARD_REFERENCE}}}};
   return all;
 }
 

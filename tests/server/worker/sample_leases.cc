@@ -7,6 +7,8 @@
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/ensemble/point_fold.h"
+#include "core/experiment/all_experiments.h"
+#include "core/gas/gas_shape.h"
 #include "server/convert/fold_record.h"
 
 namespace ballpiston::server {
@@ -16,10 +18,17 @@ double SomeValueOf(const Parameter& parameter) {
   if (&parameter == &kRho) return 0.53;
   if (&parameter == &kDelta) return 0.1;
   if (&parameter == &kEpsilon) return 0.25;
+  if (&parameter == &kCells) return CodeOf({.columns = 2});
+  if (&parameter == &kCold) return 4;
   return &parameter == &kExponent ? 1 : 8;
 }
 
 bool Samples(Model model) { return model != Model::kClosedForm && model != Model::kSpectrum; }
+
+// A replica of a gas is more work than other samples.
+int64_t SamplesOf(const ExperimentKind& kind) {
+  return &kind == &kGasEquilibrium || &kind == &kGasConduction ? 150 : kSomeSamples;
+}
 
 }  // namespace
 
@@ -36,7 +45,7 @@ std::vector<EnsembleSpec> EverySampledSpec() {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : AllExperiments()) {
     for (const Model model : kind->models) {
-      if (Samples(model)) specs.push_back(SpecOf(*kind, model));
+      if (Samples(model)) specs.push_back(SpecOf(*kind, model, SamplesOf(*kind)));
     }
   }
   return specs;

@@ -14,10 +14,12 @@
 
 namespace ballpiston::server {
 
-// One point of the experiment, with a few thousand samples as its target.
-EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = 2000);
+inline constexpr int64_t kSomeSamples = 2000;
 
-// One of each experiment and sampling model.
+// One point of the experiment.
+EnsembleSpec SpecOf(const ExperimentKind& kind, Model model, int64_t samples = kSomeSamples);
+
+// One of each experiment and sampling model, of several chunks.
 std::vector<EnsembleSpec> EverySampledSpec();
 
 std::string NameOf(const EnsembleSpec& spec);  // for messages

@@ -1,0 +1,239 @@
+// The experiment `gas-conduction`: estimates, profile, cut-short replicas, bad input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/experiment/gas_experiment.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "tests/core/experiment/gas_questions.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/core/run_point.h"
+
+namespace ballpiston {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+EnsembleSpec SpecBetween(double hot, double cold, const GasShape& shape = {.columns = 3},
+                         Model model = Model::kBilliard) {
+  PointParameters point = PaperGas(&kGasConduction, 0.2, shape);
+  point.Set(kHot, hot);
+  point.Set(kCold, cold);
+  return SpecOf(&kGasConduction, point, {.samples = 60}, model, 7);
+}
+
+std::vector<std::string> NamesOf(const PointSummary& summary) {
+  std::vector<std::string> names;
+  for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
+  return names;
+}
+
+TEST(GasConduction, EstimatesFollowFromTheCurrent) {
+  for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
+    const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
+    EXPECT_EQ(NamesOf(summary), (std::vector<std::string>{
+                                    "heat_current", "conductivity", "conductivity_ratio",
+                                    "exchange_rate", "temperature_ball", "temperature_piston"}));
+    // J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))] with N = 3, T = 2.
+    const double per_current = 3 * std::sqrt(2.0) / (2.0 / 3 * (std::sqrt(27.0) - 1));
+    const Estimate &current = summary.estimates[0], &conductivity = summary.estimates[1];
+    EXPECT_DOUBLE_EQ(conductivity.value, per_current * current.value);
+    EXPECT_DOUBLE_EQ(*conductivity.standard_error, per_current * *current.standard_error);
+    const GasGeometry geometry =
+        GasGeometry::Create(kPaperRho, 0.2, shape, GasEnds::kReservoirs).value();
+    EXPECT_DOUBLE_EQ(summary.estimates[2].value,
+                     conductivity.value / (InfiniteGasExchangeRate(geometry, 2) / 2));
+    EXPECT_FALSE(current.exact);
+    EXPECT_GT(current.value, 10 * *current.standard_error);  // from hot to cold
+    EXPECT_TRUE(summary.remarks.empty());
+  }
+}
+
+// The same replicas seen at other temperatures, to rounding: they are 4 times as high.
+TEST(GasConduction, AllScalesWithTheTemperatures) {
+  const BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecBetween(3, 1), 0));
+  const PointSummary low = Summarized(SpecBetween(3, 1), merged),
+                     high = Summarized(SpecBetween(12, 4), merged);
+  const double factors[] = {8, 2, 1, 2, 4, 4};
+  for (size_t i = 0; i < low.estimates.size(); ++i) {
+    const Estimate &a = low.estimates[i], &b = high.estimates[i];
+    EXPECT_DOUBLE_EQ(b.value, factors[i] * a.value) << a.name;
+    EXPECT_DOUBLE_EQ(*b.standard_error, factors[i] * *a.standard_error) << a.name;
+  }
+  for (size_t i = 0; i < low.curves[0].points.size(); ++i) {
+    const CurvePoint &a = low.curves[0].points[i], &b = high.curves[0].points[i];
+    EXPECT_EQ(b.at, a.at);
+    EXPECT_DOUBLE_EQ(b.value, 4 * a.value);
+    EXPECT_DOUBLE_EQ(*b.standard_error, 4 * *a.standard_error);
+  }
+}
+
+TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
+  for (const GasShape& shape : {GasShape{3}, GasShape{3, 2, true}}) {
+    const PointSummary summary = RunPoint(SpecBetween(3, 1, shape));
+    ASSERT_EQ(summary.curves.size(), 1u);
+    const Curve& profile = summary.curves[0];
+    EXPECT_EQ(profile.name, "temperature_profile");
+    EXPECT_EQ(profile.axis, CurveAxis::kPosition);
+    ASSERT_EQ(profile.points.size(), 7u);
+    double of_balls = 0;
+    for (size_t i = 0; i < 7; ++i) {
+      EXPECT_EQ(profile.points[i].at, 0.5 * static_cast<double>(i));
+      EXPECT_GT(profile.points[i].value, 1);
+      EXPECT_LT(profile.points[i].value, 3);
+      if (i % 2 == 1) of_balls += profile.points[i].value / 3;
+    }
+    EXPECT_NEAR(of_balls, Named("temperature_ball", summary.estimates).value, 1e-12);
+    // It falls from cell to cell; neighbours of one kind are some ten standard errors apart.
+    for (size_t i = 2; i < 7; ++i) {
+      EXPECT_LT(profile.points[i].value, profile.points[i - 2].value);
+    }
+  }
+}
+
+// At most 128 columns stand alone. Of a longer gas some share a place, the last ones fewer; its
+// inner pistons are in no place.
+TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
+  const auto places = [](const GasShape& shape) {
+    const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
+    BlockResult merged = point->EmptyResult();
+    for (BatchMeans& means : merged.batch_means) means.Add(1, 1);
+    const PointSummary summary = point->Summarize(merged);
+    std::vector<double> positions;
+    for (const CurvePoint& place : summary.curves[0].points) positions.push_back(place.at);
+    EXPECT_EQ(positions.size(), merged.moments.size());
+    EXPECT_TRUE(std::is_sorted(positions.begin(), positions.end()));
+    return positions;
+  };
+  EXPECT_EQ(places({.columns = 128}).size(), 2u * 128 + 1);
+  const std::vector<double> shared = places({.columns = 129});
+  ASSERT_EQ(shared.size(), 65u + 2);
+  EXPECT_EQ(shared[0], 0);
+  EXPECT_EQ(shared[1], 1);
+  EXPECT_EQ(shared[64], 127);
+  EXPECT_EQ(shared[65], 128.5);
+  EXPECT_EQ(shared[66], 129);
+  EXPECT_EQ(places({1000, 1000, true}).size(), 125u + 2);
+  EXPECT_EQ(places({.columns = 1'000'000}).size(), 128u + 2);
+}
+
+TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
+  for (const Model model : kModelsOfGases) {
+    const PointSummary summary = RunPoint(SpecBetween(2, 2, {.columns = 3}, model));
+    EXPECT_EQ(NamesOf(summary),
+              (std::vector<std::string>{"heat_current", "exchange_rate", "temperature_ball",
+                                        "temperature_piston"}));
+    // 3 models, 3 estimates and 7 places within 4.5 standard errors: one false alarm in 5,000
+    // seeds.
+    EXPECT_EQ(summary.estimates[0].exact, 0);
+    EXPECT_LT(std::fabs(*summary.estimates[0].ZScore()), 4.5) << Name(model);
+    for (const size_t i : {2, 3}) {
+      const Estimate& temperature = summary.estimates[i];
+      EXPECT_NEAR(temperature.value, 2, 4.5 * *temperature.standard_error) << Name(model);
+    }
+    for (const CurvePoint& place : summary.curves[0].points) {
+      EXPECT_NEAR(place.value, 2, 4.5 * *place.standard_error) << Name(model) << place.at;
+    }
+  }
+}
+
+// ---- a run too short for a stationary state ----
+
+// As if replicas had been measured.
+BlockResult SomeReplicas(const PointExperiment& point) {
+  BlockResult merged = point.EmptyResult();
+  for (int i = 0; i < 100; ++i) {
+    for (BatchMeans& means : merged.batch_means) means.Add(2 + std::sin(i), 1);
+    for (Moments& moments : merged.moments) moments.Add(1 + 0.1 * std::sin(i));
+    ++merged.samples;
+  }
+  return merged;
+}
+
+// 30,000 cells in a row take 10^9 times as long as one cell, and there are 30,000 of them.
+TEST(GasConduction, ReplicasThatAreCutShortGiveNoErrorsAndSayWhy) {
+  const auto point = PointExperiment::Create(SpecBetween(3, 1, {.columns = 30'000}), 0);
+  const PointSummary summary = point->Summarize(SomeReplicas(*point));
+  ASSERT_EQ(summary.remarks.size(), 1u);
+  EXPECT_THAT(
+      summary.remarks[0],
+      AllOf(HasSubstr("replicas of 30000 cells in a row were followed for "),
+            HasSubstr(" of the time that a stationary state takes: no errors can be given")));
+  for (const Estimate& estimate : summary.estimates) {
+    EXPECT_FALSE(estimate.standard_error) << estimate.name;
+  }
+  for (const CurvePoint& place : summary.curves[0].points) EXPECT_FALSE(place.standard_error);
+  EXPECT_FALSE(point->FirstEstimate(SomeReplicas(*point)).standard_error);
+}
+
+TEST(GasConduction, ReplicasThatAreLongEnoughGiveErrorsAndNoRemark) {
+  const auto point = PointExperiment::Create(SpecBetween(3, 1, {.columns = 30}), 0);
+  const PointSummary summary = point->Summarize(SomeReplicas(*point));
+  EXPECT_THAT(summary.remarks, IsEmpty());
+  for (const Estimate& estimate : summary.estimates) EXPECT_TRUE(estimate.standard_error);
+  for (const CurvePoint& place : summary.curves[0].points) EXPECT_TRUE(place.standard_error);
+}
+
+// The longest relaxation time grows as (N + 1)^2, until a replica is cut short.
+TEST(GasConduction, AReplicaIsFollowedForTheRelaxationTime) {
+  const auto exchanges_a_contact = [](int64_t columns) {
+    const PointParameters point = PointAt(SpecBetween(3, 1, {.columns = columns}), 0);
+    return kGasConduction.collisions(point) / static_cast<double>(2 * columns);
+  };
+  EXPECT_NEAR(exchanges_a_contact(19) / exchanges_a_contact(9), 4, 1e-12);
+  EXPECT_LT(exchanges_a_contact(30'000) / exchanges_a_contact(299), 1e4);
+}
+
+// ---- bad input ----
+
+TEST(GasConduction, HotBelowColdIsRejected) {
+  EnsembleSpec spec = SpecBetween(2, 1);
+  spec.grid[kHot] = {2, 0.5, 1, std::nextafter(1, 0)};
+  EXPECT_THAT(
+      Violations(spec),
+      ElementsAre(Violates("grid.hot[1]", "hot is 0.5, below cold = 1; permitted: hot >= cold"),
+                  Violates("grid.hot[3]", "below cold = 1")));
+  // A NaN among them does not hide the others.
+  spec.grid[kHot] = {2};
+  spec.grid[kCold] = {std::nan(""), 1, 3};
+  EXPECT_THAT(Violations(spec),
+              testing::UnorderedElementsAre(Violates("grid.cold[0]", "nan"),
+                                            Violates("grid.hot[0]", "hot is 2, below cold = 3")));
+}
+
+TEST(GasConduction, TemperaturesHaveToBePositive) {
+  for (const double value : {0.0, -1.0, HUGE_VAL}) {
+    EnsembleSpec spec = SpecBetween(2, 1);
+    spec.grid[kCold] = {value};
+    EXPECT_THAT(Violations(spec), testing::Contains(Violates("grid.cold[0]", "permitted: ")))
+        << value;
+    spec = SpecBetween(2, 1);
+    spec.grid[kHot] = {value};
+    EXPECT_THAT(Violations(spec), testing::Contains(Violates("grid.hot[0]", "permitted: ")))
+        << value;
+  }
+}
+
+TEST(GasConduction, AToleranceOfNoCurrentIsRejected) {
+  EnsembleSpec spec = SpecBetween(2, 1);
+  spec.target = {.tolerance = 0.1};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+  spec.grid[kHot] = {2, 1};
+  EXPECT_THAT(
+      Violations(spec),
+      ElementsAre(Violates("target.tolerance", "the heat current is 0 where hot = cold = 1")));
+  spec.target = {.budget_seconds = 1};
+  EXPECT_THAT(Violations(spec), IsEmpty());
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,123 @@
+// The experiment `gas-equilibrium`: estimates, exact values, laws of speeds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/experiment/gas_experiment.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "tests/core/experiment/gas_questions.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/core/run_point.h"
+
+namespace ballpiston {
+namespace {
+
+EnsembleSpec SpecAt(double temperature, Model model = Model::kBilliard,
+                    const GasShape& shape = {.columns = 3}) {
+  PointParameters point = PaperGas(&kGasEquilibrium, 0.2, shape);
+  point.Set(kTemperature, temperature);
+  return SpecOf(&kGasEquilibrium, point, {.samples = 400}, model, 7);
+}
+
+TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
+  const GasShape shapes[] = {{.columns = 1}, {.columns = 3}, {2, 3, true}};
+  for (const GasShape& shape : shapes) {
+    const PointSummary summary = RunPoint(SpecAt(2, Model::kBilliard, shape));
+    std::vector<std::string> names;
+    for (const Estimate& estimate : summary.estimates) names.push_back(estimate.name);
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"exchange_rate", "temperature_ball", "temperature_piston",
+                                        "ball_speed_divergence", "piston_speed_divergence"}));
+    const GasGeometry geometry =
+        GasGeometry::Create(kPaperRho, 0.2, shape, GasEnds::kPeriodic).value();
+    EXPECT_EQ(summary.estimates[0].exact, GasExchangeRate(geometry, 2));
+    EXPECT_EQ(summary.estimates[1].exact, 2);
+    EXPECT_EQ(summary.estimates[2].exact, 2);
+    // 9 z-scores within 4.5 standard errors: one false alarm in 16,000 seeds.
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_LT(std::fabs(*summary.estimates[i].ZScore()), 4.5) << summary.estimates[i].name;
+    }
+    EXPECT_TRUE(summary.remarks.empty());
+  }
+}
+
+TEST(GasEquilibrium, EveryModelGivesTheSameEstimates) {
+  for (const Model model : kModelsOfGases) {
+    const PointSummary summary = RunPoint(SpecAt(2, model));
+    ASSERT_EQ(summary.estimates.size(), 5u);
+    // As above.
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_LT(std::fabs(*summary.estimates[i].ZScore()), 4.5) << Name(model);
+    }
+  }
+}
+
+// The same replicas seen as a gas at another temperature, to rounding: T is a power of 4.
+TEST(GasEquilibrium, AllScalesWithTheTemperature) {
+  const BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
+  const PointSummary unit = Summarized(SpecAt(1), merged), hot = Summarized(SpecAt(4), merged);
+  const double factors[] = {2, 4, 4, 1, 1};
+  for (size_t i = 0; i < unit.estimates.size(); ++i) {
+    const Estimate &a = unit.estimates[i], &b = hot.estimates[i];
+    EXPECT_DOUBLE_EQ(b.value, factors[i] * a.value) << a.name;
+    EXPECT_DOUBLE_EQ(*b.standard_error, factors[i] * *a.standard_error) << a.name;
+    EXPECT_EQ(b.exact.has_value(), a.exact.has_value());
+    if (!a.exact) continue;
+    EXPECT_DOUBLE_EQ(*b.exact, factors[i] * *a.exact) << a.name;
+  }
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(hot.histograms[i].histogram.counts, unit.histograms[i].histogram.counts);
+    EXPECT_DOUBLE_EQ(hot.histograms[i].histogram.upper, 2 * unit.histograms[i].histogram.upper);
+  }
+}
+
+// Of speeds v: 1 - exp(-v^2/2T) of a ball in two dimensions, erf(v/sqrt(2T)) of a piston in one.
+TEST(GasEquilibrium, ExpectedProbabilitiesAreThoseOfTheThermalLaws) {
+  const PointSummary summary = RunPoint(SpecAt(2));
+  const auto laws = kGasEquilibrium.expected_probabilities(PointAt(SpecAt(2), 0));
+  ASSERT_EQ(laws.size(), 2u);
+  ASSERT_EQ(summary.histograms.size(), 2u);
+  EXPECT_EQ(summary.histograms[0].name, "ball_speed");
+  EXPECT_EQ(summary.histograms[1].name, "piston_speed");
+  for (size_t i = 0; i < 2; ++i) {
+    const Histogram& speeds = summary.histograms[i].histogram;
+    EXPECT_EQ(speeds.Total(), 400u * 3);
+    ASSERT_EQ(laws[i].size(), speeds.counts.size());
+    EXPECT_NEAR(std::accumulate(laws[i].begin(), laws[i].end(), 0.0), 1, 1e-13);
+    const auto below = [i](double v) { return i == 0 ? -std::expm1(-v * v / 4) : std::erf(v / 2); };
+    for (size_t bin = 0; bin + 1 < laws[i].size(); ++bin) {
+      EXPECT_NEAR(laws[i][bin], below(speeds.Edge(bin + 1)) - below(speeds.Edge(bin)), 1e-14);
+    }
+  }
+}
+
+// Balls of another temperature than the stated one are noticed in the law of their speeds.
+TEST(GasEquilibrium, ADivergenceAboveItsNoiseTellsAnotherLaw) {
+  BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
+  const PointSummary before = Summarized(SpecAt(1), merged);
+  for (const size_t i : {3, 4}) {
+    const Estimate& divergence = before.estimates[i];
+    EXPECT_LT(divergence.value, *divergence.noise_floor + 5 * *divergence.standard_error);
+  }
+  std::swap(merged.histograms[0], merged.histograms[1]);
+  const PointSummary after = Summarized(SpecAt(1), merged);
+  for (const size_t i : {3, 4}) {
+    const Estimate& divergence = after.estimates[i];
+    EXPECT_GT(divergence.value, *divergence.noise_floor + 5 * *divergence.standard_error);
+  }
+}
+
+TEST(GasEquilibrium, EnergyIsConservedInEveryReplica) {
+  for (const Model model : kModelsOfGases) {
+    const Health health = RunPoint(SpecAt(1, model)).health;
+    EXPECT_EQ(health.escapes, 0u);
+    EXPECT_LT(health.max_energy_error, 1e-13) << Name(model);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston

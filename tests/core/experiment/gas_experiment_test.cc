@@ -1,0 +1,247 @@
+// What both experiments with a gas have in common, by every model that samples.
+#include "core/experiment/gas_experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "core/ensemble/point_fold.h"
+#include "tests/core/experiment/gas_questions.h"
+#include "tests/core/one_point_spec.h"
+
+namespace ballpiston {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const ExperimentKind* kGases[] = {&kGasEquilibrium, &kGasConduction};
+
+std::vector<EnsembleSpec> OneOfEach(int64_t replicas) {
+  std::vector<EnsembleSpec> specs;
+  for (const ExperimentKind* kind : kGases) {
+    for (const Model model : kModelsOfGases) {
+      for (const GasShape& shape : {GasShape{2}, GasShape{2, 1, true}}) {
+        specs.push_back(SpecOf(kind, PaperGas(kind, 0.2, shape), {.samples = replicas}, model, 42));
+      }
+    }
+  }
+  return specs;
+}
+
+std::string Described(const EnsembleSpec& spec) {
+  return absl::StrCat(spec.experiment->name, " of ", Text(ShapeOf(spec.grid[kCells][0])), " by ",
+                      Name(spec.model));
+}
+
+// Blocks of so many replicas. The run is asked to pause after every slice if `pauses`.
+class ListedBlocks : public BlockQueue {
+ public:
+  ListedBlocks(std::vector<Block> blocks, bool pauses)
+      : blocks_(std::move(blocks)), pauses_(pauses) {}
+
+  std::optional<Block> Next() override {
+    if (next_ == blocks_.size()) return std::nullopt;
+    return blocks_[next_++];
+  }
+  void Done(const Block& block, BlockResult result) override {
+    EXPECT_TRUE(results.emplace(block.first, std::move(result)).second) << "computed twice";
+  }
+  bool Pause() override {
+    ++asked;
+    return pauses_;
+  }
+  std::stop_token stop() const override { return {}; }
+
+  std::map<uint64_t, BlockResult> results;
+  int asked = 0;
+
+ private:
+  std::vector<Block> blocks_;
+  size_t next_ = 0;
+  bool pauses_;
+};
+
+std::vector<Block> BlocksOf(uint64_t replicas, uint64_t each) {
+  std::vector<Block> blocks;
+  for (uint64_t first = 0; first < replicas; first += each) {
+    blocks.push_back({.index = first / each, .first = first, .samples = each});
+  }
+  return blocks;
+}
+
+TEST(GasExperiment, BlocksComputedTogetherEqualThoseComputedAlone) {
+  for (const EnsembleSpec& spec : OneOfEach(12)) {
+    SCOPED_TRACE(Described(spec));
+    const auto point = PointExperiment::Create(spec, 0);
+    const std::vector<Block> blocks = BlocksOf(12, 3);
+    ListedBlocks together(blocks, false), paused(blocks, true);
+    EXPECT_TRUE(point->StartRun(together)->Advance());
+    const std::unique_ptr<BlockRun> run = point->StartRun(paused);
+    int calls = 1;
+    while (!run->Advance()) ++calls;
+    EXPECT_GT(calls, 1);
+    ASSERT_EQ(together.results.size(), blocks.size());
+    EXPECT_EQ(paused.results, together.results);
+    for (const Block& block : blocks) {
+      EXPECT_EQ(*RunBlock(*point, block), together.results.at(block.first));
+    }
+  }
+}
+
+TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
+  for (const EnsembleSpec& spec : OneOfEach(12)) {
+    SCOPED_TRACE(Described(spec));
+    const auto point = PointExperiment::Create(spec, 0);
+    BlockResult one_by_one = point->EmptyResult();
+    const BlockResult together = *RunBlock(*point, {.samples = 4});
+    for (uint64_t i = 0; i < 4; ++i)
+      one_by_one.Merge(*RunBlock(*point, {.first = i, .samples = 1}));
+    EXPECT_EQ(one_by_one.samples, together.samples);
+    EXPECT_EQ(one_by_one.histograms, together.histograms);
+    for (size_t i = 0; i < together.batch_means.size(); ++i) {
+      const double expected = together.batch_means[i].mean_numerator;
+      EXPECT_NEAR(one_by_one.batch_means[i].mean_numerator, expected, 1e-13 * std::fabs(expected));
+    }
+  }
+}
+
+// From every number of merged blocks.
+TEST(GasExperiment, AResumedFoldHasTheSameBits) {
+  for (const EnsembleSpec& spec : OneOfEach(66)) {
+    SCOPED_TRACE(Described(spec));
+    const auto point = PointExperiment::Create(spec, 0);
+    const BlockResult whole = *FoldPoint(*point);
+    ChunkFold blocks(point->plan(), {}, point->plan().chunks());
+    LocalPoint local(*point);
+    for (int i = 0; i < 5; ++i) {
+      const std::optional<Block> block = local.NextBlock();
+      ASSERT_TRUE(block);
+      local.Add(*block, *RunBlock(*point, *block));
+    }
+    PointFold resumed(*point);
+    resumed.Resume(local.State());
+    EXPECT_EQ(resumed.PlannedSamples(), local.Merged().samples);
+    ChunkFold rest(point->plan(),
+                   {.chunk = resumed.state().chunk,
+                    .blocks = resumed.state().blocks,
+                    .merged = resumed.state().partial},
+                   point->plan().chunks());
+    while (const std::optional<Block> block = rest.NextBlock()) {
+      for (ChunkResult& chunk : rest.Add(*block, *RunBlock(*point, *block))) {
+        resumed.Add(std::move(chunk));
+      }
+    }
+    EXPECT_TRUE(resumed.finished());
+    EXPECT_EQ(resumed.Merged(), whole);
+  }
+}
+
+// A histogram has no more counts than the samples' own number says: the server checks that when it
+// reads a checkpoint.
+TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
+  for (const EnsembleSpec& spec : OneOfEach(12)) {
+    const auto point = PointExperiment::Create(spec, 0);
+    const BlockResult block = *RunBlock(*point, {.samples = 5});
+    uint64_t largest = 0;
+    for (const Histogram& histogram : block.histograms) {
+      largest = std::max(largest, histogram.Total());
+    }
+    if (!block.histograms.empty()) {
+      EXPECT_EQ(largest, 5 * point->CountsOfASample()) << Described(spec);
+    }
+  }
+}
+
+// ---- bad input ----
+
+EnsembleSpec Valid(const ExperimentKind* kind) { return SpecOf(kind, PaperGas(kind, 0.1)); }
+
+TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
+  for (const ExperimentKind* kind : kGases) {
+    EnsembleSpec spec = Valid(kind);
+    spec.grid[kDelta] = {0.2, GasDeltaBound(kPaperRho)};
+    EXPECT_THAT(Violations(spec), IsEmpty());
+    // The largest rho decides, and the pair's bound is larger.
+    spec.grid[kRho] = {kPaperRho, 0.6};
+    spec.grid[kDelta] = {0.09, 0.1, 0.16};
+    EXPECT_THAT(Violations(spec), ElementsAre(AllOf(Violates("grid.delta[1]",
+                                                             "rho = 0.6: 0 < delta <= "
+                                                             "rho/sqrt(2) - lambda/2 = 0.0926"),
+                                                    Violates("grid.delta[1]",
+                                                             "the bound of a gas, where no two "
+                                                             "pistons may overlap")),
+                                              Violates("grid.delta[2]", "the bound of a gas")));
+  }
+}
+
+TEST(GasExperiment, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRejected) {
+  for (const ExperimentKind* kind : kGases) {
+    EnsembleSpec spec = Valid(kind);
+    spec.grid[kDelta] = {1e-160};
+    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.delta[0]", "too small")));
+  }
+}
+
+TEST(GasExperiment, SinglePrecisionIsRejected) {
+  for (const ExperimentKind* kind : kGases) {
+    EnsembleSpec spec = Valid(kind);
+    spec.precision = Precision::kSingle;
+    EXPECT_THAT(Violations(spec),
+                ElementsAre(Violates("precision", "is single; permitted for a gas: double")));
+  }
+}
+
+TEST(GasExperiment, CellsThatAreNoShapeAreRejected) {
+  for (const ExperimentKind* kind : kGases) {
+    EnsembleSpec spec = Valid(kind);
+    for (const double code : {0.0, -1.0, 0.5, 1e9, 1e300, std::nan(""), HUGE_VAL}) {
+      spec.grid[kCells] = {1, code};
+      EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells[1]", "1 to 1000000"))) << code;
+    }
+    spec.grid[kCells] = {1, 2, CodeOf({1000, 1000, true}), CodeOf({1, 1, true}), 1e6};
+    EXPECT_THAT(Violations(spec), IsEmpty());
+    spec.grid[kCells] = {};
+    EXPECT_THAT(Violations(spec), ElementsAre(Violates("grid.cells", "needs at least one")));
+  }
+}
+
+TEST(GasExperiment, NumbersThatAreNaNAreRejectedWithTheirField) {
+  for (const ExperimentKind* kind : kGases) {
+    for (const ParameterUse& use : kind->parameters) {
+      EnsembleSpec spec = Valid(kind);
+      spec.grid[*use.parameter] = {std::nan("")};
+      EXPECT_THAT(Violations(spec),
+                  ElementsAre(Field(&FieldViolation::field,
+                                    absl::StrCat("grid.", use.parameter->name, "[0]"))));
+    }
+  }
+}
+
+TEST(GasExperiment, AnotherExperimentsParametersAreRejected) {
+  EnsembleSpec equilibrium = Valid(&kGasEquilibrium), conduction = Valid(&kGasConduction);
+  equilibrium.grid[kHot] = {2};
+  equilibrium.grid[kEpsilon] = {0.1};
+  conduction.grid[kTemperature] = {1};
+  EXPECT_THAT(Violations(equilibrium), testing::UnorderedElementsAre(
+                                           Violates("grid.hot", "gas-equilibrium takes none"),
+                                           Violates("grid.epsilon", "gas-equilibrium takes none")));
+  EXPECT_THAT(Violations(conduction),
+              ElementsAre(Violates("grid.temperature", "gas-conduction takes none")));
+}
+
+}  // namespace
+}  // namespace ballpiston

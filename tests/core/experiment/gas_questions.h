@@ -1,0 +1,27 @@
+// What the tests of the gas's experiments share.
+#ifndef BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
+#define BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "core/ensemble/point_experiment.h"
+#include "tests/core/one_point_spec.h"
+
+namespace ballpiston {
+
+// What the spec's experiment says of replicas that have been measured.
+inline PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {
+  return PointExperiment::Create(spec, 0)->Summarize(merged);
+}
+
+// A violation of the field whose description contains the text.
+inline auto Violates(const std::string& field, const std::string& text) {
+  return testing::AllOf(testing::Field(&FieldViolation::field, field),
+                        testing::Field(&FieldViolation::description, testing::HasSubstr(text)));
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_

@@ -1,0 +1,141 @@
+// The experiments with a gas, by long runs: against exact values, against independent programs
+// (tests/data/gas.csv), and their stated errors against those that are measured.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <numbers>
+#include <vector>
+
+#include "core/ensemble/experiment_kind.h"
+#include "core/experiment/gas_experiment.h"
+#include "core/gas/gas_exchange_rate.h"
+#include "tests/core/one_point_spec.h"
+#include "tests/core/run_point.h"
+
+namespace ballpiston {
+namespace {
+
+EnsembleSpec Equilibrium(double delta, const GasShape& shape, Model model, int64_t replicas) {
+  return SpecOf(&kGasEquilibrium, PaperGas(&kGasEquilibrium, delta, shape), {.samples = replicas},
+                model, 11);
+}
+
+EnsembleSpec Conduction(double delta, const GasShape& shape, double hot, double cold, Model model,
+                        int64_t replicas) {
+  PointParameters point = PaperGas(&kGasConduction, delta, shape);
+  point.Set(kHot, hot);
+  point.Set(kCold, cold);
+  return SpecOf(&kGasConduction, point, {.samples = replicas}, model, 11);
+}
+
+// The relative error that the plan states for so many samples, over the one that a run measures.
+double StatedOverMeasured(const EnsembleSpec& spec) {
+  const PointSummary summary = RunPoint(spec);
+  const Estimate& first = summary.estimates.front();
+  const double stated =
+      spec.experiment->error(PointAt(spec, 0)) / std::sqrt(static_cast<double>(summary.samples));
+  const double ratio = stated * std::fabs(first.value) / *first.standard_error;
+  std::cout << spec.experiment->name << " by " << Name(spec.model) << ", "
+            << Text(ShapeOf(spec.grid[kCells][0])) << " cells, delta " << spec.grid[kDelta][0]
+            << ": stated over measured " << ratio << "\n";
+  return ratio;
+}
+
+// An error measured with 1000 replicas is itself known to 1/sqrt(2000) = 2.2 %. The windows are 20
+// % wide: a statement that is right within 10 % fails in one of 10^5 cases.
+TEST(GasExperiments, StatedErrorsInEquilibriumAreTheMeasuredOnes) {
+  for (const Model model : {Model::kMarkov, Model::kBilliard}) {
+    for (const GasShape& shape : {GasShape{4}, GasShape{16}, GasShape{4, 4, true}}) {
+      EXPECT_NEAR(StatedOverMeasured(Equilibrium(0.1, shape, model, 1000)), 1, 0.2);
+    }
+  }
+}
+
+TEST(GasExperiments, StatedErrorsOfTheCurrentAreTheMeasuredOnes) {
+  const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
+                                       double delta = 0.2) {
+    return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, 1000));
+  };
+  for (const GasShape& shape : {GasShape{2}, GasShape{4}, GasShape{3, 3, true}}) {
+    EXPECT_NEAR(stated_over_measured(shape, 1.5, 0.5, Model::kMarkov), 1, 0.2);
+  }
+  EXPECT_NEAR(stated_over_measured({4}, 1.05, 0.95, Model::kMarkov), 1, 0.2);
+  EXPECT_NEAR(stated_over_measured({2}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
+  EXPECT_NEAR(stated_over_measured({4}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
+  EXPECT_NEAR(stated_over_measured({2}, 2, 1, Model::kBilliard, 0.1), 1, 0.2);
+}
+
+// Of the difference, in units of both errors. 4 are exceeded once in 16,000 cases.
+void ExpectAgrees(const Estimate& measured, double value, double error) {
+  std::cout << measured.name << " " << measured.value << " +- " << *measured.standard_error
+            << ", independently " << value << " +- " << error << "\n";
+  EXPECT_LT(std::fabs(measured.value - value), 4 * std::hypot(*measured.standard_error, error));
+}
+
+// In units of the prefactor |dG|/|G|, whose average f is 1/sqrt(2 pi) at temperature 1.
+double Prefactor(double delta, const GasShape& shape) {
+  const GasGeometry geometry =
+      GasGeometry::Create(kPaperRho, delta, shape, GasEnds::kReservoirs).value();
+  return InfiniteGasExchangeRate(geometry, 1) * std::sqrt(2 * std::numbers::pi);
+}
+
+// Temperatures of the independent programs have no errors there; 0.004 is some four of theirs.
+TEST(GasExperiments, TheJumpProcessHasTheCurrentOfAnIndependentProgram) {
+  const PointSummary two = RunPoint(Conduction(0.1, {2}, 1.5, 0.5, Model::kMarkov, 20'000));
+  const double unit = Prefactor(0.1, {2});
+  ExpectAgrees(two.estimates[0], 0.098723 * unit, 0.000181 * unit);
+  const std::vector<CurvePoint>& places = two.curves[0].points;
+  EXPECT_NEAR(places[1].value, 1.272, 0.004);
+  EXPECT_NEAR(places[2].value, 1.026, 0.004);
+  EXPECT_NEAR(places[3].value, 0.778, 0.004);
+  const PointSummary eight = RunPoint(Conduction(0.1, {8}, 2, 1, Model::kMarkov, 4000));
+  ExpectAgrees(eight.estimates[0], 0.030476 * unit, 0.000255 * unit);
+}
+
+TEST(GasExperiments, TheBilliardHasTheCurrentOfAnIndependentProgram) {
+  const PointSummary two = RunPoint(Conduction(0.15, {2}, 2, 1, Model::kBilliard, 10'000));
+  ExpectAgrees(two.estimates[0], 0.019931, 0.000150);
+  const double expected[] = {1.976, 1.752, 1.512, 1.269, 1.021};
+  for (size_t i = 0; i < std::size(expected); ++i) {
+    EXPECT_NEAR(two.curves[0].points[i].value, expected[i], 0.008) << i;
+  }
+}
+
+// By all models; z-scores of 4 are exceeded once in 16,000 cases.
+TEST(GasExperiments, ExchangeRatesAndTemperaturesInEquilibriumAreExact) {
+  for (const Model model : kModelsOfGases) {
+    const int64_t replicas = model == Model::kBilliardReference ? 1000 : 4000;
+    const PointSummary summary = RunPoint(Equilibrium(0.2, {4, 4, true}, model, replicas));
+    for (size_t i = 0; i < 3; ++i) {
+      const Estimate& estimate = summary.estimates[i];
+      std::cout << Name(model) << ": " << estimate.name << " z " << *estimate.ZScore() << "\n";
+      EXPECT_LT(std::fabs(*estimate.ZScore()), 4);
+    }
+    for (size_t i = 3; i < 5; ++i) {
+      const Estimate& divergence = summary.estimates[i];
+      EXPECT_LT(divergence.value, *divergence.noise_floor + 4 * *divergence.standard_error);
+    }
+  }
+}
+
+// z-scores of 200 seeds: their variance has the standard error 0.1, their mean 0.07. Windows of
+// four errors: 6e-5 false alarms each. With 64 replicas the ratio's tails are heavier than the
+// normal law's (1.03 expected).
+TEST(GasExperiments, ErrorsInEquilibriumAreHonestOverManySeeds) {
+  std::vector<Moments> z(3);
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    EnsembleSpec spec = Equilibrium(0.2, {3}, Model::kBilliard, 64);
+    spec.seed = seed;
+    const PointSummary summary = RunPoint(spec);
+    for (size_t i = 0; i < z.size(); ++i) z[i].Add(*summary.estimates[i].ZScore());
+  }
+  for (const Moments& moments : z) {
+    std::cout << "mean " << moments.mean << "  variance " << *moments.Variance() << "\n";
+    EXPECT_NEAR(moments.mean, 0, 4 * 0.071);
+    EXPECT_NEAR(*moments.Variance(), 1.03, 4 * 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston
