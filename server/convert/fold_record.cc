@@ -45,8 +45,8 @@ Histogram HistogramOf(const storage::Counts& record) {
   return {record.lower(), record.upper(), {record.counts().begin(), record.counts().end()}};
 }
 
-// Whether all bins together have at most so many counts. The sum of damaged counts may wrap, so it is
-// not computed.
+// Whether all bins together have at most so many counts. The sum of damaged counts may wrap, so it
+// is not computed.
 bool HoldsAtMost(uint64_t counts, const Histogram& histogram) {
   for (const uint64_t count : histogram.counts) {
     if (count > counts) return false;

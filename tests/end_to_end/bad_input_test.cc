@@ -67,7 +67,8 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       // a gas
       {"run gas-equilibrium --rho 0.529561127988977 --delta 0.21 --cells 8 --temperature 1",
        2,
-       {"spec.grid.delta[0]", "lambda/2 = 0.2", "the bound of a gas, where no two pistons may overlap"}},
+       {"spec.grid.delta[0]", "lambda/2 = 0.2",
+        "the bound of a gas, where no two pistons may overlap"}},
       {"run gas-equilibrium --rho 0.53 --delta 0.1 --cells 0,1e9,4x,0x3 --temperature 0",
        2,
        {"spec.grid.cells[0]: cells is \"0\"; permitted: N or NxM, 1 to 1000000 cells in all",

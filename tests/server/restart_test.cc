@@ -77,8 +77,11 @@ v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleS
 }
 
 std::vector<v1::EnsembleSpec> AllExperiments() {
-  return {FirstHitByBilliard(), SmallEquilibrium(), SmallMeanFreeTime(),
-          SmallRelaxation(v1::EnsembleSpec::BILLIARD), SmallMarkovProperty(),
+  return {FirstHitByBilliard(),
+          SmallEquilibrium(),
+          SmallMeanFreeTime(),
+          SmallRelaxation(v1::EnsembleSpec::BILLIARD),
+          SmallMarkovProperty(),
           SmallGas(v1::EnsembleSpec::GAS_EQUILIBRIUM, v1::EnsembleSpec::BILLIARD),
           SmallGas(v1::EnsembleSpec::GAS_CONDUCTION, v1::EnsembleSpec::BILLIARD)};
 }
