@@ -167,14 +167,13 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
   }
 }
 
-// Measured with chains of 8, 100 and 10^4 cells and with 16x16 at deltas from 0.025 to 0.2, in
-// units of the pair's work:
-//   lanes      a wall hit is as much as four of the pair's; an exchange, after which two balls fly
-//              again, as a collision and 900 hits; a thermal wall, after which one does, as 600
-//              hits
-//   reference  an event is as much as 2.6 of the pair's with 16 bodies in the queue, 6.6 with
-//   20,000 jumps      an exchange is as much as 4.5 jumps of the pair, which are measured with
-//   correlations
+// Factors measured with chains of 8, 100 and 10^4 cells and with 16x16, at deltas from 0.025 to
+// 0.2. In lanes a wall hit costs as much as four of the pair's, and an exchange, after which two
+// balls fly again, as much as a collision of the pair and 900 wall hits. A hit of a thermal wall,
+// after which one ball flies again, costs 600 wall hits. An event of the reference costs as much
+// as 2.6 of the pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the
+// jump process costs as much as 4.5 of the pair's jumps, which are measured with their
+// correlations.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());

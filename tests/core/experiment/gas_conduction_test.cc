@@ -204,7 +204,7 @@ TEST(GasConduction, HotBelowColdIsRejected) {
                   Violates("grid.hot[3]", "below cold = 1")));
   // A NaN among them does not hide the others.
   spec.grid[kHot] = {2};
-  spec.grid[kCold] = {std::nan(""), 1, 3};
+  spec.grid[kCold] = {std::nan(""), 3, 1};
   EXPECT_THAT(Violations(spec),
               testing::UnorderedElementsAre(Violates("grid.cold[0]", "nan"),
                                             Violates("grid.hot[0]", "hot is 2, below cold = 3")));
