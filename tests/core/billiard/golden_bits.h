@@ -44,6 +44,18 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"markov, energy-relaxation", 0x9b32dcb6558ab628},
     {"markov, energy-relaxation from 0.01", 0x66eae74172f24c0d},
     {"markov, markov-property", 0xa1259aafb70fc568},
+    {"reference, gas-equilibrium of 3 cells", 0x1ecc05a5c5a8dc5a},
+    {"reference, gas-equilibrium of 2x2 cells", 0x1cf393583878bb15},
+    {"reference, gas-conduction of 3 cells", 0x478e967702b54e29},
+    {"reference, gas-conduction of 2x2 cells", 0x5a661515230f4fff},
+    {"lanes, gas-equilibrium of 3 cells", 0x0cde712eb1042c19},
+    {"lanes, gas-equilibrium of 2x2 cells", 0x0452aaa45385d7cd},
+    {"lanes, gas-conduction of 3 cells", 0x225be14bda207b24},
+    {"lanes, gas-conduction of 2x2 cells", 0x6c5e1fd77bf34e21},
+    {"markov, gas-equilibrium of 3 cells", 0xdebb4e62608ff40a},
+    {"markov, gas-equilibrium of 2x2 cells", 0x2f66b94434d53ac3},
+    {"markov, gas-conduction of 3 cells", 0xe3bf751d852ec418},
+    {"markov, gas-conduction of 2x2 cells", 0x5ba9c5b6ef227830},
 };
 
 }  // namespace ballpiston
