@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -270,16 +271,21 @@ double ExchangesOfAConductionSample(const PointParameters& point) {
          TimesAt(Model::kBilliard, point).times.measure;
 }
 
-// The current's fluctuations in equilibrium, 2 kappa T^2/(N t), over the current itself.
+// The current's fluctuations in local equilibrium, 2 kappa T^2/(N t), over the current itself.
+// kappa T^2 grows as T^(5/2), whose mean over the gas is taken by Simpson's rule. Measured errors
+// are up to 15 % larger.
 double ErrorOfGasConduction(const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   const double temperature = MeanTemperature(point);
-  const double fall = (point[kHot] - point[kCold]) / temperature;
+  const double hot = point[kHot] / temperature, cold = point[kCold] / temperature;
+  const double fall = hot - cold;
+  if (fall == 0) return std::numeric_limits<double>::infinity();
+  const double mean_power = (std::pow(hot, 2.5) + 4 + std::pow(cold, 2.5)) / 6;
   const double time = TimesAt(Model::kBilliard, point).times.measure;
   const double conductivity = InfiniteGasExchangeRate(geometry, 1) / 2;
   const auto columns = static_cast<double>(geometry.shape().columns);
   const auto rows = static_cast<double>(geometry.shape().rows);
-  return std::sqrt(2 * columns / (conductivity * time * rows)) / fall;
+  return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
 constexpr ParameterUse kParametersOfGasConduction[] = {

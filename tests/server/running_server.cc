@@ -65,7 +65,8 @@ grpc::Status TestClient::Create(const v1::CreateEnsembleJobRequest& request, v1:
 
 v1::EnsembleJob TestClient::Created(const v1::CreateEnsembleJobRequest& request) {
   v1::EnsembleJob job;
-  EXPECT_OK(Create(request, &job));
+  const grpc::Status status = Create(request, &job);
+  EXPECT_OK(status) << status.error_message();
   return job;
 }
 
