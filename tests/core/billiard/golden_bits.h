@@ -44,32 +44,18 @@ inline const std::map<std::string_view, uint64_t> kGoldenBits = {
     {"markov, energy-relaxation", 0x9b32dcb6558ab628},
     {"markov, energy-relaxation from 0.01", 0x66eae74172f24c0d},
     {"markov, markov-property", 0xa1259aafb70fc568},
-<<<<<<< HEAD
     {"markov, gas-equilibrium of 3 cells", 0x4bad639fb3b0c47f},
     {"markov, gas-equilibrium of 2x2 cells", 0xed5df51425728d11},
     {"markov, gas-conduction of 3 cells", 0x6281600e1d48839a},
     {"markov, gas-conduction of 2x2 cells", 0x6a64a6f34d0f75e5},
-=======
->>>>>>> gasdocs
     {"reference, gas-equilibrium of 3 cells", 0x1ecc05a5c5a8dc5a},
     {"reference, gas-equilibrium of 2x2 cells", 0x1cf393583878bb15},
     {"reference, gas-conduction of 3 cells", 0x478e967702b54e29},
     {"reference, gas-conduction of 2x2 cells", 0x5a661515230f4fff},
-<<<<<<< HEAD
     {"lanes, gas-equilibrium of 3 cells", 0xd3916adad60b2dac},
     {"lanes, gas-equilibrium of 2x2 cells", 0xd5b53bb53af75274},
     {"lanes, gas-conduction of 3 cells", 0x433401b0bb35283d},
     {"lanes, gas-conduction of 2x2 cells", 0x875a5ac3a2313161},
-=======
-    {"lanes, gas-equilibrium of 3 cells", 0x0cde712eb1042c19},
-    {"lanes, gas-equilibrium of 2x2 cells", 0x0452aaa45385d7cd},
-    {"lanes, gas-conduction of 3 cells", 0x225be14bda207b24},
-    {"lanes, gas-conduction of 2x2 cells", 0x6c5e1fd77bf34e21},
-    {"markov, gas-equilibrium of 3 cells", 0xdebb4e62608ff40a},
-    {"markov, gas-equilibrium of 2x2 cells", 0x2f66b94434d53ac3},
-    {"markov, gas-conduction of 3 cells", 0xe3bf751d852ec418},
-    {"markov, gas-conduction of 2x2 cells", 0x5ba9c5b6ef227830},
->>>>>>> gasdocs
 };
 
 }  // namespace ballpiston
