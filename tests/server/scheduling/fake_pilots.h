@@ -31,6 +31,7 @@ class FakePilot : public PointExperiment {
     return fake_->StartRun(queue);
   }
   BlockResult EmptyResult() const override { return fake_->EmptyResult(); }
+  uint64_t CountsOfASample() const override { return fake_->CountsOfASample(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     Estimate estimate = fake_->FirstEstimate(merged);
     estimate.limit = kLimit;
