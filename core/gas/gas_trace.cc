@@ -63,9 +63,11 @@ class GasTrace : public Trace {
 
   TracedBody PistonAt(int64_t i, double time) const {
     const GasPiston piston = gas_.PistonAt(i, time);
-    const Eigen::Vector2d along = geometry_.IsAlongX(i) ? Eigen::Vector2d(1, 0)
-                                                        : Eigen::Vector2d(0, 1);
-    return {geometry_.MiddleOfEdge(i) + piston.offset * along, piston.velocity * along,
+    const bool is_along_x = geometry_.IsAlongX(i);
+    const auto along = [&](double v) {
+      return is_along_x ? Eigen::Vector2d(v, 0) : Eigen::Vector2d(0, v);
+    };
+    return {geometry_.MiddleOfEdge(i) + along(piston.offset), along(piston.velocity),
             EnergyOf(piston)};
   }
 
