@@ -91,8 +91,8 @@ class Client {
   absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(
       const v1::EvaluatePairsRequest& request) const;
 
-  // The start and the events of one orbit, message by message, until their end or until `on_message`
-  // returns false. Then the status is OK too.
+  // The start and the events of one orbit, message by message, until their end or until
+  // `on_message` returns false. Then the status is OK too.
   using TraceCallback = std::function<bool(const v1::TraceOrbitResponse&)>;
   absl::Status Trace(const v1::TraceOrbitRequest& request, const TraceCallback& on_message) const;
 

@@ -16,9 +16,9 @@ extern const ExperimentKind kMarkovProperty;
 extern const ExperimentKind kGasEquilibrium;
 extern const ExperimentKind kGasConduction;
 
-inline constexpr std::array kAllExperiments = {&kEquilibrium, &kConditionalMeanFreeTime, &kFirstHit,
-                                               &kEnergyRelaxation, &kMarkovProperty,
-                                               &kGasEquilibrium, &kGasConduction};
+inline constexpr std::array kAllExperiments = {
+    &kEquilibrium,    &kConditionalMeanFreeTime, &kFirstHit,     &kEnergyRelaxation,
+    &kMarkovProperty, &kGasEquilibrium,          &kGasConduction};
 
 }  // namespace ballpiston
 

@@ -2,13 +2,14 @@
 //
 // Each replica starts from the local equilibrium in which T^(3/2) falls linearly, as it does where
 // the conductivity grows as sqrt T, relaxes for some of the longest relaxation times, which grow as
-// N^2, and is measured for some more. Replicas are independent, so their scatter gives the errors. A
-// replica runs at mean temperature 1: all of the gas scales.
+// N^2, and is measured for some more. Replicas are independent, so their scatter gives the errors.
+// A replica runs at mean temperature 1: all of the gas scales.
 //
 //   conductivity = J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))],  T = (hot + cold)/2
 //
 // is that at T of N cells in a row whose conductivity grows as sqrt T.
-//   batch means, a replica each  [0] energy carried through all contacts along x; these times duration
+//   batch means, a replica each  [0] energy carried through all contacts along x; these times
+//   duration
 //                                [1] exchanges, contacts times duration
 //                                [2] the balls' mean energies, balls  [3] twice the pistons'
 //   moments                      the mean temperature at each place of the profile
@@ -103,8 +104,8 @@ std::vector<Place> PlacesOf(const GasGeometry& geometry) {
 
 class GasConduction : public GasExperiment {
  public:
-  GasConduction(const EnsembleSpec& spec, const PointParameters& point,
-                const GasGeometry& geometry, const ConductionTimes& times)
+  GasConduction(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+                const ConductionTimes& times)
       : GasExperiment(spec, point, geometry, times.times),
         temperature_(MeanTemperature(point)),
         hot_(point[kHot] / temperature_),
@@ -236,8 +237,7 @@ ConductionTimes TimesAt(Model model, const PointParameters& point) {
 
 std::unique_ptr<PointExperiment> CreateGasConduction(const EnsembleSpec& spec,
                                                      const PointParameters& point) {
-  return std::make_unique<GasConduction>(spec, point, OpenGasOf(point),
-                                         TimesAt(spec.model, point));
+  return std::make_unique<GasConduction>(spec, point, OpenGasOf(point), TimesAt(spec.model, point));
 }
 
 void CheckConductionGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {

@@ -41,9 +41,7 @@ GasTimes TimesInEquilibrium(const GasGeometry& geometry) {
   return {.measure = ExchangesOf(geometry) / InfiniteGasExchangeRate(geometry, 1)};
 }
 
-std::vector<Histogram> EmptySpeeds() {
-  return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)};
-}
+std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
 
 // Exact probabilities of the bins, of a law that is 1 - tail(speed) below a speed.
 std::vector<double> SpeedProbabilities(double (*tail)(double)) {
@@ -122,8 +120,8 @@ class GasEquilibrium : public GasExperiment {
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale,
                 double exact) const {
     const BatchMeans& measured = merged.batch_means[index];
-    std::optional<double> error = ToldError(static_cast<double>(merged.samples),
-                                            measured.StandardError());
+    std::optional<double> error =
+        ToldError(static_cast<double>(merged.samples), measured.StandardError());
     if (error) *error *= scale;
     return {.name = name,
             .value = scale * measured.Ratio().value_or(0),
@@ -182,17 +180,16 @@ constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kMarkov,
 
 }  // namespace
 
-constinit const ExperimentKind kGasEquilibrium = {
-    .name = "gas-equilibrium",
-    .number = 6,
-    .parameters = kParametersOfGasEquilibrium,
-    .unit = TargetUnit::kEither,
-    .models = kModelsOfGasEquilibrium,
-    .create = CreateGasEquilibrium,
-    .check_grid = CheckGasGrid,
-    .work = WorkOfGasEquilibrium,
-    .collisions = ExchangesOfASample,
-    .error = ErrorOfGasEquilibrium,
-    .expected_probabilities = SpeedProbabilitiesAt};
+constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
+                                                  .number = 6,
+                                                  .parameters = kParametersOfGasEquilibrium,
+                                                  .unit = TargetUnit::kEither,
+                                                  .models = kModelsOfGasEquilibrium,
+                                                  .create = CreateGasEquilibrium,
+                                                  .check_grid = CheckGasGrid,
+                                                  .work = WorkOfGasEquilibrium,
+                                                  .collisions = ExchangesOfASample,
+                                                  .error = ErrorOfGasEquilibrium,
+                                                  .expected_probabilities = SpeedProbabilitiesAt};
 
 }  // namespace ballpiston

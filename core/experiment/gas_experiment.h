@@ -51,8 +51,8 @@ class GasExperiment : public PointExperiment {
   virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
-  GasExperiment(const EnsembleSpec& spec, const PointParameters& point,
-                const GasGeometry& geometry, const GasTimes& times)
+  GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
+                const GasTimes& times)
       : PointExperiment(spec, point), geometry_(geometry), times_(times) {}
 
  private:

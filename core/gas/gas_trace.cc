@@ -57,8 +57,7 @@ class GasTrace : public Trace {
  private:
   TracedBody BallAt(int64_t i, double time) const {
     const GasBall ball = gas_.BallAt(i, time);
-    return {geometry_.CentreOfCell(i) + ball.position, ball.speed * ball.direction,
-            EnergyOf(ball)};
+    return {geometry_.CentreOfCell(i) + ball.position, ball.speed * ball.direction, EnergyOf(ball)};
   }
 
   TracedBody PistonAt(int64_t i, double time) const {

@@ -83,9 +83,8 @@ Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsR
 
 grpc::ServerWriteReactor<v1::TraceOrbitResponse>* TraceService::TraceOrbit(
     Context* context, const v1::TraceOrbitRequest* request) {
-  return TraceReactor::Start(service_, *context,
-                             AdmitCall(service_, *context, {"TraceOrbit", Role::kSubmit}),
-                             *request);
+  return TraceReactor::Start(
+      service_, *context, AdmitCall(service_, *context, {"TraceOrbit", Role::kSubmit}), *request);
 }
 
 Unary* ServerService::GetServerStatus(Context* context, const v1::GetServerStatusRequest* request,

@@ -1,6 +1,6 @@
 #include "server/api/trace_orbit.h"
 
-#include "server/convert/trace.h"
+#include <memory>
 
 namespace ballpiston::server {
 
@@ -21,32 +21,24 @@ void TraceReactor::Look(Clock::time_point now) {
 }
 
 absl::Status TraceReactor::Tell() {
-  if (trace_ == nullptr) return TellStart();
-  AddEvents();
-  events_left_ == 0 ? WriteLastAndEnd() : Write();
+  if (!messages_) {
+    const absl::Status begun = Begin();
+    if (!begun.ok()) return begun;
+  }
+  messages_->FillNext(message_);
+  messages_->HasEnded() ? WriteLastAndEnd() : Write();
   return absl::OkStatus();
 }
 
-absl::Status TraceReactor::TellStart() {
+absl::Status TraceReactor::Begin() {
   const absl::StatusOr<TraceQuestion> question = TraceQuestion::Create(request_);
   if (!question.ok()) return question.status();
   HeldCalls& calls = service_.executor.held_calls();
   const absl::Status held = calls.Begin(caller_.name, question->Bytes(), service_.limits);
   if (!held.ok()) return held;
   bytes_held_ = question->Bytes();
-  trace_ = question->StartTrace();
-  events_left_ = question->events();
-  *message_.mutable_start() = question->StartMessage(*trace_);
-  Write();
+  messages_ = question->Start();
   return absl::OkStatus();
-}
-
-void TraceReactor::AddEvents() {
-  for (int i = 0; i < kEventsOfMessage && events_left_ > 0; ++i) {
-    const std::optional<TraceEvent> event = trace_->Next();
-    if (event) *message_.add_events() = TraceEventMessage(*event);
-    events_left_ = event ? events_left_ - 1 : 0;
-  }
 }
 
 void TraceReactor::ReleaseCall() {

@@ -8,17 +8,15 @@
 #define BALLPISTON_SERVER_API_TRACE_ORBIT_H_
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/trace.pb.h"
-#include "core/gas/trace.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
 #include "server/api/stream_reactor.h"
+#include "server/convert/trace.h"
 
 namespace ballpiston::server {
 
@@ -37,17 +35,13 @@ class TraceReactor : public StreamReactor<v1::TraceOrbitResponse> {
       : StreamReactor(service, context), request_(request) {}
 
   absl::Status Tell() override;
-  absl::Status TellStart();
-  void AddEvents();
+  absl::Status Begin();
   void ReleaseCall() override;
 
   const v1::TraceOrbitRequest request_;
 
-  // Of Advance.
-  std::unique_ptr<Trace> trace_;
-  int64_t events_left_ = 0;
-
-  int64_t bytes_held_ = 0;  // in held_calls
+  std::optional<TraceMessages> messages_;  // of Advance
+  int64_t bytes_held_ = 0;                 // in held_calls
 };
 
 }  // namespace ballpiston::server

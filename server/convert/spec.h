@@ -21,7 +21,8 @@ struct CheckedSpec {
 // enumeration that this version does not know is a violation: it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
-// The shape that a text of the user names. INVALID_ARGUMENT quotes at most the beginning of the text.
+// The shape that a text of the user names. INVALID_ARGUMENT quotes at most the beginning of the
+// text.
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 
 // The values of `cells` have to be codes of shapes.

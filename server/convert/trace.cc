@@ -1,6 +1,7 @@
 #include "server/convert/trace.h"
 
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -33,9 +34,9 @@ std::optional<GasShape> ShapeOf(const v1::TraceOrbitRequest& request, Violations
   Add("cells", shape.status(), violations);
   if (!shape.ok()) return std::nullopt;
   if (shape->cells() > kMaxTracedCells) {
-    violations.push_back({"cells", absl::StrCat(Text(*shape), " has ", shape->cells(),
-                                                " cells; permitted in a trace: 1 to ",
-                                                kMaxTracedCells)});
+    violations.push_back(
+        {"cells", absl::StrCat(Text(*shape), " has ", shape->cells(),
+                               " cells; permitted in a trace: 1 to ", kMaxTracedCells)});
   }
   return *shape;
 }
@@ -107,7 +108,28 @@ void FillPiston(const TracedChange& change, v1::TraceEvent& message) {
   message.set_piston_energy(change.after.energy);
 }
 
+void Fill(const TraceEvent& event, v1::TraceEvent& message) {
+  message.set_time(event.time);
+  message.set_event(KindMessage(event.kind));
+  if (event.free_time) message.set_free_time(*event.free_time);
+  if (event.ball) FillBall(*event.ball, message);
+  if (event.piston) FillPiston(*event.piston, message);
+}
+
 }  // namespace
+
+void TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
+  if (start_) {
+    *message.mutable_start() = *std::move(start_);
+    start_.reset();
+    return;
+  }
+  for (int i = 0; i < kEventsOfMessage && events_left_ > 0; ++i) {
+    const std::optional<TraceEvent> event = trace_->Next();
+    if (event) Fill(*event, *message.add_events());
+    events_left_ = event ? events_left_ - 1 : 0;
+  }
+}
 
 absl::StatusOr<TraceQuestion> TraceQuestion::Create(const v1::TraceOrbitRequest& request) {
   Violations violations;
@@ -131,6 +153,12 @@ absl::StatusOr<TraceQuestion> TraceQuestion::Create(const v1::TraceOrbitRequest&
 
 int64_t TraceQuestion::Bytes() const {
   return kBytesOfMessage + kBytesOfCell * (gas_ ? gas_->balls() : 1);
+}
+
+TraceMessages TraceQuestion::Start() const {
+  std::unique_ptr<Trace> trace = StartTrace();
+  v1::TraceStart start = StartMessage(*trace);
+  return TraceMessages(std::move(trace), std::move(start), request_.events());
 }
 
 std::unique_ptr<Trace> TraceQuestion::StartTrace() const {
@@ -158,16 +186,6 @@ v1::TraceStart TraceQuestion::StartMessage(const Trace& trace) const {
     added.set_vertical(!gas_ || gas_->IsAlongX(index++));
   }
   return start;
-}
-
-v1::TraceEvent TraceEventMessage(const TraceEvent& event) {
-  v1::TraceEvent message;
-  message.set_time(event.time);
-  message.set_event(KindMessage(event.kind));
-  if (event.free_time) message.set_free_time(*event.free_time);
-  if (event.ball) FillBall(*event.ball, message);
-  if (event.piston) FillPiston(*event.piston, message);
-  return message;
 }
 
 }  // namespace ballpiston::server

@@ -102,8 +102,7 @@ TEST(Trace, AnExchangeIsWhereThePistonIs) {
     ++exchanges;
     const int axis = gas.IsAlongX(event->piston->index) ? 0 : 1;
     const double cells = axis == 0 ? 4 : 3;
-    const double distance =
-        event->ball->after.position[axis] - event->piston->after.position[axis];
+    const double distance = event->ball->after.position[axis] - event->piston->after.position[axis];
     ASSERT_NEAR(std::remainder(distance, cells), 0, kRounding);
     ASSERT_EQ(event->piston->after.velocity[1 - axis], 0);
   }
@@ -138,8 +137,7 @@ TEST(Trace, EveryEventConservesEnergy) {
       }
       for (const auto& change : {event->ball, event->piston}) {
         if (!change) continue;
-        ASSERT_NEAR(change->after.velocity.squaredNorm() / 2, change->after.energy,
-                    1e-14 * energy);
+        ASSERT_NEAR(change->after.velocity.squaredNorm() / 2, change->after.energy, 1e-14 * energy);
       }
     }
   }
@@ -178,10 +176,10 @@ TEST(Trace, FreeTimesAreThoseOfTheSameKindAndBodies) {
   std::map<std::tuple<EventKind, int64_t, int64_t>, double> last;
   for (int i = 0; i < 5000; ++i) {
     const auto event = trace->Next();
-    const auto [place, is_first] = last.try_emplace(
-        {event->kind, event->ball ? event->ball->index : -1,
-         event->piston ? event->piston->index : -1},
-        event->time);
+    const auto [place, is_first] =
+        last.try_emplace({event->kind, event->ball ? event->ball->index : -1,
+                          event->piston ? event->piston->index : -1},
+                         event->time);
     ASSERT_EQ(event->free_time.has_value(), !is_first);
     if (event->free_time) {
       ASSERT_EQ(*event->free_time, event->time - place->second);
@@ -224,7 +222,8 @@ TEST(Trace, FreeTimesHaveTheMeansOfTheClosedForms) {
 TEST(Trace, ExchangesOfAGasHaveItsExchangeRate) {
   const GasGeometry gas = Gas("3x3");
   constexpr double kHalfOfFreedom = 9 + 18 / 2.0;
-  const double mean_root = std::exp(std::lgamma(kHalfOfFreedom + 0.5) - std::lgamma(kHalfOfFreedom));
+  const double mean_root =
+      std::exp(std::lgamma(kHalfOfFreedom + 0.5) - std::lgamma(kHalfOfFreedom));
   const auto trace = TraceGas(gas, GasStart(gas));
   const double rate = GasExchangeRate(gas, 1) * std::sqrt(EnergyOfAll(*trace)) / mean_root;
   const Mean exchanges = MeanFreeTimesOf(*trace, 1'000'000).at(EventKind::kBallPiston);

@@ -162,7 +162,8 @@ TEST_F(TraceServiceTest, EveryViolationIsToldAtOnce) {
   request.set_temperature(0);
   const grpc::Status refused = Refusal(request);
   EXPECT_THAT(refused, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
-  EXPECT_THAT(DetailsOf(refused).fields, ElementsAre("rho", "delta", "cells", "temperature", "events"));
+  EXPECT_THAT(DetailsOf(refused).fields,
+              ElementsAre("rho", "delta", "cells", "temperature", "events"));
 }
 
 TEST_F(TraceServiceTest, AViolationNamesTheValueAndThePermittedRange) {
@@ -210,8 +211,7 @@ TEST_F(TraceServiceTest, ItsMemoryCountsAmongTheBytesOfCalls) {
   large.set_cells("1000");
   auto first = std::make_unique<TraceStream>(server, large);
   ASSERT_TRUE(first->Next());
-  EXPECT_THAT(Refusal(Request(1)),
-              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
+  EXPECT_THAT(Refusal(Request(1)), IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
   first->context.TryCancel();
   first.reset();
   while (!TraceStream(server, Request(1)).Next()) {  // until the server knows
