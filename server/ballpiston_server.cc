@@ -46,7 +46,7 @@ SchedulerOptions OptionsOfScheduler(const ServerOptions& options) {
 Health::Services ServicesOfHealth() {
   const std::string ensemble = v1::EnsembleService::service_full_name();
   return {.all = {ensemble, v1::AnalyticService::service_full_name(),
-                  v1::ServerService::service_full_name()},
+                  v1::TraceService::service_full_name(), v1::ServerService::service_full_name()},
           .with_store = {ensemble}};
 }
 
@@ -164,6 +164,7 @@ BallpistonServer::BallpistonServer(ServerOptions options, DataDirectory director
                directory_.FilePath(kStoreFile)},
       ensemble_(context_),
       analytic_(context_),
+      trace_(context_),
       server_(context_) {}
 
 // The cluster first: it adopts leases before a thread can take their chunks.
@@ -218,6 +219,7 @@ absl::Status BallpistonServer::Listen() {
   BoundConnections(builder);
   builder.RegisterService(&ensemble_);
   builder.RegisterService(&analytic_);
+  builder.RegisterService(&trace_);
   builder.RegisterService(&server_);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(calls_.InterceptorFactory());

@@ -127,6 +127,7 @@ class BallpistonServer {
   ServiceContext context_;
   EnsembleService ensemble_;
   AnalyticService analytic_;
+  TraceService trace_;
   ServerService server_;
   std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
   std::unique_ptr<grpc::Server> grpc_;

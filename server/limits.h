@@ -17,7 +17,7 @@ struct Limits {
   int64_t max_active_points_per_principal = 5'000'000;
   int64_t max_points_per_job = 100'000;
   double max_samples_per_job = 1e15;  // samples or collisions, over all points
-  int64_t max_streams = 2'048;        // open watches
+  int64_t max_streams = 2'048;        // open watches and traces
   int64_t max_streams_per_principal = 1'024;
   // Calls in progress that are no streams, and what their requests and answers hold.
   int64_t max_calls_per_principal = 1'024;

@@ -12,6 +12,7 @@
 
 #include "ballpiston/v1/analytic.pb.h"
 #include "ballpiston/v1/ensemble.pb.h"
+#include "ballpiston/v1/trace.pb.h"
 #include "client/library/channel_security.h"
 #include "client/library/client.h"
 #include "client/output/format.h"
@@ -27,6 +28,7 @@ struct Options {
   std::string spec_file;
   std::string again;  // the job whose question is asked again
   v1::EvaluatePairsRequest closed_forms;
+  v1::TraceOrbitRequest trace;
 
   CreateOptions create;
   bool resume = false;

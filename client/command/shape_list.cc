@@ -38,7 +38,16 @@ absl::StatusOr<std::vector<std::string>> ParseChains(absl::string_view text) {
   return chains;
 }
 
-absl::StatusOr<std::vector<std::string>> ParseShape(absl::string_view text) {
+absl::StatusOr<std::vector<std::string>> ParseShapes(absl::string_view item) {
+  if (item.find(':') != absl::string_view::npos) return ParseChains(item);
+  const absl::StatusOr<std::string> shape = ParseShape(item);
+  if (!shape.ok()) return shape.status();
+  return std::vector<std::string>{*shape};
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> ParseShape(absl::string_view text) {
   const std::vector<absl::string_view> parts = absl::StrSplit(text, absl::MaxSplits('x', 1));
   std::vector<int64_t> counts;
   for (const absl::string_view part : parts) {
@@ -46,17 +55,13 @@ absl::StatusOr<std::vector<std::string>> ParseShape(absl::string_view text) {
     if (!count.ok()) return BadShapes(text, kShapeForm);
     counts.push_back(*count);
   }
-  return std::vector<std::string>{absl::StrJoin(counts, "x")};
+  return absl::StrJoin(counts, "x");
 }
-
-bool IsRange(absl::string_view item) { return item.find(':') != absl::string_view::npos; }
-
-}  // namespace
 
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text) {
   std::vector<std::string> list;
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
-    const auto shapes = IsRange(item) ? ParseChains(item) : ParseShape(item);
+    const auto shapes = ParseShapes(item);
     if (!shapes.ok()) return shapes.status();
     if (std::ssize(list) + std::ssize(*shapes) > kMaxListLength) {
       return BadShapes(text, absl::StrCat("has more than ", kMaxListLength, " shapes"));

@@ -20,6 +20,8 @@ namespace ballpiston::client {
 // text and says what is permitted.
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
 
+absl::StatusOr<std::string> ParseShape(absl::string_view text);  // a single SHAPE
+
 }  // namespace ballpiston::client
 
 #endif  // BALLPISTON_CLIENT_COMMAND_SHAPE_LIST_H_

@@ -97,6 +97,8 @@ Value Shapes(Store<std::vector<std::string>> store) {
   return Parsed("LIST", ParseShapeList, std::move(store));
 }
 
+Value Shape(Store<std::string> store) { return Parsed("SHAPE", ParseShape, std::move(store)); }
+
 Value Words(std::string name, Store<std::string> store) {
   const auto any = [](const std::string& text) -> absl::StatusOr<std::string> { return text; };
   return Parsed(std::move(name), any, std::move(store));

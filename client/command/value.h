@@ -49,6 +49,7 @@ Value Count(Store<int64_t> store);  // N
 Value Seed(Store<uint64_t> store);
 Value List(Store<std::vector<double>> store);             // LIST (number_list.h)
 Value Shapes(Store<std::vector<std::string>> store);      // LIST (shape_list.h)
+Value Shape(Store<std::string> store);                    // one SHAPE
 Value Words(std::string name, Store<std::string> store);  // each word
 Value Date(Store<absl::Time> store);
 Value Job(Store<std::string> store);                     // ensembleJobs/ID

@@ -194,6 +194,24 @@ const FlagGroup kClosedForms = {
      {"--beta", Asked(&v1::EvaluatePairsRequest::mutable_beta),
       "inverse temperatures: the same quantities"}}};
 
+const FlagGroup kTrace = {
+    "Orbit",
+    {{"--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
+      "disc radius, 1/2 < rho < 1/sqrt(2); required"},
+     {"--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
+      "the pistons' penetration, above 0, up to (1 - lambda)/2 of a pair and rho/sqrt(2) - "
+      "lambda/2 "
+      "of a gas; required"},
+     {"--cells", Shape([](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
+      "a periodic gas of this shape in place of the pair: N, a chain of N cells, or NxM, a lattice "
+      "of N columns and M rows; at most 1,000 cells"},
+     {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
+      "temperature of the gas, 1e-120 to 1e120, by default 1; a pair has the energy 1/2"},
+     {"--seed", Seed([](Options& o, uint64_t seed) { o.trace.set_seed(seed); }),
+      "seed of the random start, by default 0"},
+     {"--events", Count([](Options& o, int64_t n) { o.trace.set_events(n); }),
+      "number of events, 1 to 1,000,000; required"}}};
+
 const FlagGroup kListFilter = {
     "Which jobs",
     {{"--state",
@@ -445,6 +463,20 @@ std::vector<Verb> AllVerbs() {
     verbs.insert(verbs.end(), more.begin(), more.end());
   };
   append(JobVerbs());
+  append(
+      {{"trace",
+        "print one orbit, event by event, as JSON lines",
+        "The first line is the start: the geometry, and positions and velocities of all bodies. "
+        "Every other line is an event (ball_piston, ball_wall or piston_wall) with its time, the "
+        "time since the last event of the same kind with the same bodies (free_time), and of each "
+        "body that takes part its position, velocity and energies. The same command prints the "
+        "same lines. proto/ballpiston/v1/trace.proto describes the fields.",
+        {},
+        With({&kTrace, &kServer}, {}),
+        {"trace --rho 0.5296 --delta 0.2 --events 1000 >orbit.jsonl",
+         "trace --rho 0.5296 --delta 0.1 --cells 4x3 --events 1000 | "
+         "jq -r 'select(.event == \"ball_piston\") | [.time, .ball, .ball_energy] | @tsv'"},
+        &Trace}});
   append({{"figure",
            "draw a figure: data, gnuplot script and SVG",
            "After an interruption, the same command resumes the jobs of the figure. If the --out "

@@ -25,6 +25,7 @@ VerbResult ListJobs(const Options& options, Terminal& terminal);
 VerbResult Cancel(const Options& options, Terminal& terminal);
 VerbResult Pin(const Options& options, Terminal& terminal);
 VerbResult Delete(const Options& options, Terminal& terminal);
+VerbResult Trace(const Options& options, Terminal& terminal);
 VerbResult Figure(const Options& options, Terminal& terminal);
 VerbResult ServerStart(const Options& options, Terminal& terminal);
 VerbResult ServerStop(const Options& options, Terminal& terminal);

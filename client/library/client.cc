@@ -32,6 +32,7 @@ Client::Client(const std::shared_ptr<grpc::ChannelInterface>& channel, absl::Dur
     : channel_(channel),
       ensembles_(v1::EnsembleService::NewStub(channel)),
       analytic_(v1::AnalyticService::NewStub(channel)),
+      trace_(v1::TraceService::NewStub(channel)),
       server_(v1::ServerService::NewStub(channel)),
       timeout_(timeout) {}
 
@@ -127,6 +128,18 @@ absl::StatusOr<v1::EvaluatePairsResponse> Client::EvaluatePairs(
     const v1::EvaluatePairsRequest& request) const {
   return CallUnary(*analytic_, &v1::AnalyticService::StubInterface::EvaluatePairs, request,
                    timeout_);
+}
+
+absl::Status Client::Trace(const v1::TraceOrbitRequest& request,
+                           const TraceCallback& on_message) const {
+  grpc::ClientContext context;
+  const auto reader = trace_->TraceOrbit(&context, request);
+  v1::TraceOrbitResponse message;
+  bool is_wanted = true;
+  while (is_wanted && reader->Read(&message)) is_wanted = on_message(message);
+  if (!is_wanted) context.TryCancel();
+  const absl::Status end = FromGrpc(reader->Finish());
+  return is_wanted ? end : absl::OkStatus();
 }
 
 absl::StatusOr<v1::ServerStatus> Client::Status() const {

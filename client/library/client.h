@@ -1,5 +1,5 @@
 // A server's API: jobs (submit, look up, watch, cancel, pin, delete, fetch results), closed forms,
-// and the server itself.
+// traces, and the server itself.
 //
 //   auto channel = OpenChannel("localhost:50051");
 //   Client client(*channel);
@@ -15,6 +15,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <stop_token>
@@ -27,6 +28,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
+#include "ballpiston/v1/trace.grpc.pb.h"
 #include "client/library/job_watch.h"
 
 namespace ballpiston::client {
@@ -43,7 +45,7 @@ struct CreateOptions {
 
 class Client {
  public:
-  // `timeout` bounds each single call, not a watch.
+  // `timeout` bounds each single call, not a watch or a trace.
   explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
                   absl::Duration timeout = absl::Seconds(60));
 
@@ -89,6 +91,11 @@ class Client {
   absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(
       const v1::EvaluatePairsRequest& request) const;
 
+  // The start and the events of one orbit, message by message, until their end or until
+  // `on_message` returns false. Then the status is OK too.
+  using TraceCallback = std::function<bool(const v1::TraceOrbitResponse&)>;
+  absl::Status Trace(const v1::TraceOrbitRequest& request, const TraceCallback& on_message) const;
+
   // The first call to a server takes most of a second, because the server measures its speed.
   absl::StatusOr<v1::ServerStatus> Status() const;
 
@@ -101,6 +108,7 @@ class Client {
   std::shared_ptr<grpc::ChannelInterface> channel_;
   std::shared_ptr<v1::EnsembleService::StubInterface> ensembles_;
   std::shared_ptr<v1::AnalyticService::StubInterface> analytic_;
+  std::shared_ptr<v1::TraceService::StubInterface> trace_;
   std::shared_ptr<v1::ServerService::StubInterface> server_;
   absl::Duration timeout_;
 };

@@ -51,4 +51,15 @@ double GasGeometry::PositionOfPiston(int64_t piston) const {
   return static_cast<double>((piston - edges_ * shape_.rows) % shape_.columns) + 0.5;
 }
 
+Eigen::Vector2d GasGeometry::CentreOfCell(int64_t ball) const {
+  return {static_cast<double>(ball % shape_.columns), static_cast<double>(ball / shape_.columns)};
+}
+
+Eigen::Vector2d GasGeometry::MiddleOfEdge(int64_t piston) const {
+  const double x = PositionOfPiston(piston) - 0.5;
+  if (IsAlongX(piston)) return {x, static_cast<double>(piston / edges_)};
+  const int64_t above = piston - edges_ * shape_.rows;
+  return {x, static_cast<double>(above / shape_.columns) - 0.5};
+}
+
 }  // namespace ballpiston

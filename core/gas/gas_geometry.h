@@ -63,6 +63,10 @@ class GasGeometry {
   // Where its edge is along x, in cells from the gas's left end.
   double PositionOfPiston(int64_t piston) const;
 
+  // Places of the whole gas, where cell (column, row) is centred at (column, row).
+  Eigen::Vector2d CentreOfCell(int64_t ball) const;
+  Eigen::Vector2d MiddleOfEdge(int64_t piston) const;
+
  private:
   GasGeometry(const PairGeometry& pair, const GasShape& shape, GasEnds ends)
       : pair_(pair),

@@ -1,6 +1,7 @@
 #include "server/api/services.h"
 
 #include "server/api/methods.h"
+#include "server/api/trace_orbit.h"
 #include "server/api/unary_rpc.h"
 #include "server/api/watch_ensemble_job.h"
 
@@ -78,6 +79,12 @@ Unary* AnalyticService::EvaluatePairs(Context* context, const v1::EvaluatePairsR
                                       v1::EvaluatePairsResponse* response) {
   return RunUnary<v1::EvaluatePairsRequest, v1::EvaluatePairsResponse>(
       service_, context, {"EvaluatePairs", Role::kRead}, request, response, &server::EvaluatePairs);
+}
+
+grpc::ServerWriteReactor<v1::TraceOrbitResponse>* TraceService::TraceOrbit(
+    Context* context, const v1::TraceOrbitRequest* request) {
+  return TraceReactor::Start(
+      service_, *context, AdmitCall(service_, *context, {"TraceOrbit", Role::kSubmit}), *request);
 }
 
 Unary* ServerService::GetServerStatus(Context* context, const v1::GetServerStatusRequest* request,

@@ -6,6 +6,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
+#include "ballpiston/v1/trace.grpc.pb.h"
 #include "server/api/service_context.h"
 
 namespace ballpiston::server {
@@ -56,6 +57,17 @@ class AnalyticService : public v1::AnalyticService::CallbackService {
   grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
                                           const v1::EvaluatePairsRequest* request,
                                           v1::EvaluatePairsResponse* response) override;
+
+ private:
+  ServiceContext& service_;
+};
+
+class TraceService : public v1::TraceService::CallbackService {
+ public:
+  explicit TraceService(ServiceContext& service) : service_(service) {}
+
+  grpc::ServerWriteReactor<v1::TraceOrbitResponse>* TraceOrbit(
+      grpc::CallbackServerContext* context, const v1::TraceOrbitRequest* request) override;
 
  private:
   ServiceContext& service_;

@@ -1,7 +1,6 @@
 #include "server/api/watch_ensemble_job.h"
 
 #include <algorithm>
-#include <exception>
 #include <optional>
 #include <utility>
 
@@ -33,56 +32,14 @@ constexpr std::chrono::milliseconds kBetweenTries(200);
 WatchReactor* WatchReactor::Start(ServiceContext& service, grpc::CallbackServerContext& context,
                                   const absl::StatusOr<Call>& call,
                                   const v1::WatchEnsembleJobRequest& request) {
-  std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, context, request));
-  reactor->self_ = reactor;
-  absl::Status admitted = call.status();
-  if (call.ok()) {
-    reactor->caller_ = call->caller;
-    admitted = service.watches.Add(reactor.get(), call->caller.name, service.limits);
-  }
-  if (admitted.ok()) {
-    reactor->Schedule();
-  } else {
-    reactor->End(admitted);
-  }
+  const std::shared_ptr<WatchReactor> reactor(new WatchReactor(service, context, request));
+  reactor->StreamReactor::Start(call);
   return reactor.get();
 }
 
 WatchReactor::WatchReactor(ServiceContext& service, grpc::CallbackServerContext& context,
                            const v1::WatchEnsembleJobRequest& request)
-    : service_(service),
-      context_(context),
-      request_(request),
-      active_(service.activity.Begin()),
-      next_heartbeat_(Clock::now() + service.timing.heartbeat),
-      next_check_(next_heartbeat_) {}
-
-// ---- reactions: on gRPC's threads ----
-
-void WatchReactor::OnWriteDone(bool ok) {
-  message_.Clear();  // that of a job may be large, and the next one far away
-  LeaveRoom();
-  {
-    MutexLock lock(mutex_);
-    writing_ = false;
-    cut_ = cut_ || !ok;
-  }
-  Schedule();
-}
-
-void WatchReactor::OnCancel() {
-  {
-    MutexLock lock(mutex_);
-    cut_ = true;
-  }
-  Schedule();
-}
-
-void WatchReactor::OnDone() {
-  LeaveRoom();
-  service_.watches.Remove(this);
-  self_.reset();  // may delete this
-}
+    : StreamReactor(service, context), request_(request), next_heartbeat_(next_check_) {}
 
 // ---- when to speak ----
 
@@ -119,49 +76,9 @@ WatchReactor::Clock::duration WatchReactor::SnapshotInterval() const {
   return std::max(service_.timing.snapshot, fair);
 }
 
-void WatchReactor::Schedule() {
-  {
-    MutexLock lock(mutex_);
-    if (ended_) return;
-    again_ = scheduled_;
-    if (std::exchange(scheduled_, true)) return;
-  }
-  service_.executor.PostOfStream(caller_.name, [self = shared_from_this()] { self->Advance(); });
-}
-
-void WatchReactor::Advance() {
-  absl::Status told;
-  try {
-    told = TellWhatIsNew();
-  } catch (const std::exception& error) {
-    told = WithReason(absl::InternalError(error.what()), "INTERNAL");
-  }
-  if (!told.ok()) End(told);
-  bool once_more = false;
-  {
-    MutexLock lock(mutex_);
-    scheduled_ = false;
-    once_more = std::exchange(again_, false);
-  }
-  if (once_more) Schedule();
-}
-
 // ---- what to say ----
 
-absl::Status WatchReactor::TellWhatIsNew() {
-  bool writing = false;
-  {
-    MutexLock lock(mutex_);
-    if (ended_) return absl::OkStatus();
-    writing = writing_;
-    if (!writing && !abandoned_.ok()) return abandoned_;
-    if (!writing && cut_) return absl::CancelledError("the client is gone");
-  }
-  const absl::Status checked = CheckCaller();
-  if (writing && !checked.ok()) AbandonWrite(checked);
-  if (writing || !checked.ok()) return writing ? absl::OkStatus() : checked;
-  if (service_.draining) return ShuttingDown();
-  message_.Clear();
+absl::Status WatchReactor::Tell() {
   if (id_.empty()) {
     const absl::Status found = FindJob();
     if (!found.ok()) return found;
@@ -174,30 +91,9 @@ absl::Status WatchReactor::TellWhatIsNew() {
   return told.status();
 }
 
-// An administrator who is one no more may see his own jobs; a token that is now somebody else's is
-// not his.
-absl::Status WatchReactor::CheckCaller() {
-  const Clock::time_point now = Clock::now();
-  if (now < next_check_) return absl::OkStatus();
-  {
-    MutexLock lock(mutex_);
-    next_check_ = now + service_.timing.heartbeat;
-  }
-  absl::StatusOr<Principal> caller = service_.authenticator.Authenticate(context_);
-  if (!caller.ok()) return caller.status();
-  if (caller->name != caller_.name) return CredentialsInvalid();
-  caller_.role = caller->role;
+absl::Status WatchReactor::CheckRights() const {
   const bool sees = job_.active == nullptr || caller_.MaySee(job_.active->principal());
   return sees ? absl::OkStatus() : JobNotFound(request_.name());
-}
-
-// The reader stalls, and would hold the stream open for ever.
-void WatchReactor::AbandonWrite(const absl::Status& why) {
-  {
-    MutexLock lock(mutex_);
-    abandoned_ = why;
-  }
-  context_.TryCancel();  // the write ends
 }
 
 bool WatchReactor::TakeRoom(size_t bytes) {
@@ -256,7 +152,7 @@ absl::StatusOr<bool> WatchReactor::TellState() {
     MutexLock lock(mutex_);
     told_state_ = view.state_change;
   }
-  has_ended ? WriteLastAndEnd() : Write();
+  has_ended ? WriteLastUpdate() : WriteUpdate();
   return true;
 }
 
@@ -286,14 +182,14 @@ absl::StatusOr<bool> WatchReactor::TellSnapshot() {
   const std::string progress = snapshot.progress().SerializeAsString();
   const bool same_progress = std::exchange(told_progress_, progress) == progress;
   if (snapshot.points().empty() && !*finished && same_progress) return false;
-  Write();
+  WriteUpdate();
   return true;
 }
 
 absl::StatusOr<bool> WatchReactor::TellFinishedPoints(const v1::JobProgress& progress) {
   *message_.mutable_snapshot()->mutable_progress() = progress;
   const absl::StatusOr<bool> added = AddFinishedPoints();
-  if (added.ok() && *added) Write();
+  if (added.ok() && *added) WriteUpdate();
   return added;
 }
 
@@ -327,14 +223,14 @@ absl::Status WatchReactor::TellOfEndedJob() {
   // Points that have expired since the job was found were perhaps not told.
   if (ended->results_expired() && !job_.expired) return ResultsExpired(request_.name());
   *message_.mutable_job() = *std::move(ended);
-  WriteLastAndEnd();
+  WriteLastUpdate();
   return absl::OkStatus();
 }
 
 void WatchReactor::TellHeartbeat() {
   if (Clock::now() < next_heartbeat_) return;
   message_.mutable_heartbeat();
-  Write();
+  WriteUpdate();
 }
 
 // ---- resume tokens ----
@@ -360,31 +256,18 @@ void WatchReactor::ReadToken(const std::string& token, int64_t last_finished) {
 
 // ---- writing ----
 
-void WatchReactor::Write() {
+void WatchReactor::WriteUpdate() {
   message_.set_resume_token(Token());
   {
     MutexLock lock(mutex_);
-    writing_ = true;
     next_heartbeat_ = Clock::now() + service_.timing.heartbeat;
   }
-  StartWrite(&message_);
+  Write();
 }
 
-void WatchReactor::WriteLastAndEnd() {
+void WatchReactor::WriteLastUpdate() {
   message_.set_resume_token(Token());
-  {
-    MutexLock lock(mutex_);
-    ended_ = true;
-  }
-  StartWriteAndFinish(&message_, grpc::WriteOptions(), grpc::Status::OK);
-}
-
-void WatchReactor::End(const absl::Status& status) {
-  {
-    MutexLock lock(mutex_);
-    if (std::exchange(ended_, true)) return;
-  }
-  Finish(GrpcStatus(status));
+  WriteLastAndEnd();
 }
 
 }  // namespace ballpiston::server

@@ -1,15 +1,12 @@
-// WatchEnsembleJob: one write outstanding, and the next message made when it is done.
+// WatchEnsembleJob: what is said of a job, in the frame of stream_reactor.h.
 //
-// What to say is decided when it can be said, so a slow reader costs one message of memory and
-// nobody's time: of unfinished points only the newest state is told, and finished ones are read,
-// from the job's memory or from the store, when their turn has come. Messages are made on the
-// threads for streams, never on gRPC's, and outside of the lock the workers need; watches of one
-// job share what takes that lock (jobs/job_snapshot.h). Many watches are told less often, so that
-// all of them together never take more than kSnapshotsPerSecond. A message with a large
-// specification, of which a stalled reader would keep two copies, waits until those of its
-// principal that are on their way leave room for it.
-//
-// Once in a heartbeat's time the credentials are looked up again: a watch ends when they do.
+// What to say is decided when it can be said: of unfinished points only the newest state is told,
+// and finished ones are read, from the job's memory or from the store, when their turn has come.
+// Messages are made outside of the lock the workers need; watches of one job share what takes that
+// lock (jobs/job_snapshot.h). Many watches are told less often, so that all of them together never
+// take more than kSnapshotsPerSecond. A message with a large specification, of which a stalled
+// reader would keep two copies, waits until those of its principal that are on their way leave room
+// for it.
 //
 // Properties, over a watch and those that go on with its tokens, each with a test of its name:
 //   1. EachFinishedPointIsToldOnceInOrder: also over restarts, and before the terminal state.
@@ -25,7 +22,6 @@
 #ifndef BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 #define BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -34,44 +30,27 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/ensemble.pb.h"
-#include "grpcpp/support/server_callback.h"
 #include "server/api/call.h"
 #include "server/api/service_context.h"
-#include "server/mutex.h"
+#include "server/api/stream_reactor.h"
 
 namespace ballpiston::server {
 
-class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>,
-                     public Watch,
-                     public std::enable_shared_from_this<WatchReactor> {
+class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
  public:
-  // Owns itself until gRPC is done with it. A call that was not admitted ends at once.
-  //   RESOURCE_EXHAUSTED  TOO_MANY_STREAMS
   static WatchReactor* Start(ServiceContext& service, grpc::CallbackServerContext& context,
                              const absl::StatusOr<Call>& call,
                              const v1::WatchEnsembleJobRequest& request);
 
-  void Look(std::chrono::steady_clock::time_point now) override;
-
-  void OnWriteDone(bool ok) override;
-  void OnCancel() override;
-  void OnDone() override;
+  void Look(Clock::time_point now) override;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   WatchReactor(ServiceContext& service, grpc::CallbackServerContext& context,
                const v1::WatchEnsembleJobRequest& request);
 
-  // Has Advance run, once more if it is running now. At most one Advance runs at a time, and all
-  // writes and the end come from it.
-  void Schedule() ABSL_LOCKS_EXCLUDED(mutex_);
-  void Advance();
-  absl::Status TellWhatIsNew();
-
-  // OK while the caller may still watch the job, and while it is not yet time to ask again.
-  absl::Status CheckCaller();
-  void AbandonWrite(const absl::Status& why) ABSL_LOCKS_EXCLUDED(mutex_);
+  absl::Status Tell() override;
+  absl::Status CheckRights() const override;
+  void ReleaseMessage() override { LeaveRoom(); }
 
   absl::Status FindJob();
   // Each of these is one message, or false if there is nothing of the kind to tell now.
@@ -93,32 +72,19 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
 
   void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;
-  void Write() ABSL_LOCKS_EXCLUDED(mutex_);
-  void WriteLastAndEnd() ABSL_LOCKS_EXCLUDED(mutex_);
-  void End(const absl::Status& status) ABSL_LOCKS_EXCLUDED(mutex_);
+  // With the token, and the time of the next heartbeat.
+  void WriteUpdate() ABSL_LOCKS_EXCLUDED(mutex_);
+  void WriteLastUpdate() ABSL_LOCKS_EXCLUDED(mutex_);
 
-  ServiceContext& service_;
-  grpc::CallbackServerContext& context_;  // valid until the end is sent
   const v1::WatchEnsembleJobRequest request_;
-  Principal caller_;                    // its role may change
-  const std::shared_ptr<void> active_;  // for Activity
-  std::shared_ptr<WatchReactor> self_;
 
-  // Of Advance, and of gRPC during a write.
+  // Of Advance.
   std::string id_;
   WatchedJob job_;
-  v1::WatchEnsembleJobResponse message_;
   std::string told_progress_;
   bool told_all_points_ = false;  // of a job that had ended before
 
-  Mutex mutex_;  // never held while gRPC is called
-  bool scheduled_ ABSL_GUARDED_BY(mutex_) = false;
-  bool again_ ABSL_GUARDED_BY(mutex_) = false;
-  bool writing_ ABSL_GUARDED_BY(mutex_) = false;
-  bool cut_ ABSL_GUARDED_BY(mutex_) = false;        // the client is gone
-  absl::Status abandoned_ ABSL_GUARDED_BY(mutex_);  // why the write is not waited for
   int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // in TakeRoom
-  bool ended_ ABSL_GUARDED_BY(mutex_) = false;
 
   // Only Advance changes these, and it holds the lock then. So Advance may read them without the
   // lock; other functions need it.
@@ -130,7 +96,6 @@ class WatchReactor : public grpc::ServerWriteReactor<v1::WatchEnsembleJobRespons
   Clock::time_point next_try_;  // to find room
   Clock::time_point next_snapshot_;
   Clock::time_point next_heartbeat_;
-  Clock::time_point next_check_;  // of the credentials
 };
 
 }  // namespace ballpiston::server

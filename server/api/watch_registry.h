@@ -1,4 +1,4 @@
-// All open watches, and the one thread that looks after them.
+// All open streams, and the one thread that looks after them.
 //
 // It looks at each a few times a second, and at once when a job changes its state (but not more
 // often than every few milliseconds, however many jobs do), and asks those that have something to

@@ -13,7 +13,6 @@
 #include "absl/strings/string_view.h"
 #include "core/engine_version.h"
 #include "core/ensemble/experiment_kind.h"
-#include "core/gas/gas_shape.h"
 #include "core/model_choice/ladder.h"
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/message.h"
@@ -93,9 +92,10 @@ std::string Shown(absl::string_view text) {
 
 // The code of the shape; NaN, which is the code of no shape, and a violation if there is none.
 double CellsOf(const std::string& text, int index, Violations& violations) {
-  if (const auto shape = ParseGasShape(text); shape.ok()) return CodeOf(*shape);
-  violations.push_back({absl::StrCat("spec.grid.cells[", index, "]"),
-                        std::string(ParseGasShape(Shown(text)).status().message())});
+  const absl::StatusOr<GasShape> shape = ShapeOfText(text);
+  if (shape.ok()) return CodeOf(*shape);
+  violations.push_back(
+      {absl::StrCat("spec.grid.cells[", index, "]"), std::string(shape.status().message())});
   return std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -216,6 +216,11 @@ CheckedSpec CheckSpec(const v1::EnsembleSpec& message) {
   checked.spec.verify = message.verify();
   AddCoreViolations(checked.spec, checked.violations);
   return checked;
+}
+
+absl::StatusOr<GasShape> ShapeOfText(const std::string& text) {
+  const absl::StatusOr<GasShape> shape = ParseGasShape(text);
+  return shape.ok() ? shape : ParseGasShape(Shown(text));
 }
 
 v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec) {

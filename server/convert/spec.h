@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "ballpiston/v1/spec.pb.h"
 #include "core/ensemble/ensemble_spec.h"
+#include "core/gas/gas_shape.h"
 
 namespace ballpiston::server {
 
@@ -19,6 +20,10 @@ struct CheckedSpec {
 // What the message asks for and everything that is wrong with it. A field or a number of an
 // enumeration that this version does not know is a violation: it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
+
+// The shape that a text of the user names. INVALID_ARGUMENT quotes at most the beginning of the
+// text.
+absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 
 // The values of `cells` have to be codes of shapes.
 v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);

@@ -166,6 +166,7 @@ void FakeServer::Start() {
   builder.SetMaxReceiveMessageSize(largest_request);
   builder.RegisterService(&ensemble);
   builder.RegisterService(&analytic);
+  builder.RegisterService(&trace);
   builder.RegisterService(&server);
   server_ = builder.BuildAndStart();
 }

@@ -13,6 +13,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
+#include "ballpiston/v1/trace.grpc.pb.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ballpiston::client {
@@ -99,6 +100,19 @@ class FakeAnalyticService final : public v1::AnalyticService::Service {
   }
 };
 
+class FakeTraceService final : public v1::TraceService::Service {
+ public:
+  std::vector<v1::TraceOrbitResponse> messages;
+  grpc::Status end;
+  v1::TraceOrbitRequest asked;  // the last request
+  grpc::Status TraceOrbit(grpc::ServerContext*, const v1::TraceOrbitRequest* request,
+                          grpc::ServerWriter<v1::TraceOrbitResponse>* writer) override {
+    asked = *request;
+    for (const v1::TraceOrbitResponse& message : messages) writer->Write(message);
+    return end;
+  }
+};
+
 class FakeServerService final : public v1::ServerService::Service {
  public:
   v1::ServerStatus status;
@@ -118,6 +132,7 @@ class FakeServer {
 
   FakeEnsembleService ensemble;
   FakeAnalyticService analytic;
+  FakeTraceService trace;
   FakeServerService server;
   int largest_request = 4 << 20;  // bytes; -1: any
 

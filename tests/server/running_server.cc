@@ -55,6 +55,7 @@ TestClient::TestClient(std::shared_ptr<grpc::Channel> channel)
     : channel_(std::move(channel)),
       ensemble_(v1::EnsembleService::NewStub(channel_)),
       analytic_(v1::AnalyticService::NewStub(channel_)),
+      trace_(v1::TraceService::NewStub(channel_)),
       server_(v1::ServerService::NewStub(channel_)) {}
 
 grpc::Status TestClient::Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job) {

@@ -18,6 +18,7 @@
 #include "ballpiston/v1/analytic.grpc.pb.h"
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
+#include "ballpiston/v1/trace.grpc.pb.h"
 #include "grpcpp/channel.h"
 #include "grpcpp/security/credentials.h"
 #include "server/ballpiston_server.h"
@@ -57,6 +58,7 @@ class TestClient {
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
   v1::EnsembleService::Stub& ensemble() { return *ensemble_; }
   v1::AnalyticService::Stub& analytic() { return *analytic_; }
+  v1::TraceService::Stub& trace() { return *trace_; }
 
   grpc::Status Create(const v1::CreateEnsembleJobRequest& request, v1::EnsembleJob* job = nullptr);
   v1::EnsembleJob Created(const v1::CreateEnsembleJobRequest& request);
@@ -80,6 +82,7 @@ class TestClient {
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::EnsembleService::Stub> ensemble_;
   std::unique_ptr<v1::AnalyticService::Stub> analytic_;
+  std::unique_ptr<v1::TraceService::Stub> trace_;
   std::unique_ptr<v1::ServerService::Stub> server_;
 };
 

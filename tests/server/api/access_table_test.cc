@@ -37,7 +37,8 @@ const std::map<std::string, Role>& LeastRoles() {
       {"DeleteEnsembleJob", Role::kSubmit}, {"WatchEnsembleJob", Role::kRead},
       {"PlanEnsembleJob", Role::kRead},     {"ListResults", Role::kRead},
       {"PinEnsembleJob", Role::kSubmit},    {"GetResult", Role::kRead},
-      {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead}};
+      {"EvaluatePairs", Role::kRead},       {"GetServerStatus", Role::kRead},
+      {"TraceOrbit", Role::kSubmit}};
   return *roles;
 }
 

@@ -1,0 +1,33 @@
+// Times since the last event of the same kind with the same bodies.
+#ifndef BALLPISTON_CORE_GAS_FREE_TIMES_H_
+#define BALLPISTON_CORE_GAS_FREE_TIMES_H_
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace ballpiston {
+
+class FreeTimes {
+ public:
+  // A surface is a kind of event with certain bodies.
+  explicit FreeTimes(size_t surfaces) : last_(surfaces, kNever) {}
+
+  // An event on the surface now: the time since the last one there, if there was one.
+  std::optional<double> Hit(size_t surface, double now) {
+    const double last = last_[surface];
+    last_[surface] = now;
+    if (last == kNever) return std::nullopt;
+    return now - last;
+  }
+
+ private:
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+  std::vector<double> last_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_FREE_TIMES_H_

@@ -1,0 +1,191 @@
+#include "server/convert/trace.h"
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "core/closed_form/pair_measures.h"
+#include "core/ensemble/parameter.h"
+#include "core/gas/canonical_gas.h"
+#include "core/sampling/counter_random.h"
+#include "core/sampling/invariant_measure.h"
+#include "server/convert/errors.h"
+#include "server/convert/spec.h"
+
+namespace ballpiston::server {
+namespace {
+
+using Violations = std::vector<FieldViolation>;
+
+// Points of a grid have streams of their own.
+constexpr uint64_t kTraceStream = 0x7472616365;
+
+constexpr int64_t kBytesOfCell = 1024;
+constexpr int64_t kBytesOfMessage = 128 * 1024;
+
+void Add(const char* field, const absl::Status& status, Violations& violations) {
+  if (!status.ok()) violations.push_back({field, std::string(status.message())});
+}
+
+std::optional<GasShape> ShapeOf(const v1::TraceOrbitRequest& request, Violations& violations) {
+  if (request.cells().empty()) return std::nullopt;
+  const absl::StatusOr<GasShape> shape = ShapeOfText(request.cells());
+  Add("cells", shape.status(), violations);
+  if (!shape.ok()) return std::nullopt;
+  if (shape->cells() > kMaxTracedCells) {
+    violations.push_back(
+        {"cells", absl::StrCat(Text(*shape), " has ", shape->cells(),
+                               " cells; permitted in a trace: 1 to ", kMaxTracedCells)});
+  }
+  return *shape;
+}
+
+void CheckDelta(const v1::TraceOrbitRequest& request, bool has_rho, Violations& violations) {
+  const double rho = request.rho(), delta = request.delta();
+  if (!has_rho) return Add("delta", ValidateSomeDelta(delta), violations);
+  Add("delta",
+      request.cells().empty() ? ValidatePairDelta(rho, delta) : ValidateGasDelta(rho, delta),
+      violations);
+}
+
+void CheckTemperature(const v1::TraceOrbitRequest& request, Violations& violations) {
+  if (!request.has_temperature()) return;
+  if (request.cells().empty()) {
+    violations.push_back(
+        {"temperature", "is set without cells; a pair has the energy 1/2, not a temperature"});
+  } else {
+    Add("temperature", ValidateTemperature(request.temperature()), violations);
+  }
+}
+
+void CheckEvents(int64_t events, Violations& violations) {
+  if (events >= 1 && events <= kMaxTracedEvents) return;
+  violations.push_back(
+      {"events", absl::StrCat("is ", events, "; permitted: 1 to ", kMaxTracedEvents)});
+}
+
+template <typename Message>
+void Fill(const TracedBody& body, Message& message) {
+  message.set_x(body.position.x());
+  message.set_y(body.position.y());
+  message.set_vx(body.velocity.x());
+  message.set_vy(body.velocity.y());
+  message.set_energy(body.energy);
+}
+
+v1::TraceEvent::Kind KindMessage(EventKind kind) {
+  switch (kind) {
+    case EventKind::kBallWall:
+      return v1::TraceEvent::ball_wall;
+    case EventKind::kPistonWall:
+      return v1::TraceEvent::piston_wall;
+    case EventKind::kBallPiston:
+      return v1::TraceEvent::ball_piston;
+    case EventKind::kEscape:
+      break;
+  }
+  return v1::TraceEvent::escape;
+}
+
+void FillBall(const TracedChange& change, v1::TraceEvent& message) {
+  message.set_ball(static_cast<int32_t>(change.index));
+  message.set_ball_x(change.after.position.x());
+  message.set_ball_y(change.after.position.y());
+  message.set_ball_vx(change.after.velocity.x());
+  message.set_ball_vy(change.after.velocity.y());
+  message.set_ball_energy_before(change.energy_before);
+  message.set_ball_energy(change.after.energy);
+}
+
+void FillPiston(const TracedChange& change, v1::TraceEvent& message) {
+  message.set_piston(static_cast<int32_t>(change.index));
+  message.set_piston_x(change.after.position.x());
+  message.set_piston_y(change.after.position.y());
+  message.set_piston_vx(change.after.velocity.x());
+  message.set_piston_vy(change.after.velocity.y());
+  message.set_piston_energy_before(change.energy_before);
+  message.set_piston_energy(change.after.energy);
+}
+
+void Fill(const TraceEvent& event, v1::TraceEvent& message) {
+  message.set_time(event.time);
+  message.set_event(KindMessage(event.kind));
+  if (event.free_time) message.set_free_time(*event.free_time);
+  if (event.ball) FillBall(*event.ball, message);
+  if (event.piston) FillPiston(*event.piston, message);
+}
+
+}  // namespace
+
+void TraceMessages::FillNext(v1::TraceOrbitResponse& message) {
+  if (start_) {
+    *message.mutable_start() = *std::move(start_);
+    start_.reset();
+    return;
+  }
+  for (int i = 0; i < kEventsOfMessage && events_left_ > 0; ++i) {
+    const std::optional<TraceEvent> event = trace_->Next();
+    if (event) Fill(*event, *message.add_events());
+    events_left_ = event ? events_left_ - 1 : 0;
+  }
+}
+
+absl::StatusOr<TraceQuestion> TraceQuestion::Create(const v1::TraceOrbitRequest& request) {
+  Violations violations;
+  const absl::Status rho = ValidateRho(request.rho());
+  Add("rho", rho, violations);
+  CheckDelta(request, rho.ok(), violations);
+  const std::optional<GasShape> shape = ShapeOf(request, violations);
+  CheckTemperature(request, violations);
+  CheckEvents(request.events(), violations);
+  if (!violations.empty()) return InvalidRequest(violations);
+  if (!shape) {
+    const absl::StatusOr<PairGeometry> pair = PairGeometry::Create(request.rho(), request.delta());
+    if (!pair.ok()) return pair.status();
+    return TraceQuestion(request, *pair, std::nullopt);
+  }
+  const absl::StatusOr<GasGeometry> gas =
+      GasGeometry::Create(request.rho(), request.delta(), *shape, GasEnds::kPeriodic);
+  if (!gas.ok()) return gas.status();
+  return TraceQuestion(request, gas->pair(), *gas);
+}
+
+int64_t TraceQuestion::Bytes() const {
+  return kBytesOfMessage + kBytesOfCell * (gas_ ? gas_->balls() : 1);
+}
+
+TraceMessages TraceQuestion::Start() const {
+  std::unique_ptr<Trace> trace = StartTrace();
+  v1::TraceStart start = StartMessage(*trace);
+  return TraceMessages(std::move(trace), std::move(start), request_.events());
+}
+
+std::unique_ptr<Trace> TraceQuestion::StartTrace() const {
+  CounterRandom random(request_.seed(), kTraceStream, 0);
+  if (!gas_) return TracePair(pair_, DrawFromFlowMeasure(pair_, random));
+  return TraceGas(*gas_, DrawGas(*gas_, TemperatureProfile(Temperature()), random));
+}
+
+v1::TraceStart TraceQuestion::StartMessage(const Trace& trace) const {
+  v1::TraceStart start;
+  start.set_event(v1::TraceEvent::start);
+  start.set_rho(pair_.rho());
+  start.set_delta(pair_.delta());
+  start.set_lambda(pair_.lambda());
+  start.set_tip(pair_.tip());
+  start.set_eta(Measures(pair_).eta);
+  if (gas_) start.set_cells(Text(gas_->shape()));
+  if (gas_) start.set_temperature(Temperature());
+  start.set_seed(request_.seed());
+  for (const TracedBody& ball : trace.Balls()) Fill(ball, *start.add_balls());
+  int64_t index = 0;
+  for (const TracedBody& piston : trace.Pistons()) {
+    v1::TracedPiston& added = *start.add_pistons();
+    Fill(piston, added);
+    added.set_vertical(!gas_ || gas_->IsAlongX(index++));
+  }
+  return start;
+}
+
+}  // namespace ballpiston::server

@@ -1,0 +1,252 @@
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/geometry/paper.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "server/convert/trace.h"
+#include "tests/server/error_details.h"
+#include "tests/server/running_server.h"
+#include "tests/server/secure_server.h"
+#include "tests/support/status_matchers.h"
+
+namespace ballpiston::server {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+v1::TraceOrbitRequest Request(int64_t events, const std::string& cells = "") {
+  v1::TraceOrbitRequest request;
+  request.set_rho(kPaperRho);
+  request.set_delta(0.15);
+  request.set_cells(cells);
+  request.set_events(events);
+  return request;
+}
+
+struct TraceStream {
+  TraceStream(TestClient& client, const v1::TraceOrbitRequest& request)
+      : reader(client.trace().TraceOrbit(&context, request)) {}
+
+  std::optional<v1::TraceOrbitResponse> Next() {
+    v1::TraceOrbitResponse message;
+    if (!reader->Read(&message)) return std::nullopt;
+    return message;
+  }
+  grpc::Status End() {  // reads to the end
+    while (Next()) continue;
+    return reader->Finish();
+  }
+
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReader<v1::TraceOrbitResponse>> reader;
+};
+
+// Far more than gRPC keeps of a stream whose reader stalls.
+const v1::TraceOrbitRequest kLong = Request(kMaxTracedEvents);
+
+class TraceServiceTest : public testing::Test {
+ protected:
+  RunningServer& StartWith(const TestServerOptions& options) { return server_.emplace(options); }
+  RunningServer& server() { return server_ ? *server_ : server_.emplace(); }
+
+  std::vector<v1::TraceOrbitResponse> Trace(const v1::TraceOrbitRequest& request) {
+    TraceStream stream(server(), request);
+    std::vector<v1::TraceOrbitResponse> messages;
+    while (auto message = stream.Next()) messages.push_back(*message);
+    EXPECT_OK(stream.reader->Finish());
+    return messages;
+  }
+
+  grpc::Status Refusal(const v1::TraceOrbitRequest& request) {
+    return TraceStream(server(), request).End();
+  }
+
+  std::optional<RunningServer> server_;
+};
+
+TEST_F(TraceServiceTest, TheStartComesFirstThenAsManyEventsAsAsked) {
+  for (const int64_t events : {1, kEventsOfMessage, kEventsOfMessage + 1, 1000}) {
+    const auto messages = Trace(Request(events));
+    ASSERT_GE(messages.size(), 2u);
+    EXPECT_TRUE(messages[0].has_start());
+    EXPECT_EQ(messages[0].events_size(), 0);
+    int64_t told = 0;
+    double time = 0;
+    for (const auto& message : messages) {
+      told += message.events_size();
+      EXPECT_LE(message.events_size(), kEventsOfMessage);
+      for (const v1::TraceEvent& event : message.events()) {
+        EXPECT_GE(event.time(), time);
+        time = event.time();
+      }
+    }
+    EXPECT_EQ(told, events);
+  }
+}
+
+TEST_F(TraceServiceTest, ThePairHasOneBallAndOnePistonAndItsEnergy) {
+  const auto start = Trace(Request(1)).at(0).start();
+  EXPECT_EQ(start.event(), v1::TraceEvent::start);
+  EXPECT_EQ(start.rho(), kPaperRho);
+  EXPECT_EQ(start.delta(), 0.15);
+  EXPECT_NEAR(start.tip(), (1 - start.lambda()) / 2, 1e-15);
+  EXPECT_GT(start.eta(), 0);
+  EXPECT_FALSE(start.has_cells() || start.has_temperature());
+  ASSERT_EQ(start.balls_size(), 1);
+  ASSERT_EQ(start.pistons_size(), 1);
+  EXPECT_TRUE(start.pistons(0).vertical());
+  EXPECT_NEAR(start.balls(0).energy() + start.pistons(0).energy(), 0.5, 1e-15);
+}
+
+TEST_F(TraceServiceTest, AGasHasTheBodiesOfItsShape) {
+  v1::TraceOrbitRequest request = Request(1, "4x3");
+  request.set_temperature(2);
+  const auto start = Trace(request).at(0).start();
+  EXPECT_EQ(start.cells(), "4x3");
+  EXPECT_EQ(start.temperature(), 2);
+  ASSERT_EQ(start.balls_size(), 12);
+  ASSERT_EQ(start.pistons_size(), 24);
+  EXPECT_NEAR(start.balls(6).x(), 2, 0.5);
+  EXPECT_NEAR(start.balls(6).y(), 1, 0.5);
+  EXPECT_TRUE(start.pistons(6).vertical());
+  EXPECT_EQ(start.pistons(6).y(), 1);
+  EXPECT_FALSE(start.pistons(18).vertical());
+  EXPECT_EQ(start.pistons(18).x(), 2);
+  EXPECT_EQ(Trace(Request(1, "7")).at(0).start().pistons_size(), 7);
+  EXPECT_EQ(Trace(Request(1, "7")).at(0).start().temperature(), 1);
+}
+
+TEST_F(TraceServiceTest, EventsHaveTheBodiesThatTakePart) {
+  int exchanges = 0;
+  for (const auto& message : Trace(Request(2000, "3x3"))) {
+    for (const v1::TraceEvent& event : message.events()) {
+      EXPECT_EQ(event.has_ball(), event.event() != v1::TraceEvent::piston_wall);
+      EXPECT_EQ(event.has_piston(), event.event() != v1::TraceEvent::ball_wall);
+      EXPECT_EQ(event.has_ball_energy_before(), event.has_ball());
+      if (event.event() != v1::TraceEvent::ball_piston) continue;
+      ++exchanges;
+      EXPECT_NEAR(event.ball_energy() + event.piston_energy(),
+                  event.ball_energy_before() + event.piston_energy_before(), 1e-14);
+      EXPECT_NEAR(std::hypot(event.ball_vx(), event.ball_vy()), std::sqrt(2 * event.ball_energy()),
+                  1e-14);
+    }
+  }
+  EXPECT_GT(exchanges, 0);
+}
+
+TEST_F(TraceServiceTest, TheSameRequestHasTheSameBytes) {
+  const auto bytes = [this](uint64_t seed) {
+    v1::TraceOrbitRequest request = Request(2000, "3x3");
+    request.set_seed(seed);
+    std::string all;
+    for (const auto& message : Trace(request)) all += message.SerializeAsString();
+    return all;
+  };
+  EXPECT_EQ(bytes(7), bytes(7));
+  EXPECT_NE(bytes(7), bytes(8));
+}
+
+// ---- bad requests ----
+
+TEST_F(TraceServiceTest, EveryViolationIsToldAtOnce) {
+  v1::TraceOrbitRequest request;
+  request.set_cells("2x");
+  request.set_temperature(0);
+  const grpc::Status refused = Refusal(request);
+  EXPECT_THAT(refused, IsError(grpc::StatusCode::INVALID_ARGUMENT, "INVALID_REQUEST"));
+  EXPECT_THAT(DetailsOf(refused).fields,
+              ElementsAre("rho", "delta", "cells", "temperature", "events"));
+}
+
+TEST_F(TraceServiceTest, AViolationNamesTheValueAndThePermittedRange) {
+  EXPECT_THAT(Refusal(Request(0)).error_message(), HasSubstr("is 0; permitted: 1 to 1000000"));
+  EXPECT_THAT(Refusal(Request(kMaxTracedEvents + 1)).error_message(), HasSubstr("is 1000001"));
+  EXPECT_THAT(Refusal(Request(1, "1001")).error_message(),
+              HasSubstr("1001 has 1001 cells; permitted in a trace: 1 to 1000"));
+  EXPECT_THAT(Refusal(Request(1, "x\n")).error_message(), HasSubstr("x\\n"));
+}
+
+TEST_F(TraceServiceTest, DeltaHasTheBoundOfThePairOrOfTheGas) {
+  v1::TraceOrbitRequest request = Request(1);
+  request.set_delta(0.3);
+  EXPECT_OK(Refusal(request));
+  request.set_cells("4");
+  EXPECT_THAT(Refusal(request).error_message(), HasSubstr("no two pistons may overlap"));
+  request.set_delta(0.2);
+  EXPECT_OK(Refusal(request));
+}
+
+TEST_F(TraceServiceTest, APairHasNoTemperature) {
+  v1::TraceOrbitRequest request = Request(1);
+  request.set_temperature(1);
+  EXPECT_THAT(DetailsOf(Refusal(request)).fields, ElementsAre("temperature"));
+}
+
+// ---- limits, and the end ----
+
+TEST_F(TraceServiceTest, ATraceCountsAsAStreamUntilItsReaderGoes) {
+  RunningServer& server = StartWith({.limits = {.max_streams_per_principal = 1}});
+  auto first = std::make_unique<TraceStream>(server, kLong);
+  ASSERT_TRUE(first->Next());
+  EXPECT_EQ(server.Status().streams(), 1);
+  EXPECT_THAT(Refusal(Request(1)),
+              IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_STREAMS"));
+  first->context.TryCancel();
+  first.reset();
+  while (!TraceStream(server, Request(1)).Next()) {  // until the server knows
+  }
+}
+
+TEST_F(TraceServiceTest, ItsMemoryCountsAmongTheBytesOfCalls) {
+  RunningServer& server = StartWith({.limits = {.max_call_bytes_per_principal = 1'000'000}});
+  v1::TraceOrbitRequest large = kLong;
+  large.set_cells("1000");
+  auto first = std::make_unique<TraceStream>(server, large);
+  ASSERT_TRUE(first->Next());
+  EXPECT_THAT(Refusal(Request(1)), IsError(grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CALLS"));
+  first->context.TryCancel();
+  first.reset();
+  while (!TraceStream(server, Request(1)).Next()) {  // until the server knows
+  }
+}
+
+TEST_F(TraceServiceTest, AStopEndsTracesThatAreRead) {
+  TraceStream stream(server(), kLong);
+  ASSERT_TRUE(stream.Next());
+  std::thread stop([this] { server().Shutdown(std::chrono::minutes(10)); });
+  EXPECT_THAT(stream.End(), IsError(grpc::StatusCode::UNAVAILABLE, "SHUTTING_DOWN"));
+  stop.join();
+}
+
+TEST_F(TraceServiceTest, AStalledReaderDoesNotDelayAStop) {
+  RunningServer& server = StartWith({.connections = kOnlyClosedByAStop});
+  TraceStream stalled(server, kLong);
+  ASSERT_TRUE(stalled.Next());
+  server.Shutdown(std::chrono::milliseconds(100));
+  EXPECT_THAT(stalled.End(), Not(IsOk()));
+}
+
+TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsTakenAway) {
+  LaboratoryFiles files;
+  RunningServer server(Secure(files, {.watch = {.heartbeat = std::chrono::milliseconds(20)}}));
+  TestClient alice(server.NewChannel(files.Credentials(kAlice)));
+  TestClient ops(server.NewChannel(files.Credentials(kOps)));
+  TraceStream stalled(alice, kLong);
+  ASSERT_TRUE(stalled.Next());
+  files.WriteAccessFile(TokenLine(kOps, {"ops", Role::kAdmin}));
+  ASSERT_OK(server.server().Reload());
+  while (ops.Status().streams() > 0) {
+  }
+  EXPECT_THAT(stalled.End(), Not(IsOk()));
+}
+
+}  // namespace
+}  // namespace ballpiston::server
