@@ -78,6 +78,7 @@ class LaneGas : public GasRun {
   Replica& ReplicaOf(uint32_t ball) { return replicas_[ball / balls_each_]; }
   uint32_t BallOf(uint32_t piston, Direction direction) const;  // kNone if there is none
 
+  GasInTime gas_;
   uint32_t balls_each_;  // of a replica
   uint32_t pistons_each_;
   double mean_flight_;
@@ -86,7 +87,6 @@ class LaneGas : public GasRun {
   // By ball. At the window's beginning, or the last exchange in it; and at its end, each before the
   // flight in which that is.
   std::vector<FlyingBall> from_, to_;
-  GasInTime gas_;
   std::vector<uint32_t> versions_;                                        // by ball, then by piston
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
   std::vector<MeetingInTime> meetings_;
