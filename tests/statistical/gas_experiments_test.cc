@@ -42,8 +42,8 @@ double StatedOverMeasured(const EnsembleSpec& spec) {
   return ratio;
 }
 
-// An error measured with 1000 replicas is itself known to 1/sqrt(2000) = 2.2 %. The windows are 20 %
-// wide: a statement that is right within 12 % fails for one seed in 3000.
+// An error measured with 1000 replicas is itself known to 1/sqrt(2000) = 2.2 %. The windows are 20
+// % wide: a statement that is right within 12 % fails for one seed in 3000.
 TEST(GasExperiments, StatedErrorsInEquilibriumAreTheMeasuredOnes) {
   for (const Model model : {Model::kMarkov, Model::kBilliard}) {
     for (const GasShape& shape : {GasShape{4}, GasShape{16}, GasShape{4, 4, true}}) {
