@@ -97,6 +97,7 @@ class HeldUpExperiment : public PointExperiment {
         });
   }
   BlockResult EmptyResult() const override { return real_->EmptyResult(); }
+  uint64_t CountsOfASample() const override { return real_->CountsOfASample(); }
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return real_->FirstEstimate(merged);
   }
