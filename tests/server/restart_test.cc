@@ -66,7 +66,7 @@ v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleS
   v1::EnsembleSpec spec = SmallRelaxation(model);
   spec.set_experiment(experiment);
   spec.mutable_grid()->clear_delta();
-  for (const double delta : {0.19, 0.15, 0.1}) spec.mutable_grid()->add_delta(delta);
+  for (const double delta : {0.19, 0.17, 0.15}) spec.mutable_grid()->add_delta(delta);
   spec.mutable_grid()->add_cells("3");
   if (experiment == v1::EnsembleSpec::GAS_EQUILIBRIUM) {
     spec.mutable_grid()->add_temperature(2);
@@ -74,7 +74,7 @@ v1::EnsembleSpec SmallGas(v1::EnsembleSpec::Experiment experiment, v1::EnsembleS
     spec.mutable_grid()->add_hot(2);
     spec.mutable_grid()->add_cold(1);
   }
-  spec.mutable_target()->set_samples(512);
+  spec.mutable_target()->set_samples(256);
   return spec;
 }
 
