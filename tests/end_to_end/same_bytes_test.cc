@@ -51,10 +51,10 @@ TEST(SameBytes, OfRelaxationMarkovPropertyAndGasesWithOneAndTwoWorkers) {
         "energy-relaxation --tolerance 0.1 --delta 0.1 --model markov",
         "markov-property --collisions 20000 --delta 0.2",
         "markov-property --collisions 20000 --delta 0.2 --model markov",
-        "gas-equilibrium --verify --samples 300 --delta 0.2 --cells 4,2x3 --temperature 1",
-        "gas-equilibrium --model markov --samples 300 --delta 0.2 --cells 4 --temperature 1",
-        "gas-conduction --samples 200 --delta 0.2,0.1 --cells 3 --hot 1.5 --cold 0.5",
-        "gas-conduction --samples 200 --delta 0.2 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
+        "gas-equilibrium --verify --samples 300 --delta 0.19 --cells 4,2x3 --temperature 1",
+        "gas-equilibrium --model markov --samples 300 --delta 0.19 --cells 4 --temperature 1",
+        "gas-conduction --samples 200 --delta 0.19,0.1 --cells 3 --hot 1.5 --cold 0.5",
+        "gas-conduction --samples 200 --delta 0.19 --cells 2x2 --hot 2 --cold 1 --model markov"}) {
     const Words words = Split("run " + question + " --rho 0.5296 --seed 3 --format json");
     const ProcessResult by_one = one.Client(words);
     ASSERT_THAT(by_one, ExitsWith(0));
