@@ -95,11 +95,48 @@ TEST_F(FigureTest, AnInterruptionCancelsNothingAndTheSameCommandGoesOn) {
   EXPECT_EQ(job_count(), 2);
 }
 
+TEST_F(FigureTest, TheGasIsDrawnFromATrace) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const auto draw = [this](const std::string& shape) {
+    const std::string folder = folder_ + shape;
+    const ProcessResult result =
+        server_.Client(Split("figure gas --temperature 3 --cells " + shape + " --out " + folder));
+    EXPECT_THAT(result, ExitsWith(0));
+    EXPECT_EQ(result.err, "");
+    EXPECT_THAT(Contents(folder + "/gas.svg"), HasSubstr("</svg>"));
+    return folder;
+  };
+  const std::string lattice = draw("3x2"), chain = draw("4");
+  const auto lines = [](const std::string& file) {
+    return Words(absl::StrSplit(Contents(file), '\n', absl::SkipEmpty())).size();
+  };
+  EXPECT_EQ(lines(lattice + "/gas-balls.csv"), 1 + 6u);
+  EXPECT_EQ(lines(lattice + "/gas-pistons.csv"), 1 + 12u);
+  EXPECT_EQ(lines(chain + "/gas-pistons.csv"), 1 + 4u);
+}
+
+TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure temperature-profile --cells 2,3 --samples 60 --billiard-samples 10 --delta 0.2 "
+            "--hot 1.1 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/temperature-profile.csv");
+  EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(), 1 + 2 * (5 + 7u));
+  EXPECT_THAT(data, HasSubstr("\nmarkov,2,1.1,0.5,1.5,"));
+  EXPECT_THAT(data, HasSubstr("\nbilliard,3,1.1,0.5,0,"));
+  EXPECT_THAT(Contents(folder_ + "/temperature-profile.svg"), HasSubstr("N = 3"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
+  EXPECT_THAT(result.out, HasSubstr("gas: "));
+  EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
 }
 
 }  // namespace
