@@ -67,7 +67,10 @@ std::string ParameterText(const v1::PointParameters& parameters) {
 
 ParameterColumns::ParameterColumns(const v1::Grid& grid) {
   for (size_t i = 0; i < kOptionalParameters; ++i) {
-    shown_[i] = kOptional[i].in_every_csv || (grid.*kOptional[i].size)() > 0;
+    const OptionalParameter& parameter = kOptional[i];
+    // A copy, because GCC 12's sanitizer of bounds misreads a call through the array's element.
+    const auto size = parameter.size;
+    shown_[i] = parameter.in_every_csv || (grid.*size)() > 0;
   }
 }
 
