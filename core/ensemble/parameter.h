@@ -36,8 +36,8 @@ inline constexpr Parameter kEpsilon = {"epsilon", 2, ValidateEpsilon};
 inline constexpr Parameter kExponent = {"exponent", 3, ValidateExponent};
 // The shape of a gas, as the code that CodeOf of core/gas/gas_shape.h makes of it.
 inline constexpr Parameter kCells = {"cells", 4, ValidateCells};
-// Of a gas in equilibrium, and of the two reservoirs at the ends of a gas. Units: the Boltzmann
-// constant is 1 (core/geometry/temperature.h).
+// The temperature of a gas in equilibrium, and those of the two reservoirs at the ends of a gas.
+// The Boltzmann constant is 1 (core/geometry/temperature.h).
 inline constexpr Parameter kTemperature = {"temperature", 5, ValidateTemperature};
 inline constexpr Parameter kHot = {"hot", 6, ValidateHot};
 inline constexpr Parameter kCold = {"cold", 7, ValidateCold};

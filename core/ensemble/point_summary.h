@@ -33,8 +33,8 @@ struct SignedHistogram {
   Histogram histogram;
 };
 
-// What a curve is a function of: the time, in cells over unit speed, or the position in a gas, in
-// cells from the left reservoir.
+// The variable of a curve. A time is in cells over unit speed. A position is in cells from the left
+// reservoir of a gas.
 enum class CurveAxis { kTime, kPosition };
 
 struct CurvePoint {

@@ -1,5 +1,5 @@
-// What the experiments with a gas share: replicas of the gas, each started on its own, followed for
-// some time and then measured. A sample is one replica.
+// The base of all experiments with a gas. A sample is a replica of the gas: it starts from its own
+// random state, relaxes, and is then measured.
 #ifndef BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
 #define BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
 
@@ -41,7 +41,7 @@ class GasExperiment : public PointExperiment {
  public:
   std::unique_ptr<BlockRun> StartRun(BlockQueue& queue) const override;
 
-  // What a run of replicas asks for, from any thread.
+  // A run of replicas calls these functions, from any thread.
   GasEngine gas_engine() const;
   const GasGeometry& geometry() const { return geometry_; }
   const GasTimes& times() const { return times_; }

@@ -25,10 +25,11 @@ namespace ballpiston {
 
 inline constexpr double kGasExchangeRateRelativeError = 1e-12;
 
-// Of the periodic gas of this shape. Between reservoirs it is that of the infinite gas.
+// The rate of a periodic gas of this shape. For a gas between reservoirs the function returns the
+// rate of the infinite gas.
 double GasExchangeRate(const GasGeometry& geometry, double temperature);
 
-// Of the infinite chain or lattice.
+// The rate of the infinite chain or lattice.
 double InfiniteGasExchangeRate(const GasGeometry& geometry, double temperature);
 
 // F of the periodic gas of this shape, and of the infinite one. Domain: 0 <= z <= 0.02.

@@ -1,5 +1,6 @@
-// What a gas does in a window of time: exchanges counted, energy carried along x, and each body's
-// mean energy. An engine tells it of every exchange, in the order of time.
+// Measures a gas in a window of time: the number of exchanges, the energy that is carried along x,
+// and each body's mean energy. The engine reports every exchange to the meter, in the order of
+// time.
 //
 // Bodies are the balls, then the pistons. Not for sharing between threads.
 #ifndef BALLPISTON_CORE_GAS_GAS_METER_H_

@@ -85,7 +85,8 @@ class JumpGas {
   ThermalWalls walls_;
   CounterRandom random_;
   size_t balls_;
-  // Of balls, then of pistons. Of an outermost piston it is the one that proposes as often.
+  // The balls' speeds, then the pistons'. An outermost piston has the speed at which it would
+  // propose as often.
   std::vector<double> speeds_;
   std::array<Kind, 2> kinds_;           // balls, pistons
   double rate_ = 0;                     // of all proposals

@@ -8,8 +8,8 @@
 // Replicas are gases of one geometry that know nothing of each other; small gases fill the lanes
 // together. A replica's numbers do not depend on how many there are, nor on the windows.
 // Properties, each with the test that bears its name:
-//   1. AgreesWithTheReferenceEventByEvent, for some 15 wall hits a ball.
-//   2. DoesNotDependOnSlicesOrOtherReplicas.  3. EnergyStays.
+//   1. AgreesWithTheReferenceEventByEvent, until rounding has grown too large.
+//   2. ManyShortCallsGiveTheBitsOfOne.  3. ReplicasDoNotDependOnTheirNeighbours.  4. EnergyStays.
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
 #define BALLPISTON_CORE_GAS_LANE_GAS_H_
 

@@ -42,7 +42,7 @@ struct PistonInTime {
   double speed = 0;
   double phase = 0;
 
-  // As the ball in the opposite direction sees it, at a later time.
+  // The phase at a later time, as seen by the ball that sees the piston in direction `seen`.
   double PhaseAt(double time, Direction seen, const PistonWave& wave) const {
     return wave.Reduced(phase + (SignOf(seen) < 0 ? wave.stroke() : 0) + speed * (time - since));
   }

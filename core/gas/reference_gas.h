@@ -1,6 +1,6 @@
 // The gas, every event resolved, one at a time, in double precision: the yardstick for the faster
 // engines, and the source of traces. Balls move as in the pair's reference (cell_walls.h says what
-// keeps that stable); whoever has the next event is found in a queue.
+// keeps that stable); a queue holds the time of each body's next event.
 //
 // A body is moved only at its own events: a ball's time is that of its last wall or exchange, a
 // piston's that of its last wall or exchange. Properties, each with a test of its name:
