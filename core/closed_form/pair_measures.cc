@@ -83,7 +83,7 @@ double CellArea(double rho) {
 PairMeasures Measures(const PairGeometry& g) {
   const TipArc arc = ReachableArc(g);
   const TipArc quarter = QuarterArc(g.rho(), g.tip());
-  const double stroke = g.lambda() + 2 * g.delta();
+  const double stroke = g.stroke();
   const double behind = AreaBehind(arc, g.delta());
   const double cell = 2 * AreaBehind(quarter, g.tip());
   return {
@@ -99,7 +99,7 @@ PairMeasures Measures(const PairGeometry& g) {
 RestingVolumes VolumesAtRest(const PairGeometry& g) {
   const TipArc arc = ReachableArc(g);
   const double hidden = HiddenVolume(g, arc);
-  const double stroke = g.lambda() + 2 * g.delta();
+  const double stroke = g.stroke();
   return {.piston = g.delta() * CellArea(g.rho()) - hidden,
           .ball = stroke * AreaBehind(arc, g.delta()) - hidden};
 }

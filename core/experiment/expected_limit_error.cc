@@ -18,9 +18,7 @@ double Square(double x) { return x * x; }
 // The lengths and times that the bound is made of.
 struct Scales {
   explicit Scales(const PairGeometry& pair)
-      : geometry(pair),
-        tau(MeanFreeTimesOf(pair).ball_piston),
-        x((pair.lambda() + 2 * pair.delta()) / tau) {}
+      : geometry(pair), tau(MeanFreeTimesOf(pair).ball_piston), x(pair.stroke() / tau) {}
 
   double ByTheClock() const { return x * std::log1p(1 / x); }
 

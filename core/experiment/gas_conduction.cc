@@ -31,7 +31,6 @@
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -59,17 +58,13 @@ double RelaxationTime(const GasGeometry& geometry, double cold) {
   return 2 * capacity * length * length / (std::numbers::pi * std::numbers::pi * rate);
 }
 
-struct ConductionTimes {
-  GasTimes times;
-  double share;  // of the time that a stationary state takes; below 1 if replicas are cut short
-};
-
-ConductionTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold) {
+GasTimes TimesOfConduction(Model model, const GasGeometry& geometry, double cold) {
   const double time = RelaxationTime(geometry, cold);
   const double events =
       WorkOfReplica(model, geometry, (kRelaxTimes + kMeasureTimes) * time).Events();
   const double share = std::min(kMostEvents / events, 1.0);
-  return {{.relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time}, share};
+  return {
+      .relax = share * kRelaxTimes * time, .measure = share * kMeasureTimes * time, .share = share};
 }
 
 // Bodies of about the same x, whose mean temperature is one point of the profile.
@@ -103,12 +98,11 @@ std::vector<Place> PlacesOf(const GasGeometry& geometry) {
 class GasConduction : public GasExperiment {
  public:
   GasConduction(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
-                const ConductionTimes& times)
-      : GasExperiment(spec, point, geometry, times.times),
+                const GasTimes& times)
+      : GasExperiment(spec, point, geometry, times),
         temperature_(MeanTemperature(point)),
         hot_(point[kHot] / temperature_),
         cold_(point[kCold] / temperature_),
-        share_(times.share),
         places_(PlacesOf(geometry)) {}
 
   GasState Draw(CounterRandom& random) const override {
@@ -123,14 +117,7 @@ class GasConduction : public GasExperiment {
     // Each ball has a contact on its left and one on its right.
     const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
     result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
-    result.batch_means[1].Add(static_cast<double>(meter.exchanges()),
-                              static_cast<double>(geometry().contacts()) * meter.duration());
-    double balls = 0, pistons = 0;
-    for (size_t i = 0; i < meter.bodies(); ++i) {
-      (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
-    }
-    result.batch_means[2].Add(balls, static_cast<double>(geometry().balls()));
-    result.batch_means[3].Add(2 * pistons, static_cast<double>(geometry().pistons()));
+    AddMeans(meter, 1, result);
     for (size_t i = 0; i < places_.size(); ++i) {
       result.moments[i].Add(TemperatureAt(places_[i], meter));
     }
@@ -161,11 +148,11 @@ class GasConduction : public GasExperiment {
     summary.estimates.push_back(Mean("temperature_ball", merged, 2, temperature_));
     summary.estimates.push_back(Mean("temperature_piston", merged, 3, temperature_));
     summary.curves.push_back(Profile(merged));
-    if (share_ < 1) {
+    if (times().share < 1) {
       summary.remarks.push_back(absl::StrFormat(
           "replicas of %.0f cells in a row were followed for %.2g of the time that a stationary "
           "state takes: no errors can be given",
-          Columns(), share_));
+          Columns(), times().share));
     }
     return summary;
   }
@@ -190,19 +177,6 @@ class GasConduction : public GasExperiment {
     return sum / static_cast<double>(place.bodies.size());
   }
 
-  std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
-                             double scale) const {
-    if (!error || share_ < 1) return std::nullopt;
-    return ToldError(static_cast<double>(merged.samples), *error * scale);
-  }
-
-  Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const {
-    const BatchMeans& measured = merged.batch_means[index];
-    return {.name = name,
-            .value = scale * measured.Ratio().value_or(0),
-            .standard_error = Told(merged, measured.StandardError(), scale)};
-  }
-
   Curve Profile(const BlockResult& merged) const {
     Curve curve = {.name = "temperature_profile", .axis = CurveAxis::kPosition};
     for (size_t i = 0; i < places_.size(); ++i) {
@@ -218,7 +192,6 @@ class GasConduction : public GasExperiment {
   double temperature_;  // the mean; all else is in its units
   double hot_;
   double cold_;
-  double share_;  // of the time that a stationary state takes
   std::vector<Place> places_;
 };
 
@@ -226,7 +199,7 @@ GasGeometry OpenGasOf(const PointParameters& point) {
   return GasGeometryOf(point, GasEnds::kReservoirs);
 }
 
-ConductionTimes TimesAt(Model model, const PointParameters& point) {
+GasTimes TimesAt(Model model, const PointParameters& point) {
   return TimesOfConduction(model, OpenGasOf(point), point[kCold] / MeanTemperature(point));
 }
 
@@ -262,13 +235,13 @@ void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolati
 }
 
 SampleWork WorkOfGasConduction(Model model, const PointParameters& point) {
-  return WorkOfReplica(model, OpenGasOf(point), TimesAt(model, point).times.Total());
+  return WorkOfReplica(model, OpenGasOf(point), TimesAt(model, point).Total());
 }
 
 double ExchangesOfAConductionSample(const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   return static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) *
-         TimesAt(Model::kBilliard, point).times.measure;
+         TimesAt(Model::kBilliard, point).measure;
 }
 
 // The current's fluctuations in local equilibrium, 2 kappa T^2/(N t), over the current itself.
@@ -281,13 +254,15 @@ double ErrorOfGasConduction(const PointParameters& point) {
   const double fall = hot - cold;
   if (fall == 0) return std::numeric_limits<double>::infinity();
   const double mean_power = (std::pow(hot, 2.5) + 4 + std::pow(cold, 2.5)) / 6;
-  const double time = TimesAt(Model::kBilliard, point).times.measure;
+  const double time = TimesAt(Model::kBilliard, point).measure;
   const double conductivity = InfiniteGasExchangeRate(geometry, 1) / 2;
   const auto columns = static_cast<double>(geometry.shape().columns);
   const auto rows = static_cast<double>(geometry.shape().rows);
   return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
+constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
+                                            Model::kBilliardReference};
 constexpr ParameterUse kParametersOfGasConduction[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kHot}, {&kCold}};
 
@@ -297,7 +272,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .number = 7,
                                                  .parameters = kParametersOfGasConduction,
                                                  .unit = TargetUnit::kEither,
-                                                 .models = kModelsOfGases,
+                                                 .models = kModelsOfGasConduction,
                                                  .create = CreateGasConduction,
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,

@@ -25,7 +25,6 @@
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/statistics/kl_divergence.h"
-#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -81,16 +80,10 @@ class GasEquilibrium : public GasExperiment {
   }
 
   void Measure(const GasMeter& meter, BlockResult& result) const override {
-    const auto contacts = static_cast<double>(geometry().contacts());
-    result.batch_means[0].Add(static_cast<double>(meter.exchanges()), contacts * meter.duration());
-    double balls = 0, pistons = 0;
+    AddMeans(meter, 0, result);
     for (size_t i = 0; i < meter.bodies(); ++i) {
-      const bool is_ball = i < meter.balls();
-      (is_ball ? balls : pistons) += meter.MeanEnergy(i);
-      result.histograms[is_ball ? 0 : 1].Add(std::sqrt(2 * meter.Energy(i)));
+      result.histograms[i < meter.balls() ? 0 : 1].Add(std::sqrt(2 * meter.Energy(i)));
     }
-    result.batch_means[1].Add(balls, static_cast<double>(geometry().balls()));
-    result.batch_means[2].Add(2 * pistons, static_cast<double>(geometry().pistons()));
   }
 
   BlockResult EmptyResult() const override { return NoGasesMeasured(); }
@@ -100,14 +93,14 @@ class GasEquilibrium : public GasExperiment {
   }
 
   Estimate FirstEstimate(const BlockResult& merged) const override {
-    return Mean("exchange_rate", merged, 0, std::sqrt(temperature_), exact_rate_);
+    return MeanBeside(exact_rate_, "exchange_rate", merged, 0, std::sqrt(temperature_));
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
     summary.estimates = {FirstEstimate(merged),
-                         Mean("temperature_ball", merged, 1, temperature_, temperature_),
-                         Mean("temperature_piston", merged, 2, temperature_, temperature_)};
+                         MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
+                         MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)};
     const auto laws = SpeedLaws();
     constexpr std::array<const char*, 2> kBodies = {"ball", "piston"};
     for (size_t i = 0; i < laws.size(); ++i) {
@@ -130,16 +123,11 @@ class GasEquilibrium : public GasExperiment {
     return speeds;
   }
 
-  Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale,
-                double exact) const {
-    const BatchMeans& measured = merged.batch_means[index];
-    std::optional<double> error =
-        ToldError(static_cast<double>(merged.samples), measured.StandardError());
-    if (error) *error *= scale;
-    return {.name = name,
-            .value = scale * measured.Ratio().value_or(0),
-            .standard_error = error,
-            .exact = exact};
+  Estimate MeanBeside(double exact, const char* name, const BlockResult& merged, size_t index,
+                      double scale) const {
+    Estimate mean = Mean(name, merged, index, scale);
+    mean.exact = exact;
+    return mean;
   }
 
   double temperature_;

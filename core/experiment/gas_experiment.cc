@@ -4,15 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <utility>
 
-#include "core/closed_form/pair_measures.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/without_last_bits.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_shape.h"
+#include "core/gas/hit_rates.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 namespace {
@@ -133,20 +133,6 @@ class GasBlocks : public BlockRun {
   bool is_measuring_ = false;
 };
 
-// Wall hits and the piston's turns, in a unit of time at temperature 1.
-struct HitRates {
-  double of_a_ball;
-  double of_a_piston;
-};
-
-HitRates HitRatesOf(const PairGeometry& pair) {
-  const PairMeasures measures = Measures(pair);
-  const double stroke = pair.lambda() + 2 * pair.delta();
-  const double flight = std::numbers::pi * measures.cell_area * stroke / measures.area_ball_wall;
-  return {.of_a_ball = std::sqrt(std::numbers::pi / 2) / flight,
-          .of_a_piston = std::sqrt(2 / std::numbers::pi) / stroke};
-}
-
 // Hits of the outermost pistons at their thermal walls in a unit of time at temperature 1: every
 // second of their turns.
 double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
@@ -199,7 +185,9 @@ GasExperiment::GasExperiment(const EnsembleSpec& spec, const PointParameters& po
                              const GasGeometry& geometry, const GasTimes& times)
     : PointExperiment(spec, point),
       geometry_(geometry),
-      times_{.relax = WithoutLastBits(times.relax), .measure = WithoutLastBits(times.measure)},
+      times_{.relax = WithoutLastBits(times.relax),
+             .measure = WithoutLastBits(times.measure),
+             .share = times.share},
       exchange_rate_(WithoutLastBits(GasExchangeRate(geometry, 1))) {}
 
 GasEngine GasExperiment::gas_engine() const {
@@ -211,6 +199,31 @@ GasEngine GasExperiment::gas_engine() const {
     default:
       return GasEngine::kLanes;
   }
+}
+
+void GasExperiment::AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const {
+  result.batch_means[first].Add(static_cast<double>(meter.exchanges()),
+                                static_cast<double>(geometry_.contacts()) * meter.duration());
+  double balls = 0, pistons = 0;
+  for (size_t i = 0; i < meter.bodies(); ++i) {
+    (i < meter.balls() ? balls : pistons) += meter.MeanEnergy(i);
+  }
+  result.batch_means[first + 1].Add(balls, static_cast<double>(geometry_.balls()));
+  result.batch_means[first + 2].Add(2 * pistons, static_cast<double>(geometry_.pistons()));
+}
+
+std::optional<double> GasExperiment::Told(const BlockResult& merged, std::optional<double> error,
+                                          double scale) const {
+  if (!error || times_.share < 1) return std::nullopt;
+  return ToldError(static_cast<double>(merged.samples), *error * scale);
+}
+
+Estimate GasExperiment::Mean(const char* name, const BlockResult& merged, size_t index,
+                             double scale) const {
+  const BatchMeans& measured = merged.batch_means[index];
+  return {.name = name,
+          .value = scale * measured.Ratio().value_or(0),
+          .standard_error = Told(merged, measured.StandardError(), scale)};
 }
 
 std::unique_ptr<BlockRun> GasExperiment::StartRun(BlockQueue& queue) const {

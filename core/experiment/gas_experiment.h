@@ -3,8 +3,10 @@
 #ifndef BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
 #define BALLPISTON_CORE_EXPERIMENT_GAS_EXPERIMENT_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/ensemble/experiment_kind.h"
@@ -15,9 +17,6 @@
 #include "core/gas/gas_run.h"
 
 namespace ballpiston {
-
-inline constexpr Model kModelsOfGases[] = {Model::kMarkov, Model::kBilliard,
-                                           Model::kBilliardReference};
 
 // Requires valid parameters.
 GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends);
@@ -30,6 +29,7 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 struct GasTimes {
   double relax = 0;  // before anything is measured
   double measure = 0;
+  double share = 1;  // of the time that a stationary state takes; below 1, no errors are given
 
   double Total() const { return relax + measure; }
 };
@@ -57,6 +57,16 @@ class GasExperiment : public PointExperiment {
   // The times are rounded (without_last_bits.h): the C library has a part in them.
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
                 const GasTimes& times);
+
+  // Three batch means, a replica each, from the index `first` on: exchanges over contacts times
+  // duration, the balls' mean energies over balls, twice the pistons' over pistons.
+  void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
+
+  // These two scale a number measured at temperature 1. There is no error if too few replicas tell
+  // it.
+  Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const;
+  std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
+                             double scale) const;
 
  private:
   GasGeometry geometry_;

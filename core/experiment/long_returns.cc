@@ -13,7 +13,7 @@ namespace {
 
 // The time that a long return takes, if the piston is the slow one: to its far wall and back.
 double PistonsRoundTrip(const PairGeometry& geometry, double epsilon) {
-  return 2 * (geometry.lambda() + 2 * geometry.delta()) / std::sqrt(2 * epsilon);
+  return 2 * geometry.stroke() / std::sqrt(2 * epsilon);
 }
 
 // If the ball is: mean time between crossings of the line that the piston reaches, pi A/(v eta).

@@ -137,7 +137,7 @@ struct Crowding {
 
 Crowding CrowdingOf(const PairGeometry& pair) {
   const PairMeasures measures = Measures(pair);
-  const double stroke = pair.lambda() + 2 * pair.delta();
+  const double stroke = pair.stroke();
   const double all = stroke * measures.cell_area;
   return {.z = std::max(1 - measures.volume / all, 0.0),
           .rate = measures.area_ball_piston / (all * std::sqrt(2 * std::numbers::pi))};

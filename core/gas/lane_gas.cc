@@ -4,15 +4,16 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "core/billiard/exchange.h"
-#include "core/closed_form/pair_measures.h"
+#include "core/gas/hit_rates.h"
 #include "core/geometry/pair_state.h"
 
 namespace ballpiston {
 namespace {
+
+const double kMeanSpeed = std::sqrt(std::numbers::pi / 2);  // of a ball at temperature 1
 
 // A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
 constexpr double kAtRest = 1e-18;
@@ -25,19 +26,13 @@ constexpr double kMostFlightsInAWindow = 64;
 constexpr size_t kFlightsTogether = 12;
 constexpr uint32_t kBallsAtATime = 32 * kMostBallsAhead;
 
-double MeanFlight(const PairGeometry& pair) {
-  const PairMeasures measures = Measures(pair);
-  const double stroke = pair.lambda() + 2 * pair.delta();
-  return std::numbers::pi * measures.cell_area * stroke / measures.area_ball_wall;
-}
-
 }  // namespace
 
 LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<GasStart> replicas)
     : gas_(geometry),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
-      mean_flight_(MeanFlight(geometry.pair())) {
+      mean_flight_(kMeanSpeed / HitRatesOf(geometry.pair()).of_a_ball) {
   for (GasStart& start : replicas) {
     Place(start.state);
     replicas_.push_back({std::move(start.walls), start.meter});
@@ -77,7 +72,7 @@ void LaneGas::ChooseWindow(double exchange_rate) {
   double energy = 0;
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
   const double temperature = energy / static_cast<double>(gas_.balls.size());
-  const double flights = std::sqrt(temperature * std::numbers::pi / 2) / mean_flight_;
+  const double flights = std::sqrt(temperature) * kMeanSpeed / mean_flight_;
   const double exchanges = gas_.geometry.directions() * exchange_rate * std::sqrt(temperature);
   const double best = std::sqrt(kFlightsOfAWindow * flights / std::max(exchanges, kAtRest));
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);

@@ -13,7 +13,6 @@
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
 #define BALLPISTON_CORE_GAS_LANE_GAS_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -38,7 +37,6 @@ class LaneGas : public GasRun {
   void AdvanceTo(double time) override;
 
  private:
-  static constexpr double kNever = std::numeric_limits<double>::infinity();
   static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 
   // A ball's contact, or an outermost piston's arrival at its thermal wall.

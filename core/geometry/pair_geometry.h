@@ -45,9 +45,10 @@ class PairGeometry {
   double rho() const { return rho_; }
   double delta() const { return delta_; }
   double lambda() const { return lambda_; }
-  double tip() const { return tip_; }                    // x of the cell's right tip
-  double piston_left() const { return piston_left_; }    // leftmost position of the piston
-  double piston_right() const { return piston_right_; }  // rightmost position of the piston
+  double tip() const { return tip_; }                     // x of the cell's right tip
+  double piston_left() const { return piston_left_; }     // leftmost position of the piston
+  double piston_right() const { return piston_right_; }   // rightmost position of the piston
+  double stroke() const { return lambda_ + 2 * delta_; }  // from one of them to the other
 
  private:
   PairGeometry(double rho, double delta);

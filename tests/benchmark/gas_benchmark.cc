@@ -8,20 +8,18 @@
 // rates.
 #include <malloc.h>
 
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
-#include "core/closed_form/pair_measures.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_run.h"
+#include "core/gas/hit_rates.h"
 #include "core/geometry/paper.h"
 #include "server/processor_time.h"
 #include "tests/benchmark/turns.h"
@@ -32,17 +30,6 @@ namespace {
 double BytesInUse() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
-}
-
-// Of a ball, and of a piston, in a unit of time at temperature 1.
-double BallHits(const PairGeometry& pair) {
-  const PairMeasures measures = Measures(pair);
-  const double stroke = pair.lambda() + 2 * pair.delta();
-  return std::sqrt(std::numbers::pi / 2) * measures.area_ball_wall /
-         (std::numbers::pi * measures.cell_area * stroke);
-}
-double PistonHits(const PairGeometry& pair) {
-  return std::sqrt(2 / std::numbers::pi) / (pair.lambda() + 2 * pair.delta());
 }
 
 enum class Unit { kBallHits, kAllHits, kExchanges };
@@ -75,18 +62,18 @@ class RunningGas {
     const auto balls = static_cast<double>(geometry_.balls());
     const double pistons = static_cast<double>(geometry_.pistons());
     double work = static_cast<double>(meter_->exchanges() - exchanges);
-    if (unit_ == Unit::kBallHits) work = slice_ * balls * BallHits(geometry_.pair());
+    if (unit_ == Unit::kBallHits) work = slice_ * balls * HitRatesOf(geometry_.pair()).of_a_ball;
     if (unit_ == Unit::kAllHits) {
-      work +=
-          slice_ * (balls * BallHits(geometry_.pair()) + pistons * PistonHits(geometry_.pair()));
+      work += slice_ * (balls * HitRatesOf(geometry_.pair()).of_a_ball +
+                        pistons * HitRatesOf(geometry_.pair()).of_a_piston);
     }
     return work / seconds;
   }
 
   double bytes() const { return bytes_; }
   double hits_of_events() const {  // ball-wall hits among all events
-    const double hits = BallHits(geometry_.pair());
-    return hits / (hits + geometry_.directions() / 2.0 * PistonHits(geometry_.pair()));
+    const double hits = HitRatesOf(geometry_.pair()).of_a_ball;
+    return hits / (hits + geometry_.directions() / 2.0 * HitRatesOf(geometry_.pair()).of_a_piston);
   }
 
  private:

@@ -33,7 +33,7 @@ constexpr const ExperimentKind* kGases[] = {&kGasEquilibrium, &kGasConduction};
 std::vector<EnsembleSpec> OneOfEach(int64_t replicas) {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : kGases) {
-    for (const Model model : kModelsOfGases) {
+    for (const Model model : kGasConduction.models) {
       for (const GasShape& shape : {GasShape{2}, GasShape{2, 1, true}}) {
         specs.push_back(SpecOf(kind, PaperGas(kind, 0.2, shape), {.samples = replicas}, model, 42));
       }
