@@ -6,21 +6,26 @@
 #include <numbers>
 #include <utility>
 
-#include "core/arithmetic/elementary_functions.h"
-#include "core/sampling/direction.h"
-
 namespace ballpiston {
 namespace {
 
 // A ball proposes an exchange to each of its pistons at the rate of the mean of (v1)+ over its
 // angle, v/pi; a piston to each of its two balls at that of (-v3)+ over its sign, v/2.
-constexpr double kOfABall = 1 / std::numbers::pi;
-constexpr double kOfAPiston = 2 * 0.5;
+constexpr double kRateToAPiston = 1 / std::numbers::pi;
+constexpr double kRateOfAPiston = 2 * 0.5;
 
-// The speed at which a piston with two balls proposes as often as an outermost one does to its one:
-// the mean of (-v3)+ at temperature T.
-double SpeedOfOutermost(double temperature) {
-  return std::sqrt(temperature / (2 * std::numbers::pi)) / kOfAPiston;
+// In (0, 1), of 32 bits.
+double FromBits(uint64_t bits) { return (static_cast<double>(bits & 0xffffffff) + 0.5) * 0x1p-32; }
+
+// A uniform direction of the upper half plane: that of the square of a complex number in the
+// quarter of a disc.
+Eigen::Vector2d DirectionUpward(CounterRandom& random) {
+  for (;;) {
+    const uint64_t bits = random.Bits();
+    const double x = FromBits(bits), y = FromBits(bits >> 32);
+    const double xx = x * x, yy = y * y, square = xx + yy;
+    if (square <= 1) return Eigen::Vector2d(xx - yy, 2 * x * y) / square;
+  }
 }
 
 }  // namespace
@@ -35,43 +40,57 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& st
   for (const GasBall& ball : start.balls) speeds_.push_back(ball.speed);
   for (size_t i = 0; i < start.pistons.size(); ++i) {
     const auto piston = static_cast<int64_t>(i);
-    speeds_.push_back(walls_.Has(piston) ? SpeedOfOutermost(walls_.TemperatureAt(piston))
+    speeds_.push_back(walls_.Has(piston) ? SpeedOfOutermost(piston)
                                          : std::fabs(start.pistons[i].velocity));
   }
-  FindLargest();
+  const auto count = static_cast<double>(balls_);
+  kinds_[0] = {.count = count};
+  kinds_[1] = {.first = count, .count = static_cast<double>(speeds_.size()) - count};
+  FindRates();
   FindNext();
 }
 
-void JumpGas::FindLargest() {
-  const auto first_piston = speeds_.begin() + static_cast<std::ptrdiff_t>(balls_);
-  kinds_[0].largest = *std::max_element(speeds_.begin(), first_piston);
-  kinds_[1].largest = *std::max_element(first_piston, speeds_.end());
-  SetRates();
-  changes_ = 0;
+// The speed at which a piston with two balls proposes as often as an outermost one does to its one:
+// the mean of (-v3)+.
+double JumpGas::SpeedOfOutermost(int64_t piston) const {
+  return std::sqrt(walls_.TemperatureAt(piston) / (2 * std::numbers::pi)) / kRateOfAPiston;
 }
 
-void JumpGas::SetRates() {
-  const double of_a_speed[] = {geometry_.directions() * kOfABall, kOfAPiston};
-  const size_t ends[] = {0, balls_, speeds_.size()};
-  rate_ = 0;
-  for (size_t i = 0; i < kinds_.size(); ++i) {
-    Kind& kind = kinds_[i];
-    const double each = of_a_speed[i] * kind.largest;
-    kind.first = ends[i];
-    kind.last = ends[i + 1] - 1;
-    kind.before = rate_;
-    kind.rate = each * static_cast<double>(ends[i + 1] - ends[i]);
-    kind.bodies_per_rate = 1 / each;
-    rate_ += kind.rate;
+double JumpGas::RatePerSpeed(size_t body) const {
+  return body < balls_ ? geometry_.directions() * kRateToAPiston : kRateOfAPiston;
+}
+
+// Again and again, because changes add up rounding, and the fastest bodies become slower.
+void JumpGas::FindRates() {
+  rate_ = kinds_[0].largest = kinds_[1].largest = 0;
+  for (size_t body = 0; body < speeds_.size(); ++body) {
+    rate_ += RatePerSpeed(body) * speeds_[body];
+    double& largest = kinds_[body < balls_ ? 0 : 1].largest;
+    largest = std::max(largest, speeds_[body]);
   }
+  changes_ = 0;
+  FindPlaces();
+}
+
+// There are as many attempts as if all bodies were as fast as the fastest of their kind.
+void JumpGas::FindPlaces() {
+  auto& [balls, pistons] = kinds_;
+  const double of_a_ball = RatePerSpeed(0) * balls.largest;
+  const double of_a_piston = RatePerSpeed(balls_) * pistons.largest;
+  const double all = of_a_ball * balls.count + of_a_piston * pistons.count;
+  balls.per_place = all / of_a_ball;
+  pistons.per_place = all / of_a_piston;
+  pistons.before = of_a_ball * balls.count / all;
+  FindJumpAttempts(kinds_, attempts_);
 }
 
 void JumpGas::SetSpeed(size_t body, double speed) {
+  rate_ += RatePerSpeed(body) * (speed - speeds_[body]);
   speeds_[body] = speed;
-  Kind& kind = kinds_[body < balls_ ? 0 : 1];
-  if (speed <= kind.largest) return;
-  kind.largest = speed;
-  SetRates();
+  double& largest = kinds_[body < balls_ ? 0 : 1].largest;
+  if (speed <= largest) return;
+  largest = speed;
+  FindPlaces();
 }
 
 void JumpGas::AdvanceTo(double time, GasMeter& meter) {
@@ -86,59 +105,60 @@ void JumpGas::AdvanceTo(double time, GasMeter& meter) {
       SetSpeed(balls_ + static_cast<size_t>(p.piston), std::fabs(p.v1));
     }
     meter.Exchange({time_, p.ball, p.piston, p.direction, ball * ball / 2, piston_energy});
-    if (++changes_ > speeds_.size()) FindLargest();
+    if (++changes_ > speeds_.size()) FindRates();
     FindNext();
   }
 }
 
-// Proposals come at the rate of as many bodies as fast as the fastest; the product of a uniform
-// number for each is the exponential of their waiting time.
 void JumpGas::FindNext() {
-  double product = 1;
+  double wait = 0;
   do {
-    product *= random_.Uniform();
-    next_.is_accepted = false;
-    Propose(NextPlace());
+    FindProposal();
+    wait += DrawWait();
   } while (!next_.is_accepted);
-  time_ -= Log(product) / (density_ * rate_);
+  time_ += wait / (density_ * rate_);
 }
 
-// Draws ahead, so that the speeds are on their way from memory.
-double JumpGas::NextPlace() {
-  if (used_places_ == places_.size()) {
-    for (double& place : places_) {
-      place = random_.Uniform();
-      __builtin_prefetch(&speeds_[BodyAt(rate_ * place).body]);
-    }
-    used_places_ = 0;
+double JumpGas::DrawWait() {
+  if (used_waits_ == kJumpDraws) {
+    DrawJumpWaits(random_, waits_);
+    used_waits_ = 0;
   }
-  return rate_ * places_[used_places_++];
+  return waits_[used_waits_++];
 }
 
-JumpGas::Chosen JumpGas::BodyAt(double place) const {
-  const Kind& kind = kinds_[place < kinds_[0].rate ? 0 : 1];
-  const double index = (place - kind.before) * kind.bodies_per_rate;
-  const size_t body = std::min(kind.first + static_cast<size_t>(index), kind.last);
-  return {body, (index - static_cast<double>(body - kind.first)) * kind.largest};
+// Of the word that chose the body the lowest bits are left.
+void JumpGas::FindProposal() {
+  for (;;) {
+    if (used_attempts_ == kJumpDraws) DrawAttempts();
+    const size_t i = used_attempts_++;
+    const auto body = static_cast<size_t>(attempts_.bodies[i]);
+    if (attempts_.least_speeds[i] < speeds_[body]) return Propose(body, attempts_.words[i]);
+  }
 }
 
-// The number chooses a body, and its rest decides whether that one is fast enough. Without
-// branches, because they would be mispredicted.
-void JumpGas::Propose(double place) {
-  const auto [body, least_speed] = BodyAt(place);
-  if (least_speed >= speeds_[body]) return;
+void JumpGas::DrawAttempts() {
+  DrawJumpAttempts(kinds_, random_, attempts_);
+  for (const int32_t body : attempts_.bodies)
+    __builtin_prefetch(&speeds_[static_cast<size_t>(body)]);
+  used_attempts_ = 0;
+}
+
+void JumpGas::Propose(size_t body, uint64_t bits) {
   if (body < balls_) {
-    ByBall(static_cast<int64_t>(body));
+    ByBall(static_cast<int64_t>(body), bits);
   } else {
-    ByPiston(static_cast<int64_t>(body - balls_));
+    ByPiston(static_cast<int64_t>(body - balls_), bits);
   }
+  Decide();
 }
 
-// v1 has the density v1 over the angles with v1 > 0: its other component is uniform.
-void JumpGas::ByBall(int64_t ball) {
+// v1 has the density v1 over the angles with v1 > 0: its other component is uniform. A piston has
+// either sign.
+void JumpGas::ByBall(int64_t ball, uint64_t bits) {
   const double speed = speeds_[static_cast<size_t>(ball)];
-  const double place = geometry_.directions() * random_.Uniform();
-  const Direction direction = geometry_.DirectionAt(static_cast<int>(place));
+  const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);
+  const Direction direction = geometry_.DirectionAt(way);
   const double across = random_.Uniform();
   const int64_t piston = geometry_.PistonOf(ball, direction);
   next_ = {.ball = ball,
@@ -146,42 +166,33 @@ void JumpGas::ByBall(int64_t ball) {
            .direction = direction,
            .v1 = speed * std::sqrt((1 - across) * (1 + across)),
            .across = speed * across,
-           .v3 = DrawPistonVelocity(piston)};
-  Accept();
-}
-
-double JumpGas::DrawPistonVelocity(int64_t piston) {
-  if (walls_.Has(piston)) return DrawThermalVelocity(walls_.TemperatureAt(piston), random_);
-  const double speed = speeds_[balls_ + static_cast<size_t>(piston)];
-  return random_.Uniform() < 0.5 ? speed : -speed;
+           .v3 = speeds_[balls_ + static_cast<size_t>(piston)]};
+  if ((bits & 1) != 0) next_.v3 = -next_.v3;
+  if (walls_.Has(piston)) next_.v3 = DrawThermalVelocity(walls_.TemperatureAt(piston), random_);
 }
 
 // The piston comes toward the ball; an outermost one with the flux law.
-void JumpGas::ByPiston(int64_t piston) {
+void JumpGas::ByPiston(int64_t piston, uint64_t bits) {
   const Direction direction = geometry_.DirectionTo(piston);
-  Direction side = direction;
-  double speed = 0;
+  Direction side = (bits & 1) != 0 ? direction : Opposite(direction);
+  double speed = speeds_[balls_ + static_cast<size_t>(piston)];
   if (walls_.Has(piston)) {
     side = walls_.IsHot(piston) ? Direction::kLeft : Direction::kRight;
     speed = DrawFluxSpeed(walls_.TemperatureAt(piston), random_);
-  } else {
-    side = random_.Uniform() < 0.5 ? direction : Opposite(direction);
-    speed = speeds_[balls_ + static_cast<size_t>(piston)];
   }
   const int64_t ball = geometry_.BallOf(piston, side);
-  const Eigen::Vector2d velocity = UniformDirection(random_) * speeds_[static_cast<size_t>(ball)];
+  const Eigen::Vector2d velocity = DirectionUpward(random_) * speeds_[static_cast<size_t>(ball)];
   next_ = {.ball = ball,
            .piston = piston,
            .direction = side,
            .v1 = velocity.x(),
            .across = velocity.y(),
            .v3 = -speed};
-  Accept();
 }
 
-void JumpGas::Accept() {
-  const double bound = std::max(next_.v1, 0.0) + std::max(-next_.v3, 0.0);
-  next_.is_accepted = random_.Uniform() * bound < next_.v1 - next_.v3;
+void JumpGas::Decide() {
+  const double proposed = std::max(next_.v1, 0.0) + std::max(-next_.v3, 0.0);
+  next_.is_accepted = random_.Uniform() * proposed < next_.v1 - next_.v3;
 }
 
 }  // namespace ballpiston

@@ -6,7 +6,7 @@
 //
 // Sampled by thinning, twice. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and
 // v_p/2. So each body proposes exchanges at a rate that its speed alone decides, and a proposal is
-// accepted with the ratio of the two: four in five are. And a body is drawn at that rate as any
+// accepted with the ratio of the two: seven in ten are. And a body is drawn at that rate as any
 // body at all, kept with the ratio of its speed to the largest one: one in four is. So an exchange
 // costs nearly as much in a large gas as in a small one, until memory is far. An outermost piston
 // has a new thermal velocity at every proposal, because between two of its exchanges it hits its
@@ -19,7 +19,6 @@
 #ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
 #define BALLPISTON_CORE_GAS_JUMP_GAS_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -27,6 +26,7 @@
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_meter.h"
 #include "core/gas/gas_state.h"
+#include "core/gas/jump_draws.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/counter_random.h"
 
@@ -53,32 +53,19 @@ class JumpGas {
     bool is_accepted = false;
   };
 
-  // Balls, or pistons.
-  struct Kind {
-    double largest = 0;  // speed, or above
-    double before = 0;   // rate of the proposals by other kinds before
-    double rate = 0;     // of proposals
-    double bodies_per_rate = 0;
-    size_t first = 0;
-    size_t last = 0;
-  };
-
-  struct Chosen {
-    size_t body;
-    double least_speed;  // the body proposes if it is faster
-  };
-
   void FindNext();
-  double NextPlace();
-  Chosen BodyAt(double place) const;
-  void Propose(double place);
-  void ByBall(int64_t ball);
-  void ByPiston(int64_t piston);
-  void Accept();
-  double DrawPistonVelocity(int64_t piston);
+  void FindProposal();
+  void DrawAttempts();
+  void Propose(size_t body, uint64_t bits);
+  void ByBall(int64_t ball, uint64_t bits);
+  void ByPiston(int64_t piston, uint64_t bits);
+  void Decide();
+  double DrawWait();
+  double SpeedOfOutermost(int64_t piston) const;
+  double RatePerSpeed(size_t body) const;
   void SetSpeed(size_t body, double speed);
-  void FindLargest();
-  void SetRates();
+  void FindRates();
+  void FindPlaces();
 
   GasGeometry geometry_;
   double density_;
@@ -88,12 +75,14 @@ class JumpGas {
   // The balls' speeds, then the pistons'. An outermost piston has the speed at which it would
   // propose as often.
   std::vector<double> speeds_;
-  std::array<Kind, 2> kinds_;           // balls, pistons
-  double rate_ = 0;                     // of all proposals
-  std::array<double, 32> places_ = {};  // drawn ahead, in units of rate_
-  size_t used_places_ = 32;
-  size_t changes_ = 0;  // since the largest speeds were found
-  double time_ = 0;     // of the next exchange
+  JumpKinds kinds_;             // balls, pistons
+  double rate_ = 0;             // of all proposals
+  size_t changes_ = 0;          // since the rates were found
+  JumpAttempts attempts_ = {};  // drawn ahead, so that the speeds are on their way from memory
+  size_t used_attempts_ = kJumpDraws;
+  JumpWaits waits_ = {};
+  size_t used_waits_ = kJumpDraws;
+  double time_ = 0;  // of the next exchange
   Proposal next_ = {};
 };
 

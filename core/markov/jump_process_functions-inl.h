@@ -2,6 +2,7 @@
 // instruction set; elementwise and fused as written, so a lane's bits depend on its arguments
 // alone wherever multiply-add is fused.
 //
+//   UniformOf(words)       CounterRandom's uniform numbers
 //   MinusLog(x)            -log x         for x in [2^-53, 1)
 //   SineOfQuarterTurn(a)   sin a          for a in [0, pi/2]
 //   AngleOf(u, q)          atan2(u, q)    for u, q in [0, 1], not both 0
@@ -60,6 +61,16 @@ HWY_INLINE V TwiceArtanh(D d, V z) {
                             Linear(d, x, 0x1.74663eeda5df5p-3, 0x1.39a1ba27916dep-3));
   const V p = hn::MulAdd(high, hn::Mul(x2, x2), low);
   return hn::MulAdd(hn::Mul(z, x), p, hn::Add(z, z));
+}
+
+// (k + 1/2)/2^52, k the upper 52 bits. As the mantissa of a number in [1, 2) they are 1 + k/2^52;
+// what is taken off leaves an exact result.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V UniformOf(D d, const uint64_t* words) {
+  const hn::RebindToUnsigned<D> bits;
+  const auto one_to_two =
+      hn::Or(hn::ShiftRight<12>(hn::LoadU(bits, words)), hn::BitCast(bits, hn::Set(d, 1.0)));
+  return hn::Sub(hn::BitCast(d, one_to_two), hn::Set(d, 1 - 0x1p-53));
 }
 
 template <class D, class V = hn::Vec<D>>

@@ -18,16 +18,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, kJumpGroup>;
 using V = hn::Vec<D>;
-using Words = hn::RebindToUnsigned<D>;
-
-// CounterRandom's: (k + 1/2)/2^52, k the upper 52 bits. As the mantissa of a number in [1, 2) they
-// are 1 + k/2^52; what is taken off leaves an exact result.
-HWY_INLINE V Uniform(const uint64_t* words) {
-  const Words w;
-  const auto one_to_two =
-      hn::Or(hn::ShiftRight<12>(hn::LoadU(w, words)), hn::BitCast(w, hn::Set(D(), 1.0)));
-  return hn::Sub(hn::BitCast(D(), one_to_two), hn::Set(D(), 1 - 0x1p-53));
-}
 
 // Of one vector, as in JumpFrom; the square root is taken of whichever of the two squares it is.
 // At u = 0 the lower one is never it, and may be a NaN.
@@ -49,9 +39,9 @@ HWY_INLINE void JumpOnce(const uint64_t* waiting_words, const uint64_t* target_w
   const V q_squared = hn::NegMulAdd(hn::Add(u, u), u, hn::Set(d, 1.0));
   const V q = hn::Sqrt(hn::Max(q_squared, hn::Zero(d)));
   const V low = hn::Mul(u, AngleOf(d, u, q)), c = hn::Add(q, low);
-  hn::StoreU(Target(u, q, low, c, Uniform(target_words)), d, us);
+  hn::StoreU(Target(u, q, low, c, UniformOf(d, target_words)), d, us);
   const V scale = hn::Set(d, std::numbers::sqrt2 * std::numbers::pi);
-  const V minus_log = MinusLog(d, Uniform(waiting_words));
+  const V minus_log = MinusLog(d, UniformOf(d, waiting_words));
   hn::StoreU(hn::Div(hn::Mul(minus_log, scale), c), d, waiting_times);
 }
 

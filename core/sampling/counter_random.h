@@ -12,6 +12,8 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace ballpiston {
@@ -29,11 +31,23 @@ class CounterRandom {
   // In the open interval (0, 1): the midpoints of 2^52 equal cells, each exact in double.
   double Uniform() { return (static_cast<double>(Bits() >> 12) + 0.5) * 0x1p-52; }
 
+  // Words kBlock at a time, quicker. What Bits() has drawn and not returned yet comes later.
+  static constexpr size_t kBlock = 4;
+  [[gnu::always_inline]] void DrawBlock(uint64_t* words) {
+    const r123::Philox4x64::ctr_type block = NextBlock();
+    std::copy(block.begin(), block.end(), words);
+  }
+
  private:
   void Refill() {
-    block_ = r123::Philox4x64()(counter_, key_);
-    ++counter_[1];
+    block_ = NextBlock();
     used_ = 0;
+  }
+
+  [[gnu::always_inline]] r123::Philox4x64::ctr_type NextBlock() {
+    const auto block = r123::Philox4x64()(counter_, key_);
+    ++counter_[1];
+    return block;
   }
 
   r123::Philox4x64::key_type key_;
