@@ -277,7 +277,9 @@ constexpr ParameterUse kParametersOfRelaxation[] = {
     {&kRho}, {&kDelta}, {.parameter = &kEpsilon, .needed = false}};
 constexpr Model kModelsOfRelaxation[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
                                          Model::kBilliardReference};
-constexpr LimitError kLimitErrorOfRelaxation = {.is_known = HasRelaxationTimeAt,
+constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
+                                                .has_pilots = true,
+                                                .is_known = HasRelaxationTimeAt,
                                                 .expected = ExpectedLimitError};
 
 }  // namespace

@@ -28,6 +28,7 @@
 #include "absl/strings/str_format.h"
 #include "core/arithmetic/number_text.h"
 #include "core/experiment/all_experiments.h"
+#include "core/experiment/expected_limit_error.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
@@ -261,6 +262,14 @@ double ErrorOfGasConduction(const PointParameters& point) {
   return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
+// A pair's bound: what delays the exchange of a pair delays the gas's. A pilot would take as long
+// as the billiard's answer.
+constexpr LimitError kLimitErrorOfConduction = {
+    .model = Model::kMarkov,
+    .has_pilots = false,
+    .is_known = [](const PointParameters&) { return true; },
+    .expected = ExpectedLimitError};
+
 constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
                                             Model::kBilliardReference};
 constexpr ParameterUse kParametersOfGasConduction[] = {
@@ -278,6 +287,7 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
                                                  .collisions = ExchangesOfAConductionSample,
-                                                 .error = ErrorOfGasConduction};
+                                                 .error = ErrorOfGasConduction,
+                                                 .limit_error = &kLimitErrorOfConduction};
 
 }  // namespace ballpiston

@@ -158,14 +158,14 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
 // balls fly again, as much as a collision of the pair and 900 wall hits. A hit of a thermal wall,
 // after which one ball flies again, costs 600 wall hits. An event of the reference costs as much
 // as 2.6 of the pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the
-// jump process costs as much as 4.5 of the pair's jumps, which are measured with their
+// jump process costs as much as 2.2 of the pair's jumps, which are measured with their
 // correlations.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());
   const double exchanges =
       static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
-  if (model == Model::kMarkov) return {.starts = balls, .jumps = 4.5 * exchanges};
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.2 * exchanges};
   const HitRates rates = HitRatesOf(geometry.pair());
   const double ball_hits = rates.of_a_ball * balls * time;
   if (model == Model::kBilliardReference) {

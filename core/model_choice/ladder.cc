@@ -41,7 +41,9 @@ class Question {
   bool HasLimit() const { return experiment().limit_error != nullptr; }
   // Whether a bound of the limit's error is known.
   bool HasLimitError() const { return HasLimit() && experiment().limit_error->is_known(point_); }
+  bool HasPilots() const { return HasLimitError() && experiment().limit_error->has_pilots; }
   double ExpectedLimitError() const { return experiment().limit_error->expected(point_); }
+  Model ModelOfLimit() const { return experiment().limit_error->model; }
 
   // The model error of a billiard model: its error without the statistical error. Empty if the
   // first estimate has no relative error.
@@ -74,6 +76,11 @@ class Question {
 
   double ErrorOf(double samples) const { return experiment().error(point_) / std::sqrt(samples); }
 
+  // Of a model that samples, when the budget is used up; without its model error.
+  double ErrorInBudget(Model model) const {
+    return model == Model::kSpectrum ? 0 : ErrorOf(SamplesInBudget(model));
+  }
+
  private:
   EnsembleSpec By(Model model) const { return OnePointSpec(spec_, point_, model); }
 
@@ -102,11 +109,6 @@ Answer Billiard(const Question& question, absl::string_view why) {
 std::string WithoutAPilot(const Question& question) {
   const double tolerance = *question.target().tolerance;
   const PilotPlace place = PilotPlaceFor(question.point());
-  const double expected = question.ExpectedLimitError();
-  if (expected > tolerance) {
-    return absl::StrCat("the limit's error, up to ", Rounded(expected),
-                        ", is beyond the tolerance");
-  }
   const Pilot predicted = PredictedPilot(place);
   const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
   if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
@@ -126,6 +128,14 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
 }
 
 std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
+  const double expected = question.ExpectedLimitError();
+  const std::string limit = absl::StrCat("the limit's error, up to ", Rounded(expected), ", is ");
+  if (expected > *question.target().tolerance) {
+    return Billiard(question, absl::StrCat(limit, "beyond the tolerance"));
+  }
+  if (!question.HasPilots()) {
+    return Answer{question.ModelOfLimit(), absl::StrCat(limit, "within the tolerance"), expected};
+  }
   if (const std::string why = WithoutAPilot(question); !why.empty()) {
     return Billiard(question, why);
   }
@@ -138,26 +148,30 @@ std::optional<Answer> ByTolerance(const Question& question, const PilotSource& p
   if (error > *question.target().tolerance) {
     return Billiard(question, absl::StrCat(found, ": beyond the tolerance"));
   }
-  return Answer{Model::kSpectrum, absl::StrCat(found, ": within the tolerance"), error};
+  return Answer{question.ModelOfLimit(), absl::StrCat(found, ": within the tolerance"), error};
 }
 
 // The model that has the smaller error within the budget. Runs no pilot, because a pilot would use
 // part of the budget.
 Answer ByBudget(const Question& question) {
-  const double limit = question.ExpectedLimitError();
-  const double billiard = question.ErrorOf(question.SamplesInBudget(Model::kBilliard)) +
+  const double bound = question.ExpectedLimitError();
+  const double limit = question.ErrorInBudget(question.ModelOfLimit()) + bound;
+  const double billiard = question.ErrorInBudget(Model::kBilliard) +
                           question.ErrorOfPrecision(Model::kBilliard).value_or(0);
   const std::string compared =
       absl::StrCat("the billiard's error after this budget is some ", Rounded(billiard),
                    ", the limit's up to ", Rounded(limit));
   const double enough = question.target().tolerance.value_or(0);
   if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
-  return {Model::kSpectrum, compared, limit};
+  return {question.ModelOfLimit(), compared, bound};
 }
 
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
   if (!question.HasLimitError()) {
     return Billiard(question, "the limit's error is not known there");
+  }
+  if (!std::isfinite(question.ErrorOf(1))) {
+    return Billiard(question, "no error is relative there, so the limit's cannot be weighed");
   }
   if (question.target().budget_seconds) return ByBudget(question);
   if (question.target().tolerance) return ByTolerance(question, pilots);
@@ -222,13 +236,14 @@ void PredictSamples(const Question& question, Rung& rung) {
 void SetLimitError(const Question& question, const PilotSource& pilots, Rung& rung) {
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
+  rung.model_error = question.ExpectedLimitError();
+  rung.reason = "the limit; expected to be so far off or less, by its scaling with delta";
+  if (!question.HasPilots()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
-  const std::optional<Pilot> pilot = pilots(place);
-  const bool known = pilot.has_value();
-  rung.model_error =
-      known ? LimitErrorBound(*pilot, place, question.point()) : question.ExpectedLimitError();
-  rung.reason = known ? absl::StrCat("the limit; so far off or less, ", FoundBy(*pilot, place))
-                      : "the limit; expected to be so far off or less, by its scaling with delta";
+  if (const std::optional<Pilot> pilot = pilots(place)) {
+    rung.model_error = LimitErrorBound(*pilot, place, question.point());
+    rung.reason = absl::StrCat("the limit; so far off or less, ", FoundBy(*pilot, place));
+  }
 }
 
 Rung RungFor(Model model, const Question& question, const Machine& machine,
@@ -303,15 +318,16 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 
 namespace {
 
-// The model error of the answering model at the worst point. For a model that samples also at least
-// its statistical error with the largest permitted number of samples.
+// The model error of the answering model at the worst point, except where no pilot can check it.
+// For a model that samples also at least its statistical error with the largest permitted number of
+// samples.
 double LeastTolerance(const EnsembleSpec& spec) {
   if (IsAnsweredByClosedForm(spec)) return kClosedFormError;
   double least = 0;
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Question question(spec, point, Machine());
-    if (IsOfTheLimit(spec.model) && question.HasLimitError()) {
+    if (IsOfTheLimit(spec.model) && question.HasPilots()) {
       least = std::max(least, question.ExpectedLimitError());
     }
     if (spec.model == Model::kSpectrum) continue;

@@ -19,14 +19,6 @@ namespace {
 
 constexpr uint64_t kGasSeed = 21;
 
-std::vector<double> EnergiesOf(const GasSamples& samples, size_t first, size_t last) {
-  std::vector<double> energies;
-  for (size_t body = first; body < last; ++body) {
-    energies.insert(energies.end(), samples.last[body].begin(), samples.last[body].end());
-  }
-  return energies;
-}
-
 // Energies in units of T. Each distance exceeds 2.3 in 5e-5 of all cases.
 void ExpectGammaOne(const std::vector<double>& energies) {
   EXPECT_LT(oracle::KolmogorovSmirnov(energies, [](double e) { return -std::expm1(-e); }), 2.3);
@@ -51,8 +43,8 @@ TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   EXPECT_LT(StandardErrorsOff(samples.rate, exact), 4) << samples.rate.mean << " not " << exact;
   EXPECT_LT(samples.rate.StandardError().value(), 0.007 * exact);
   const auto balls = static_cast<size_t>(gas.balls());
-  ExpectGammaOne(EnergiesOf(samples, 0, balls));
-  ExpectGammaHalf(EnergiesOf(samples, balls, samples.last.size()));
+  ExpectGammaOne(LastEnergies(samples, 0, balls));
+  ExpectGammaHalf(LastEnergies(samples, balls, samples.last.size()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, GasInEquilibriumOf,
@@ -70,8 +62,8 @@ TEST(JumpGas, KeepsTheGammaLaws) {
   const GasSamples samples = Measure(
       {.engine = GasEngine::kJumps, .geometry = gas, .replicas = 2, .duration = 1000}, kGasSeed);
   EXPECT_LT(std::fabs(samples.rate.mean / GasExchangeRate(gas, 1) - 1), 0.02);
-  ExpectGammaOne(EnergiesOf(samples, 0, 4000));
-  ExpectGammaHalf(EnergiesOf(samples, 4000, samples.last.size()));
+  ExpectGammaOne(LastEnergies(samples, 0, 4000));
+  ExpectGammaHalf(LastEnergies(samples, 4000, samples.last.size()));
 }
 
 // No current and one temperature, each within four standard errors; the balls next to the

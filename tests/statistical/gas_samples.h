@@ -23,8 +23,10 @@ namespace ballpiston {
 
 // Of all replicas.
 struct GasSamples {
-  Moments rate;                       // exchanges of a contact in a unit of time
-  Moments current;                    // through the cross-section of the gas
+  Moments rate;               // exchanges of a contact in a unit of time
+  Moments current;            // through the cross-section of the gas
+  std::vector<double> rates;  // of the replicas
+  std::vector<double> currents;
   std::vector<Moments> temperatures;  // of balls, then of pistons: twice that of a piston's mean
   std::vector<std::vector<double>> last;  // energies at the end of the window, by body
 };
@@ -60,10 +62,12 @@ inline GasSamples Measure(const GasTask& task, uint64_t seed) {
     run->AdvanceTo(task.begin + task.duration);
     meter.End(task.begin + task.duration);
     EXPECT_EQ(meter.escapes(), 0u);
-    samples.rate.Add(static_cast<double>(meter.exchanges()) / task.duration /
-                     static_cast<double>(gas.contacts()));
+    samples.rates.push_back(static_cast<double>(meter.exchanges()) / task.duration /
+                            static_cast<double>(gas.contacts()));
+    samples.rate.Add(samples.rates.back());
     // Every cell has two contacts along x for each row, and each of them carries the current.
-    samples.current.Add(meter.carried() / task.duration / (2 * columns));
+    samples.currents.push_back(meter.carried() / task.duration / (2 * columns));
+    samples.current.Add(samples.currents.back());
     for (size_t body = 0; body < meter.bodies(); ++body) {
       const double per_temperature = body < meter.balls() ? 1 : 2;
       samples.temperatures[body].Add(per_temperature * meter.MeanEnergy(body));
@@ -71,6 +75,15 @@ inline GasSamples Measure(const GasTask& task, uint64_t seed) {
     }
   }
   return samples;
+}
+
+// The last energies of bodies from `first` to before `last`, of all replicas.
+inline std::vector<double> LastEnergies(const GasSamples& samples, size_t first, size_t last) {
+  std::vector<double> energies;
+  for (size_t body = first; body < last; ++body) {
+    energies.insert(energies.end(), samples.last[body].begin(), samples.last[body].end());
+  }
+  return energies;
 }
 
 // Standard errors between a mean and its expectation, which may have a standard error of its own.

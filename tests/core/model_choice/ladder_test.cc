@@ -227,6 +227,33 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   EXPECT_NEAR(*ladder.Chosen().work, SomeMachine().rates.spectrum, 1e-12);
 }
 
+// No pilot checks the bound for a gas, so it decides alone.
+TEST(Ladder, TheJumpProcessConductsWhereItsBoundIsWithinTheTolerance) {
+  for (double delta = 0.2; delta > 1e-3; delta /= 2) {
+    const double bound = ExpectedLimitError(PaperPoint(delta));
+    for (const double share : {0.999, 1.001}) {
+      const EnsembleSpec spec = Asked(&kGasConduction, delta, {.tolerance = bound / share});
+      const Answer answer = *Choice(spec, MayNotBeAsked);
+      EXPECT_EQ(answer.model, share < 1 ? Model::kMarkov : Model::kBilliard) << delta;
+      EXPECT_EQ(answer.model_error, share < 1 ? bound : 0) << delta;
+      EXPECT_THAT(answer.reason, HasSubstr(share < 1 ? "within the tolerance" : "beyond"));
+    }
+    for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
+      EXPECT_EQ(Choice(Asked(&kGasConduction, delta, target), MayNotBeAsked)->model,
+                Model::kBilliard);
+    }
+  }
+}
+
+TEST(Ladder, ABudgetWeighsTheJumpProcessesScatterToo) {
+  const EnsembleSpec scarce = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e-3});
+  EXPECT_EQ(Choice(scarce, MayNotBeAsked)->model, Model::kMarkov);
+  const EnsembleSpec plenty = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e5});
+  EXPECT_EQ(Choice(plenty, MayNotBeAsked)->model, Model::kBilliard);
+  const EnsembleSpec near_the_bound = Asked(&kGasConduction, 0.2, {.budget_seconds = 1});
+  EXPECT_EQ(Choice(near_the_bound, MayNotBeAsked)->model, Model::kBilliard);
+}
+
 TEST(Ladder, ANamedModelAnswersWhateverItsError) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     for (const Model model : kLadder) {
@@ -238,7 +265,7 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
       const bool limit = model == Model::kSpectrum || model == Model::kMarkov;
       if (!limit) {
         EXPECT_EQ(answer.model_error, 0);
-      } else if (experiment == &kEnergyRelaxation) {
+      } else if (experiment->limit_error != nullptr) {
         EXPECT_EQ(answer.model_error, ExpectedLimitError(PointAt(spec, 0)));
       } else {
         EXPECT_FALSE(answer.model_error);  // nobody knows
