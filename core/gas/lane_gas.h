@@ -10,6 +10,7 @@
 // Properties, each with the test that bears its name:
 //   1. AgreesWithTheReferenceEventByEvent, until rounding has grown too large.
 //   2. ManyShortCallsGiveTheBitsOfOne.  3. ReplicasDoNotDependOnTheirNeighbours.  4. EnergyStays.
+//   5. BallsThatMeetPistonsInTipsStayInTheirCells.
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
 #define BALLPISTON_CORE_GAS_LANE_GAS_H_
 

@@ -11,6 +11,7 @@
 
 #include "core/billiard/exchange.h"
 #include "core/billiard/lane_burst-inl.h"
+#include "core/billiard/lane_frame.h"
 #include "core/billiard/piston_wave.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -225,13 +226,35 @@ HWY_EXPORT(FlyAheadInLanes);
 GasInTime::GasInTime(const GasGeometry& g)
     : geometry(g),
       wave(g.pair()),
+      walls(g.pair()),
       unit(g.pair().rho() / M_SQRT2),
       edge(HWY_DYNAMIC_DISPATCH(EdgeInLanes)(g.pair(), unit)) {}
 
-FlyingBall PlacedBall(const GasInTime& gas, const Eigen::Vector2d& position,
-                      const Eigen::Vector2d& direction) {
+namespace {
+
+// In a tip a ball may be on both walls, or across them by rounding. Reflects it there for as long
+// as it flies into one of them; returns whether it did.
+bool LeaveWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
+                Eigen::Vector2d& direction) {
+  constexpr double kOnAWall = 1e-14;
+  constexpr int kMostHits = 10'000;  // of walls that are nearly parallel
+  int last_disc = kNoDisc;
+  for (int i = 0; i < kMostHits; ++i) {
+    const CellWalls<double>::Encounter hit = walls.Next(position, direction, last_disc);
+    if (hit.distance > kOnAWall) break;
+    walls.Reflect(hit, position, direction);
+    last_disc = hit.disc;
+  }
+  return last_disc != kNoDisc;
+}
+
+}  // namespace
+
+FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction) {
   const double left = gas.wave.left() - kReachSlack;
-  const LaneFrame frame = Scaled(FrameOfBall(position, direction), 1 / gas.unit);
+  const bool is_on_wall = LeaveWalls(gas.walls, position, direction);
+  const auto frame_of = is_on_wall ? FrameOfBallOnWall : FrameOfBall;
+  const LaneFrame frame = Scaled(frame_of(position, direction), 1 / gas.unit);
   return {.h = frame.h,
           .e = frame.e,
           .c = frame.c,

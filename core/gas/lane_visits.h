@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/billiard/cell_walls.h"
 #include "core/billiard/piston_wave.h"
 #include "core/gas/gas_geometry.h"
 
@@ -54,6 +55,7 @@ struct GasInTime {
 
   GasGeometry geometry;
   PistonWave wave;
+  CellWalls<double> walls;
   double unit;  // the lanes' unit of length, in cells
   double edge;  // of the pistons' reach, along an arc, in that unit
   std::vector<BallInTime> balls;
@@ -86,9 +88,8 @@ inline constexpr size_t kMostBallsAhead = 48;
 // contact.
 inline constexpr double kReachSlack = 1e-11;
 
-// A ball anywhere in the cell.
-FlyingBall PlacedBall(const GasInTime& gas, const Eigen::Vector2d& position,
-                      const Eigen::Vector2d& direction);
+// A ball anywhere in the cell, also on a wall or across one by rounding.
+FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball
 // that passes `until` has arrived: it is left before the flight in which it does. `to` may be

@@ -230,7 +230,7 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
 // No pilot checks the bound for a gas, so it decides alone.
 TEST(Ladder, TheJumpProcessConductsWhereItsBoundIsWithinTheTolerance) {
   for (double delta = 0.2; delta > 1e-3; delta /= 2) {
-    const double bound = ExpectedLimitError(PaperPoint(delta));
+    const double bound = 1.5 * ExpectedLimitError(PaperPoint(delta));
     for (const double share : {0.999, 1.001}) {
       const EnsembleSpec spec = Asked(&kGasConduction, delta, {.tolerance = bound / share});
       const Answer answer = *Choice(spec, MayNotBeAsked);
@@ -266,7 +266,7 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
       if (!limit) {
         EXPECT_EQ(answer.model_error, 0);
       } else if (experiment->limit_error != nullptr) {
-        EXPECT_EQ(answer.model_error, ExpectedLimitError(PointAt(spec, 0)));
+        EXPECT_EQ(answer.model_error, experiment->limit_error->expected(PointAt(spec, 0)));
       } else {
         EXPECT_FALSE(answer.model_error);  // nobody knows
       }
