@@ -15,21 +15,24 @@ namespace {
 
 constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
 
-// A neighbour of a start is off by so many steps: all directions turned, all pistons shifted.
+// A neighbour of a start is off by so many steps: all directions turned, all pistons along x
+// shifted, and those along y the other way, so that pistons that cross come in either order.
 struct Neighbour {
   int turn;
   int shift;
 };
 
-void Move(const Neighbour& neighbour, double reach, GasState& state) {
+void Move(const Neighbour& neighbour, const GasGeometry& geometry, GasState& state) {
   constexpr double kStep = 1e3 * kGasEpsilon;
-  const double angle = kStep * neighbour.turn;
+  const double angle = kStep * neighbour.turn, reach = geometry.reach();
   for (GasBall& ball : state.balls) {
     const Eigen::Vector2d u = ball.direction;
     ball.direction = (u + angle * Eigen::Vector2d(-u.y(), u.x())).normalized();
   }
-  for (GasPiston& piston : state.pistons) {
-    piston.offset = std::clamp(piston.offset + kStep * neighbour.shift, -reach, reach);
+  for (int64_t i = 0; i < geometry.pistons(); ++i) {
+    const double shift = kStep * neighbour.shift * (geometry.IsAlongX(i) ? 1 : -1);
+    GasPiston& piston = state.pistons[static_cast<size_t>(i)];
+    piston.offset = std::clamp(piston.offset + shift, -reach, reach);
   }
 }
 
@@ -54,19 +57,17 @@ Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica
                           const GasReading& reading, std::span<const Neighbour> neighbours) {
   const GasReading middle = ByReference(geometry, replica, time);
   double nearest = Distance(reading, middle), spread = 0;
-  uint64_t fewest = middle.exchanges;
   for (const Neighbour& neighbour : neighbours) {
     GasReplica moved = replica;
-    Move(neighbour, geometry.reach(), moved.state);
+    Move(neighbour, geometry, moved.state);
     const GasReading other = ByReference(geometry, moved, time);
     nearest = std::min(nearest, Distance(reading, other));
     spread = std::max(spread, Distance(middle, other));
-    fewest = std::min(fewest, other.exchanges);
   }
   Failures found;
   // The neighbours differ from each other by at most twice what they differ from the middle.
   if (nearest <= 1e4 * kGasEpsilon * middle.Total() + 2 * spread) return found;
-  (reading.exchanges < fewest ? found.missed : found.phantoms) = 1;
+  (reading.exchanges < middle.exchanges ? found.missed : found.phantoms) = 1;
   return found;
 }
 

@@ -26,7 +26,7 @@ GasReading ReadingOf(const GasMeter& meter);
 // Compares the reading of a replica at `time` with that of the reference gas, from the same start
 // and from neighbours of it. Rounding grows with every hit, so `time` is that of some flights. A
 // difference counts if the engine differs from all neighbours by more than they differ from each
-// other: as missed, if the engine had fewer exchanges than all of them; else as a phantom.
+// other: as missed, if the engine had fewer exchanges than the reference; else as a phantom.
 Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
                   const GasReading& reading);
 

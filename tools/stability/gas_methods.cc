@@ -74,7 +74,7 @@ Failures RunLanesToTheEnd(const GasGeometry& geometry, std::span<const GasReplic
 // never come there are one loop.
 Failures RunLanes(const GasGeometry& geometry, std::span<const GasReplica> replicas,
                   double flights) {
-  constexpr unsigned kPatience = 5;  // seconds; it takes less than one
+  constexpr unsigned kPatience = 2;  // seconds; it takes a tenth of one
   const auto run = [&] { return RunLanesToTheEnd(geometry, replicas, flights); };
   return InOwnProcess(run, kPatience).value_or(Failures{.orbits = replicas.size(), .loops = 1});
 }
