@@ -42,10 +42,10 @@ TEST(HeatCurrentRuns, AllMethodsAgree) {
   EXPECT_LT(Off(runs.Run({Method::kMarkov}, TruthOf(256)), reference), 4);
 }
 
-// At 0.1 a ball may go a cell in a few steps: all replicas lose one.
+// At 0.1 a ball may go a cell in a few steps: all replicas lose theirs.
 TEST(HeatCurrentRuns, ReplicasThatLoseABallAreNotCounted) {
   const PointEstimate run = Runs(0.2).Run({Method::kFixedStep, 0.1}, RunOf(64));
-  EXPECT_LT(run.samples, 64u);
+  EXPECT_EQ(run.samples, 0u);
   EXPECT_GT(run.seconds, 0);
 }
 
