@@ -1,6 +1,7 @@
 #!/bin/bash
 # Charts speed against accuracy: every method of computing the pair, from a naive one with fixed
-# time steps to the closed form and the limit of rare collisions. Takes a minute or two.
+# time steps to the closed form and the limit of rare collisions, and of a small gas. Takes some two
+# minutes.
 #
 #   scripts/chart.sh FOLDER_OF_PROGRAMS
 #

@@ -7,26 +7,27 @@
 #   c  wall hits until an orbit leaves the high-precision orbit, against the time of a hit
 #   d  relative error of the energy's relaxation time at several delta, by the billiard and by the
 #      limit delta -> 0; left out if there are no relaxation times
-# In a and b a line is one statistical error, the error that chance alone explains. A point is a
+#   e  relative error of the heat current of a gas of one cell between two reservoirs; left out if
+#      there are no heat currents
+# In a, b and e a line is one statistical error, the error that chance alone explains. A point is a
 # measured error: pale if chance explains it, at the lower edge if it is smaller than shown. A
 # dashed line is the bias of a method whose longest run resolves a bias. In b the noise floor is
-# subtracted, so chance may make a value negative; then its absolute value is drawn. In d a line is
-# the method's own statistical error, without the error of the truth; both errors decide whether a
-# point is pale.
+# subtracted, so chance may make a value negative; then its absolute value is drawn. In d and e a
+# line is the method's own statistical error, without the error of the truth; both errors decide
+# whether a point is pale.
 
 # ---- Settings ----
-set terminal svg size 960,1040 enhanced font "Helvetica,Arial,sans-serif,15" background rgb "white"
-set output "speed-accuracy.svg"
 data = "speed-accuracy.csv"
 
-# The methods of panels a to c. Colours by Okabe and Ito, told apart by all kinds of colour vision;
-# shapes differ too: filled for double, open for single precision. The closed form is the last.
+# The methods of panels a to c and e. Colours by Okabe and Ito, told apart by all kinds of colour vision;
+# shapes differ too: filled for double, open for single precision. The last one is in e alone, and
+# the closed form before it in a and b.
 methods = "fixed-step billiard-reference-single billiard-reference billiard-reference-long-double \
-billiard-reference-quadruple billiard billiard-single closed-form"
+billiard-reference-quadruple billiard billiard-single closed-form markov"
 titles = "'fixed time step Δt' 'reference, single' 'reference, double' 'reference, 64 bits' \
-'reference, 113 bits' 'vector lanes, double' 'vector lanes, single' 'closed form'"
-colours = "#d55e00 #e69f00 #009e73 #cc79a7 #777777 #0072b2 #56b4e9 #000000"
-markers = "2 8 9 11 13 7 6 5"  # gnuplot's point types
+'reference, 113 bits' 'vector lanes, double' 'vector lanes, single' 'closed form' 'jump process'"
+colours = "#d55e00 #e69f00 #009e73 #cc79a7 #777777 #0072b2 #56b4e9 #000000 #882255"
+markers = "2 8 9 11 13 7 6 5 4"  # gnuplot's point types
 
 # Colours of d, from dark to light as delta falls: the dark half of viridis, whose luminance also
 # distinguishes them. The other half is too light for text on white.
@@ -84,7 +85,7 @@ set encoding utf8
 set datafile separator comma
 set datafile columnheaders
 
-# Curves of a to c, each a method at a time step (as method@step); and the deltas of d, descending.
+# Curves of a to c and e, each a method at a time step (as method@step); and the deltas of d, descending.
 curves = ""
 deltas = ""
 name(_) = sprintf("%s@%.17e", strcol("method"), column("time_step"))
@@ -92,9 +93,22 @@ has(list, item) = strstrt(list." ", " ".item." ") > 0
 note_curve(_) = has(curves, name(0)) ? 0 : (curves = curves." ".name(0), 1)
 note_delta(_) = (deltas = deltas." ".strcol("delta"), 1)
 note_pair(_) = (rho = column("rho"), delta = strcol("delta"), epsilon = strcol("epsilon"), 1)
+gas_delta = ""
+note_gas(_) = (gas_delta = strcol("delta"), 1)
 quantity(q) = strcol("quantity") eq q
 stats data using (quantity("limit-floor") ? note_delta(0) : quantity("relaxation-time") ? 0 : \
-                  note_curve(0) + note_pair(0)) nooutput
+                  note_curve(0) + (quantity("heat-current") ? note_gas(0) : note_pair(0))) nooutput
+has_gas = gas_delta ne ""
+
+# The rows of panels and the legend have fixed heights, so the picture is higher with e.
+without_e = 1040.0
+row_of_panels = has_gas ? 400.0 : 0
+height = without_e + row_of_panels
+set terminal svg size 960,height enhanced font "Helvetica,Arial,sans-serif,15" \
+  background rgb "white"
+set output "speed-accuracy.svg"
+panel_at(y) = (y*without_e + row_of_panels)/height   # a to e, from parts of the height without e
+legend_at(y) = y*without_e/height
 
 n = words(curves)
 at_sign(i) = strstrt(word(curves, i), "@")
@@ -134,9 +148,11 @@ set mxtics 10
 set mytics 10
 unset key
 
-# ---- Panels a and b: errors against work ----
-do for [panel in "a b"] {
-  q = panel eq "a" ? "mean-free-time" : "ingoing-law"
+# ---- Panels a, b and e: errors against work ----
+panel_title(panel) = panel eq "a" ? "mean free time" : panel eq "b" ? "law of the ingoing angle" : \
+                     "heat current of a gas of one cell"
+do for [panel in has_gas ? "a b e" : "a b"] {
+  q = panel eq "a" ? "mean-free-time" : panel eq "b" ? "ingoing-law" : "heat-current"
   of_panel(x) = quantity(q) ? x : NaN
   of(i, x) = of_panel(in_curve(i, x))
 
@@ -145,7 +161,7 @@ do for [panel in "a b"] {
   set xrange [*:*]
   set yrange [*:*]
   stats data using (of_panel(positive(column("work_seconds")))) name "work" nooutput
-  stats data using (of_panel(shown(positive(column("statistical_error"))))) name "chance" nooutput
+  stats data using (of_panel(shown(positive(column("own_error"))))) name "chance" nooutput
   stats data using (of_panel(shown(abs(column("value"))))) name "value" nooutput
   highest = max(chance_max, value_max)
   edge = below*chance_min
@@ -195,15 +211,14 @@ do for [panel in "a b"] {
   set format "10^{%T}"
   set xtics 10
   set ytics 10
-  set lmargin screen panel eq "a" ? 0.085 : 0.585
-  set rmargin screen panel eq "a" ? 0.485 : 0.985
-  set tmargin screen 0.954
-  set bmargin screen 0.681
-  set title "{/:Bold ".panel."}  ".(panel eq "a" ? "mean free time" : "law of the ingoing angle") \
-    offset 0,-0.4
+  set lmargin screen panel eq "b" ? 0.585 : 0.085
+  set rmargin screen panel eq "b" ? 0.985 : 0.485
+  set tmargin screen panel_at(panel eq "e" ? 0.184 : 0.954)
+  set bmargin screen panel_at(panel eq "e" ? -0.089 : 0.681)
+  set title "{/:Bold ".panel."}  ".panel_title(panel) offset 0,-0.4
   set xlabel "work / s" offset 0,0.4
-  set ylabel panel eq "a" ? "relative error" : "Kullback-Leibler divergence" offset 0.5,0
-  plot for [i=1:n] data using (of(i, shown(column("work_seconds")))):"statistical_error" \
+  set ylabel panel eq "b" ? "Kullback-Leibler divergence" : "relative error" offset 0.5,0
+  plot for [i=1:n] data using (of(i, shown(column("work_seconds")))):"own_error" \
          with lines lw 1.5 lc rgb colour(i), \
        for [i=1:n] $biases using (column("curve") == i ? column("x") : NaN):"y" \
          with lines lw 1.5 dt (8,5) lc rgb colour(i), \
@@ -254,8 +269,8 @@ set ytics autofreq
 set mytics 2
 set lmargin screen 0.085
 set rmargin screen 0.485
-set tmargin screen 0.569
-set bmargin screen 0.296
+set tmargin screen panel_at(0.569)
+set bmargin screen panel_at(0.296)
 set title "{/:Bold c}  single orbits" offset 0,-0.4
 set xlabel "time of a hit / ns" offset 0,0.4
 set ylabel "hits until parted from a precise twin" offset 0.5,0
@@ -369,8 +384,8 @@ set xrange [0:1]
 set yrange [0:1]
 set lmargin screen 0.01
 set rmargin screen 0.49
-set tmargin screen 0.236
-set bmargin screen 0.004
+set tmargin screen legend_at(0.236)
+set bmargin screen legend_at(0.004)
 set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 4 font text
 set label sprintf("a, b: ρ = %.6g, δ = %s, ε = %s; c%s: the same ρ.", rho, delta, epsilon, \
                   d > 0 ? ", d" : "") at graph 0.04,0.560 font text
@@ -378,7 +393,7 @@ set label "Line: statistical error σ." at graph 0.04,0.484 font text
 set label "Point: measured error, pale if below 3σ." at graph 0.04,0.408 font text
 set label "Dashed: bias, if the longest run's error is above 3σ." at graph 0.04,0.332 font text
 set label "At the lower edge: smaller than shown." at graph 0.04,0.256 font text
-last = words(methods)
+last = words(methods) - 1  # the closed form
 entries = ""
 do for [k=1:last-1] {
   if (strstrt(curves, " ".word(methods, k)."@") > 0) { entries = entries." ".k }
@@ -395,9 +410,9 @@ if (d > 0) {
   set rmargin screen 0.99
   set key at graph 0.02,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 3 font text
   set label "d: δ by colour. Left of ○ the limit (jump process, spectrum)" \
-    at screen 0.029,0.0458 font text
+    at screen 0.029,legend_at(0.0458) font text
   set label "costs less; below its line, the bias, it may not be used." \
-    at screen 0.029,0.0281 font text
+    at screen 0.029,legend_at(0.0281) font text
   set label "δ" at graph 0.04,0.64 font text
   set label "bias of the limit" at graph 0.2,0.64 font text
   set label "billiard as exact after" at graph 0.46,0.64 font text
@@ -415,5 +430,27 @@ if (d > 0) {
        NaN with lines lw 1.5 dt (8,5) lc rgb legend_colour title "bias of the limit", \
        NaN with lines lw 1.7 dt (2,4) lc rgb legend_colour title "bias ≤ error + 2σ", \
        NaN with points pt 6 ps 1.6 lw 2 lc rgb legend_colour title "billiard as exact"
+}
+
+# ---- The legend of e, beside it ----
+if (has_gas) {
+  unset label
+  set lmargin screen 0.56
+  set rmargin screen 0.99
+  set tmargin screen panel_at(0.184)
+  set bmargin screen panel_at(-0.089)
+  set key at graph 0.0,0.99 left top Left reverse samplen 2.5 spacing 1.1 maxrows 4 font text
+  set label sprintf("e: ρ = %.6g, δ = %s; one ball between two", rho, gas_delta) \
+    at graph 0.02,0.56 font text
+  set label "pistons, which hit thermal walls at T = 1.5 and 0.5." at graph 0.02,0.48 font text
+  set label "Line: the method's own statistical error. Points and" at graph 0.02,0.40 font text
+  set label "dashed lines: as in a, with the error of the truth, a" at graph 0.02,0.32 font text
+  set label "longer run of the vector lanes." at graph 0.02,0.24 font text
+  of_e = ""
+  do for [k in "1 3 6 9"] {
+    if (strstrt(curves, " ".word(methods, k + 0)."@") > 0) { of_e = of_e." ".k }
+  }
+  plot for [k in of_e] NaN with linespoints pt method_marker(k) ps 1 lw 1.5 \
+         lc rgb method_colour(k) title word(titles, k + 0)
 }
 unset multiplot

@@ -50,13 +50,16 @@ TEST_F(SpeedAccuracy, LeavesDataScriptsAndPicture) {
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.err, HasSubstr("measurements"));
   const std::string csv = Contents(figure_ + "/speed-accuracy.csv");
-  for (const char* curve : {"fixed-step,0.01,mean-free-time", "billiard-reference,0,ingoing-law",
-                            "billiard-single,0,trajectory", "closed-form,0,mean-free-time"}) {
+  for (const char* curve :
+       {"fixed-step,0.01,mean-free-time", "billiard-reference,0,ingoing-law",
+        "billiard-single,0,trajectory", "closed-form,0,mean-free-time", "markov,0,heat-current"}) {
     EXPECT_THAT(csv, HasSubstr(curve));
   }
   EXPECT_TRUE(fs::exists(figure_ + "/speed-accuracy.gnuplot"));
   if (result.err.find("gnuplot is not installed") != std::string::npos) GTEST_SKIP();
-  EXPECT_THAT(Contents(figure_ + "/speed-accuracy.svg"), HasSubstr("vector lanes, double"));
+  for (const char* text : {"vector lanes, double", "heat current of a gas"}) {
+    EXPECT_THAT(Contents(figure_ + "/speed-accuracy.svg"), HasSubstr(text));
+  }
   EXPECT_THAT(result.out, HasSubstr(figure_ + "/speed-accuracy.svg\n"));
 }
 

@@ -16,11 +16,11 @@
 #ifndef BALLPISTON_TOOLS_FLOWS_FIXED_STEP_FLOW_H_
 #define BALLPISTON_TOOLS_FLOWS_FIXED_STEP_FLOW_H_
 
-#include <Eigen/Core>
 #include <cstdint>
 
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/flows/fixed_step_ball.h"
 
 namespace ballpiston {
 
@@ -46,21 +46,16 @@ class FixedStepFlow {
 
  private:
   uint64_t MoveFreely(uint64_t most);
-  bool RepairBall();
   bool RepairPiston();
-  bool IsLost() const;
 
   double time_step_;
-  double rho_;
   double rho_squared_;
   double piston_left_;
   double piston_right_;
 
-  Eigen::Vector2d position_;
-  Eigen::Vector2d velocity_;
+  FixedStepBall ball_;
   double piston_;
   double piston_velocity_;
-  int steps_inside_ = 0;  // a disc, one after the other
 };
 
 }  // namespace ballpiston

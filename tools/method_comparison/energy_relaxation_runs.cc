@@ -1,10 +1,8 @@
 #include "tools/method_comparison/energy_relaxation_runs.h"
 
-#include <bit>
 #include <memory>
 
 #include "core/ensemble/point_experiment.h"
-#include "core/ensemble/point_fold.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/energy_relaxation.h"
 #include "core/experiment/predicted_hits.h"
@@ -26,32 +24,17 @@ PointParameters PointOf(const PairGeometry& geometry) {
 
 }  // namespace
 
-SampleRange TruthOf(uint64_t orbits) {
-  // Runs are [4^k, 2 4^k): from 2 4^k on there is room for as many.
-  const bool is_start_of_run = std::countr_zero(orbits) % 2 == 0;
-  return {is_start_of_run ? 2 * orbits : orbits, orbits};
-}
-
 double EnergyRelaxationRuns::PredictedSecondsPerOrbit() const {
   constexpr double kPerEvent = 2e-9, kPerCollision = 4e-7;
   return CollisionsPerOrbit(PointOf(geometry_)) *
          (kPerCollision + kPerEvent * HitsPerCollision(geometry_).Events());
 }
 
-RelaxationTime EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
-  const auto experiment = PointExperiment::Create(SpecOf(geometry_, seed_, method), 0);
-  const double begin = server::ThreadSeconds();
-  const BlockResult merged =
-      *RunBlock(*experiment, {.first = samples.first, .samples = samples.count});
-  const double seconds = server::ThreadSeconds() - begin;
-  const Estimate estimate = experiment->FirstEstimate(merged);
-  return {.value = estimate.value,
-          .error = estimate.standard_error.value_or(0),
-          .samples = merged.samples,
-          .seconds = seconds};
+PointEstimate EnergyRelaxationRuns::Run(Method method, const SampleRange& samples) const {
+  return RunSamples(*PointExperiment::Create(SpecOf(geometry_, seed_, method), 0), samples);
 }
 
-RelaxationTime EnergyRelaxationRuns::BySpectrum() const {
+PointEstimate EnergyRelaxationRuns::BySpectrum() const {
   RelaxationSpectrum::Get();
   Estimate time;
   const double seconds = server::SecondsOf(

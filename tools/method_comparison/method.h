@@ -1,4 +1,5 @@
-// The methods of computing the ball-piston pair that are compared, and the compared quantities.
+// The methods of computing the ball-piston pair and the gas that are compared, and the compared
+// quantities.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
 
@@ -17,7 +18,14 @@ enum class Method {
   kSpectrum,  // the same limit by its generator's eigenvalues, without samples
 };
 
-enum class Quantity { kMeanFreeTime, kIngoingLaw, kTrajectory, kRelaxationTime, kLimitFloor };
+enum class Quantity {
+  kMeanFreeTime,
+  kIngoingLaw,
+  kTrajectory,
+  kRelaxationTime,
+  kHeatCurrent,
+  kLimitFloor
+};
 
 // As the output spells them.
 inline const char* Name(Method method) {
@@ -34,8 +42,8 @@ inline const char* Name(Method method) {
   return kNames[static_cast<int>(method)];
 }
 inline const char* Name(Quantity quantity) {
-  constexpr const char* kNames[] = {"mean-free-time", "ingoing-law", "trajectory",
-                                    "relaxation-time", "limit-floor"};
+  constexpr const char* kNames[] = {"mean-free-time",  "ingoing-law",  "trajectory",
+                                    "relaxation-time", "heat-current", "limit-floor"};
   return kNames[static_cast<int>(quantity)];
 }
 

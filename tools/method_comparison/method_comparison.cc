@@ -23,8 +23,10 @@
 #include "core/statistics/told_error.h"
 #include "server/processor_time.h"
 #include "tools/method_comparison/energy_relaxation_runs.h"
+#include "tools/method_comparison/heat_current_runs.h"
 #include "tools/method_comparison/ingoing_divergence.h"
 #include "tools/method_comparison/limit_floor.h"
+#include "tools/method_comparison/point_runs.h"
 #include "tools/method_comparison/returns.h"
 #include "tools/method_comparison/trajectory_horizon.h"
 #include "tools/method_comparison/twin_orbits.h"
@@ -42,7 +44,8 @@ constexpr size_t kFewestOrbits = 64;
 // rung takes between half of seconds_per_curve and twice of it.
 constexpr double kOverrun = 2;
 
-// The truth of a relaxation time may take about this many times seconds_per_curve.
+// The truth of a relaxation time, or of a heat current, may take about this many times
+// seconds_per_curve.
 constexpr double kTruthTimes = 8;
 
 // For sampled methods: the wall hits that the twins need for the method with the longest horizon,
@@ -55,6 +58,15 @@ std::vector<MethodVariant> SampledVariants() {
   for (const Method method :
        {Method::kReferenceSingle, Method::kReference, Method::kReferenceLongDouble,
         Method::kReferenceQuadruple, Method::kLanes, Method::kLanesSingle}) {
+    variants.push_back({method});
+  }
+  return variants;
+}
+
+std::vector<MethodVariant> GasVariants() {
+  std::vector<MethodVariant> variants;
+  for (const double step : kTimeSteps) variants.push_back({Method::kFixedStep, step});
+  for (const Method method : {Method::kReference, Method::kLanes, Method::kMarkov}) {
     variants.push_back({method});
   }
   return variants;
@@ -85,6 +97,7 @@ class Comparison {
     for (const PairGeometry& geometry : relaxing_) {
       CompareRelaxationTimesOf({geometry, spec_.seed});
     }
+    if (spec_.gas_delta > 0) CompareHeatCurrents({spec_.rho, spec_.gas_delta, spec_.seed});
     for (const auto& [delta, floor] : floors_) tell_(floor);
   }
 
@@ -97,7 +110,7 @@ class Comparison {
 
   void Tell(MethodMeasurement measurement) const {
     const double error = measurement.statistical_error;
-    if (measurement.quantity != Quantity::kRelaxationTime) measurement.own_error = error;
+    if (measurement.own_error == 0) measurement.own_error = error;
     if (measurement.quantity != Quantity::kTrajectory) {
       measurement.bias_resolved = measurement.value > kResolved * error;
     }
@@ -219,44 +232,73 @@ class Comparison {
   }
 
   void CompareRelaxationTimesOf(const EnergyRelaxationRuns& runs) {
-    const uint64_t orbits = OrbitsOfTruth(runs);
+    const uint64_t orbits = SamplesOfTruth(runs.PredictedSecondsPerOrbit());
     if (orbits < kFewestTruthOrbits) return;
-    const RelaxationTime limit = runs.BySpectrum();  // first, so that no run computes the spectrum
-    const RelaxationTime truth = runs.Run(Method::kLanes, TruthOf(orbits));
-    const MethodMeasurement billiard = ClimbRelaxationTimes(runs, Method::kLanes, truth);
-    ClimbRelaxationTimes(runs, Method::kMarkov, truth);
-    const MethodMeasurement spectrum = Compared(runs.delta(), Method::kSpectrum, limit, truth);
+    const PointEstimate limit = runs.BySpectrum();  // first, so that no run computes the spectrum
+    const Subject subject = {Quantity::kRelaxationTime, runs.delta(),
+                             runs.Run(Method::kLanes, TruthOf(orbits))};
+    const auto climb = [&](Method method) {
+      return Climb(subject, {method}, 0,
+                   [&](const SampleRange& samples) { return runs.Run(method, samples); });
+    };
+    const MethodMeasurement billiard = climb(Method::kLanes);
+    climb(Method::kMarkov);
+    const MethodMeasurement spectrum = Compared(subject, {Method::kSpectrum}, limit);
     Tell(spectrum);
     floors_.try_emplace(runs.delta(), LimitFloorOf(spectrum, billiard));
   }
 
-  // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a
-  // measured one, so the truth depends on the spec alone.
-  uint64_t OrbitsOfTruth(const EnergyRelaxationRuns& runs) const {
-    const double orbits = kTruthTimes * spec_.seconds_per_curve / runs.PredictedSecondsPerOrbit();
-    return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * orbits));
+  void CompareHeatCurrents(const HeatCurrentRuns& runs) {
+    const uint64_t replicas = SamplesOfTruth(runs.PredictedSecondsPerReplica({Method::kLanes}));
+    if (replicas < kFewestTruthReplicas) return;
+    const Subject subject = {Quantity::kHeatCurrent, runs.delta(),
+                             runs.Run({Method::kLanes}, TruthOf(replicas))};
+    for (const MethodVariant& variant : GasVariants()) {
+      const double expected = runs.PredictedSecondsPerReplica(variant) * kFewestOrbits;
+      // The truth takes long enough for the fewest replicas by any engine.
+      Climb(subject, variant, variant.method == Method::kFixedStep ? expected : 0,
+            [&](const SampleRange& samples) { return runs.Run(variant, samples); });
+    }
   }
 
-  // The longest run.
-  MethodMeasurement ClimbRelaxationTimes(const EnergyRelaxationRuns& runs, Method method,
-                                         const RelaxationTime& truth) const {
+  // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a
+  // measured one, so the truth depends on the spec alone.
+  uint64_t SamplesOfTruth(double seconds_per_sample) const {
+    const double samples = kTruthTimes * spec_.seconds_per_curve / seconds_per_sample;
+    return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * samples));
+  }
+
+  // What is compared with a truth.
+  struct Subject {
+    Quantity quantity;
+    double delta;
+    PointEstimate truth;
+  };
+
+  // Runs of more and more samples; `expected` are the seconds of the first one, 0 if it is to run
+  // anyway. Returns the longest.
+  template <typename Run>
+  MethodMeasurement Climb(const Subject& subject, const MethodVariant& variant, double expected,
+                          const Run& run) const {
     MethodMeasurement longest;
-    double expected = 0;
-    for (uint64_t orbits = kFewestOrbits; expected <= Limit(); orbits *= kRungFactor) {
-      const RelaxationTime measured = runs.Run(method, RunOf(orbits));
-      longest = Compared(runs.delta(), method, measured, truth);
-      Tell(longest);
+    for (uint64_t samples = kFewestOrbits; expected <= Limit(); samples *= kRungFactor) {
+      const PointEstimate measured = run(RunOf(samples));
       expected = measured.seconds * kRungFactor;
+      if (measured.error == 0) continue;  // nearly all were lost
+      longest = Compared(subject, variant, measured);
+      Tell(longest);
     }
     return longest;
   }
 
-  static MethodMeasurement Compared(double delta, Method method, const RelaxationTime& measured,
-                                    const RelaxationTime& truth) {
+  static MethodMeasurement Compared(const Subject& subject, const MethodVariant& variant,
+                                    const PointEstimate& measured) {
+    const PointEstimate& truth = subject.truth;
     const double ratio = measured.value / truth.value;
-    return {.method = method,
-            .quantity = Quantity::kRelaxationTime,
-            .delta = delta,
+    return {.method = variant.method,
+            .time_step = variant.time_step,
+            .quantity = subject.quantity,
+            .delta = subject.delta,
             .samples = measured.samples,
             .work = measured.seconds,
             .value = std::fabs(ratio - 1),
@@ -321,6 +363,12 @@ std::vector<double> DefaultRelaxationDeltas(double rho) {
   std::vector<double> deltas = {0.2, 0.1, 0.05, 0.025};
   std::erase_if(deltas, [rho](double delta) { return !ValidateDelta(rho, delta).ok(); });
   return deltas;
+}
+
+double DefaultGasDelta(double rho) {
+  constexpr double kUsual = 0.2;
+  if (!ValidateRho(rho).ok()) return 0;
+  return ValidateGasDelta(rho, kUsual).ok() ? kUsual : GasDeltaBound(rho);
 }
 
 void CompareMethods(const MethodComparisonSpec& spec,

@@ -1,6 +1,7 @@
-// Speed against accuracy: measures the error and the work of every method of computing the pair.
+// Speed against accuracy: measures the error and the work of every method of computing the pair,
+// and the gas.
 //
-// There are four quantities. Each method computes those that it can, with more and more samples
+// There are five quantities. Each method computes those that it can, with more and more samples
 // until its time is spent:
 //   kMeanFreeTime  the conditional mean free time of ball and piston at epsilon (eq. numft). A
 //                  sample is one return. value = |measured - exact|/exact.
@@ -18,7 +19,11 @@
 //                  kMarkov and kSpectrum, which are exact only in the limit delta -> 0. A sample is
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
 //                  orbits by kLanes, so the curves of the limit tend to the limit's bias.
-// A fifth quantity follows from the relaxation times:
+//   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
+//                  (heat_current_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
+//                  whose bias is that of the limit. A sample is a replica. The value and the truth
+//                  are as for kRelaxationTime.
+// A sixth quantity follows from the relaxation times:
 //   kLimitFloor    the limit's bias at one delta, or an upper bound of it. work = the work at which
 //                  the billiard is as exact (limit_floor.h). By kSpectrum, without samples.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
@@ -33,6 +38,7 @@
 //                  hypot(error, measured/truth * error of the truth)/truth. For the spectrum this
 //                  is in effect the error of the truth, which all methods at one delta share.
 //                  own_error is the run's own part, error/truth: what more orbits make smaller.
+//   kHeatCurrent   the same, by the scatter of the replicas.
 // Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
 // their work are counted.
 // The closed form has no samples and no statistical error. Its value is the bound of its rounding
@@ -46,10 +52,11 @@
 // of seconds_per_curve. A method is left out if by a rough prediction even 16 samples take longer.
 // The truth of a relaxation time takes about 8 times seconds_per_curve. A delta is left out if the
 // truth would not reach kFewestTruthOrbits in this time. So for any valid spec the program takes
-// some 50 times seconds_per_curve, and 10 times more for each delta of a relaxation time.
+// some 50 times seconds_per_curve, 20 times more for the heat current, and 10 times more for each
+// delta of a relaxation time.
 //
-// The orbits of kRelaxationTime are samples of the point's own stream (point_stream.h) under the
-// seed. Each rung has its own samples, and so has the truth.
+// The orbits of kRelaxationTime and the replicas of kHeatCurrent are samples of the point's own
+// stream (point_stream.h) under the seed. Each rung has its own samples, and so has the truth.
 //
 // Work is processor time, so other programs do not count (but they affect caches and shared cores).
 // Values are functions of the spec; the number of rungs also depends on the work.
@@ -73,6 +80,7 @@ inline constexpr double kMaxSecondsPerCurve = 60;
 
 inline constexpr size_t kMaxRelaxationDeltas = 8;
 inline constexpr uint64_t kFewestTruthOrbits = 256;
+inline constexpr uint64_t kFewestTruthReplicas = 64;
 
 // Statistical errors from which on a deviation is a bias: chance alone exceeds them once in 400.
 inline constexpr double kResolved = 3;
@@ -84,19 +92,20 @@ struct MethodComparisonSpec {
   double seconds_per_curve = 1;  // work of each method's largest run, about
   uint64_t seed = 0;
   std::vector<double> relaxation_deltas = {};  // for kRelaxationTime; if empty, it is left out
+  double gas_delta = 0;                        // for kHeatCurrent; if 0, it is left out
 };
 
 struct MethodMeasurement {
   Method method = Method::kReference;
   double time_step = 0;  // of kFixedStep, in cells per unit speed; 0 for the others
   Quantity quantity = Quantity::kMeanFreeTime;
-  double delta = 0;        // of the pair; one of relaxation_deltas for kRelaxationTime
-  uint64_t samples = 0;    // 0 for the closed form and the spectrum
-  uint64_t wall_hits = 0;  // the ball's, in all samples; not counted (0) for kRelaxationTime
+  double delta = 0;      // of the pair, or of the gas; one of relaxation_deltas for kRelaxationTime
+  uint64_t samples = 0;  // 0 for the closed form and the spectrum
+  uint64_t wall_hits = 0;  // the ball's, in all samples; not counted (0) from kRelaxationTime on
   std::optional<double> work = 0;  // seconds; empty for a kLimitFloor that no run determines
   double value = 0;
   double statistical_error = 0;
-  double own_error = 0;  // of kRelaxationTime without the truth's; else statistical_error
+  double own_error = 0;                    // without that of the truth, where there is one
   std::optional<bool> bias_resolved = {};  // empty for kTrajectory, whose value is no deviation
 };
 
@@ -105,6 +114,9 @@ std::vector<std::string> Violations(const MethodComparisonSpec& spec);
 
 // The values among 0.2, 0.1, 0.05 and 0.025 that rho permits.
 std::vector<double> DefaultRelaxationDeltas(double rho);
+
+// 0.2, or the gas's bound if that is smaller; 0 if rho is not valid.
+double DefaultGasDelta(double rho);
 
 // Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
 // (in the order of the list), then method, then time step (descending), then samples (ascending).

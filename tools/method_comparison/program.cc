@@ -47,7 +47,7 @@ void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) 
       ->delimiter(',')
       ->expected(0, -1);
   app.add_option("--seconds", spec.seconds_per_curve,
-                 "work of each method's largest run, 0.01 to 60. The program takes some 50 times "
+                 "work of each method's largest run, 0.01 to 60. The program takes some 70 times "
                  "as long, and 10 times more for each delta of a relaxation time")
       ->capture_default_str();
   app.add_option("--seed", spec.seed, "of the random numbers")->capture_default_str();
@@ -78,8 +78,8 @@ std::set<Quantity> Print(const MethodComparisonSpec& spec, bool bar, std::ostrea
 int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostream& error) {
   MethodComparisonSpec spec;
   CLI::App app(
-      "Measures what every method of computing the ball-piston pair gives for how much work, on\n"
-      "one core of this machine, and prints CSV with a row for each measurement.",
+      "Measures what every method of computing the ball-piston pair, and the gas, gives for how\n"
+      "much work, on one core of this machine, and prints CSV with a row for each measurement.",
       "method_comparison");
   std::string progress = isatty(STDERR_FILENO) != 0 ? "bar" : "none";
   AddFlags(app, spec, progress);
@@ -91,6 +91,7 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   if (absl::StrJoin(app.get_option("--relaxation-delta")->results(), "").empty()) {
     spec.relaxation_deltas = DefaultRelaxationDeltas(spec.rho);
   }
+  spec.gas_delta = DefaultGasDelta(spec.rho);
   const std::vector<std::string> violations = Violations(spec);
   for (const std::string& violation : violations) {
     error << "method_comparison: " << violation << "\n";

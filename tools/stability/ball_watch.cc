@@ -25,11 +25,14 @@ bool InsideSquare(const Eigen::Vector2d& position) {
 
 }  // namespace
 
+double ShortFlight(const PairGeometry& geometry, double epsilon) {
+  return std::min(kShortUlps * epsilon, 1e-3 * geometry.tip());
+}
+
 BallWatch::BallWatch(const PairGeometry& geometry, double epsilon)
     : rho_(geometry.rho()),
       epsilon_(epsilon),
-      // Nor longer than what is short in a cell that has nearly vanished.
-      short_(std::min(kShortUlps * epsilon, 1e-3 * geometry.tip())),
+      short_(ShortFlight(geometry, epsilon)),
       longest_sequence_(LongestTipSequence(geometry)) {}
 
 bool BallWatch::Hit(const Eigen::Vector2d& position, const Eigen::Vector2d& direction,

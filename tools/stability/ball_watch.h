@@ -20,6 +20,9 @@ inline constexpr double kPositionUlps = 64;
 inline constexpr double kDirectionUlps = 16;
 inline constexpr double kShortUlps = 4096;
 
+// kShortUlps, but no longer than what is short in a cell that has nearly vanished.
+double ShortFlight(const PairGeometry& geometry, double epsilon);
+
 class BallWatch {
  public:
   BallWatch(const PairGeometry& geometry, double epsilon);

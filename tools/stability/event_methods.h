@@ -55,7 +55,7 @@ void FlyWatched(const PairGeometry& geometry, const PairState& start, uint64_t h
     const PairState seen = RoundedTo<double>(state);
     if (!watch.Hit(seen.position, seen.direction, static_cast<double>(event.duration), failures))
       return;
-    failures.energy = std::max(failures.energy, std::fabs(SignedEnergyError(state)));
+    failures.SeeEnergy(std::fabs(SignedEnergyError(state)));
   }
 }
 

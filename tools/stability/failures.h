@@ -3,7 +3,9 @@
 #define BALLPISTON_TOOLS_STABILITY_FAILURES_H_
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace ballpiston::stability {
 
@@ -18,10 +20,19 @@ struct Failures {
   uint64_t looked_back = 0;     // hits on the piston of which is known whether one was missed
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
+  uint64_t beyond_walls = 0;    // pistons of a gas that come to a turn or a contact beyond a wall
   double deepest = 0;           // inside a disc, of orbits that did not escape
-  double energy = 0;            // worst |dE/E|
+  double energy = kNoEnergy;    // worst |dE/E|, if it was looked at
 
-  uint64_t Total() const { return escapes + negative_times + loops + inward + missed + phantoms; }
+  static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
+
+  void SeeEnergy(double error) {
+    if (!(error <= energy)) energy = error;
+  }
+
+  uint64_t Total() const {
+    return escapes + negative_times + loops + inward + missed + phantoms + beyond_walls;
+  }
 
   void Merge(const Failures& other) {
     orbits += other.orbits;
@@ -33,8 +44,9 @@ struct Failures {
     looked_back += other.looked_back;
     missed += other.missed;
     phantoms += other.phantoms;
+    beyond_walls += other.beyond_walls;
     deepest = std::max(deepest, other.deepest);
-    energy = std::max(energy, other.energy);
+    if (!std::isnan(other.energy)) SeeEnergy(other.energy);
   }
 };
 

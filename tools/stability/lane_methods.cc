@@ -33,7 +33,7 @@ void FlyBlockWatched(FlyLanes fly, double epsilon, const PairGeometry& geometry,
       frames[k] = hit[k].frame;
       if (!flying[k]) continue;
       const LaneFrame& frame = frames[k];
-      failures.energy = std::max(failures.energy, std::fabs(SquaredLengthError(frame)));
+      failures.SeeEnergy(std::fabs(SquaredLengthError(frame)));
       if (watches[k].Hit(PositionInCell(frame), DirectionInCell(frame), hit[k].length, failures))
         continue;
       flying[k] = 0;

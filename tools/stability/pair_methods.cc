@@ -90,7 +90,7 @@ void RunWatched(const PairGeometry& geometry, const PairState& start, uint64_t c
     if (!watch.See(RoundedTo<double>(flow.state()), event.kind, static_cast<double>(event.duration),
                    failures))
       return;
-    failures.energy = std::max(failures.energy, std::fabs(SignedEnergyError(flow.state())));
+    failures.SeeEnergy(std::fabs(SignedEnergyError(flow.state())));
     if (event.kind != EventKind::kBallPiston) continue;
     --collisions;
     flow.ExchangeComponents();

@@ -11,10 +11,6 @@
 namespace ballpiston::stability {
 namespace {
 
-// Off the walls nothing tells by which cosine rounding was magnified: the worst case, a ball that
-// grazes, counts.
-double AnywhereSlack(double epsilon) { return kPositionUlps * std::sqrt(epsilon); }
-
 double Approach(const PairState& state) {
   return state.ball_speed * state.direction.x() - state.piston_velocity;
 }
@@ -37,10 +33,12 @@ uint64_t LongestStandstill(const PairGeometry& geometry) {
   return 64 + 4 * LongestTipSequence(geometry);
 }
 
+double AnywhereSlack(double epsilon) { return kPositionUlps * std::sqrt(epsilon); }
+
 PairWatch::PairWatch(const PairGeometry& geometry, double epsilon)
     : ball_(geometry, epsilon),
       epsilon_(epsilon),
-      short_(std::min(kShortUlps * epsilon, 1e-3 * geometry.tip())),
+      short_(ShortFlight(geometry, epsilon)),
       longest_standstill_(LongestStandstill(geometry)) {}
 
 bool PairWatch::See(const PairState& state, EventKind kind, double duration, Failures& failures) {
@@ -94,7 +92,7 @@ AfterContact CollisionWatch::Meet(uint64_t i, const Contact& contact) {
   ++failures_.hits;
   failures_.deepest = std::max(failures_.deepest, depth);
   failures_.negative_times += contact.time < 0;
-  failures_.energy = std::max(failures_.energy, EnergyError(state));
+  failures_.SeeEnergy(EnergyError(state));
   failures_.inward += Approach(state) < -kDirectionUlps * epsilon_;
   LookBack(orbit.departure, contact);
   ReferenceFlow flow(geometry_, state);

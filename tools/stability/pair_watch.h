@@ -20,6 +20,10 @@ namespace ballpiston::stability {
 // tip into which the piston presses the ball takes a tip's sequence between any two of them.
 uint64_t LongestStandstill(const PairGeometry& geometry);
 
+// How deep inside a disc a ball may be off the walls. There nothing tells by which cosine rounding
+// was magnified: the worst case, a ball that grazes, counts.
+double AnywhereSlack(double epsilon);
+
 // One orbit, every event of it.
 class PairWatch {
  public:

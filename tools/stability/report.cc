@@ -8,6 +8,9 @@
 #include "tools/stability/ball_methods.h"
 #include "tools/stability/cancellation.h"
 #include "tools/stability/energy_drift.h"
+#include "tools/stability/gas_cases.h"
+#include "tools/stability/gas_energy.h"
+#include "tools/stability/gas_methods.h"
 #include "tools/stability/pair_cases.h"
 #include "tools/stability/pair_methods.h"
 #include "tools/stability/reversal.h"
@@ -20,9 +23,11 @@ namespace {
 struct Results {
   std::vector<CaseResult> ball;
   std::vector<CaseResult> pair;
+  std::vector<CaseResult> gas;
   std::vector<Reversal> ball_reversals;
   std::vector<Reversal> pair_reversals;
   std::vector<EnergyRun> energy;
+  std::vector<GasEnergyRun> gas_energy;
   std::vector<Cancellation> cancellations;
   std::vector<uint64_t> unit_speed;
 };
@@ -46,11 +51,13 @@ Results RunAll(double effort) {
   Results results;
   results.ball = RunAll(BallCases(), BallMethods(), FlyCase, effort);
   results.pair = RunAll(PairCases(), PairMethods(), RunCase, effort);
+  results.gas = RunAll(GasCases(), GasMethods(), RunGasCase, effort);
   std::cerr << "stability: reversal" << std::endl;
   results.ball_reversals = BallReversals(1000);
   results.pair_reversals = PairReversals(20'000);
   std::cerr << "stability: energy" << std::endl;
   results.energy = EnergyRuns(effort);
+  results.gas_energy = GasEnergyRuns(effort);
   results.cancellations = Cancellations();
   results.unit_speed = HitsBeforeEscape(40);
   return results;
@@ -59,7 +66,7 @@ Results RunAll(double effort) {
 // What was promised and is not so, a sentence each.
 std::vector<std::string> BrokenPromises(const Results& results) {
   std::vector<std::string> broken;
-  for (const auto* cases : {&results.ball, &results.pair}) {
+  for (const auto* cases : {&results.ball, &results.pair, &results.gas}) {
     for (const CaseResult& result : *cases) {
       for (const MethodResult& m : result.methods) {
         if (!m.promised || m.failures.Total() == 0) continue;
@@ -71,13 +78,18 @@ std::vector<std::string> BrokenPromises(const Results& results) {
     if (!run.promised || (run.record.Worst() <= 1e-14 && !Drifts(run))) continue;
     broken.push_back(absl::StrCat(run.method, " loses energy: ", run.what));
   }
+  for (const GasEnergyRun& run : results.gas_energy) {
+    if (run.promised && LosesEnergy(run)) {
+      broken.push_back(absl::StrCat(run.method, " loses energy: gases"));
+    }
+  }
   return broken;
 }
 
 // A zero says something only if the same look has found failures elsewhere.
 std::vector<std::string> BlindLooks(const Results& results) {
   Failures all;
-  for (const auto* cases : {&results.ball, &results.pair}) {
+  for (const auto* cases : {&results.ball, &results.pair, &results.gas}) {
     for (const CaseResult& result : *cases) {
       for (const MethodResult& m : result.methods) all.Merge(m.failures);
     }
@@ -91,6 +103,7 @@ std::vector<std::string> BlindLooks(const Results& results) {
   look(all.loops, "loop");
   look(all.inward, "hit that leaves the ball heading inward");
   look(all.missed, "missed piston");
+  look(all.beyond_walls, "piston beyond its wall");
   return blind;
 }
 
@@ -99,12 +112,14 @@ std::string Text(const Results& results) {
   return absl::StrCat(
       "Made by the program `stability`; what is counted, and how: `tools/stability/README.md`. "
       "e escapes, n negative times, l loops, i still heading inward, m missed piston hits, "
-      "p phantom ones; - not run.\n\n**The ball alone**\n\n",
+      "p phantom ones, b pistons beyond their walls; - not run.\n\n**The ball alone**\n\n",
       SummaryTable(results.ball), "\n**Ball and piston**\n\n", SummaryTable(results.pair),
+      "\n**The gas**\n\n", SummaryTable(results.gas),
       "\nOrbits whose hit times assume unit speed leave the cell after ",
       unit_speed[unit_speed.size() / 2], " hits (median of ", unit_speed.size(),
       " starts at the paper's radius; ", unit_speed.front(), " at the earliest, ",
       unit_speed.back(), " at the latest).\n\n**Energy**\n\n", EnergyTable(results.energy),
+      "\nOf gases of 4x3 cells\n\n", GasEnergyTable(results.gas_energy),
       "\n**Reversal**: distance from the start, in cells, after so many hits and as many back; "
       "medians\n\n",
       ReversalTable(results.ball_reversals, results.pair_reversals),
@@ -112,7 +127,9 @@ std::string Text(const Results& results) {
       CancellationTable(results.cancellations),
       "\n<details><summary>All counts: the ball alone</summary>\n\n", BallTable(results.ball),
       "\n</details>\n\n<details><summary>All counts: ball and piston</summary>\n\n",
-      PairTable(results.pair), "\n</details>\n");
+      PairTable(results.pair),
+      "\n</details>\n\n<details><summary>All counts: the gas</summary>\n\n", GasTable(results.gas),
+      "\n</details>\n");
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ namespace {
 // "0", or the kinds of failure that there were.
 std::string Letters(const Failures& f) {
   if (f.orbits == 0) return "-";
-  const std::pair<uint64_t, const char*> kinds[] = {{f.escapes, "e"}, {f.negative_times, "n"},
-                                                    {f.loops, "l"},   {f.inward, "i"},
-                                                    {f.missed, "m"},  {f.phantoms, "p"}};
+  const std::pair<uint64_t, const char*> kinds[] = {
+      {f.escapes, "e"}, {f.negative_times, "n"}, {f.loops, "l"},       {f.inward, "i"},
+      {f.missed, "m"},  {f.phantoms, "p"},       {f.beyond_walls, "b"}};
   std::string text;
   for (const auto& [count, letter] : kinds) {
     if (count > 0) absl::StrAppend(&text, text.empty() ? "" : " ", CountText(count), letter);
@@ -23,6 +23,21 @@ std::string Letters(const Failures& f) {
 
 // The case's name only where it begins.
 std::string Group(const CaseResult& result, size_t row) { return row == 0 ? result.name : ""; }
+
+std::vector<std::string> HeadOfContacts() {
+  return {"case",  "method",       "starts",      "piston hits", "escapes",  "negative times",
+          "loops", "still inward", "looked back", "missed",      "phantoms", "worst dE/E"};
+}
+
+std::vector<std::string> RowOfContacts(const CaseResult& result, size_t row) {
+  const auto& [method, promised, f] = result.methods[row];
+  return {Group(result, row),       method,
+          CountText(f.orbits),      CountText(f.hits),
+          CountText(f.escapes),     CountText(f.negative_times),
+          CountText(f.loops),       CountText(f.inward),
+          CountText(f.looked_back), CountText(f.missed),
+          CountText(f.phantoms),    ErrorText(f.energy)};
+}
 
 }  // namespace
 
@@ -53,16 +68,25 @@ std::string BallTable(const std::vector<CaseResult>& cases) {
 }
 
 std::string PairTable(const std::vector<CaseResult>& cases) {
-  MarkdownTable table({"case", "method", "starts", "piston hits", "escapes", "negative times",
-                       "loops", "still inward", "looked back", "missed", "phantoms", "worst dE/E"});
+  MarkdownTable table(HeadOfContacts());
   for (const CaseResult& result : cases) {
     for (size_t i = 0; i < result.methods.size(); ++i) {
-      const auto& [method, promised, f] = result.methods[i];
-      if (f.orbits == 0) continue;
-      table.Add({Group(result, i), method, CountText(f.orbits), CountText(f.hits),
-                 CountText(f.escapes), CountText(f.negative_times), CountText(f.loops),
-                 CountText(f.inward), CountText(f.looked_back), CountText(f.missed),
-                 CountText(f.phantoms), ErrorText(f.energy)});
+      if (result.methods[i].failures.orbits == 0) continue;
+      table.Add(RowOfContacts(result, i));
+    }
+  }
+  return table.Text(2);
+}
+
+std::string GasTable(const std::vector<CaseResult>& cases) {
+  std::vector<std::string> head = HeadOfContacts();
+  head.insert(head.end() - 1, "pistons beyond");
+  MarkdownTable table(head);
+  for (const CaseResult& result : cases) {
+    for (size_t i = 0; i < result.methods.size(); ++i) {
+      std::vector<std::string> row = RowOfContacts(result, i);
+      row.insert(row.end() - 1, CountText(result.methods[i].failures.beyond_walls));
+      table.Add(row);
     }
   }
   return table.Text(2);
@@ -93,6 +117,17 @@ std::string EnergyTable(const std::vector<EnergyRun>& runs) {
                ErrorText(run.record.DriftError()), Drifts(run) ? "yes" : "no"});
   }
   return table.Text(2);
+}
+
+std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs) {
+  MarkdownTable table({"method", "gases", "piston hits", "worst dE/E", "mean at the end",
+                       "its standard error", "a trend"});
+  for (const GasEnergyRun& run : runs) {
+    table.Add({run.method, CountText(run.errors.count), CountText(run.exchanges),
+               ErrorText(run.worst), SignedText(run.errors.mean),
+               ErrorText(run.errors.StandardError().value_or(0)), HasTrend(run) ? "yes" : "no"});
+  }
+  return table.Text(1);
 }
 
 std::string CancellationTable(const std::vector<Cancellation>& rows) {

@@ -9,6 +9,7 @@
 #include "tools/stability/cancellation.h"
 #include "tools/stability/energy_drift.h"
 #include "tools/stability/failures.h"
+#include "tools/stability/gas_energy.h"
 #include "tools/stability/reversal.h"
 
 namespace ballpiston::stability {
@@ -29,9 +30,11 @@ std::string SummaryTable(const std::vector<CaseResult>& cases);
 // One row a case and method, one column a kind of failure.
 std::string BallTable(const std::vector<CaseResult>& cases);
 std::string PairTable(const std::vector<CaseResult>& cases);
+std::string GasTable(const std::vector<CaseResult>& cases);
 
 std::string ReversalTable(const std::vector<Reversal>& ball, const std::vector<Reversal>& pair);
 std::string EnergyTable(const std::vector<EnergyRun>& runs);
+std::string GasEnergyTable(const std::vector<GasEnergyRun>& runs);
 std::string CancellationTable(const std::vector<Cancellation>& rows);
 
 }  // namespace ballpiston::stability

@@ -1,148 +1,77 @@
-// The billiard flow as a textbook has it: the ball's velocity a vector, hit times from the roots of
-// |q + v t - centre|^2 = rho^2, reflection v - 2 (v.n) n. Right to look at, and each of its rules
-// fails somewhere: what a stable flow has to be compared with.
-//
-// How the hit that is just over is kept from happening again:
-//   kPositiveRoot  any root counts that is more than a threshold ahead. At a tip the next hit may
-//                  be nearer than that: it is passed over, and the ball leaves through the disc.
-//   kAnyRoot       the same without a threshold. Where rounding left the ball an ulp outside, the
-//                  disc just hit is hit again at once, and again: the orbit stands still.
-//   kApproaching   the first root of the discs that the ball approaches. Where rounding left the
-//                  ball inside a neighbouring disc that root is negative, and the ball goes back.
-//   kUnitSpeed     the disc just hit is excluded and times are clamped at 0, which would do; but
-//                  |v| = 1 is assumed in the hit time and not in the reflection. The error of |v|
-//                  goes into the position, from there back into |v|, and grows.
-// In none of them |v| is kept: it drifts by rounding.
+// The billiard flow as a textbook has it (textbook_ball.h says by which rules). Right to look at,
+// and each of its rules fails somewhere: what a stable flow has to be compared with.
 #ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
 #define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/billiard/reference_flow.h"
 #include "core/geometry/pair_geometry.h"
 #include "core/geometry/pair_state.h"
+#include "tools/stability/textbook_ball.h"
 
 namespace ballpiston::stability {
-
-enum class TextbookRule { kPositiveRoot, kAnyRoot, kApproaching, kUnitSpeed };
 
 // The same interface as ReferenceFlow.
 template <TextbookRule rule>
 class TextbookFlow {
  public:
-  static constexpr double kThreshold = rule == TextbookRule::kPositiveRoot ? 1e-12 : 0;
-
   TextbookFlow(const PairGeometry& geometry, const PairState& start)
       : geometry_(geometry),
-        q_(start.position),
-        v_(start.direction * start.ball_speed),
+        ball_(geometry.rho(), start.position, start.direction * start.ball_speed),
         piston_(start.piston),
-        piston_velocity_(start.piston_velocity) {
-    // On a wall, it is the disc of the quadrant.
-    const int disc = (q_.x() > 0 ? 1 : 0) | (q_.y() > 0 ? 2 : 0);
-    if ((q_ - Centre(disc)).norm() < geometry.rho() + kOnDisc) last_disc_ = disc;
-  }
+        piston_velocity_(start.piston_velocity) {}
 
   Event Step() {
-    int disc = kNone;
-    double wall = kNever;
-    for (int i = 0; i < 4; ++i) {
-      if (const double t = TimeToDisc(i); t < wall) wall = t, disc = i;
-    }
-    const double piston = TimeToPistonWall(), meet = TimeToPiston();
+    const auto [wall, disc] = ball_.NextHit();
+    const double piston = TimeToPistonWall();
+    const double meet =
+        Ball::TimeToMeet(piston_ - ball_.position().x(), ball_.velocity().x() - piston_velocity_);
     const double first = std::min({wall, piston, meet});
-    if (first == kNever || (disc == kNone && v_.squaredNorm() > 0)) return {EventKind::kEscape, 0};
-    q_ += v_ * first;
+    const bool is_lost = disc == Ball::kNone && ball_.velocity().squaredNorm() > 0;
+    if (first == Ball::kNever || is_lost) return {EventKind::kEscape, 0};
+    ball_.Move(first);
     piston_ += piston_velocity_ * first;
     if (meet == first) return {EventKind::kBallPiston, first};
     if (piston == first) {
       piston_velocity_ = -piston_velocity_;
       return {EventKind::kPistonWall, first};
     }
-    Reflect(disc);
+    ball_.Reflect(disc);
     return {EventKind::kBallWall, first};
   }
 
   void ExchangeComponents() {
-    std::swap(v_.x(), piston_velocity_);
-    last_disc_ = kNone;
+    Eigen::Vector2d velocity = ball_.velocity();
+    std::swap(velocity.x(), piston_velocity_);
+    ball_.SetVelocity(velocity);
   }
 
   PairState state() const {
-    const double speed = v_.norm();
-    PairState state = {.position = q_,
+    const double speed = ball_.velocity().norm();
+    PairState state = {.position = ball_.position(),
                        .ball_speed = speed,
                        .piston = piston_,
                        .piston_velocity = piston_velocity_};
-    if (speed > 0) state.direction = v_ / speed;
+    if (speed > 0) state.direction = ball_.velocity() / speed;
     return state;
   }
 
  private:
-  static constexpr int kNone = -1;
-  static constexpr double kOnDisc = 1e-12;
-  static constexpr double kNever = std::numeric_limits<double>::infinity();
-
-  static Eigen::Vector2d Centre(int disc) {
-    return {(disc & 1) != 0 ? 0.5 : -0.5, (disc & 2) != 0 ? 0.5 : -0.5};
-  }
-
-  double TimeToDisc(int disc) const {
-    const Eigen::Vector2d d = q_ - Centre(disc);
-    if (rule == TextbookRule::kUnitSpeed) return TimeAtUnitSpeed(disc, d);
-    const double a = v_.squaredNorm(), b = d.dot(v_);
-    const double square = b * b - a * (d.squaredNorm() - geometry_.rho() * geometry_.rho());
-    if (square <= 0 || a == 0) return kNever;
-    const double first = (-b - std::sqrt(square)) / a, second = (-b + std::sqrt(square)) / a;
-    switch (rule) {
-      case TextbookRule::kPositiveRoot:
-      case TextbookRule::kAnyRoot:
-        return first > kThreshold ? first : second > kThreshold ? second : kNever;
-      case TextbookRule::kApproaching:
-        return b < 0 ? first : kNever;
-      case TextbookRule::kUnitSpeed:
-        break;
-    }
-    return kNever;
-  }
-
-  // From the foot of the perpendicular and the impact parameter, which are those of a unit vector.
-  double TimeAtUnitSpeed(int disc, const Eigen::Vector2d& d) const {
-    const double foot = -d.dot(v_), impact = v_.x() * d.y() - v_.y() * d.x();
-    const double square = geometry_.rho() * geometry_.rho() - impact * impact;
-    if (disc == last_disc_ || foot <= 0 || square <= 0) return kNever;
-    return std::max(foot - std::sqrt(square), 0.0);
-  }
+  using Ball = TextbookBall<rule>;
 
   double TimeToPistonWall() const {
-    if (piston_velocity_ == 0) return kNever;
+    if (piston_velocity_ == 0) return Ball::kNever;
     const double wall = piston_velocity_ > 0 ? geometry_.piston_right() : geometry_.piston_left();
     return (wall - piston_) / piston_velocity_;
   }
 
-  double TimeToPiston() const {
-    const double approach = v_.x() - piston_velocity_;
-    const double time = (piston_ - q_.x()) / approach;
-    const bool by_root = rule == TextbookRule::kPositiveRoot || rule == TextbookRule::kAnyRoot;
-    return (by_root ? time > kThreshold : approach > 0) ? time : kNever;
-  }
-
-  void Reflect(int disc) {
-    const Eigen::Vector2d normal = (q_ - Centre(disc)) / geometry_.rho();
-    v_ -= 2 * v_.dot(normal) * normal;
-    last_disc_ = disc;
-  }
-
   PairGeometry geometry_;
-  Eigen::Vector2d q_;
-  Eigen::Vector2d v_;
+  Ball ball_;
   double piston_;
   double piston_velocity_;
-  int last_disc_ = kNone;
 };
 
 }  // namespace ballpiston::stability

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "core/markov/relaxation_spectrum.h"
 #include "tests/core/geometries.h"
@@ -11,30 +10,12 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-bool Overlap(const SampleRange& a, const SampleRange& b) {
-  return a.first < b.first + b.count && b.first < a.first + a.count;
-}
-
-TEST(EnergyRelaxationRuns, RunsHaveNoSampleInCommon) {
-  std::vector<SampleRange> runs;
-  for (uint64_t orbits = 64; orbits <= uint64_t{1} << 30; orbits *= 4) {
-    runs.push_back(RunOf(orbits));
-  }
-  for (uint64_t orbits = 1; orbits <= uint64_t{1} << 32; orbits *= 2) {
-    EXPECT_EQ(TruthOf(orbits).count, orbits);
-    for (const SampleRange& run : runs) {
-      EXPECT_FALSE(Overlap(run, TruthOf(orbits))) << run.count << " and " << orbits;
-    }
-  }
-  for (size_t i = 1; i < runs.size(); ++i) EXPECT_FALSE(Overlap(runs[i - 1], runs[i])) << i;
-}
-
 TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValue) {
   const EnergyRelaxationRuns runs(PaperGeometry(0.2), 5);
   for (const Method method : {Method::kLanes, Method::kMarkov}) {
-    const RelaxationTime run = runs.Run(method, RunOf(64));
-    const RelaxationTime again = runs.Run(method, RunOf(64));
-    const RelaxationTime truth = runs.Run(method, TruthOf(64));
+    const PointEstimate run = runs.Run(method, RunOf(64));
+    const PointEstimate again = runs.Run(method, RunOf(64));
+    const PointEstimate truth = runs.Run(method, TruthOf(64));
     EXPECT_EQ(run.samples, 64u);
     EXPECT_EQ(truth.samples, 64u);
     EXPECT_EQ(run.value, again.value);
@@ -48,8 +29,8 @@ TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValu
 TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   for (const double delta : {0.2, 0.0125}) {
     const EnergyRelaxationRuns runs(PaperGeometry(delta), 6);
-    const RelaxationTime limit = runs.BySpectrum();
-    const RelaxationTime measured = runs.Run(Method::kMarkov, RunOf(4096));
+    const PointEstimate limit = runs.BySpectrum();
+    const PointEstimate measured = runs.Run(Method::kMarkov, RunOf(4096));
     EXPECT_LT(std::fabs(measured.value - limit.value), 4 * measured.error) << delta;
     EXPECT_NEAR(measured.error / measured.value, 1 / 64.0, 0.1 / 64) << delta;
   }
@@ -58,7 +39,7 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
 // The spectrum needs no samples, and its error is that of its discretisation.
 TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
   const EnergyRelaxationRuns runs(PaperGeometry(0.1), 0);
-  const RelaxationTime limit = runs.BySpectrum();
+  const PointEstimate limit = runs.BySpectrum();
   EXPECT_EQ(limit.samples, 0u);
   EXPECT_GT(limit.seconds, 0);
   EXPECT_LT(limit.error, 1e-6 * limit.value);

@@ -1,0 +1,111 @@
+#include "tools/flows/fixed_step_gas.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/geometry/paper.h"
+#include "tests/core/gas/gases.h"
+
+namespace ballpiston {
+namespace {
+
+double EnergyNow(const FixedStepGas& gas, const GasGeometry& geometry) {
+  double sum = 0;
+  for (int64_t i = 0; i < geometry.balls(); ++i) sum += EnergyOf(gas.BallNow(i));
+  for (int64_t i = 0; i < geometry.pistons(); ++i) sum += EnergyOf(gas.PistonNow(i));
+  return sum;
+}
+
+int CountOf(EventKind kind, const std::vector<GasEvent>& events) {
+  int count = 0;
+  for (const GasEvent& event : events) count += event.kind == kind;
+  return count;
+}
+
+// A few ulps a repair; there are some 1e4.
+TEST(FixedStepGas, KeepsItsEnergy) {
+  for (const char* shape : {"1", "3", "1x1", "3x2"}) {
+    const GasGeometry geometry = GasOf(kPaperRho, 0.2, shape);
+    const GasState start = GasInEquilibrium(geometry, 1, 81, 0);
+    FixedStepGas gas(geometry, start, ThermalWalls(), 1e-3);
+    int exchanges = 0, escapes = 0;
+    while (gas.time() < 200) {
+      const std::vector<GasEvent>& events = gas.Advance();
+      exchanges += CountOf(EventKind::kBallPiston, events);
+      escapes += CountOf(EventKind::kEscape, events);
+    }
+    EXPECT_GT(exchanges, 10) << shape;
+    EXPECT_EQ(escapes, 0) << shape;
+    EXPECT_NEAR(EnergyNow(gas, geometry) / EnergyOf(start), 1, 1e-11) << shape;
+  }
+}
+
+// They meet after 3.6 steps, on the cell's axis.
+TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
+  const GasGeometry geometry = GasOf(kPaperRho, 0.2, "3x3");
+  for (const Direction direction :
+       {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
+    GasState state;
+    state.balls.resize(9);
+    state.pistons.resize(18);
+    const double sign = SignOf(direction);
+    const int64_t piston = geometry.PistonOf(4, direction);
+    state.balls[4] = {.position = SeenFrom(direction, {0.1, 0}),
+                      .direction = SeenFrom(direction, {1, 0}),
+                      .speed = 0.8};
+    state.pistons[static_cast<size_t>(piston)] = {.offset = -0.3 * sign, .velocity = -0.6 * sign};
+    FixedStepGas gas(geometry, state, ThermalWalls(), 0.02);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(gas.Advance().empty());
+    const std::vector<GasEvent> events = gas.Advance();
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_EQ(events[0].kind, EventKind::kBallPiston);
+    EXPECT_EQ(events[0].ball, 4);
+    EXPECT_EQ(events[0].piston, piston);
+    EXPECT_EQ(events[0].direction, direction);
+    EXPECT_DOUBLE_EQ(events[0].time, 0.08);
+    const GasBall ball = gas.BallNow(4);
+    EXPECT_DOUBLE_EQ(ball.speed, 0.6);
+    EXPECT_EQ(SeenToward(direction, ball.direction).x(), -1);
+    EXPECT_DOUBLE_EQ(gas.PistonNow(piston).velocity, 0.8 * sign);
+  }
+}
+
+TEST(FixedStepGas, ThermalWallsGiveNewSpeeds) {
+  const GasGeometry geometry = GasOf(kPaperRho, 0.2, "2", GasEnds::kReservoirs);
+  const GasState start = GasInEquilibrium(geometry, 1, 82, 0);
+  const ThermalWalls walls(geometry, 2, 1, GasRandom(83, 0, 0));
+  FixedStepGas gas(geometry, start, walls, 1e-3);
+  int changed = 0, kept = 0;
+  while (gas.time() < 100) {
+    std::vector<GasPiston> before;
+    for (int64_t i = 0; i < geometry.pistons(); ++i) before.push_back(gas.PistonNow(i));
+    for (const GasEvent& event : gas.Advance()) {
+      if (event.kind != EventKind::kPistonWall) continue;
+      const double was = before[static_cast<size_t>(event.piston)].velocity;
+      const double now = gas.PistonNow(event.piston).velocity;
+      const bool is_thermal = event.piston == (was < 0 ? 0 : 2);
+      (is_thermal ? changed : kept) += 1;
+      ASSERT_LE(std::fabs(gas.PistonNow(event.piston).offset), geometry.reach());
+      if (was * now > 0) continue;  // it met a ball in the same step
+      ASSERT_EQ(now == -was, !is_thermal);
+    }
+  }
+  EXPECT_GT(changed, 20);
+  EXPECT_GT(kept, 20);
+}
+
+TEST(FixedStepGas, ALostBallStops) {
+  const GasGeometry cusps = GasOf(0.5001, 0.2, "2");
+  GasState state;
+  state.balls = {{.position = {0, 0}, .direction = {1, 0}, .speed = 1}, {}};
+  state.pistons = {{.offset = cusps.reach()}, {.offset = cusps.reach()}};
+  FixedStepGas gas(cusps, state, ThermalWalls(), 0.51);
+  EXPECT_EQ(CountOf(EventKind::kEscape, gas.Advance()), 1);
+  const double x = gas.BallNow(0).position.x();
+  EXPECT_TRUE(gas.Advance().empty());
+  EXPECT_EQ(gas.BallNow(0).position.x(), x);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,284 @@
+// The looks at gases find what they look for: a watch is told something else than the reference gas
+// has done, or an engine's reading is changed.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "core/gas/canonical_gas.h"
+#include "core/gas/reference_gas.h"
+#include "core/geometry/paper.h"
+#include "tests/core/gas/gases.h"
+#include "tools/stability/gas_cases.h"
+#include "tools/stability/gas_energy.h"
+#include "tools/stability/gas_look_back.h"
+#include "tools/stability/gas_watch.h"
+#include "tools/stability/metered_gases.h"
+#include "tools/stability/own_process.h"
+
+namespace ballpiston::stability {
+namespace {
+
+GasGeometry Ring() { return GasOf(kPaperRho, 0.2, "3"); }
+GasGeometry Chain() { return GasOf(kPaperRho, 0.2, "3", GasEnds::kReservoirs); }
+
+GasReplica AReplica(const GasGeometry& geometry) {
+  const GasRandom random(91, 0, 0);
+  return {GasInEquilibrium(geometry, 1, 92, 0), ThermalWalls(geometry, 2, 1, random), random};
+}
+
+// What a watch is told of an event. A change that returns false withholds it.
+struct Told {
+  GasEvent event;
+  GasBall ball;
+  GasPiston piston;
+};
+using Change = std::function<bool(Told& told)>;
+
+struct WatchedGas {
+  Failures failures;
+  double energy_error = 0;
+};
+
+WatchedGas WatchGas(const GasGeometry& geometry, const Change& change, int events = 2000) {
+  const GasReplica replica = AReplica(geometry);
+  ReferenceGas gas(geometry, replica.state, replica.walls);
+  GasWatch watch(geometry, replica.state, replica.walls, std::numeric_limits<double>::epsilon());
+  WatchedGas watched;
+  bool goes_on = true;
+  for (int i = 0; goes_on && i < events; ++i) {
+    const GasEvent event = gas.Step();
+    Told told = {event, gas.BallAt(std::max<int64_t>(event.ball, 0), event.time),
+                 gas.PistonAt(std::max<int64_t>(event.piston, 0), event.time)};
+    if (change(told)) goes_on = watch.See(told.event, told.ball, told.piston, watched.failures);
+  }
+  watched.energy_error = watch.EnergyError();
+  return watched;
+}
+
+bool IsTold(EventKind kind, const Told& told) { return told.event.kind == kind; }
+
+TEST(GasDetectors, EventsAsTheyAreGiveNoFailure) {
+  for (const GasGeometry& geometry : {Ring(), Chain()}) {
+    const WatchedGas watched = WatchGas(geometry, [](Told&) { return true; });
+    EXPECT_GT(watched.failures.hits, 30u);
+    EXPECT_EQ(watched.failures.Total(), 0u);
+    EXPECT_LT(watched.energy_error, 1e-14);
+  }
+}
+
+TEST(GasDetectors, AnExchangeNotToldIsMissed) {
+  const WatchedGas watched =
+      WatchGas(Ring(), [](Told& told) { return !IsTold(EventKind::kBallPiston, told); });
+  EXPECT_EQ(watched.failures.missed, 1u);  // then the watch ends
+}
+
+TEST(GasDetectors, APistonThatTurnsLateIsBeyondItsWall) {
+  const WatchedGas watched = WatchGas(
+      Ring(),
+      [](Told& told) {
+        if (IsTold(EventKind::kPistonWall, told)) told.event.time += 1e-9;
+        return true;
+      },
+      50);
+  EXPECT_GT(watched.failures.beyond_walls, 0u);
+}
+
+TEST(GasDetectors, TimesBeforeTheLastOneAreNegative) {
+  int told_before = 0;
+  const WatchedGas watched = WatchGas(Ring(), [&](Told& told) {
+    if (++told_before == 100) told.event.time -= 1e-3 + told.event.time / 2;
+    return told_before <= 100;
+  });
+  EXPECT_EQ(watched.failures.negative_times, 1u);
+}
+
+TEST(GasDetectors, BallsThatStillApproachTheirPistonAreInward) {
+  const WatchedGas watched = WatchGas(
+      Ring(),
+      [](Told& told) {
+        if (IsTold(EventKind::kBallPiston, told)) told.ball.direction = -told.ball.direction;
+        return true;
+      },
+      300);
+  EXPECT_GT(watched.failures.inward, 0u);
+}
+
+TEST(GasDetectors, BallsThatFlyIntoTheirWallAreInward) {
+  const WatchedGas watched = WatchGas(
+      Ring(),
+      [](Told& told) {
+        if (IsTold(EventKind::kBallWall, told)) told.ball.direction = -told.ball.direction;
+        return IsTold(EventKind::kBallWall, told);
+      },
+      100);
+  EXPECT_GT(watched.failures.inward, 0u);
+}
+
+TEST(GasDetectors, EscapesAreSeen) {
+  const auto escapes = [](const Change& change) {
+    return WatchGas(Ring(), change).failures.escapes;
+  };
+  EXPECT_EQ(escapes([](Told& told) {
+              told.event.kind = EventKind::kEscape;
+              return true;
+            }),
+            1u);
+  for (const double y : {0.4, std::nan("")}) {
+    EXPECT_EQ(escapes([y](Told& told) {
+                told.ball.position.y() = y;
+                return IsTold(EventKind::kBallWall, told);
+              }),
+              1u);
+  }
+}
+
+TEST(GasDetectors, ABallThatStandsStillIsALoop) {
+  const GasReplica replica = AReplica(Ring());
+  GasWatch watch(Ring(), replica.state, replica.walls, std::numeric_limits<double>::epsilon());
+  ReferenceGas gas(Ring(), replica.state, replica.walls);
+  GasEvent hit = gas.Step();
+  while (hit.kind != EventKind::kBallWall) hit = gas.Step();
+  Failures failures;
+  int told = 0;
+  while (watch.See(hit, gas.BallAt(hit.ball, hit.time), {}, failures)) ASSERT_LT(++told, 200);
+  EXPECT_EQ(failures.loops, 1u);
+  EXPECT_GT(told, 50);
+}
+
+TEST(GasDetectors, EnergyFromNowhereIsAnError) {
+  const WatchedGas watched = WatchGas(Ring(), [](Told& told) {
+    told.ball.speed *= 1 + 1e-9;
+    return true;
+  });
+  EXPECT_GT(watched.energy_error, 1e-10);
+}
+
+// After a few flights, a reading of each of some gases.
+class GasLookBack : public ::testing::Test {
+ protected:
+  static constexpr double kTime = 1.5;
+
+  Failures Look(const std::function<void(GasReading&)>& change) const {
+    Failures failures;
+    for (uint64_t i = 0; i < 50; ++i) {
+      const GasRandom random(93, 0, i);
+      const GasReplica replica = {GasInEquilibrium(Ring(), 1, 94, i), {}, random};
+      MeteredGases gases(GasEngine::kLanes, Ring(), {&replica, 1});
+      gases.AdvanceTo(kTime);
+      GasReading reading = ReadingOf(gases.meter(0));
+      if (reading.exchanges == 0) continue;
+      change(reading);
+      failures.Merge(LookBack(Ring(), replica, kTime, reading));
+    }
+    return failures;
+  }
+};
+
+TEST_F(GasLookBack, ReadingsAsTheyAreGiveNoFailure) {
+  const Failures failures = Look([](GasReading&) {});
+  EXPECT_GT(failures.looked_back, 20u);
+  EXPECT_EQ(failures.Total(), 0u);
+}
+
+TEST_F(GasLookBack, AnExchangeTooFewIsMissed) {
+  const Failures failures = Look([](GasReading& reading) {
+    --reading.exchanges;
+    std::swap(reading.energies[0], reading.energies[1]);
+  });
+  EXPECT_GT(failures.missed, 20u);
+  EXPECT_EQ(failures.phantoms, 0u);
+}
+
+TEST_F(GasLookBack, OtherEnergiesArePhantoms) {
+  const Failures failures =
+      Look([](GasReading& reading) { std::swap(reading.energies[0], reading.energies[1]); });
+  EXPECT_GT(failures.phantoms, 20u);
+  EXPECT_EQ(failures.missed, 0u);
+}
+
+TEST(GasDetectors, AnEnergyThatIsNoEnergyIsAnEscape) {
+  const GasState state = AReplica(Ring()).state;
+  const double start = GasMeter(Ring(), state).TotalEnergy();
+  for (const double energy : {-1.0, std::nan(""), HUGE_VAL}) {
+    GasMeter meter(Ring(), state);
+    EXPECT_EQ(LookAtEnergies(Ring(), meter, start).Total(), 0u);
+    meter.SetPiston(1, 0, energy);
+    EXPECT_EQ(LookAtEnergies(Ring(), meter, start).escapes, 1u);
+  }
+}
+
+TEST(GasDetectors, OnlyAGasWithoutThermalWallsTellsItsEnergyError) {
+  for (const GasGeometry& geometry : {Ring(), Chain()}) {
+    GasMeter meter(geometry, AReplica(geometry).state);
+    const double start = meter.TotalEnergy();
+    meter.SetPiston(1, 1, 2 * meter.Energy(meter.balls() + 1));
+    const double error = LookAtEnergies(geometry, meter, start).energy;
+    if (geometry.ends() == GasEnds::kReservoirs) {
+      EXPECT_TRUE(std::isnan(error));
+    } else {
+      EXPECT_GT(error, 1e-6);
+    }
+  }
+}
+
+GasEnergyRun RunWithErrors(double mean, double scatter) {
+  GasEnergyRun run = {.method = "", .promised = true, .exchanges = 4 * 10'000};
+  for (const int sign : {-1, 1, -1, 1}) {
+    run.errors.Add(mean + sign * scatter);
+    run.worst = std::max(run.worst, std::fabs(mean) + scatter);
+  }
+  return run;
+}
+
+// 1e4 exchanges each: a walk of ulps goes some 2e-14 far.
+TEST(GasDetectors, ALossOfEnergyIsATrendOrMoreThanAWalk) {
+  EXPECT_FALSE(LosesEnergy(RunWithErrors(0, 2e-14)));
+  EXPECT_FALSE(HasTrend(RunWithErrors(1e-14, 2e-14)));
+  EXPECT_TRUE(HasTrend(RunWithErrors(2e-14, 1e-15)));
+  EXPECT_TRUE(LosesEnergy(RunWithErrors(2e-14, 1e-15)));
+  EXPECT_TRUE(LosesEnergy(RunWithErrors(0, 1e-12)));
+}
+
+TEST(OwnProcess, GivesWhatWasComputed) {
+  const auto failures = InOwnProcess([] { return Failures{.orbits = 3, .missed = 2}; }, 5);
+  ASSERT_TRUE(failures.has_value());
+  EXPECT_EQ(failures->orbits, 3u);
+  EXPECT_EQ(failures->missed, 2u);
+}
+
+TEST(OwnProcess, EndsWhatNeverEnds) {
+  volatile bool for_ever = true;
+  const auto endless = [&] {
+    while (for_ever) {
+    }
+    return Failures();
+  };
+  EXPECT_FALSE(InOwnProcess(endless, 1).has_value());
+  EXPECT_FALSE(InOwnProcess([]() -> Failures { _exit(EXIT_SUCCESS); }, 1).has_value());
+}
+
+// The other starts are any gases with other speeds.
+TEST(GasStarts, BallsAreInTheirCellsAndBeforeTheirPistons) {
+  for (const GasCase& gas_case : GasCases()) {
+    for (const GasGeometry& geometry : gas_case.geometries) {
+      CounterRandom random(95, 0, 0);
+      const GasState state = gas_case.start(geometry, random);
+      for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
+        const auto& position = state.balls[static_cast<size_t>(ball)].position;
+        EXPECT_TRUE(InsideCell(geometry.pair(), position, 1e-9)) << gas_case.name;
+        for (int i = 0; i < geometry.directions(); ++i) {
+          EXPECT_GE(GapTo(geometry, state, ball, geometry.DirectionAt(i)), 0) << gas_case.name;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ballpiston::stability

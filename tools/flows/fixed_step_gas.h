@@ -1,0 +1,59 @@
+// The naive way to move a gas: FixedStepFlow's rules (fixed_step_flow.h) for all balls and pistons.
+//
+// In each step the pistons move, one that is beyond its wall is folded back, and at a thermal wall
+// it gets a new speed. Then the balls move, one that is inside a disc is pushed out, and a ball
+// that has passed a piston exchanges with it, up to a step too late. A lost ball stops. Properties,
+// each with a test of its name: 1. KeepsItsEnergy, to rounding.
+// 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. ThermalWallsGiveNewSpeeds.
+//
+// One object is one gas; not for sharing between threads.
+#ifndef BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_
+#define BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/reference_gas.h"
+#include "core/gas/thermal_walls.h"
+#include "tools/flows/fixed_step_ball.h"
+
+namespace ballpiston {
+
+class FixedStepGas {
+ public:
+  // time_step > 0.
+  FixedStepGas(const GasGeometry& geometry, const GasState& start, ThermalWalls walls,
+               double time_step);
+
+  // One time step. Returns its events, mostly none; their time is the end of the step.
+  const std::vector<GasEvent>& Advance();
+
+  double time() const { return static_cast<double>(steps_) * time_step_; }
+  GasBall BallNow(int64_t ball) const;
+  GasPiston PistonNow(int64_t piston) const { return pistons_[static_cast<size_t>(piston)]; }
+
+ private:
+  struct Ball {
+    FixedStepBall moving;
+    bool is_lost = false;
+  };
+
+  void MovePiston(int64_t number);
+  void MoveBall(int64_t number);
+  void Meet(int64_t number, Direction direction);
+
+  GasGeometry geometry_;
+  ThermalWalls walls_;
+  double time_step_;
+  uint64_t steps_ = 0;
+  std::vector<Ball> balls_;
+  std::vector<GasPiston> pistons_;
+  std::vector<GasEvent> events_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_TOOLS_FLOWS_FIXED_STEP_GAS_H_

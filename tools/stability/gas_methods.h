@@ -1,0 +1,36 @@
+// The methods that run gases, behind one function each.
+#ifndef BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
+#define BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+#include "core/gas/thermal_walls.h"
+#include "tools/stability/failures.h"
+
+namespace ballpiston::stability {
+
+struct GasReplica {
+  GasState state;
+  ThermalWalls walls;
+  GasRandom random;
+};
+
+struct GasMethod {
+  std::string name;
+  double share;   // of a case's starts
+  bool promised;  // to show zeros everywhere
+
+  // Each replica runs for the time of that many flights of a ball of speed 1.
+  Failures (*run)(const GasGeometry& geometry, std::span<const GasReplica> replicas,
+                  double flights);
+};
+
+const std::vector<GasMethod>& GasMethods();
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_

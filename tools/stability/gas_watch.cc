@@ -1,0 +1,137 @@
+#include "tools/stability/gas_watch.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tools/stability/pair_watch.h"
+
+namespace ballpiston::stability {
+namespace {
+
+// A body's place is known to its time's rounding times its speed: an ulp of the time for each of
+// the few sums between two of its events.
+double PlaceSlack(double epsilon, double time, double speed) {
+  constexpr double kSums = 8;
+  return epsilon * (kPositionUlps + kSums * time * speed);
+}
+
+}  // namespace
+
+GasWatch::GasWatch(const GasGeometry& geometry, const GasState& start, const ThermalWalls& walls,
+                   double epsilon)
+    : geometry_(geometry),
+      walls_(walls),
+      look_(geometry.pair(), epsilon),
+      epsilon_(epsilon),
+      short_(ShortFlight(geometry.pair(), epsilon)),
+      longest_standstill_(LongestStandstill(geometry.pair())) {
+  for (const GasBall& ball : start.balls) {
+    balls_.push_back({ball});
+    start_energy_ += EnergyOf(ball);
+  }
+  for (const GasPiston& piston : start.pistons) {
+    pistons_.push_back({piston});
+    start_energy_ += EnergyOf(piston);
+  }
+}
+
+bool GasWatch::See(const GasEvent& event, const GasBall& ball, const GasPiston& piston,
+                   Failures& failures) {
+  failures.negative_times += event.time < last_;
+  last_ = std::max(last_, event.time);
+  if (event.kind == EventKind::kEscape) {
+    ++failures.escapes;
+    return false;
+  }
+  const uint64_t missed = failures.missed;
+  LookAtWay(event, failures);
+  if (failures.missed > missed) return false;
+  const bool goes_on = event.ball < 0 || SeeBall(event, ball, failures);
+  if (event.piston >= 0) SeePiston(event, piston);
+  if (event.kind == EventKind::kBallPiston) SeeExchanged(event, failures);
+  return goes_on;
+}
+
+// Up to the event, with the velocities from before.
+void GasWatch::LookAtWay(const GasEvent& event, Failures& failures) const {
+  if (event.ball >= 0) LookForMissed(event.ball, event.time, failures);
+  if (event.piston < 0) return;
+  const Piston& piston = pistons_[Index(event.piston)];
+  const double velocity = piston.state.velocity;
+  const double offset = piston.state.offset + velocity * (event.time - piston.since);
+  const double slack = PlaceSlack(epsilon_, event.time, std::fabs(velocity));
+  failures.beyond_walls += !(std::fabs(offset) <= geometry_.reach() + slack);
+  const Direction direction = geometry_.DirectionTo(event.piston);
+  for (const Direction side : {direction, Opposite(direction)}) {
+    const int64_t ball = geometry_.BallOf(event.piston, side);
+    if (ball != GasGeometry::kNoBall && ball != event.ball) {
+      LookForMissed(ball, event.time, failures);
+    }
+  }
+}
+
+void GasWatch::LookForMissed(int64_t number, double time, Failures& failures) const {
+  for (int i = 0; i < geometry_.directions(); ++i) {
+    const Direction direction = geometry_.DirectionAt(i);
+    const Piston& piston = pistons_[Index(geometry_.PistonOf(number, direction))];
+    failures.missed += IsBeyond(balls_[Index(number)], direction, piston, time);
+  }
+}
+
+bool GasWatch::IsBeyond(const Ball& ball, Direction direction, const Piston& piston,
+                        double time) const {
+  const Eigen::Vector2d position =
+      ball.state.position + ball.state.direction * (ball.state.speed * (time - ball.since));
+  const double offset = piston.state.offset + piston.state.velocity * (time - piston.since);
+  const double beyond = SeenToward(direction, position).x() - (0.5 + SignOf(direction) * offset);
+  const double speed = ball.state.speed + std::fabs(piston.state.velocity);
+  return beyond > PlaceSlack(epsilon_, time, speed) &&
+         beyond > look_.Slack(position, ball.state.direction);
+}
+
+bool GasWatch::SeeBall(const GasEvent& event, const GasBall& after, Failures& failures) {
+  Ball& ball = balls_[Index(event.ball)];
+  const double length = (event.time - ball.since) * ball.state.speed;
+  ball.standstill = length < short_ ? ball.standstill + 1 : 0;
+  ball.state = after;
+  ball.since = event.time;
+  if (!(look_.Depth(after.position) <= AnywhereSlack(epsilon_))) {
+    ++failures.escapes;
+    return false;
+  }
+  failures.deepest = std::max(failures.deepest, look_.Depth(after.position));
+  if (event.kind == EventKind::kBallWall) {
+    failures.inward += look_.HeadsInward(after.position, after.direction);
+  }
+  if (ball.standstill <= longest_standstill_) return true;
+  ++failures.loops;
+  return false;
+}
+
+void GasWatch::SeePiston(const GasEvent& event, const GasPiston& after) {
+  Piston& piston = pistons_[Index(event.piston)];
+  if (event.kind == EventKind::kPistonWall && walls_.Has(event.piston)) {
+    given_ += EnergyOf(after) - EnergyOf(piston.state);
+  }
+  piston = {after, event.time};
+}
+
+void GasWatch::SeeExchanged(const GasEvent& event, Failures& failures) const {
+  ++failures.hits;
+  ++failures.looked_back;
+  const GasBall& ball = balls_[Index(event.ball)].state;
+  const double piston = SignOf(event.direction) * pistons_[Index(event.piston)].state.velocity;
+  const double approach = ball.speed * SeenToward(event.direction, ball.direction).x() - piston;
+  failures.inward += approach > kDirectionUlps * epsilon_ * (ball.speed + std::fabs(piston));
+}
+
+double GasWatch::EnergyError() const {
+  double energy = -given_;
+  for (const Ball& ball : balls_) energy += EnergyOf(ball.state);
+  for (const Piston& piston : pistons_) energy += EnergyOf(piston.state);
+  return std::fabs(energy / start_energy_ - 1);
+}
+
+}  // namespace ballpiston::stability

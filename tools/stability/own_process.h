@@ -1,0 +1,18 @@
+// Runs a computation that may never end, in a process of its own.
+#ifndef BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
+#define BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
+
+#include <functional>
+#include <optional>
+
+#include "tools/stability/failures.h"
+
+namespace ballpiston::stability {
+
+// Empty if the computation takes more than so many seconds of processor time, or does not end by
+// returning. The program must have no other thread.
+std::optional<Failures> InOwnProcess(const std::function<Failures()>& compute, unsigned seconds);
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
