@@ -15,11 +15,12 @@ namespace {
 
 constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
 
-// A neighbour of a start is off by so many steps: all directions turned, all pistons along x
-// shifted, and those along y the other way, so that pistons that cross come in either order.
+// A neighbour of a start is off by so many steps: all directions turned, and all pistons along x
+// and all along y shifted, so that walls and pistons that cross come in any order.
 struct Neighbour {
   int turn;
-  int shift;
+  int shift_x;
+  int shift_y;
 };
 
 void Move(const Neighbour& neighbour, const GasGeometry& geometry, GasState& state) {
@@ -30,7 +31,7 @@ void Move(const Neighbour& neighbour, const GasGeometry& geometry, GasState& sta
     ball.direction = (u + angle * Eigen::Vector2d(-u.y(), u.x())).normalized();
   }
   for (int64_t i = 0; i < geometry.pistons(); ++i) {
-    const double shift = kStep * neighbour.shift * (geometry.IsAlongX(i) ? 1 : -1);
+    const double shift = kStep * (geometry.IsAlongX(i) ? neighbour.shift_x : neighbour.shift_y);
     GasPiston& piston = state.pistons[static_cast<size_t>(i)];
     piston.offset = std::clamp(piston.offset + shift, -reach, reach);
   }
@@ -75,7 +76,9 @@ Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica
 std::vector<Neighbour> NeighboursWithin(int steps) {
   std::vector<Neighbour> neighbours;
   for (int turn = -steps; turn <= steps; ++turn) {
-    for (int shift = -steps; shift <= steps; ++shift) neighbours.push_back({turn, shift});
+    for (int x = -steps; x <= steps; ++x) {
+      for (int y = -steps; y <= steps; ++y) neighbours.push_back({turn, x, y});
+    }
   }
   return neighbours;
 }
@@ -96,7 +99,7 @@ GasReading ReadingOf(const GasMeter& meter) {
 
 Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
                   const GasReading& reading) {
-  static constexpr std::array<Neighbour, 2> kNearest = {{{-1, -1}, {1, 1}}};
+  static constexpr std::array<Neighbour, 2> kNearest = {{{-1, -1, 1}, {1, 1, -1}}};
   Failures found = AsNeighboursTell(geometry, replica, time, reading, kNearest);
   // The middle is rounded too: where it grazes, two neighbours tell too little.
   if (found.Total() > 0) {
