@@ -28,7 +28,7 @@ enum class TargetUnit { kSamples, kCollisions, kEither };
 // How far the limit delta -> 0 is from the billiard, in the experiment's first estimate.
 struct LimitError {
   Model model;      // the cheapest one that answers in the limit
-  bool has_pilots;  // runs that check the bound (model_choice/limit_error.h)
+  bool has_pilots;  // whether pilot runs can check the bound (model_choice/limit_error.h)
   bool (*is_known)(const PointParameters& point);
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
 };

@@ -58,12 +58,12 @@ class GasExperiment : public PointExperiment {
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
                 const GasTimes& times);
 
-  // Three batch means, a replica each, from the index `first` on: exchanges over contacts times
-  // duration, the balls' mean energies over balls, twice the pistons' over pistons.
+  // Adds one replica to three batch means, at the indices `first` to `first + 2`: exchanges over
+  // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
   void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
 
-  // These two scale a number measured at temperature 1. There is no error if too few replicas tell
-  // it.
+  // These two scale a number measured at temperature 1. There is no error if the replicas are too
+  // few to estimate it, or if they were cut short.
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const;
   std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
                              double scale) const;

@@ -1,6 +1,6 @@
-// What the jump process of a gas draws ahead, many at once in vector lanes: attempts, each of which
-// chooses a body and a least speed, and waiting times. The bits are the same wherever multiply-add
-// is fused.
+// The random numbers of a gas's jump process, drawn ahead, many at once in vector lanes: attempts
+// and waiting times. An attempt chooses a body, and the least speed at which the body is kept.
+// The bits are the same on every target that fuses multiply-add.
 #ifndef BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 #define BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 
@@ -14,10 +14,10 @@ namespace ballpiston {
 
 inline constexpr size_t kJumpDraws = 32;  // a whole number of vectors on every processor
 
-// Bodies `first` to `first + count - 1`, at most 2^31 - 1. As many attempts fall on each of them.
+// Bodies `first` to `first + count - 1`, at most 2^31 - 1. All have equally many attempts.
 struct JumpBodies {
-  double before = 0;     // place in [0, 1] of the first one's attempts
-  double per_place = 0;  // bodies
+  double before = 0;     // where their places begin, in [0, 1]
+  double per_place = 0;  // bodies in a unit of place
   double first = 0;
   double count = 0;
   double largest = 0;  // least speeds are uniform below it
@@ -25,16 +25,16 @@ struct JumpBodies {
 using JumpKinds = std::array<JumpBodies, 2>;  // the places of the second follow those of the first
 
 struct JumpAttempts {
-  uint64_t words[kJumpDraws];  // their lowest 12 bits decide nothing here
+  uint64_t words[kJumpDraws];  // the lowest 12 bits are not used here
   int32_t bodies[kJumpDraws];
   double least_speeds[kJumpDraws];
 };
 
 void DrawJumpAttempts(const JumpKinds& kinds, CounterRandom& random, JumpAttempts& attempts);
-// By the same words, after the kinds have changed.
+// Finds the attempts of the same words again, after the kinds have changed.
 void FindJumpAttempts(const JumpKinds& kinds, JumpAttempts& attempts);
 
-// Exponential, of mean 1.
+// Exponentially distributed with mean 1.
 using JumpWaits = std::array<double, kJumpDraws>;
 void DrawJumpWaits(CounterRandom& random, JumpWaits& waits);
 

@@ -14,11 +14,11 @@ namespace {
 constexpr double kRateToAPiston = 1 / std::numbers::pi;
 constexpr double kRateOfAPiston = 2 * 0.5;
 
-// In (0, 1), of 32 bits.
+// Uniform in (0, 1), from the lowest 32 bits.
 double FromBits(uint64_t bits) { return (static_cast<double>(bits & 0xffffffff) + 0.5) * 0x1p-32; }
 
-// A uniform direction of the upper half plane: that of the square of a complex number in the
-// quarter of a disc.
+// A uniform direction in the upper half plane: that of z^2, where the complex number z is uniform
+// in a quarter of a disc.
 Eigen::Vector2d DirectionUpward(CounterRandom& random) {
   for (;;) {
     const uint64_t bits = random.Bits();
@@ -50,8 +50,8 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& st
   FindNext();
 }
 
-// The speed at which a piston with two balls proposes as often as an outermost one does to its one:
-// the mean of (-v3)+.
+// An outermost piston proposes to one ball, at the rate of the mean of (-v3)+. Returns the speed at
+// which a piston with two balls proposes as often.
 double JumpGas::SpeedOfOutermost(int64_t piston) const {
   return std::sqrt(walls_.TemperatureAt(piston) / (2 * std::numbers::pi)) / kRateOfAPiston;
 }
@@ -60,7 +60,7 @@ double JumpGas::RatePerSpeed(size_t body) const {
   return body < balls_ ? geometry_.directions() * kRateToAPiston : kRateOfAPiston;
 }
 
-// Again and again, because changes add up rounding, and the fastest bodies become slower.
+// Repeated now and then: `rate_` collects rounding, and the fastest bodies become slower.
 void JumpGas::FindRates() {
   rate_ = kinds_[0].largest = kinds_[1].largest = 0;
   for (size_t body = 0; body < speeds_.size(); ++body) {
@@ -72,7 +72,7 @@ void JumpGas::FindRates() {
   FindPlaces();
 }
 
-// There are as many attempts as if all bodies were as fast as the fastest of their kind.
+// Places are allotted as if each body were as fast as the fastest of its kind.
 void JumpGas::FindPlaces() {
   auto& [balls, pistons] = kinds_;
   const double of_a_ball = RatePerSpeed(0) * balls.largest;
@@ -127,7 +127,7 @@ double JumpGas::DrawWait() {
   return waits_[used_waits_++];
 }
 
-// Of the word that chose the body the lowest bits are left.
+// The lowest bits of the word that chose the body are unused so far: they choose the contact.
 void JumpGas::FindProposal() {
   for (;;) {
     if (used_attempts_ == kJumpDraws) DrawAttempts();
@@ -153,8 +153,8 @@ void JumpGas::Propose(size_t body, uint64_t bits) {
   Decide();
 }
 
-// v1 has the density v1 over the angles with v1 > 0: its other component is uniform. A piston has
-// either sign.
+// v1 has the density v1 over the angles with v1 > 0, so the other component is uniform. The piston
+// moves either way.
 void JumpGas::ByBall(int64_t ball, uint64_t bits) {
   const double speed = speeds_[static_cast<size_t>(ball)];
   const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);

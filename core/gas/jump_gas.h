@@ -6,9 +6,10 @@
 //
 // Sampled by thinning, twice. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and
 // v_p/2. So each body proposes exchanges at a rate that its speed alone decides, and a proposal is
-// accepted with the ratio of the two: seven in ten are. And a body is drawn at that rate as any
-// body at all, kept with the ratio of its speed to the largest one: one in four is. So an exchange
-// costs nearly as much in a large gas as in a small one, until memory is far. An outermost piston
+// accepted with the ratio of the two; seven in ten are accepted. To draw a body at its rate, any
+// body is drawn and kept with the ratio of its speed to the largest one; one in four is kept. So an
+// exchange costs nearly as much in a large gas as in a small one, until the gas exceeds the caches.
+// An outermost piston
 // has a new thermal velocity at every proposal, because between two of its exchanges it hits its
 // thermal wall many times.
 //

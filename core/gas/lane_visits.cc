@@ -232,12 +232,12 @@ GasInTime::GasInTime(const GasGeometry& g)
 
 namespace {
 
-// In a tip a ball may be on both walls, or across them by rounding. Reflects it there for as long
-// as it flies into one of them; returns whether it did.
+// In a tip a ball may be on both walls, or beyond them by rounding. Reflects the ball there until
+// it flies into neither of them; returns whether it was reflected.
 bool LeaveWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
                 Eigen::Vector2d& direction) {
   constexpr double kOnAWall = 1e-14;
-  constexpr int kMostHits = 10'000;  // of walls that are nearly parallel
+  constexpr int kMostHits = 10'000;  // enough where walls are nearly parallel
   int last_disc = kNoDisc;
   for (int i = 0; i < kMostHits; ++i) {
     const CellWalls<double>::Encounter hit = walls.Next(position, direction, last_disc);

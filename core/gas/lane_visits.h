@@ -88,7 +88,7 @@ inline constexpr size_t kMostBallsAhead = 48;
 // contact.
 inline constexpr double kReachSlack = 1e-11;
 
-// A ball anywhere in the cell, also on a wall or across one by rounding.
+// A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball

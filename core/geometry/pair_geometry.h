@@ -48,7 +48,7 @@ class PairGeometry {
   double tip() const { return tip_; }                     // x of the cell's right tip
   double piston_left() const { return piston_left_; }     // leftmost position of the piston
   double piston_right() const { return piston_right_; }   // rightmost position of the piston
-  double stroke() const { return lambda_ + 2 * delta_; }  // from one of them to the other
+  double stroke() const { return lambda_ + 2 * delta_; }  // piston_right - piston_left
 
  private:
   PairGeometry(double rho, double delta);

@@ -63,8 +63,8 @@ HWY_INLINE V TwiceArtanh(D d, V z) {
   return hn::MulAdd(hn::Mul(z, x), p, hn::Add(z, z));
 }
 
-// (k + 1/2)/2^52, k the upper 52 bits. As the mantissa of a number in [1, 2) they are 1 + k/2^52;
-// what is taken off leaves an exact result.
+// (k + 1/2)/2^52, where k is the upper 52 bits. A number in [1, 2) with these bits as its mantissa
+// is 1 + k/2^52; the subtraction of 1 - 2^-53 is exact.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V UniformOf(D d, const uint64_t* words) {
   const hn::RebindToUnsigned<D> bits;

@@ -76,7 +76,7 @@ class Question {
 
   double ErrorOf(double samples) const { return experiment().error(point_) / std::sqrt(samples); }
 
-  // Of a model that samples, when the budget is used up; without its model error.
+  // The statistical error when the budget is used up; 0 for the spectrum, which has no samples.
   double ErrorInBudget(Model model) const {
     return model == Model::kSpectrum ? 0 : ErrorOf(SamplesInBudget(model));
   }
@@ -171,7 +171,8 @@ std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSo
     return Billiard(question, "the limit's error is not known there");
   }
   if (!std::isfinite(question.ErrorOf(1))) {
-    return Billiard(question, "no error is relative there, so the limit's cannot be weighed");
+    return Billiard(question,
+                    "the value has no relative error there, so the limit's error cannot be judged");
   }
   if (question.target().budget_seconds) return ByBudget(question);
   if (question.target().tolerance) return ByTolerance(question, pilots);
@@ -237,12 +238,14 @@ void SetLimitError(const Question& question, const PilotSource& pilots, Rung& ru
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
   rung.model_error = question.ExpectedLimitError();
-  rung.reason = "the limit; expected to be so far off or less, by its scaling with delta";
+  rung.reason =
+      "the limit delta -> 0; its error is expected to be at most this, by scaling with delta";
   if (!question.HasPilots()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   if (const std::optional<Pilot> pilot = pilots(place)) {
     rung.model_error = LimitErrorBound(*pilot, place, question.point());
-    rung.reason = absl::StrCat("the limit; so far off or less, ", FoundBy(*pilot, place));
+    rung.reason =
+        absl::StrCat("the limit delta -> 0; its error is at most this, ", FoundBy(*pilot, place));
   }
 }
 
@@ -318,9 +321,8 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 
 namespace {
 
-// The model error of the answering model at the worst point, except where no pilot can check it.
-// For a model that samples also at least its statistical error with the largest permitted number of
-// samples.
+// The largest model error of any point, where a pilot can check it. For a model that samples, at
+// least its statistical error with the largest permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec) {
   if (IsAnsweredByClosedForm(spec)) return kClosedFormError;
   double least = 0;

@@ -31,7 +31,8 @@ class CounterRandom {
   // In the open interval (0, 1): the midpoints of 2^52 equal cells, each exact in double.
   double Uniform() { return (static_cast<double>(Bits() >> 12) + 0.5) * 0x1p-52; }
 
-  // Words kBlock at a time, quicker. What Bits() has drawn and not returned yet comes later.
+  // Draws kBlock words at once, which is faster. Words that Bits() has drawn but not yet returned
+  // are returned by later calls of Bits().
   static constexpr size_t kBlock = 4;
   [[gnu::always_inline]] void DrawBlock(uint64_t* words) {
     const r123::Philox4x64::ctr_type block = NextBlock();

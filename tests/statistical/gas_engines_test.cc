@@ -1,5 +1,5 @@
-// Compares the laws of the gas in lanes and of the reference. Each engine has independent replicas.
-// The points go from narrow tips to vanishing cells, over shapes, ends and temperatures.
+// Compares the laws of the lanes' gas with those of the reference gas. Each engine runs its own
+// replicas. The points range from narrow tips to nearly vanishing cells, in several shapes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,19 +20,19 @@ namespace {
 
 struct GasPoint {
   double rho;
-  double share;  // delta in the gas's bound
+  double share;  // delta over the gas's bound
   const char* shape;
-  double hot;  // hot = cold is a periodic gas
+  double hot;  // if hot = cold, the gas is periodic
   double cold;
 };
 
 class TwoGasEngines : public testing::TestWithParam<GasPoint> {};
 
-// Each replica is followed for some ten exchanges of each contact. Four laws are compared: of the
-// number of exchanges and of the energy carried, by replica, and of the last energies of balls and
-// of pistons. Each distance exceeds 2.3 in 5e-5 of all cases; over the 12 points, 2.4e-3. Of 1000
-// replicas, a difference of 10 % between two distribution functions is detected.
-TEST_P(TwoGasEngines, AgreeInLaws) {
+// Each replica runs for some ten exchanges of each contact. Four laws are compared: the number of
+// exchanges and the energy carried, by replica; the last energies of balls and of pistons. A
+// distance exceeds 2.3 by chance in 5e-5 of all cases: over the 12 points in 2.4e-3. With 1000
+// replicas a difference of 10 % between two distribution functions is detected.
+TEST_P(TwoGasEngines, HaveTheSameLaws) {
   const GasPoint& point = GetParam();
   const GasEnds ends = point.hot == point.cold ? GasEnds::kPeriodic : GasEnds::kReservoirs;
   const GasGeometry gas = GasAtShare(point.rho, point.share, point.shape, ends);
@@ -67,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(
                     GasPoint{0.6, 0.4, "2", 5, 0.05}, GasPoint{0.65, 0.8, "1x3", 2, 1},
                     GasPoint{0.69, 1, "2", 1, 1}, GasPoint{0.69, 0.6, "2x1", 1, 0.9}));
 
-// A whole gas through 1e8 hits of balls at walls, in ten stretches. An exchange loses up to an ulp
-// of two energies, at random: together some 1e-16. A loss of an ulp of the whole in one direction
-// at each stretch would be a trend.
+// A gas runs for 1e8 wall hits of its balls, in ten stretches. Each exchange rounds two energies at
+// random; together this is some 1e-16. The bound would show a steady loss of some ulps of the total
+// energy in each stretch.
 TEST(LaneGas, KeepsItsEnergyForAHundredMillionHits) {
   constexpr int kStretches = 10;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");

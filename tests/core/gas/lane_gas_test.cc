@@ -108,9 +108,9 @@ TEST(LaneGas, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
   for (const Outcome& outcome : outcomes) EXPECT_EQ(outcome, outcomes[0]);
 }
 
-// The ball comes to the tip at the time at which the piston, which goes on ahead of it, is there to
-// some ulps. Where walls and piston are nearer to the ball than it is rounded, it must still end up
-// in the cell.
+// The piston moves ahead of the ball. Both reach the tip at the same time, to within some ulps.
+// There the walls and the piston are closer to the ball than its rounding; the ball must stay in
+// the cell.
 TEST(LaneGas, BallsThatMeetPistonsInTipsStayInTheirCells) {
   const GasGeometry gas = GasAtShare(0.6, 1, "1");
   const double tip = gas.pair().tip();

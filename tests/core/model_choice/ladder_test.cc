@@ -227,8 +227,8 @@ TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   EXPECT_NEAR(*ladder.Chosen().work, SomeMachine().rates.spectrum, 1e-12);
 }
 
-// No pilot checks the bound for a gas, so it decides alone.
-TEST(Ladder, TheJumpProcessConductsWhereItsBoundIsWithinTheTolerance) {
+// No pilot checks the bound for a gas, so the bound alone decides.
+TEST(Ladder, TheJumpProcessAnswersWhereItsBoundIsWithinTheTolerance) {
   for (double delta = 0.2; delta > 1e-3; delta /= 2) {
     const double bound = 1.5 * ExpectedLimitError(PaperPoint(delta));
     for (const double share : {0.999, 1.001}) {
@@ -245,7 +245,7 @@ TEST(Ladder, TheJumpProcessConductsWhereItsBoundIsWithinTheTolerance) {
   }
 }
 
-TEST(Ladder, ABudgetWeighsTheJumpProcessesScatterToo) {
+TEST(Ladder, ABudgetWeighsTheStatisticalErrorOfTheJumpProcess) {
   const EnsembleSpec scarce = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e-3});
   EXPECT_EQ(Choice(scarce, MayNotBeAsked)->model, Model::kMarkov);
   const EnsembleSpec plenty = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e5});
