@@ -34,7 +34,8 @@
 
 namespace ballpiston {
 
-// Upper bound of |billiard - limit|/limit. Requires a point that has a relaxation time.
+// Upper bound of |billiard - limit|/limit of the relaxation time. Requires rho and delta, and with
+// an epsilon one that has a relaxation time. gas-conduction uses the bound without epsilon.
 double ExpectedLimitError(const PointParameters& point);
 
 }  // namespace ballpiston

@@ -11,8 +11,8 @@ namespace {
 
 // A ball proposes an exchange to each of its pistons at the rate of the mean of (v1)+ over its
 // angle, v/pi; a piston to each of its two balls at that of (-v3)+ over its sign, v/2.
-constexpr double kRateToAPiston = 1 / std::numbers::pi;
-constexpr double kRateOfAPiston = 2 * 0.5;
+constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
+constexpr double kPistonsRate = 2 * 0.5;
 
 // Uniform in (0, 1), from the lowest 32 bits.
 double FromBits(uint64_t bits) { return (static_cast<double>(bits & 0xffffffff) + 0.5) * 0x1p-32; }
@@ -53,11 +53,11 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& st
 // An outermost piston proposes to one ball, at the rate of the mean of (-v3)+. Returns the speed at
 // which a piston with two balls proposes as often.
 double JumpGas::SpeedOfOutermost(int64_t piston) const {
-  return std::sqrt(walls_.TemperatureAt(piston) / (2 * std::numbers::pi)) / kRateOfAPiston;
+  return std::sqrt(walls_.TemperatureAt(piston) / (2 * std::numbers::pi)) / kPistonsRate;
 }
 
 double JumpGas::RatePerSpeed(size_t body) const {
-  return body < balls_ ? geometry_.directions() * kRateToAPiston : kRateOfAPiston;
+  return body < balls_ ? geometry_.directions() * kBallsRatePerPiston : kPistonsRate;
 }
 
 // Repeated now and then: `rate_` collects rounding, and the fastest bodies become slower.
@@ -72,7 +72,8 @@ void JumpGas::FindRates() {
   FindPlaces();
 }
 
-// Places are allotted as if each body were as fast as the fastest of its kind.
+// Places are allotted as if each body were as fast as the fastest of its kind. Words drawn ahead
+// are still uniform, because nothing has looked at them.
 void JumpGas::FindPlaces() {
   auto& [balls, pistons] = kinds_;
   const double of_a_ball = RatePerSpeed(0) * balls.largest;
@@ -157,7 +158,7 @@ void JumpGas::Propose(size_t body, uint64_t bits) {
 // moves either way.
 void JumpGas::ByBall(int64_t ball, uint64_t bits) {
   const double speed = speeds_[static_cast<size_t>(ball)];
-  const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);
+  const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);  // of 2 or 4
   const Direction direction = geometry_.DirectionAt(way);
   const double across = random_.Uniform();
   const int64_t piston = geometry_.PistonOf(ball, direction);

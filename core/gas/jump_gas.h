@@ -35,6 +35,7 @@ namespace ballpiston {
 
 class JumpGas {
  public:
+  // Requires a ball and a piston that move.
   JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
           const CounterRandom& random);
 

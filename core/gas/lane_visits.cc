@@ -234,14 +234,17 @@ namespace {
 
 // In a tip a ball may be on both walls, or beyond them by rounding. Reflects the ball there until
 // it flies into neither of them; returns whether it was reflected.
-bool LeaveWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
-                Eigen::Vector2d& direction) {
-  constexpr double kOnAWall = 1e-14;
-  constexpr int kMostHits = 10'000;  // enough where walls are nearly parallel
+bool ReflectOnWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
+                    Eigen::Vector2d& direction) {
+  constexpr double kOnAWall =
+      1e-14;  // what a few hits in a tip add up to, and far below kReachSlack
+  constexpr int kMostHits = 10'000;  // where walls are nearly parallel
   int last_disc = kNoDisc;
+  double way = 0;
   for (int i = 0; i < kMostHits; ++i) {
     const CellWalls<double>::Encounter hit = walls.Next(position, direction, last_disc);
-    if (hit.distance > kOnAWall) break;
+    way += hit.distance;
+    if (way > kOnAWall) break;
     walls.Reflect(hit, position, direction);
     last_disc = hit.disc;
   }
@@ -252,7 +255,7 @@ bool LeaveWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
 
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction) {
   const double left = gas.wave.left() - kReachSlack;
-  const bool is_on_wall = LeaveWalls(gas.walls, position, direction);
+  const bool is_on_wall = ReflectOnWalls(gas.walls, position, direction);
   const auto frame_of = is_on_wall ? FrameOfBallOnWall : FrameOfBall;
   const LaneFrame frame = Scaled(frame_of(position, direction), 1 / gas.unit);
   return {.h = frame.h,

@@ -109,6 +109,11 @@ Answer Billiard(const Question& question, absl::string_view why) {
 std::string WithoutAPilot(const Question& question) {
   const double tolerance = *question.target().tolerance;
   const PilotPlace place = PilotPlaceFor(question.point());
+  const double expected = question.ExpectedLimitError();
+  if (expected > tolerance) {
+    return absl::StrCat("the limit's error, up to ", Rounded(expected),
+                        ", is beyond the tolerance");
+  }
   const Pilot predicted = PredictedPilot(place);
   const Pilot at_best = {.difference = 0, .standard_error = predicted.standard_error};
   if (LimitErrorBound(at_best, place, question.point()) > tolerance) {
@@ -127,15 +132,18 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
       Rounded(place.delta));
 }
 
+// The limit's model samples: a half of the tolerance is for its scatter.
+Answer ByItsBound(const Question& question) {
+  const double error = question.ExpectedLimitError();
+  const bool is_within = error <= *question.target().tolerance / 2;
+  const std::string why = absl::StrCat("the limit's error, up to ", Rounded(error), ", is ",
+                                       is_within ? "within" : "beyond", " half of the tolerance");
+  if (!is_within) return Billiard(question, why);
+  return {question.ModelOfLimit(), why, error};
+}
+
 std::optional<Answer> ByTolerance(const Question& question, const PilotSource& pilots) {
-  const double expected = question.ExpectedLimitError();
-  const std::string limit = absl::StrCat("the limit's error, up to ", Rounded(expected), ", is ");
-  if (expected > *question.target().tolerance) {
-    return Billiard(question, absl::StrCat(limit, "beyond the tolerance"));
-  }
-  if (!question.HasPilots()) {
-    return Answer{question.ModelOfLimit(), absl::StrCat(limit, "within the tolerance"), expected};
-  }
+  if (!question.HasPilots()) return ByItsBound(question);
   if (const std::string why = WithoutAPilot(question); !why.empty()) {
     return Billiard(question, why);
   }

@@ -1,10 +1,10 @@
 // The ladder of models: the models that can answer, their costs and errors, and the choice.
 //
 // AUTO chooses the cheapest model that is exact for the experiment, or whose error is known to be
-// within the tolerance. This is a closed form if there is one, else the limit's cheapest model if
-// its error allows it, else the billiard. Without a tolerance AUTO chooses only an exact model.
-// With a budget alone it chooses the model with the smallest error that can be reached within the
-// budget.
+// within the tolerance: within half of it if that model samples. This is a closed form if there is
+// one, else the limit's cheapest model if its error allows it, else the billiard. Without a
+// tolerance AUTO chooses only an exact model. With a budget alone it chooses the model with the
+// smallest error that can be reached within the budget.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 
@@ -62,7 +62,9 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
                  const PilotSource& pilots);
 
 // Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
-// or below the statistical error of the largest permitted number of samples.
+// or below the statistical error of the largest permitted number of samples. The limit's error
+// counts only where pilots can check it; elsewhere the tolerance of `markov` is that of its
+// samples.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
 
 // Processor time of a budget for each point of the grid.

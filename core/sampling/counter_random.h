@@ -23,8 +23,10 @@ class CounterRandom {
   CounterRandom(uint64_t seed, uint64_t stream, uint64_t sample, uint64_t part = 0)
       : key_{{seed, stream}}, counter_{{sample, 0, part, 0}} {}
 
+  static constexpr size_t kBlock = 4;  // words
+
   uint64_t Bits() {
-    if (used_ == 4) Refill();
+    if (used_ == kBlock) Refill();
     return block_[used_++];
   }
 
@@ -33,7 +35,6 @@ class CounterRandom {
 
   // Draws kBlock words at once, which is faster. Words that Bits() has drawn but not yet returned
   // are returned by later calls of Bits().
-  static constexpr size_t kBlock = 4;
   [[gnu::always_inline]] void DrawBlock(uint64_t* words) {
     const r123::Philox4x64::ctr_type block = NextBlock();
     std::copy(block.begin(), block.end(), words);
@@ -54,7 +55,7 @@ class CounterRandom {
   r123::Philox4x64::key_type key_;
   r123::Philox4x64::ctr_type counter_;
   r123::Philox4x64::ctr_type block_ = {};
-  unsigned used_ = 4;
+  size_t used_ = kBlock;
 };
 
 }  // namespace ballpiston

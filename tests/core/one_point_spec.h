@@ -29,6 +29,10 @@ inline PointParameters PaperGas(const ExperimentKind* experiment, double delta,
   return point;
 }
 
+// By which both experiments with a gas can be asked.
+inline constexpr Model kModelsThatSampleGases[] = {Model::kMarkov, Model::kBilliard,
+                                                   Model::kBilliardReference};
+
 inline bool IsOfAGas(const ExperimentKind* experiment) {
   return experiment == &kGasEquilibrium || experiment == &kGasConduction;
 }

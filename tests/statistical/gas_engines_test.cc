@@ -31,7 +31,7 @@ class TwoGasEngines : public testing::TestWithParam<GasPoint> {};
 // Each replica runs for some ten exchanges of each contact. Four laws are compared: the number of
 // exchanges and the energy carried, by replica; the last energies of balls and of pistons. A
 // distance exceeds 2.3 by chance in 5e-5 of all cases: over the 12 points in 2.4e-3. With 1000
-// replicas a difference of 10 % between two distribution functions is detected.
+// replicas a difference of 15 % between two distribution functions is detected.
 TEST_P(TwoGasEngines, HaveTheSameLaws) {
   const GasPoint& point = GetParam();
   const GasEnds ends = point.hot == point.cold ? GasEnds::kPeriodic : GasEnds::kReservoirs;
@@ -67,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(
                     GasPoint{0.6, 0.4, "2", 5, 0.05}, GasPoint{0.65, 0.8, "1x3", 2, 1},
                     GasPoint{0.69, 1, "2", 1, 1}, GasPoint{0.69, 0.6, "2x1", 1, 0.9}));
 
-// A gas runs for 1e8 wall hits of its balls, in ten stretches. Each exchange rounds two energies at
-// random; together this is some 1e-16. The bound would show a steady loss of some ulps of the total
-// energy in each stretch.
+// A gas runs for 1e8 wall hits of its balls, in ten stretches. Each exchange rounds two of 3072
+// energies, at random: together some 1e-16 of the whole; their sum here is rounded to some 1e-15. A
+// loss of 1e-15 in each stretch would come to 1e-14.
 TEST(LaneGas, KeepsItsEnergyForAHundredMillionHits) {
   constexpr int kStretches = 10;
   const GasGeometry gas = GasOf(kPaperRho, 0.1, "32x32");
@@ -84,7 +84,7 @@ TEST(LaneGas, KeepsItsEnergyForAHundredMillionHits) {
   const double energy = meter.TotalEnergy();
   for (int i = 1; i <= kStretches; ++i) {
     run->AdvanceTo(i * 1e8 / kStretches / hits);
-    EXPECT_LT(std::fabs(meter.TotalEnergy() / energy - 1), 1e-14 * i) << "stretch " << i;
+    EXPECT_LT(std::fabs(meter.TotalEnergy() / energy - 1), 5e-15) << "stretch " << i;
   }
   EXPECT_EQ(meter.escapes(), 0u);
   EXPECT_GT(meter.exchanges(), 1'000'000u);

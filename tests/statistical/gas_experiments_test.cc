@@ -104,7 +104,7 @@ TEST(GasExperiments, TheBilliardHasTheCurrentOfAnIndependentProgram) {
 
 // By all models; z-scores of 4 are exceeded once in 16,000 cases.
 TEST(GasExperiments, ExchangeRatesAndTemperaturesInEquilibriumAreExact) {
-  for (const Model model : kGasConduction.models) {
+  for (const Model model : kModelsThatSampleGases) {
     const int64_t replicas = model == Model::kBilliardReference ? 1000 : 4000;
     const PointSummary summary = RunPoint(Equilibrium(0.2, {4, 4, true}, model, replicas));
     for (size_t i = 0; i < 3; ++i) {

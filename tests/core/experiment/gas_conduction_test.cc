@@ -127,7 +127,7 @@ TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
 }
 
 TEST(GasConduction, EqualTemperaturesCarryNoCurrent) {
-  for (const Model model : kGasConduction.models) {
+  for (const Model model : kModelsThatSampleGases) {
     const PointSummary summary = RunPoint(SpecBetween(2, 2, {.columns = 3}, model));
     EXPECT_EQ(NamesOf(summary),
               (std::vector<std::string>{"heat_current", "exchange_rate", "temperature_ball",

@@ -46,7 +46,7 @@ TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
 }
 
 TEST(GasEquilibrium, EveryModelGivesTheSameEstimates) {
-  for (const Model model : kGasConduction.models) {
+  for (const Model model : kModelsThatSampleGases) {
     const PointSummary summary = RunPoint(SpecAt(2, model));
     ASSERT_EQ(summary.estimates.size(), 5u);
     // As above.
@@ -112,7 +112,7 @@ TEST(GasEquilibrium, ADivergenceAboveItsNoiseTellsAnotherLaw) {
 }
 
 TEST(GasEquilibrium, EnergyIsConservedInEveryReplica) {
-  for (const Model model : kGasConduction.models) {
+  for (const Model model : kModelsThatSampleGases) {
     const Health health = RunPoint(SpecAt(1, model)).health;
     EXPECT_EQ(health.escapes, 0u);
     EXPECT_LT(health.max_energy_error, 1e-13) << Name(model);

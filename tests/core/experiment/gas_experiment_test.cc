@@ -33,7 +33,7 @@ constexpr const ExperimentKind* kGases[] = {&kGasEquilibrium, &kGasConduction};
 std::vector<EnsembleSpec> OneOfEach(int64_t replicas) {
   std::vector<EnsembleSpec> specs;
   for (const ExperimentKind* kind : kGases) {
-    for (const Model model : kGasConduction.models) {
+    for (const Model model : kModelsThatSampleGases) {
       for (const GasShape& shape : {GasShape{2}, GasShape{2, 1, true}}) {
         specs.push_back(SpecOf(kind, PaperGas(kind, 0.2, shape), {.samples = replicas}, model, 42));
       }
@@ -121,7 +121,7 @@ TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
 
 // From every number of merged blocks.
 TEST(GasExperiment, AResumedFoldHasTheSameBits) {
-  for (const EnsembleSpec& spec : OneOfEach(66)) {
+  for (const EnsembleSpec& spec : OneOfEach(130)) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
     const BlockResult whole = *FoldPoint(*point);

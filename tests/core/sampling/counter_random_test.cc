@@ -27,6 +27,17 @@ TEST(CounterRandom, IsPhilox4x64) {
   EXPECT_EQ(random.Bits(), 0x7e68b68aec7ba23bu);
 }
 
+// A block is four words of the same sequence, also if words of the one before are left.
+TEST(CounterRandom, BlocksAreOfTheSameSequence) {
+  CounterRandom words(1, 2, 3), blocks(1, 2, 3);
+  uint64_t block[CounterRandom::kBlock];
+  EXPECT_EQ(blocks.Bits(), words.Bits());
+  blocks.DrawBlock(block);
+  for (size_t i = 1; i < CounterRandom::kBlock; ++i) EXPECT_EQ(blocks.Bits(), words.Bits());
+  for (const uint64_t word : block) EXPECT_EQ(word, words.Bits());
+  EXPECT_EQ(blocks.Bits(), words.Bits());
+}
+
 TEST(CounterRandom, DependsOnSeedStreamAndSampleAlone) {
   EXPECT_EQ(Draws(1, 2, 3), Draws(1, 2, 3));
   const std::set<std::vector<uint64_t>> distinct = {Draws(1, 2, 3), Draws(2, 2, 3), Draws(1, 3, 3),
