@@ -57,20 +57,14 @@ std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length) {
   return clusters;
 }
 
-std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius, bool pistons) {
-  std::vector<Cluster> clusters = {Around(lattice, {0, 0}, radius)};
-  if (pistons) {
-    clusters.push_back(Around(lattice, {1, 0}, radius));
-    clusters.push_back(Around(lattice, {0, 1}, radius));
-  }
-  return clusters;
+std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius) {
+  return {Around(lattice, {0, 0}, radius), Around(lattice, {1, 0}, radius),
+          Around(lattice, {0, 1}, radius)};
 }
 
 ClusterBasis::ClusterBasis(const SiteLattice& lattice, const std::vector<Cluster>& clusters,
                            const BasisLimits& limits)
-    : has_rows_(lattice.has_rows),
-      period_(static_cast<int16_t>(lattice.period)),
-      limits_(limits) {
+    : has_rows_(lattice.has_rows), period_(static_cast<int16_t>(lattice.period)), limits_(limits) {
   for (Cluster cluster : clusters) {
     std::sort(cluster.begin(), cluster.end());
     Monomial monomial;

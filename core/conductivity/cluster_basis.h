@@ -2,9 +2,9 @@
 //
 // A monomial is a product of orthonormal polynomials (gamma_law.h), one for each of its sites, of
 // degree 1 or more. Its translates count as the same function. Only those combinations matter that
-// change sign under the reflection of x, as the field does, and do not under that of y. So a function
-// of the basis is the sum of a monomial's reflections with these signs, and monomials whose
-// reflections cancel have none.
+// change sign under the reflection of x, as the field does, and do not under that of y. So a
+// function of the basis is the sum of a monomial's reflections with these signs, and monomials
+// whose reflections cancel have none.
 //
 // Properties, each with the test that bears its name:
 //   1. TranslatesAreOneFunction.  2. ReflectionsDifferInSignOnly.
@@ -46,8 +46,8 @@ using Cluster = std::vector<Site>;
 
 // `length` neighbouring sites of a chain.
 std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length);
-// The sites up to `radius` contacts from a ball, and those around a piston if `pistons` is set.
-std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius, bool pistons);
+// The sites up to `radius` contacts from a ball, and those from a piston.
+std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius);
 
 struct BasisLimits {
   int degree;       // in all

@@ -107,8 +107,8 @@ GalerkinForm::GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis
   for (const SiteContact& c : lattice.contacts) {
     const std::vector<std::vector<Monomial>> environments = AllEnvironments(lattice, c, basis);
     for (size_t degree = 1; degree < environments.size(); ++degree) {
-      blocks_.push_back({PlacesOf(environments[degree], degree, c, basis),
-                         static_cast<double>(c.copies)});
+      blocks_.push_back(
+          {PlacesOf(environments[degree], degree, c, basis), static_cast<double>(c.copies)});
       AddDiagonal(blocks_.back());
     }
     AddField(c, basis, contact.dimensions());

@@ -31,8 +31,7 @@ namespace ballpiston {
 class GalerkinForm {
  public:
   // `contact` has the lattice's dimensions, and at least the degree of the basis.
-  GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis,
-               const ContactMatrix& contact);
+  GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis, const ContactMatrix& contact);
 
   // A v.
   Eigen::VectorXd Apply(const Eigen::VectorXd& v) const;
@@ -41,8 +40,8 @@ class GalerkinForm {
   double field_energy() const { return field_energy_; }    // E
 
  private:
-  // Places in the basis by ClusterBasis::Find, a column for each environment, a row for each product
-  // of the contact's two polynomials, without the constant.
+  // Places in the basis by ClusterBasis::Find, a column for each environment, a row for each
+  // product of the contact's two polynomials, without the constant.
   struct Blocks {
     Eigen::MatrixXi places;
     double copies;
