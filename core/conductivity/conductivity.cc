@@ -10,15 +10,15 @@
 namespace ballpiston {
 namespace {
 
-// Squared, relative, in the norm of the inverse diagonal. The minimum is reached to the square of
+// Squared, relative, in the norm of the inverse scales. The minimum is reached to the square of
 // what the solution is off, so this is far below rounding.
 constexpr double kResidual = 1e-20;
 
-// b A^-1 b by conjugate gradients, preconditioned by the diagonal.
+// b A^-1 b by conjugate gradients, preconditioned by the scales.
 double SolvedForm(const GalerkinForm& form) {
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(form.field().size());
   Eigen::VectorXd residual = form.field();
-  Eigen::VectorXd step = residual.cwiseQuotient(form.diagonal());
+  Eigen::VectorXd step = residual.cwiseQuotient(form.scales());
   double norm = residual.dot(step);
   const double enough = kResidual * norm;
   while (norm > enough) {
@@ -26,7 +26,7 @@ double SolvedForm(const GalerkinForm& form) {
     const double length = norm / step.dot(image);
     solution += length * step;
     residual -= length * image;
-    const Eigen::VectorXd scaled = residual.cwiseQuotient(form.diagonal());
+    const Eigen::VectorXd scaled = residual.cwiseQuotient(form.scales());
     const double next = residual.dot(scaled);
     step = scaled + next / norm * step;
     norm = next;

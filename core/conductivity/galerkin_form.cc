@@ -102,14 +102,14 @@ GalerkinForm::GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis
                            const ContactMatrix& contact)
     : contact_(contact.elements().bottomRightCorner(contact.elements().rows() - 1,
                                                     contact.elements().cols() - 1)),
-      diagonal_(Eigen::VectorXd::Zero(basis.size())),
+      scales_(Eigen::VectorXd::Zero(basis.size())),
       field_(Eigen::VectorXd::Zero(basis.size())) {
   for (const SiteContact& c : lattice.contacts) {
     const std::vector<std::vector<Monomial>> environments = AllEnvironments(lattice, c, basis);
     for (size_t degree = 1; degree < environments.size(); ++degree) {
       blocks_.push_back(
           {PlacesOf(environments[degree], degree, c, basis), static_cast<double>(c.copies)});
-      AddDiagonal(blocks_.back());
+      AddScales(blocks_.back());
     }
     AddField(c, basis, contact.dimensions());
   }
@@ -127,11 +127,11 @@ void GalerkinForm::AddField(const SiteContact& contact, const ClusterBasis& basi
   field_energy_ += contact.copies * slope * slope * contact_(RowOf(1, 0), RowOf(1, 0));
 }
 
-void GalerkinForm::AddDiagonal(const Blocks& blocks) {
+void GalerkinForm::AddScales(const Blocks& blocks) {
   for (Eigen::Index column = 0; column < blocks.places.cols(); ++column) {
     for (Eigen::Index row = 0; row < blocks.places.rows(); ++row) {
       const int place = std::abs(blocks.places(row, column));
-      if (place > 0) diagonal_[place - 1] += blocks.copies * contact_(row, row);
+      if (place > 0) scales_[place - 1] += blocks.copies * contact_(row, row);
     }
   }
 }

@@ -35,7 +35,8 @@ class GalerkinForm {
 
   // A v.
   Eigen::VectorXd Apply(const Eigen::VectorXd& v) const;
-  const Eigen::VectorXd& diagonal() const { return diagonal_; }
+  // The diagonal of A, less couplings of a function to its own reflections; positive.
+  const Eigen::VectorXd& scales() const { return scales_; }
   const Eigen::VectorXd& field() const { return field_; }  // b
   double field_energy() const { return field_energy_; }    // E
 
@@ -47,11 +48,11 @@ class GalerkinForm {
     double copies;
   };
   void AddField(const SiteContact& contact, const ClusterBasis& basis, SiteDimensions dimensions);
-  void AddDiagonal(const Blocks& blocks);
+  void AddScales(const Blocks& blocks);
 
   Eigen::MatrixXd contact_;  // without the constant's row and column
   std::vector<Blocks> blocks_;
-  Eigen::VectorXd diagonal_;
+  Eigen::VectorXd scales_;
   Eigen::VectorXd field_;
   double field_energy_ = 0;
 };

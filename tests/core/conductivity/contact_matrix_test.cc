@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -15,29 +16,46 @@ namespace {
 
 constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
 
-// Laguerre's polynomial by its sum, normalised, with a positive leading coefficient.
-double OrthonormalLaguerre(double shape, int n, double x) {
-  double sum = 0;
-  for (int i = 0; i <= n; ++i) {
-    sum += std::exp(std::lgamma(n + shape) - std::lgamma(n - i + 1) - std::lgamma(shape + i) -
-                    std::lgamma(i + 1)) *
-           std::pow(-x, i);
+constexpr int kDegree = 6;
+using Polynomials = std::array<double, kDegree + 1>;
+
+// Laguerre's polynomials by their sums, normalised, with positive leading coefficients.
+class LaguerreSums {
+ public:
+  explicit LaguerreSums(double shape) {
+    for (int n = 0; n <= kDegree; ++n) {
+      const double square =
+          std::exp(std::lgamma(n + shape) - std::lgamma(n + 1) - std::lgamma(shape));
+      for (int i = 0; i <= n; ++i) {
+        const double size = std::exp(std::lgamma(n + shape) - std::lgamma(n - i + 1) -
+                                     std::lgamma(shape + i) - std::lgamma(i + 1));
+        coefficient_[n][i] = ((n + i) % 2 == 0 ? size : -size) / std::sqrt(square);
+      }
+    }
   }
-  const double square = std::exp(std::lgamma(n + shape) - std::lgamma(n + 1) - std::lgamma(shape));
-  return (n % 2 == 0 ? sum : -sum) / std::sqrt(square);
-}
+
+  Polynomials operator()(double x) const {
+    Polynomials p = {};
+    for (int n = 0; n <= kDegree; ++n) {
+      for (int i = n; i >= 0; --i) p[n] = p[n] * x + coefficient_[n][i];
+    }
+    return p;
+  }
+
+ private:
+  std::array<std::array<double, kDegree + 1>, kDegree + 1> coefficient_ = {};
+};
 
 struct Point {
   double x;
   double weight;
 };
 
-// Gauss-Legendre nodes on [0, 12], whose end a velocity does not reach: exp(-72).
-std::vector<Point> Panels(int count) {
-  constexpr double kEnd = 12;
+// Gauss-Legendre nodes on [0, end].
+std::vector<Point> Panels(int count, double end) {
   std::vector<Point> points;
+  const double half = end / count / 2;
   for (int panel = 0; panel < count; ++panel) {
-    const double half = kEnd / count / 2;
     for (const oracle::GaussNode& node : oracle::GaussNodes()) {
       points.push_back({(2 * panel + 1) * half + half * static_cast<double>(node.x),
                         half * static_cast<double>(node.weight)});
@@ -46,16 +64,14 @@ std::vector<Point> Panels(int count) {
   return points;
 }
 
-double NormalDensity(double v) { return std::exp(-v * v / 2) / std::sqrt(2 * std::numbers::pi); }
-
 // Nodes in the energy of `components` velocity components, from their speed's law.
-std::vector<Point> EnergyPoints(int components) {
+std::vector<Point> EnergyPoints(int components, int panels) {
   if (components == 0) return {{0, 1}};
   std::vector<Point> points;
   const double norm = std::pow(2, components / 2.0 - 1) * std::tgamma(components / 2.0);
-  for (const Point& v : Panels(1)) {
+  for (const Point& v : Panels(panels, 14)) {
     const double density = std::pow(v.x, components - 1) * std::exp(-v.x * v.x / 2) / norm;
-    if (v.weight * density > 1e-22) points.push_back({v.x * v.x / 2, v.weight * density});
+    points.push_back({v.x * v.x / 2, v.weight * density});
   }
   return points;
 }
@@ -65,57 +81,70 @@ struct Element {
 };
 
 // -<f L g> = -<(v_a - v_b)+ f (g' - g)>, on velocities: it is the symmetric form of the matrix only
-// if the exchange satisfies detailed balance.
-double ByQuadrature(SiteDimensions d, const Element& e) {
-  const std::vector<Point> ga = EnergyPoints(d.a - 1), gb = EnergyPoints(d.b - 1);
-  const auto f = [&](int i, int j, double ea, double eb) {
-    return OrthonormalLaguerre(d.a / 2.0, i, ea) * OrthonormalLaguerre(d.b / 2.0, j, eb);
-  };
-  double sum = 0;
-  for (const Point& mean : Panels(1)) {
-    for (const double sign : {-1, 1}) {
-      for (const Point& half : Panels(1)) {
+// if the exchange satisfies detailed balance. v_a = mean + half and v_b = mean - half have the density
+// exp(-mean^2 - half^2)/pi in mean and half.
+std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& elements,
+                                 int panels) {
+  const LaguerreSums p(d.a / 2.0), q(d.b / 2.0);
+  std::vector<double> sums(elements.size());
+  for (const Point& mean : Panels(panels, 10)) {
+    for (const Point& half : Panels(panels, 10)) {
+      for (const double sign : {-1, 1}) {
         const double va = sign * mean.x + half.x, vb = sign * mean.x - half.x;
-        const double weight = 2 * mean.weight * half.weight * NormalDensity(va) * NormalDensity(vb);
-        if (weight < 1e-20) continue;
-        for (const Point& a : ga) {
-          for (const Point& b : gb) {
-            const double ea = a.x + va * va / 2, eb = b.x + vb * vb / 2;
-            const double after_a = a.x + vb * vb / 2, after_b = b.x + va * va / 2;
-            sum -= weight * a.weight * b.weight * (va - vb) * f(e.i, e.j, ea, eb) *
-                   (f(e.k, e.l, after_a, after_b) - f(e.k, e.l, ea, eb));
+        const double density =
+            mean.weight * half.weight * std::exp(-(va * va + vb * vb) / 2) / std::numbers::pi;
+        if (density < 1e-40) continue;
+        for (const Point& a : EnergyPoints(d.a - 1, panels)) {
+          const Polynomials pa = p(a.x + va * va / 2), after_a = p(a.x + vb * vb / 2);
+          for (const Point& b : EnergyPoints(d.b - 1, panels)) {
+            const double rate = density * a.weight * b.weight * (va - vb);
+            if (rate < 1e-40) continue;
+            const Polynomials qb = q(b.x + vb * vb / 2), after_b = q(b.x + va * va / 2);
+            for (size_t n = 0; n < elements.size(); ++n) {
+              const auto [i, j, k, l] = elements[n];
+              sums[n] -= rate * pa[i] * qb[j] * (after_a[k] * after_b[l] - pa[k] * qb[l]);
+            }
           }
         }
       }
     }
   }
-  return sum;
+  return sums;
 }
 
 double At(const ContactMatrix& matrix, const Element& e) {
   return matrix.elements()(ContactMatrix::Row(e.i, e.j), ContactMatrix::Row(e.k, e.l));
 }
 
-// Pairs of sites with up to one further component, 14 elements each; equal sites of more
-// components, four each, because their integrals have one dimension more.
 TEST(ContactMatrix, AgreesWithAnIndependentQuadrature) {
-  const std::vector<Element> many = {{1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2},
-                                     {2, 1, 1, 0}, {0, 3, 2, 1}, {3, 0, 3, 0}, {1, 2, 4, 0},
-                                     {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
-                                     {6, 0, 0, 1}, {2, 4, 3, 2}};
-  const std::vector<Element> few = {{1, 0, 1, 0}, {2, 1, 1, 0}, {1, 2, 0, 3}, {2, 1, 3, 0}};
-  for (const SiteDimensions d : kAllDimensions) {
-    const ContactMatrix matrix(d, 6);
-    for (const Element& e : d.b > 1 && d.a > 1 ? few : many) {
-      EXPECT_NEAR(At(matrix, e), ByQuadrature(d, e), 1e-12)
-          << d.a << " " << d.b << ": " << e.i << e.j << e.k << e.l;
+  const std::vector<Element> elements = {
+      {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2}, {2, 1, 1, 0}, {0, 3, 2, 1},
+      {3, 0, 3, 0}, {1, 2, 4, 0}, {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
+      {6, 0, 0, 1}, {2, 4, 3, 2}};
+  for (const SiteDimensions d : {SiteDimensions{2, 1}, {1, 2}, {1, 3}, {1, 1}}) {
+    const ContactMatrix matrix(d, kDegree);
+    const std::vector<double> exact = ByQuadrature(d, elements, 3);
+    for (size_t n = 0; n < elements.size(); ++n) {
+      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-12) << d.a << " " << d.b << ": " << n;
+    }
+  }
+}
+
+// The integrals have one dimension more, so degrees are low enough for fewer nodes.
+TEST(ContactMatrix, EqualSitesAgreeWithAnIndependentQuadrature) {
+  const std::vector<Element> elements = {{1, 0, 1, 0}, {1, 0, 0, 1}, {2, 0, 1, 0}, {1, 1, 1, 1},
+                                         {2, 1, 1, 0}, {1, 2, 0, 3}, {2, 1, 3, 0}};
+  for (const SiteDimensions d : {SiteDimensions{2, 2}, {3, 3}}) {
+    const ContactMatrix matrix(d, kDegree);
+    const std::vector<double> exact = ByQuadrature(d, elements, 1);
+    for (size_t n = 0; n < elements.size(); ++n) {
+      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-9) << d.a << ": " << n;
     }
   }
 }
 
 // A function of e_a + e_b does not change: its coefficients by Gauss's quadrature.
 TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
-  constexpr int kDegree = 8;
   for (const SiteDimensions d : kAllDimensions) {
     const ContactMatrix matrix(d, kDegree);
     const GammaQuadrature a = GammaNodes(d.a / 2.0, kDegree + 1);

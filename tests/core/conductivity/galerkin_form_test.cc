@@ -11,20 +11,18 @@
 namespace ballpiston {
 namespace {
 
-// A function on a ring or torus of kCells cells, by its coefficients.
-constexpr int kCells = 4;
+// A function on a ring or torus, by its coefficients.
 using Function = std::map<std::vector<Factor>, double>;
 
-int Wrapped(int x, int period) {
-  return ((x % (kCells * period)) + kCells * period) % (kCells * period);
-}
+// Of the ring, or of a side of the torus: no function of the examples meets itself.
+int Cells(const SiteLattice& lattice) { return lattice.has_rows ? 3 : 6; }
+int Rows(const SiteLattice& lattice) { return lattice.has_rows ? Cells(lattice) : 1; }
 
-Site Moved(Site site, int x, int y, int period) {
-  return {static_cast<int16_t>(Wrapped(site.x + x, period)),
-          static_cast<int16_t>(Wrapped(site.y + y, period))};
+Site Moved(const SiteLattice& lattice, Site site, int x, int y) {
+  const int length = Cells(lattice) * lattice.period;
+  return {static_cast<int16_t>((site.x + x + length) % length),
+          static_cast<int16_t>((site.y + y + length) % length)};
 }
-
-int Rows(const SiteLattice& lattice) { return lattice.has_rows ? kCells : 1; }
 
 // The sum over all reflections, with the signs of the field, and all translations.
 Function OnTheRing(const SiteLattice& lattice, const Monomial& monomial) {
@@ -32,13 +30,13 @@ Function OnTheRing(const SiteLattice& lattice, const Monomial& monomial) {
   for (const int x_sign : {1, -1}) {
     for (const int y_sign : {1, -1}) {
       if (y_sign < 0 && !lattice.has_rows) continue;
-      for (int x = 0; x < kCells; ++x) {
+      for (int x = 0; x < Cells(lattice); ++x) {
         for (int y = 0; y < Rows(lattice); ++y) {
           std::vector<Factor> moved;
           for (Factor f : monomial) {
             f.site = {static_cast<int16_t>(x_sign * f.site.x),
                       static_cast<int16_t>(y_sign * f.site.y)};
-            f.site = Moved(f.site, x * lattice.period, y * lattice.period, lattice.period);
+            f.site = Moved(lattice, f.site, x * lattice.period, y * lattice.period);
             moved.push_back(f);
           }
           std::sort(moved.begin(), moved.end());
@@ -68,14 +66,14 @@ struct Bond {
 std::vector<Bond> Bonds(const SiteLattice& lattice) {
   std::vector<Bond> bonds;
   const int p = lattice.period;
-  for (int x = 0; x < kCells; ++x) {
+  for (int x = 0; x < Cells(lattice); ++x) {
     for (int y = 0; y < Rows(lattice); ++y) {
-      const Site a = Moved({0, 0}, x * p, y * p, p);
-      bonds.push_back({a, Moved(a, 1, 0, p), -1});
-      if (p == 2) bonds.push_back({a, Moved(a, -1, 0, p), 1});
+      const Site a = Moved(lattice, {0, 0}, x * p, y * p);
+      bonds.push_back({a, Moved(lattice, a, 1, 0), -1});
+      if (p == 2) bonds.push_back({a, Moved(lattice, a, -1, 0), 1});
       if (!lattice.has_rows) continue;
-      bonds.push_back({a, Moved(a, 0, 1, p), 0});
-      bonds.push_back({a, Moved(a, 0, -1, p), 0});
+      bonds.push_back({a, Moved(lattice, a, 0, 1), 0});
+      bonds.push_back({a, Moved(lattice, a, 0, -1), 0});
     }
   }
   return bonds;
@@ -125,7 +123,7 @@ double Form(const SiteLattice& lattice, const ContactMatrix& contact, const Func
             const Function& g) {
   double sum = 0;
   for (const Bond& bond : Bonds(lattice)) sum += BondForm(contact, bond, f, g);
-  return sum / (kCells * Rows(lattice));
+  return sum / (Cells(lattice) * Rows(lattice));
 }
 
 // sum(x e) at a contact, less a function of e_a + e_b.
@@ -139,7 +137,7 @@ double FieldForm(const SiteLattice& lattice, const ContactMatrix& contact, const
   for (const Bond& bond : Bonds(lattice)) {
     sum += BondForm(contact, bond, f, FieldAt(lattice, bond));
   }
-  return sum / (kCells * Rows(lattice));
+  return sum / (Cells(lattice) * Rows(lattice));
 }
 
 struct Example {
@@ -193,7 +191,7 @@ TEST(GalerkinForm, IsSymmetricAndPositive) {
     }
     EXPECT_LE((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 1e-13);
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues()[0], 1e-3);
-    EXPECT_LE((matrix.diagonal() - form.diagonal()).cwiseAbs().maxCoeff(), 1e-13);
+    EXPECT_GT(form.scales().minCoeff(), 0);
   }
 }
 
