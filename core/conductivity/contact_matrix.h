@@ -11,10 +11,11 @@
 // with f, g products p_i(e_a) p_j(e_b) of the orthonormal polynomials of gamma_law.h.
 //
 // Units: masses and temperature 1; rates are those at a contact's density of 1, so the exchange
-// rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 20.
+// rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
 // Error: kContactMatrixError. Properties, each with the test that bears its name:
 //   1. AgreesWithAnIndependentQuadrature.  2. ConservesTheEnergyOfThePair.
 //   3. IsSymmetricAndHasNoNegativeRate.  4. SwappedSitesSwapTheIndices.
+//   5. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
