@@ -25,7 +25,6 @@ void TranslateToOrigin(int16_t period, Monomial& monomial) {
   }
 }
 
-// Contacts between two sites of the lattice; sites at odd x and y do not exist.
 int Distance(Site a, Site b) { return std::abs(a.x - b.x) + std::abs(a.y - b.y); }
 
 Cluster Around(const SiteLattice& lattice, Site centre, int radius) {

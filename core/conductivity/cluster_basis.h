@@ -46,7 +46,7 @@ using Cluster = std::vector<Site>;
 
 // `length` neighbouring sites of a chain.
 std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length);
-// The sites up to `radius` contacts from a ball, and those from a piston.
+// The sites with |x| + |y| up to `radius` from a ball, and those from a piston along x and along y.
 std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius);
 
 struct BasisLimits {

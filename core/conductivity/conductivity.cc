@@ -13,6 +13,7 @@ namespace {
 // Squared, relative, in the norm of the inverse scales. The minimum is reached to the square of
 // what the solution is off, so this is far below rounding.
 constexpr double kResidual = 1e-20;
+constexpr int kMostSteps = 1000;  // 110 were seen
 
 // b A^-1 b by conjugate gradients, preconditioned by the scales.
 double SolvedForm(const GalerkinForm& form) {
@@ -21,7 +22,7 @@ double SolvedForm(const GalerkinForm& form) {
   Eigen::VectorXd step = residual.cwiseQuotient(form.scales());
   double norm = residual.dot(step);
   const double enough = kResidual * norm;
-  while (norm > enough) {
+  for (int steps = 0; norm > enough && steps < kMostSteps; ++steps) {
     const Eigen::VectorXd image = form.Apply(step);
     const double length = norm / step.dot(image);
     solution += length * step;

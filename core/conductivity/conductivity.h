@@ -12,19 +12,23 @@
 // of functions gives an upper bound. The correction kappa/kappa_0 - 1 is a universal number for
 // each lattice: it depends neither on temperature nor on the cell's shape.
 //
-//   upper bound = -b A^-1 b/E on the polynomials of a degree n on a cluster of neighbouring sites.
+//   kappa/kappa_0 - 1 <= -b A^-1 b/E
 //
-// As n grows, it falls with the power of tail_limit.h. A refinement goes in steps: a small cluster
-// to high degrees, then what larger clusters add, to lower degrees; each step's limit in n is
-// extrapolated, and the last step tells what still larger clusters add.
+// with f the polynomials of a total degree n on clusters of neighbouring sites. As n grows, the
+// bound tends to its limit with the power of tail_limit.h. A refinement has steps: first a small
+// cluster and high degrees, then what larger clusters add, at lower degrees. The limit of each step
+// in n is extrapolated. The last step tells what still larger clusters add.
 //
-// Values: the constants below took a minute to compute. They are constants because they are
-// universal and the service has to answer at once. QuickPlan recomputes them in a few tenths of a
-// second, to its own error, and a slow test with FinePlan. Properties, each with the test that
-// bears its name:
+// The values are constants, because they are universal and the service has to answer at once.
+// QuickPlan recomputes them in a few tenths of a second with a larger error. A slow test recomputes
+// them with FinePlan. docs/conductivity.md has the tables.
+//
+// Units: lengths in E, A and b are distances of neighbouring sites; the ratio has no unit.
+// Properties, each with the test that bears its name:
 //   1. StaticConductivityIsHalfTheExchangeRate.  2. BoundFallsWithDegreeAndCluster.
 //   3. SpheresHaveThePublishedValue: Gaspard and Gilbert, Dynamical contribution to the heat
-//      conductivity in stochastic energy exchanges of locally confined gases (2017), -0.000373.
+//      conductivity in stochastic energy exchanges of locally confined gases (2017), -0.000373. The
+//      value here, -0.000372458, agrees within one unit of the last digit.
 //   4. QuickPlanAgreesWithTheConstants.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
@@ -37,8 +41,8 @@
 
 namespace ballpiston {
 
-// In a chain: the number of neighbouring sites. In the lattice: the greatest number of contacts
-// from a ball or a piston, in its centre. A function depends on up to `sites` of them.
+// `extent` is the number of neighbouring sites in a chain. In the lattice it is the greatest
+// |x| + |y| from a ball or a piston. A function depends on up to `sites` of these sites.
 struct ClusterSize {
   int extent;
   int sites;

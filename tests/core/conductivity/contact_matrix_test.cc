@@ -81,8 +81,8 @@ struct Element {
 };
 
 // -<f L g> = -<(v_a - v_b)+ f (g' - g)>, on velocities: it is the symmetric form of the matrix only
-// if the exchange satisfies detailed balance. v_a = mean + half and v_b = mean - half have the density
-// exp(-mean^2 - half^2)/pi in mean and half.
+// if the exchange satisfies detailed balance. v_a = mean + half and v_b = mean - half have the
+// density exp(-mean^2 - half^2)/pi in mean and half.
 std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& elements,
                                  int panels) {
   const LaguerreSums p(d.a / 2.0), q(d.b / 2.0);
@@ -117,10 +117,10 @@ double At(const ContactMatrix& matrix, const Element& e) {
 }
 
 TEST(ContactMatrix, AgreesWithAnIndependentQuadrature) {
-  const std::vector<Element> elements = {
-      {1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2}, {2, 1, 1, 0}, {0, 3, 2, 1},
-      {3, 0, 3, 0}, {1, 2, 4, 0}, {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
-      {6, 0, 0, 1}, {2, 4, 3, 2}};
+  const std::vector<Element> elements = {{1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2},
+                                         {2, 1, 1, 0}, {0, 3, 2, 1}, {3, 0, 3, 0}, {1, 2, 4, 0},
+                                         {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
+                                         {6, 0, 0, 1}, {2, 4, 3, 2}};
   for (const SiteDimensions d : {SiteDimensions{2, 1}, {1, 2}, {1, 3}, {1, 1}}) {
     const ContactMatrix matrix(d, kDegree);
     const std::vector<double> exact = ByQuadrature(d, elements, 3);
