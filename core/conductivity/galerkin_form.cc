@@ -24,7 +24,8 @@ Monomial EnvironmentOf(const Monomial& monomial, const Factor& f, const SiteCont
   return rest;
 }
 
-// Whether a translation takes the one site to the other.
+// Whether a translation takes the one site to the other. Where none does, the environment holds no
+// function of the basis, and would only cost time.
 bool AreOfOneKind(Site a, Site b, int period) {
   return (a.x - b.x) % period == 0 && (a.y - b.y) % period == 0;
 }
