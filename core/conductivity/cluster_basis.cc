@@ -85,7 +85,7 @@ void ClusterBasis::AddAll(const Cluster& cluster, size_t next, Monomial& monomia
   }
 }
 
-void ClusterBasis::Add(Monomial monomial) {
+void ClusterBasis::Add(const Monomial& monomial) {
   Signed found = Representative(monomial);
   if (found.sign == 0) return;
   if (index_.try_emplace(found.monomial, size()).second) {

@@ -17,8 +17,8 @@
 #include <absl/container/flat_hash_map.h>
 #include <absl/container/inlined_vector.h>
 
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -30,7 +30,10 @@ struct Factor {
   Site site;
   int16_t degree = 0;  // 1 or more
 
-  friend auto operator<=>(const Factor&, const Factor&) = default;
+  friend bool operator==(const Factor&, const Factor&) = default;
+  friend bool operator<(const Factor& one, const Factor& other) {
+    return std::tie(one.site, one.degree) < std::tie(other.site, other.degree);
+  }
   template <typename H>
   friend H AbslHashValue(H state, const Factor& f) {
     return H::combine(std::move(state), f.site.x, f.site.y, f.degree);
@@ -77,7 +80,7 @@ class ClusterBasis {
   Monomial Reflected(const Monomial& monomial, int x_sign, int y_sign) const;
   Signed Representative(const Monomial& monomial) const;
   void AddAll(const Cluster& cluster, size_t next, Monomial& monomial);
-  void Add(Monomial monomial);
+  void Add(const Monomial& monomial);
 
   bool has_rows_;
   int16_t period_;

@@ -24,8 +24,9 @@ Eigen::VectorXd PairProducts(SiteDimensions dimensions, int degree, double ea, d
   const Eigen::VectorXd b = GammaPolynomials(dimensions.b / 2.0, degree, eb);
   Eigen::VectorXd products(ContactMatrix::Rows(degree));
   for (int total = 0; total <= degree; ++total) {
-    for (int j = 0; j <= total; ++j)
+    for (int j = 0; j <= total; ++j) {
       products[ContactMatrix::Row(total - j, j)] = a[total - j] * b[j];
+    }
   }
   return products;
 }

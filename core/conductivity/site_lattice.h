@@ -6,8 +6,8 @@
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
 
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "core/conductivity/contact_matrix.h"
@@ -18,7 +18,10 @@ struct Site {
   int16_t x = 0;
   int16_t y = 0;
 
-  friend auto operator<=>(const Site&, const Site&) = default;
+  friend bool operator==(const Site&, const Site&) = default;
+  friend bool operator<(Site one, Site other) {
+    return std::tie(one.x, one.y) < std::tie(other.x, other.y);
+  }
 };
 
 // A contact of one cell. Others follow by translation and by reflection of x and of y.

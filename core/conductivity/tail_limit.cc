@@ -1,6 +1,6 @@
 #include "core/conductivity/tail_limit.h"
 
-#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
 #include <cstddef>
 
@@ -17,7 +17,8 @@ double FittedLimit(absl::Span<const double> at, absl::Span<const double> values,
       terms(row, j) = std::pow(n, -power - static_cast<double>(j - 1));
     }
   }
-  return terms.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(values.data(), size))[0];
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(terms, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return svd.solve(Eigen::Map<const Eigen::VectorXd>(values.data(), size))[0];
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -17,7 +16,7 @@ namespace {
 constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
 
 constexpr int kDegree = 6;
-using Polynomials = std::array<double, kDegree + 1>;
+using Polynomials = Eigen::Vector<double, kDegree + 1>;
 
 // Laguerre's polynomials by their sums, normalised, with positive leading coefficients.
 class LaguerreSums {
@@ -29,21 +28,21 @@ class LaguerreSums {
       for (int i = 0; i <= n; ++i) {
         const double size = std::exp(std::lgamma(n + shape) - std::lgamma(n - i + 1) -
                                      std::lgamma(shape + i) - std::lgamma(i + 1));
-        coefficient_[n][i] = ((n + i) % 2 == 0 ? size : -size) / std::sqrt(square);
+        coefficient_(n, i) = ((n + i) % 2 == 0 ? size : -size) / std::sqrt(square);
       }
     }
   }
 
   Polynomials operator()(double x) const {
-    Polynomials p = {};
+    Polynomials p = Polynomials::Zero();
     for (int n = 0; n <= kDegree; ++n) {
-      for (int i = n; i >= 0; --i) p[n] = p[n] * x + coefficient_[n][i];
+      for (int i = n; i >= 0; --i) p[n] = p[n] * x + coefficient_(n, i);
     }
     return p;
   }
 
  private:
-  std::array<std::array<double, kDegree + 1>, kDegree + 1> coefficient_ = {};
+  Eigen::Matrix<double, kDegree + 1, kDegree + 1> coefficient_;
 };
 
 struct Point {
