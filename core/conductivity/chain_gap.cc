@@ -152,7 +152,7 @@ Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree) {
 }
 
 // Of a pair the distance from the gap is proportional to (n + 1)^-6 within 1 % from degree 10 on.
-Limit ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees) {
+ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees) {
   std::vector<double> at, gaps;
   for (const int degree : degrees) {
     at.push_back(degree + 1);

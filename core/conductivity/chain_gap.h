@@ -36,7 +36,7 @@ namespace ballpiston {
 Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree);
 
 // The gap, extrapolated from two or more degrees, ascending.
-Limit ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
+ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
 
 }  // namespace ballpiston
 

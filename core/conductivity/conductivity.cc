@@ -49,7 +49,7 @@ class Refinement {
   explicit Refinement(const SiteLattice& lattice) : lattice_(lattice) {}
 
   // What a step adds.
-  Limit Added(const RefinementStep& step) {
+  ExtrapolatedValue Added(const RefinementStep& step) {
     std::vector<double> degrees, differences;
     for (const int degree : step.degrees) {
       degrees.push_back(degree);
@@ -90,7 +90,7 @@ ConductivityRatio RefineConductivity(const SiteLattice& lattice, const Refinemen
   ConductivityRatio ratio = {};
   double last = 0;
   for (const RefinementStep& step : plan.steps) {
-    const Limit added = refinement.Added(step);
+    const ExtrapolatedValue added = refinement.Added(step);
     ratio.correction += added.value;
     ratio.error += added.error;
     last = added.value;

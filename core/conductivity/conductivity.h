@@ -86,11 +86,11 @@ RefinementPlan QuickPlan(const SiteLattice& lattice);  // 0.2 to 0.5 s
 RefinementPlan FinePlan(const SiteLattice& lattice);   // 15 to 30 s
 
 // The corrections of the infinite gases, by FinePlan.
-inline constexpr Limit kChainCorrection = {-0.0018073, 4e-7};
-inline constexpr Limit kLatticeCorrection = {-0.0011937, 2e-7};
+inline constexpr ExtrapolatedValue kChainCorrection = {-0.0018073, 4e-7};
+inline constexpr ExtrapolatedValue kLatticeCorrection = {-0.0011937, 2e-7};
 // Those of chains of equal sites: discs and spheres.
-inline constexpr Limit kDiscChainCorrection = {-0.00089895, 6e-8};
-inline constexpr Limit kSphereChainCorrection = {-0.000372458, 8e-9};
+inline constexpr ExtrapolatedValue kDiscChainCorrection = {-0.00089895, 6e-8};
+inline constexpr ExtrapolatedValue kSphereChainCorrection = {-0.000372458, 8e-9};
 
 }  // namespace ballpiston
 

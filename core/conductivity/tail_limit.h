@@ -12,13 +12,14 @@
 
 namespace ballpiston {
 
-struct Limit {
+struct ExtrapolatedValue {
   double value;
   double error;  // the change of the value by its last term
 };
 
 // `at` ascending and positive, with as many values: two or more.
-Limit TailLimit(absl::Span<const double> at, absl::Span<const double> values, double power);
+ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values,
+                            double power);
 
 }  // namespace ballpiston
 

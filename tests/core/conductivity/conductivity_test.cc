@@ -84,8 +84,9 @@ TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
   const auto bound = [&](int extent, int degree) {
     return ConductivityBound(chain, {extent, 9}, degree);
   };
-  const Limit first = TailLimit({4, 6, 8}, {bound(2, 4), bound(2, 6), bound(2, 8)}, 3);
-  const Limit second = TailLimit({4, 6}, {bound(3, 4) - bound(2, 4), bound(3, 6) - bound(2, 6)}, 3);
+  const ExtrapolatedValue first = TailLimit({4, 6, 8}, {bound(2, 4), bound(2, 6), bound(2, 8)}, 3);
+  const ExtrapolatedValue second =
+      TailLimit({4, 6}, {bound(3, 4) - bound(2, 4), bound(3, 6) - bound(2, 6)}, 3);
   const ConductivityRatio ratio = RefineConductivity(
       chain, {.steps = {{{0, 0}, {2, 9}, {4, 6, 8}}, {{2, 9}, {3, 9}, {4, 6}}}, .beyond = 0.5});
   EXPECT_NEAR(ratio.correction, first.value + 1.5 * second.value, 1e-15);
@@ -95,7 +96,7 @@ TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
 }
 
 TEST(Conductivity, QuickPlanAgreesWithTheConstants) {
-  const auto agrees = [](const SiteLattice& lattice, Limit constant) {
+  const auto agrees = [](const SiteLattice& lattice, ExtrapolatedValue constant) {
     const ConductivityRatio quick = RefineConductivity(lattice, QuickPlan(lattice));
     EXPECT_NEAR(quick.correction, constant.value, quick.error);
     EXPECT_LE(quick.error, 3e-6);

@@ -25,7 +25,7 @@ TEST(TailLimit, SequencesOfTheStatedFormHaveTheirLimit) {
 TEST(TailLimit, ErrorIsTheChangeByTheLastTerm) {
   const std::vector<double> at = {8, 10, 12};
   const std::vector<double> values = Sequence(at, 3);
-  const Limit all = TailLimit(at, values, 3);
+  const ExtrapolatedValue all = TailLimit(at, values, 3);
   const double x = std::pow(10.0, -3), y = std::pow(12.0, -3);
   const double two = (values[1] * y - values[2] * x) / (y - x);
   EXPECT_NEAR(all.error, std::abs(two - all.value), 1e-13);
