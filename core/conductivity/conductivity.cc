@@ -107,7 +107,7 @@ ConductivityRatio RefineConductivity(const SiteLattice& lattice, const Refinemen
 // Chains: what n sites leave out was measured as (n + 2)^-6. So a step from 6 to 8 sites leaves
 // 0.36 of what it adds, and one from 10 to 12 leaves 0.66. Lattice: a step of the radius adds less
 // than a quarter of what the step before added. Functions of more sites than the plans have add
-// 2e-8.
+// less than 1e-7.
 RefinementPlan QuickPlan(const SiteLattice& lattice) {
   if (lattice.has_rows) {
     return {.steps = {{{0, 0}, {1, 3}, {8, 10, 12, 14}},
