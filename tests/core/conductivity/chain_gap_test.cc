@@ -43,7 +43,7 @@ TEST(ChainGap, SpectrumDoesNotDependOnTheDirectionOfTheChain) {
   EXPECT_LE((one - other).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Published as a table in docs/markov-limit.md.
+// docs/conductivity.md has the table.
 TEST(ChainGap, LongerChainsRelaxMoreSlowly) {
   EXPECT_NEAR(ChainGap({2, 1, 2}, {6, 8, 10, 12}).value, 0.113388480, 2e-7);
   EXPECT_NEAR(ChainGap({1, 2, 1}, {6, 8, 10, 12}).value, 0.146330848, 2e-7);
