@@ -17,7 +17,7 @@
 //
 // Units: rates |dG_bp|/|G| of the pair, S = 1/6 for each degree of freedom, so the pair's gap is
 // that of markov/generator.h. Domain: 2 or more sites of 1 or more velocity components, degree 1 to
-// 20; the cost grows as the cube of the number of polynomials, (n + N - 1)!/(n! (N - 1)!) with
+// 40; the cost grows as the cube of the number of polynomials, (n + N - 1)!/(n! (N - 1)!) with
 // degree n and N sites. Properties, each with the test that bears its name:
 //   1. GapOfThePairIsThatOfItsGenerator.  2. GapFallsWithDegree.
 //   3. SpectrumDoesNotDependOnTheDirectionOfTheChain.
