@@ -1,0 +1,94 @@
+// Functions of the energies of a few neighbouring sites, summed over all their translates.
+//
+// A monomial is a product of orthonormal polynomials (gamma_law.h), one for each of its sites, of
+// degree 1 or more. Its translates count as the same function. Only those combinations matter that
+// change sign under the reflection of x, as the field does, and do not under that of y. So a
+// function of the basis is the sum of a monomial's reflections with these signs, and monomials
+// whose reflections cancel have none.
+//
+// Properties, each with the test that bears its name:
+//   1. TranslatesAreOneFunction.  2. ReflectionsDifferInSignOnly.
+//   3. HasEveryFunctionOfTheCluster.
+//
+// Immutable; safe to share between threads.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_
+
+#include <absl/container/flat_hash_map.h>
+#include <absl/container/inlined_vector.h>
+
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "core/conductivity/site_lattice.h"
+
+namespace ballpiston {
+
+struct Factor {
+  Site site;
+  int16_t degree = 0;  // 1 or more
+
+  friend bool operator==(const Factor&, const Factor&) = default;
+  friend bool operator<(const Factor& one, const Factor& other) {
+    return std::tie(one.site, one.degree) < std::tie(other.site, other.degree);
+  }
+  template <typename H>
+  friend H AbslHashValue(H state, const Factor& f) {
+    return H::combine(std::move(state), f.site.x, f.site.y, f.degree);
+  }
+};
+
+using Monomial = absl::InlinedVector<Factor, 8>;  // sorted by site
+
+int TotalDegree(const Monomial& monomial);
+
+// The sites that the functions may depend on, up to translation.
+using Cluster = std::vector<Site>;
+
+// `length` neighbouring sites of a chain.
+std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length);
+// The sites with |x| + |y| up to `radius` from a ball, and those from a piston along x and along y.
+std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius);
+
+struct BasisLimits {
+  int degree;       // in all
+  int sites = 100;  // of a monomial
+};
+
+class ClusterBasis {
+ public:
+  ClusterBasis(const SiteLattice& lattice, const std::vector<Cluster>& clusters,
+               const BasisLimits& limits);
+
+  int size() const { return static_cast<int>(monomials_.size()); }
+  const BasisLimits& limits() const { return limits_; }
+  // One for each function.
+  const std::vector<Monomial>& monomials() const { return monomials_; }
+  // k + 1 for a monomial with the sign + in function k, -(k + 1) for the sign -, 0 for one in no
+  // function.
+  int Find(const Monomial& monomial) const;
+  // All reflections of a monomial, as they come.
+  std::vector<Monomial> Reflections(const Monomial& monomial) const;
+
+ private:
+  struct Signed {
+    Monomial monomial;
+    int sign;  // 0 if its reflections cancel
+  };
+  Monomial Reflected(const Monomial& monomial, int x_sign, int y_sign) const;
+  Signed Representative(const Monomial& monomial) const;
+  void AddAll(const Cluster& cluster, size_t next, Monomial& monomial);
+  void Add(const Monomial& monomial);
+
+  bool has_rows_;
+  int16_t period_;
+  BasisLimits limits_;
+  std::vector<Monomial> monomials_;
+  absl::flat_hash_map<Monomial, int> index_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_CLUSTER_BASIS_H_

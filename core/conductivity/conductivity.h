@@ -1,0 +1,97 @@
+// The heat conductivity of infinite chains and lattices in the limit of rare collisions.
+//
+// Energy moves by the jump process of contact_matrix.h. Its conductivity at temperature T is given
+// by Varadhan's variational formula, which is exact for a reversible process: with the field X =
+// sum(x e), and f any function of finitely many energies, summed over all its translates,
+//
+//   kappa T^2 = (1/2) inf_f sum over the contacts c of a cell < rate_c (delta_c (X + f))^2 >
+//             = inf_f ( E + 2 b f + f A f ) = E - b A^-1 b,
+//
+// delta_c is the change by an exchange, and A, b and E are those of galerkin_form.h. f = 0 gives
+// the static conductivity kappa_0, half the exchange rate for balls and pistons. Every finite set
+// of functions gives an upper bound. The correction kappa/kappa_0 - 1 is a universal number for
+// each lattice: it depends neither on temperature nor on the cell's shape.
+//
+//   kappa/kappa_0 - 1 <= -b A^-1 b/E
+//
+// with f the polynomials of a total degree n on clusters of neighbouring sites. As n grows, the
+// bound tends to its limit with the power of tail_limit.h. A refinement has steps: first a small
+// cluster and high degrees, then what larger clusters add, at lower degrees. The limit of each step
+// in n is extrapolated. The last step tells what still larger clusters add.
+//
+// The values are constants, because they are universal and the service has to answer at once.
+// QuickPlan recomputes them in a few tenths of a second with a larger error. A slow test recomputes
+// them with FinePlan. docs/conductivity.md has the tables.
+//
+// Units: lengths in E, A and b are distances of neighbouring sites; the ratio has no unit.
+// Properties, each with the test that bears its name:
+//   1. StaticConductivityIsHalfTheExchangeRate.  2. BoundFallsWithDegreeAndCluster.
+//   3. SpheresHaveThePublishedValue: Gaspard and Gilbert, Dynamical contribution to the heat
+//      conductivity in stochastic energy exchanges of locally confined gases (2017), -0.000373. The
+//      value here, -0.000372458, agrees within one unit of the last digit.
+//   4. QuickPlanAgreesWithTheConstants.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_
+
+#include <vector>
+
+#include "core/conductivity/cluster_basis.h"
+#include "core/conductivity/site_lattice.h"
+#include "core/conductivity/tail_limit.h"
+
+namespace ballpiston {
+
+// `extent` is the number of neighbouring sites in a chain. In the lattice it is the greatest
+// |x| + |y| from a ball or a piston. A function depends on up to `sites` of these sites.
+struct ClusterSize {
+  int extent;
+  int sites;
+
+  friend bool operator==(const ClusterSize&, const ClusterSize&) = default;
+};
+
+// kappa/kappa_0 - 1 on the polynomials of this degree, an upper bound. Domain: degree 1 to 40 for
+// balls and pistons, 24 for equal sites; extent 1 or more. Relative error 1e-9, for rounding.
+double ConductivityBound(const SiteLattice& lattice, ClusterSize size, int degree);
+
+// What the larger cluster adds to the correction, extrapolated from these degrees. `from.extent` is
+// 0 in the first step.
+struct RefinementStep {
+  ClusterSize from;
+  ClusterSize to;
+  std::vector<int> degrees;
+};
+
+struct RefinementPlan {
+  std::vector<RefinementStep> steps;
+  double beyond;  // what still larger clusters add, over the last step
+};
+
+struct ComputedBound {
+  ClusterSize size;
+  int degree;
+  double correction;
+};
+
+struct ConductivityRatio {
+  double correction;   // extrapolated kappa/kappa_0 - 1
+  double error;        // of the extrapolation: the sum of all steps' and half of what lies beyond
+  double upper_bound;  // the least bound that was computed
+  std::vector<ComputedBound> table;
+};
+
+ConductivityRatio RefineConductivity(const SiteLattice& lattice, const RefinementPlan& plan);
+
+RefinementPlan QuickPlan(const SiteLattice& lattice);  // 0.2 to 0.5 s
+RefinementPlan FinePlan(const SiteLattice& lattice);   // 15 to 30 s
+
+// The corrections of the infinite gases, by FinePlan.
+inline constexpr ExtrapolatedValue kChainCorrection = {-0.0018073, 4e-7};
+inline constexpr ExtrapolatedValue kLatticeCorrection = {-0.0011937, 2e-7};
+// Those of chains of equal sites: discs and spheres.
+inline constexpr ExtrapolatedValue kDiscChainCorrection = {-0.00089895, 6e-8};
+inline constexpr ExtrapolatedValue kSphereChainCorrection = {-0.000372458, 8e-9};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONDUCTIVITY_H_

@@ -1,0 +1,62 @@
+// One contact's part of the jump process's generator, between products of polynomials of the two
+// sites' energies.
+//
+// Two sites a and b have velocities of d_a and d_b components, which are isotropic at given
+// energies. In a contact they exchange their components v_a and v_b along the contact, at the rate
+// (v_a - v_b)+. In equilibrium at temperature 1 the energies are independent, with Gamma laws of
+// shapes d_a/2 and d_b/2, and the contact's generator L is symmetric:
+//
+//   M(f, g) = -<f L g> = (1/2) < (v_a - v_b)+ (f' - f) (g' - g) >,        ' = after the exchange,
+//
+// with f, g products p_i(e_a) p_j(e_b) of the orthonormal polynomials of gamma_law.h.
+//
+// Units: masses and temperature 1; rates are those at a contact's density of 1, so the exchange
+// rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
+// Error: kContactMatrixError. Properties, each with the test that bears its name:
+//   1. AgreesWithAnIndependentQuadrature.  2. ConservesTheEnergyOfThePair.
+//   3. IsSymmetricAndHasNoNegativeRate.  4. SwappedSitesSwapTheIndices.
+//   5. HighDegreesAreExactToRounding.
+//
+// Immutable; safe to share between threads.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_
+
+#include <Eigen/Core>
+
+namespace ballpiston {
+
+// <(v_a - v_b)+> = 1/sqrt(pi).
+inline constexpr double kContactRate = 0.5641895835477563;
+
+// Of an element, relative to the root of the product of its row's and its column's diagonal
+// elements.
+inline constexpr double kContactMatrixError = 1e-13;
+
+struct SiteDimensions {
+  int a;
+  int b;
+};
+
+class ContactMatrix {
+ public:
+  // All products of a total degree up to `degree`.
+  ContactMatrix(SiteDimensions dimensions, int degree);
+
+  // The row of p_i(e_a) p_j(e_b). Products of a lower total degree come first.
+  static int Row(int i, int j) { return (i + j) * (i + j + 1) / 2 + j; }
+  // Products of a total degree up to `degree`.
+  static int Rows(int degree) { return Row(degree + 1, 0); }
+
+  SiteDimensions dimensions() const { return dimensions_; }
+  int degree() const { return degree_; }
+  const Eigen::MatrixXd& elements() const { return elements_; }
+
+ private:
+  SiteDimensions dimensions_;
+  int degree_;
+  Eigen::MatrixXd elements_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONTACT_MATRIX_H_

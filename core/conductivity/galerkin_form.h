@@ -1,0 +1,62 @@
+// The generator of the jump process between the functions of a cluster basis, and the field's
+// coupling to them.
+//
+// With the field X = sum(x e), the functions f_k of the basis, each summed over all translates, and
+// sums over the contacts of one cell,
+//
+//   A_kl = sum <f_k, -L_c f_l>,   b_k = sum <f_k, -L_c X>,   E = sum <X, -L_c X>.
+//
+// A contact acts on two sites and leaves the others as they are. So the basis is cut into blocks: a
+// contact with all monomials that agree elsewhere, their environment. Its part of A is the leading
+// part of the ContactMatrix, up to the degree that the environment leaves. Blocks of one degree are
+// multiplied together.
+//
+// Units: those of contact_matrix.h; lengths are distances of neighbouring sites. Properties, each
+// with the test that bears its name:
+//   1. AgreesWithTheDefinitionOnARing.  2. IsSymmetricAndPositive.
+//
+// Immutable; safe to share between threads.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/conductivity/cluster_basis.h"
+#include "core/conductivity/contact_matrix.h"
+#include "core/conductivity/site_lattice.h"
+
+namespace ballpiston {
+
+class GalerkinForm {
+ public:
+  // `contact` has the lattice's dimensions, and at least the degree of the basis.
+  GalerkinForm(const SiteLattice& lattice, const ClusterBasis& basis, const ContactMatrix& contact);
+
+  // A v.
+  Eigen::VectorXd Apply(const Eigen::VectorXd& v) const;
+  // The diagonal of A, less couplings of a function to its own reflections; positive.
+  const Eigen::VectorXd& scales() const { return scales_; }
+  const Eigen::VectorXd& field() const { return field_; }  // b
+  double field_energy() const { return field_energy_; }    // E
+
+ private:
+  // Places in the basis by ClusterBasis::Find, a column for each environment, a row for each
+  // product of the contact's two polynomials, without the constant.
+  struct Blocks {
+    Eigen::MatrixXi places;
+    double copies;
+  };
+  void AddField(const SiteContact& contact, const ClusterBasis& basis, SiteDimensions dimensions);
+  void AddScales(const Blocks& blocks);
+
+  Eigen::MatrixXd contact_;  // without the constant's row and column
+  std::vector<Blocks> blocks_;
+  Eigen::VectorXd scales_;
+  Eigen::VectorXd field_;
+  double field_energy_ = 0;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_GALERKIN_FORM_H_

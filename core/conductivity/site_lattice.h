@@ -1,0 +1,55 @@
+// The infinite chains and the lattice on which the jump process moves energy, as a graph of sites.
+//
+// Sites have whole coordinates and neighbours have distance 1: a ball has even coordinates, a
+// piston stands where one coordinate is odd. Unlike elsewhere in the core a cell is 2 long here. In
+// a chain of equal sites a cell is 1 long.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
+
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "core/conductivity/contact_matrix.h"
+
+namespace ballpiston {
+
+struct Site {
+  int16_t x = 0;
+  int16_t y = 0;
+
+  friend bool operator==(const Site&, const Site&) = default;
+  friend bool operator<(Site one, Site other) {
+    return std::tie(one.x, one.y) < std::tie(other.x, other.y);
+  }
+};
+
+// A contact of one cell. Others follow by translation and by reflection of x and of y.
+struct SiteContact {
+  Site a;
+  Site b;
+  int copies;  // in one cell, by reflections
+
+  // By how much the field sum(x e) grows if an energy 1 goes from b to a.
+  int field() const { return a.x - b.x; }
+};
+
+struct SiteLattice {
+  SiteDimensions dimensions;  // of the velocities of a contact's two sites
+  int period;                 // length of a cell
+  bool has_rows;              // extends along y also
+  std::vector<SiteContact> contacts;
+
+  bool HasSite(Site site) const { return !has_rows || site.x % 2 == 0 || site.y % 2 == 0; }
+};
+
+// Ball, piston, ball, piston, ...
+SiteLattice BallPistonChain();
+// Equal sites of d velocity components: 2 is the model of discs, 3 that of spheres.
+SiteLattice EqualSitesChain(int dimension);
+// A ball in each cell and a piston on each edge of the square lattice.
+SiteLattice BallPistonLattice();
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_

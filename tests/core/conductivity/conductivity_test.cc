@@ -1,0 +1,113 @@
+#include "core/conductivity/conductivity.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+#include "core/conductivity/contact_matrix.h"
+#include "core/conductivity/galerkin_form.h"
+
+namespace ballpiston {
+namespace {
+
+const Cluster kBallAndPiston = {{0, 0}, {1, 0}};
+const Cluster kBallAndPistonAlongY = {{0, 0}, {0, 1}};
+
+GalerkinForm PairsOf(const SiteLattice& lattice, int degree) {
+  const ClusterBasis basis(lattice, {kBallAndPiston, kBallAndPistonAlongY}, {.degree = degree});
+  return {lattice, basis, ContactMatrix(lattice.dimensions, degree)};
+}
+
+// Sites are half a cell apart, so kappa_0 = E/4 for balls and pistons.
+TEST(Conductivity, StaticConductivityIsHalfTheExchangeRate) {
+  EXPECT_NEAR(PairsOf(BallPistonChain(), 3).field_energy() / 4, kContactRate / 2, 1e-14);
+  EXPECT_NEAR(PairsOf(BallPistonLattice(), 3).field_energy() / 4, kContactRate / 2, 1e-14);
+}
+
+TEST(Conductivity, StaticConductivityOfEqualSitesIsTheExchangeRate) {
+  for (const int dimension : {2, 3}) {
+    const SiteLattice chain = EqualSitesChain(dimension);
+    const ClusterBasis basis(chain, ChainClusters(chain, 2), {.degree = 3});
+    const GalerkinForm form(chain, basis, ContactMatrix(chain.dimensions, 3));
+    EXPECT_NEAR(form.field_energy(), kContactRate, 1e-14);
+  }
+}
+
+// Functions of one ball and one piston that touch. A square lattice's pairs along y do not matter.
+// Such functions were solved before by another program, to three digits.
+TEST(Conductivity, FunctionsOfOnePairHaveTheirKnownValues) {
+  const auto pairs = [](const SiteLattice& lattice) {
+    const GalerkinForm form = PairsOf(lattice, 16);
+    Eigen::MatrixXd matrix(form.field().size(), form.field().size());
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+      matrix.col(k) = form.Apply(Eigen::VectorXd::Unit(matrix.rows(), k));
+    }
+    return -form.field().dot(matrix.llt().solve(form.field())) / form.field_energy();
+  };
+  EXPECT_NEAR(pairs(BallPistonChain()), -0.00132, 1e-5);
+  EXPECT_NEAR(pairs(BallPistonLattice()), -0.00093, 1e-5);
+  EXPECT_NEAR(ConductivityBound(BallPistonChain(), {2, 2}, 16), pairs(BallPistonChain()), 1e-12);
+}
+
+// For spheres the first function is p_1 p_2 - p_2 p_1 of two neighbours, with the value -1/5025.
+TEST(Conductivity, FirstBoundOfSpheresIsAFraction) {
+  EXPECT_NEAR(ConductivityBound(EqualSitesChain(3), {2, 2}, 3), -1.0 / 5025, 1e-16);
+}
+
+TEST(Conductivity, BoundFallsWithDegreeAndCluster) {
+  for (const SiteLattice& lattice : {BallPistonChain(), EqualSitesChain(3), BallPistonLattice()}) {
+    double last = 0;
+    for (const int degree : {3, 4, 5}) {
+      const double bound = ConductivityBound(lattice, {2, 3}, degree);
+      EXPECT_LT(bound, last - 1e-7);
+      last = bound;
+    }
+    const double larger = ConductivityBound(lattice, {3, 3}, 5);
+    EXPECT_LT(larger, last - 1e-7);
+    EXPECT_LT(ConductivityBound(lattice, {3, 4}, 5), larger + 1e-12);
+  }
+}
+
+// A unit of the published last digit: the value here is -0.0003725 (see kSpheresCorrection).
+TEST(Conductivity, SpheresHaveThePublishedValue) {
+  const ConductivityRatio spheres =
+      RefineConductivity(EqualSitesChain(3), QuickPlan(EqualSitesChain(3)));
+  EXPECT_NEAR(spheres.correction, -0.000373, 1e-6);
+  EXPECT_NEAR(spheres.correction, kSphereChainCorrection.value, spheres.error);
+  EXPECT_LE(spheres.error, 1e-7);
+}
+
+TEST(Conductivity, RefinementSumsTheLimitsOfItsSteps) {
+  const SiteLattice chain = BallPistonChain();
+  const auto bound = [&](int extent, int degree) {
+    return ConductivityBound(chain, {extent, 9}, degree);
+  };
+  const ExtrapolatedValue first = TailLimit({4, 6, 8}, {bound(2, 4), bound(2, 6), bound(2, 8)}, 3);
+  const ExtrapolatedValue second =
+      TailLimit({4, 6}, {bound(3, 4) - bound(2, 4), bound(3, 6) - bound(2, 6)}, 3);
+  const ConductivityRatio ratio = RefineConductivity(
+      chain, {.steps = {{{0, 0}, {2, 9}, {4, 6, 8}}, {{2, 9}, {3, 9}, {4, 6}}}, .beyond = 0.5});
+  EXPECT_NEAR(ratio.correction, first.value + 1.5 * second.value, 1e-15);
+  EXPECT_NEAR(ratio.error, first.error + second.error - 0.25 * second.value, 1e-15);
+  EXPECT_EQ(ratio.upper_bound, bound(3, 6));
+  EXPECT_EQ(ratio.table.size(), 5);
+}
+
+TEST(Conductivity, QuickPlanAgreesWithTheConstants) {
+  const auto agrees = [](const SiteLattice& lattice, ExtrapolatedValue constant) {
+    const ConductivityRatio quick = RefineConductivity(lattice, QuickPlan(lattice));
+    EXPECT_NEAR(quick.correction, constant.value, quick.error);
+    EXPECT_LE(quick.error, 3e-6);
+    EXPECT_GT(quick.upper_bound, constant.value);
+    EXPECT_GE(quick.table.size(), 8);
+    for (const ComputedBound& row : quick.table) EXPECT_GE(row.correction, quick.upper_bound);
+  };
+  agrees(BallPistonChain(), kChainCorrection);
+  agrees(BallPistonLattice(), kLatticeCorrection);
+  agrees(EqualSitesChain(2), kDiscChainCorrection);
+}
+
+}  // namespace
+}  // namespace ballpiston

@@ -1,0 +1,218 @@
+#include "core/conductivity/contact_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/conductivity/gamma_law.h"
+#include "tests/oracle/gauss_legendre.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr SiteDimensions kAllDimensions[] = {{2, 1}, {1, 2}, {2, 2}, {3, 3}, {1, 1}};
+
+constexpr int kDegree = 6;
+using Polynomials = Eigen::Vector<double, kDegree + 1>;
+
+// Laguerre's polynomials by their sums, normalised, with positive leading coefficients.
+class LaguerreSums {
+ public:
+  explicit LaguerreSums(double shape) {
+    for (int n = 0; n <= kDegree; ++n) {
+      const double square =
+          std::exp(std::lgamma(n + shape) - std::lgamma(n + 1) - std::lgamma(shape));
+      for (int i = 0; i <= n; ++i) {
+        const double size = std::exp(std::lgamma(n + shape) - std::lgamma(n - i + 1) -
+                                     std::lgamma(shape + i) - std::lgamma(i + 1));
+        coefficient_(n, i) = ((n + i) % 2 == 0 ? size : -size) / std::sqrt(square);
+      }
+    }
+  }
+
+  Polynomials operator()(double x) const {
+    Polynomials p = Polynomials::Zero();
+    for (int n = 0; n <= kDegree; ++n) {
+      for (int i = n; i >= 0; --i) p[n] = p[n] * x + coefficient_(n, i);
+    }
+    return p;
+  }
+
+ private:
+  Eigen::Matrix<double, kDegree + 1, kDegree + 1> coefficient_;
+};
+
+struct Point {
+  double x;
+  double weight;
+};
+
+// Gauss-Legendre nodes on [0, end].
+std::vector<Point> Panels(int count, double end) {
+  std::vector<Point> points;
+  const double half = end / count / 2;
+  for (int panel = 0; panel < count; ++panel) {
+    for (const oracle::GaussNode& node : oracle::GaussNodes()) {
+      points.push_back({(2 * panel + 1) * half + half * static_cast<double>(node.x),
+                        half * static_cast<double>(node.weight)});
+    }
+  }
+  return points;
+}
+
+// Nodes in the energy of `components` velocity components, from their speed's law.
+std::vector<Point> EnergyPoints(int components, int panels) {
+  if (components == 0) return {{0, 1}};
+  std::vector<Point> points;
+  const double norm = std::pow(2, components / 2.0 - 1) * std::tgamma(components / 2.0);
+  for (const Point& v : Panels(panels, 14)) {
+    const double density = std::pow(v.x, components - 1) * std::exp(-v.x * v.x / 2) / norm;
+    points.push_back({v.x * v.x / 2, v.weight * density});
+  }
+  return points;
+}
+
+struct Element {
+  int i, j, k, l;
+};
+
+// -<f L g> = -<(v_a - v_b)+ f (g' - g)>, on velocities: it is the symmetric form of the matrix only
+// if the exchange satisfies detailed balance. v_a = mean + half and v_b = mean - half have the
+// density exp(-mean^2 - half^2)/pi in mean and half.
+std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& elements,
+                                 int panels) {
+  const LaguerreSums p(d.a / 2.0), q(d.b / 2.0);
+  std::vector<double> sums(elements.size());
+  for (const Point& mean : Panels(panels, 10)) {
+    for (const Point& half : Panels(panels, 10)) {
+      for (const double sign : {-1, 1}) {
+        const double va = sign * mean.x + half.x, vb = sign * mean.x - half.x;
+        const double density =
+            mean.weight * half.weight * std::exp(-(va * va + vb * vb) / 2) / std::numbers::pi;
+        if (density < 1e-40) continue;
+        for (const Point& a : EnergyPoints(d.a - 1, panels)) {
+          const Polynomials pa = p(a.x + va * va / 2), after_a = p(a.x + vb * vb / 2);
+          for (const Point& b : EnergyPoints(d.b - 1, panels)) {
+            const double rate = density * a.weight * b.weight * (va - vb);
+            if (rate < 1e-40) continue;
+            const Polynomials qb = q(b.x + vb * vb / 2), after_b = q(b.x + va * va / 2);
+            for (size_t n = 0; n < elements.size(); ++n) {
+              const auto [i, j, k, l] = elements[n];
+              sums[n] -= rate * pa[i] * qb[j] * (after_a[k] * after_b[l] - pa[k] * qb[l]);
+            }
+          }
+        }
+      }
+    }
+  }
+  return sums;
+}
+
+double At(const ContactMatrix& matrix, const Element& e) {
+  return matrix.elements()(ContactMatrix::Row(e.i, e.j), ContactMatrix::Row(e.k, e.l));
+}
+
+TEST(ContactMatrix, AgreesWithAnIndependentQuadrature) {
+  const std::vector<Element> elements = {{1, 0, 1, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}, {2, 0, 0, 2},
+                                         {2, 1, 1, 0}, {0, 3, 2, 1}, {3, 0, 3, 0}, {1, 2, 4, 0},
+                                         {2, 2, 0, 1}, {4, 1, 1, 4}, {0, 5, 5, 0}, {3, 3, 1, 0},
+                                         {6, 0, 0, 1}, {2, 4, 3, 2}};
+  for (const SiteDimensions d : {SiteDimensions{2, 1}, {1, 2}, {1, 3}, {1, 1}}) {
+    const ContactMatrix matrix(d, kDegree);
+    const std::vector<double> exact = ByQuadrature(d, elements, 3);
+    for (size_t n = 0; n < elements.size(); ++n) {
+      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-12) << d.a << " " << d.b << ": " << n;
+    }
+  }
+}
+
+// The integrals have one dimension more, so degrees are low enough for fewer nodes.
+TEST(ContactMatrix, EqualSitesAgreeWithAnIndependentQuadrature) {
+  const std::vector<Element> elements = {{1, 0, 1, 0}, {1, 0, 0, 1}, {2, 0, 1, 0}, {1, 1, 1, 1},
+                                         {2, 1, 1, 0}, {1, 2, 0, 3}, {2, 1, 3, 0}};
+  for (const SiteDimensions d : {SiteDimensions{2, 2}, {3, 3}}) {
+    const ContactMatrix matrix(d, kDegree);
+    const std::vector<double> exact = ByQuadrature(d, elements, 1);
+    for (size_t n = 0; n < elements.size(); ++n) {
+      EXPECT_NEAR(At(matrix, elements[n]), exact[n], 1e-9) << d.a << ": " << n;
+    }
+  }
+}
+
+// A function of e_a + e_b does not change: its coefficients by Gauss's quadrature.
+TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
+  for (const SiteDimensions d : kAllDimensions) {
+    const ContactMatrix matrix(d, kDegree);
+    const GammaQuadrature a = GammaNodes(d.a / 2.0, kDegree + 1);
+    const GammaQuadrature b = GammaNodes(d.b / 2.0, kDegree + 1);
+    for (int power = 0; power <= kDegree; ++power) {
+      Eigen::VectorXd function = Eigen::VectorXd::Zero(ContactMatrix::Rows(kDegree));
+      for (int i = 0; i <= kDegree; ++i) {
+        for (int j = 0; j <= kDegree; ++j) {
+          const Eigen::VectorXd p = GammaPolynomials(d.a / 2.0, kDegree, a.nodes[i]);
+          const Eigen::VectorXd q = GammaPolynomials(d.b / 2.0, kDegree, b.nodes[j]);
+          const double value =
+              std::pow(a.nodes[i] + b.nodes[j], power) * a.weights[i] * b.weights[j];
+          for (int k = 0; k <= kDegree; ++k) {
+            for (int l = 0; k + l <= kDegree; ++l) {
+              function[ContactMatrix::Row(k, l)] += value * p[k] * q[l];
+            }
+          }
+        }
+      }
+      function.normalize();
+      EXPECT_LE((matrix.elements() * function).cwiseAbs().maxCoeff(), 1e-12) << d.a << d.b << power;
+    }
+  }
+}
+
+TEST(ContactMatrix, IsSymmetricAndHasNoNegativeRate) {
+  for (const SiteDimensions d : kAllDimensions) {
+    const Eigen::MatrixXd matrix = ContactMatrix(d, 10).elements();
+    EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0);
+    const Eigen::VectorXd rates =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
+    EXPECT_GE(rates[0], -1e-13 * rates[rates.size() - 1]);
+    EXPECT_GT(rates[rates.size() - 1], 0.5);
+  }
+}
+
+TEST(ContactMatrix, SwappedSitesSwapTheIndices) {
+  const ContactMatrix matrix({2, 1}, 8), swapped({1, 2}, 8);
+  for (int i = 0; i <= 4; ++i) {
+    for (int j = 0; j <= 4; ++j) {
+      for (int k = 0; k <= 4; ++k) {
+        for (int l = 0; l <= 4; ++l) {
+          EXPECT_NEAR(At(matrix, {i, j, k, l}), At(swapped, {j, i, l, k}), kContactMatrixError);
+        }
+      }
+    }
+  }
+}
+
+// Half of <rate (e_a' - e_a)^2> is the exchange rate at T = 1, whatever the dimensions.
+TEST(ContactMatrix, EnergyExchangeIsTheExchangeRate) {
+  EXPECT_NEAR(kContactRate, 1 / std::sqrt(std::numbers::pi), 1e-16);
+  for (const SiteDimensions d : kAllDimensions) {
+    EXPECT_NEAR(d.a / 2.0 * At(ContactMatrix(d, 3), {1, 0, 1, 0}), kContactRate, 1e-14);
+  }
+}
+
+// High degrees leave the elements of low ones as they are.
+TEST(ContactMatrix, HighDegreesAreExactToRounding) {
+  const auto differ = [](SiteDimensions d, int low_degree, int high_degree) {
+    const Eigen::MatrixXd low = ContactMatrix(d, low_degree).elements();
+    const Eigen::MatrixXd high =
+        ContactMatrix(d, high_degree).elements().topLeftCorner(low.rows(), low.cols());
+    const Eigen::VectorXd scale = low.diagonal().cwiseMax(1e-3).cwiseSqrt();
+    return ((high - low).array() / (scale * scale.transpose()).array()).abs().maxCoeff();
+  };
+  EXPECT_LE(differ({2, 1}, 12, 20), kContactMatrixError);
+  EXPECT_LE(differ({2, 2}, 8, 12), kContactMatrixError);
+}
+
+}  // namespace
+}  // namespace ballpiston
