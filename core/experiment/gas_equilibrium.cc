@@ -1,5 +1,6 @@
 // A periodic gas in equilibrium: how often a ball and a piston exchange energy, the temperatures of
-// balls and pistons, and the laws of their speeds.
+// balls and pistons, and the laws of their speeds. By the spectrum also the conductivity in the
+// limit of rare exchanges.
 //
 // Each replica starts from the canonical ensemble, so nothing has to be burnt in, and its energy
 // fluctuates as it should. It is followed until a ball and a piston have exchanged some times. It
@@ -14,10 +15,11 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/conductivity/conductivity.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/exact_estimate.h"
@@ -138,18 +140,38 @@ GasGeometry PeriodicGasOf(const PointParameters& point) {
   return GasGeometryOf(point, GasEnds::kPeriodic);
 }
 
+PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
+  return {.estimates = {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),
+                                      kGasExchangeRateRelativeError),
+                        ExactEstimate("temperature_ball", temperature, 0),
+                        ExactEstimate("temperature_piston", temperature, 0)}};
+}
+
+// That of the infinite gas in the limit of rare exchanges.
+void AddConductivity(const GasGeometry& geometry, double temperature, PointSummary& summary) {
+  const bool is_lattice = geometry.shape().is_lattice;
+  const ExtrapolatedValue correction = is_lattice ? kLatticeCorrection : kChainCorrection;
+  const double of_static = InfiniteGasExchangeRate(geometry, temperature) / 2;
+  const auto add = [&](const char* name, double unit) {
+    summary.estimates.push_back({.name = name,
+                                 .value = unit * (1 + correction.value),
+                                 .standard_error = unit * correction.error});
+  };
+  add("conductivity", of_static);
+  add("conductivity_ratio", 1);
+  summary.remarks.push_back(absl::StrCat("the conductivity is that of the infinite ",
+                                         is_lattice ? "lattice" : "chain",
+                                         " in the limit of rare exchanges"));
+}
+
 std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
                                                       const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  if (spec.model != Model::kClosedForm) {
+  if (spec.model != Model::kClosedForm && spec.model != Model::kSpectrum) {
     return std::make_unique<GasEquilibrium>(spec, point, geometry);
   }
-  const double temperature = point[kTemperature];
-  PointSummary summary;
-  summary.estimates = {ExactEstimate("exchange_rate", GasExchangeRate(geometry, temperature),
-                                     kGasExchangeRateRelativeError),
-                       ExactEstimate("temperature_ball", temperature, 0),
-                       ExactEstimate("temperature_piston", temperature, 0)};
+  PointSummary summary = ExactAnswer(geometry, point[kTemperature]);
+  if (spec.model == Model::kSpectrum) AddConductivity(geometry, point[kTemperature], summary);
   return std::make_unique<ComputedAnswer>(spec, point, std::move(summary));
 }
 
@@ -177,8 +199,8 @@ std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
 
 constexpr ParameterUse kParametersOfGasEquilibrium[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kTemperature}};
-constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kMarkov, Model::kBilliard,
-                                             Model::kBilliardReference};
+constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov,
+                                             Model::kBilliard, Model::kBilliardReference};
 
 }  // namespace
 

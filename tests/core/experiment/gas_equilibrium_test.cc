@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/conductivity/conductivity.h"
 #include "core/ensemble/experiment_kind.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/gas_exchange_rate.h"
@@ -52,6 +54,30 @@ TEST(GasEquilibrium, EveryModelGivesTheSameEstimates) {
     // As above.
     for (size_t i = 0; i < 3; ++i) {
       EXPECT_LT(std::fabs(*summary.estimates[i].ZScore()), 4.5) << Name(model);
+    }
+  }
+}
+
+// Half of the exchange rate, times a factor that the shape alone decides. core/conductivity tests
+// the factor.
+TEST(GasEquilibrium, TheSpectrumKnowsTheConductivity) {
+  for (const auto& [shape, correction] :
+       {std::pair(GasShape{5}, kChainCorrection), {GasShape{4, 3, true}, kLatticeCorrection}}) {
+    for (const double delta : {0.19, 0.01}) {
+      const PointParameters point = PaperGas(&kGasEquilibrium, delta, shape);
+      const PointSummary summary = RunPoint(SpecOf(&kGasEquilibrium, point, {}, Model::kSpectrum));
+      ASSERT_EQ(summary.estimates.size(), 5u);
+      const GasGeometry geometry =
+          GasGeometry::Create(kPaperRho, delta, shape, GasEnds::kPeriodic).value();
+      EXPECT_EQ(summary.estimates[0].value, GasExchangeRate(geometry, 2));
+      const Estimate &conductivity = summary.estimates[3], &ratio = summary.estimates[4];
+      EXPECT_EQ(conductivity.name, "conductivity");
+      EXPECT_EQ(ratio.name, "conductivity_ratio");
+      EXPECT_EQ(ratio.value, 1 + correction.value);
+      EXPECT_EQ(ratio.standard_error, correction.error);
+      EXPECT_DOUBLE_EQ(conductivity.value,
+                       InfiniteGasExchangeRate(geometry, 2) / 2 * (1 + correction.value));
+      EXPECT_EQ(summary.remarks.size(), 1u);
     }
   }
 }
