@@ -19,9 +19,9 @@
 # ---- Settings ----
 data = "speed-accuracy.csv"
 
-# The methods of panels a to c and e. Colours by Okabe and Ito, told apart by all kinds of colour vision;
-# shapes differ too: filled for double, open for single precision. The last one is in e alone, and
-# the closed form before it in a and b.
+# The methods of panels a to c and e. Colours by Okabe and Ito, told apart by all kinds of colour
+# vision; shapes differ too: filled for double, open for single precision. The last one is in e
+# alone, and the closed form before it in a and b.
 methods = "fixed-step billiard-reference-single billiard-reference billiard-reference-long-double \
 billiard-reference-quadruple billiard billiard-single closed-form markov"
 titles = "'fixed time step Δt' 'reference, single' 'reference, double' 'reference, 64 bits' \
@@ -85,7 +85,8 @@ set encoding utf8
 set datafile separator comma
 set datafile columnheaders
 
-# Curves of a to c and e, each a method at a time step (as method@step); and the deltas of d, descending.
+# Curves of a to c and e, each a method at a time step (as method@step); and the deltas of d,
+# descending.
 curves = ""
 deltas = ""
 name(_) = sprintf("%s@%.17e", strcol("method"), column("time_step"))

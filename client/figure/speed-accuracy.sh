@@ -3,10 +3,12 @@
 # Run by `ballpiston figure speed-accuracy --out DIR`, whose flags replace these values, or by hand:
 # sh speed-accuracy.sh. It needs no server. No other program should be busy on the machine.
 set -eu
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2)). Panel e: delta = 0.2, or the gas's bound
-: "${delta:=0.1}"              # of panels a and b
+# Panel e has a delta of its own: 0.2, or the gas's bound if that is smaller.
+: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${delta:=0.1}"              # of panels a to c
 : "${epsilon:=0.125}"          # the piston's energy in panels a and b
-: "${relaxation_delta:=}"      # of panel d, at most 8; empty: those of 0.2,0.1,0.05,0.025 that rho permits
+# Of panel d, at most 8; empty: those of 0.2,0.1,0.05,0.025 that rho permits.
+: "${relaxation_delta:=}"
 : "${seconds:=1}"              # work of each method's largest run, 0.01 to 60
 : "${seed:=0}"
 

@@ -40,6 +40,11 @@ const GasExperiment& AsGas(const PointExperiment& experiment) {
   return static_cast<const GasExperiment&>(experiment);
 }
 
+// The gas tells its energies only at the end of the step, after all of its events. In a chain this
+// does no harm: a ball's two pistons are on opposite sides, so in a step it exchanges with one of
+// them at most, and its energy, from which the current is measured, is that after its exchange. A
+// piston may have several events in a step; its energies between them last no time. In a lattice a
+// ball may exchange with two pistons in a step, and the energy carried would be wrong.
 void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
   if (event.kind == EventKind::kBallPiston) {
     meter.Exchange({event.time, event.ball, event.piston, event.direction,

@@ -110,7 +110,6 @@ class Comparison {
 
   void Tell(MethodMeasurement measurement) const {
     const double error = measurement.statistical_error;
-    if (measurement.own_error == 0) measurement.own_error = error;
     if (measurement.quantity != Quantity::kTrajectory) {
       measurement.bias_resolved = measurement.value > kResolved * error;
     }
@@ -152,6 +151,7 @@ class Comparison {
       measurement.statistical_error =
           ErrorOfDivergence(noise, measurement.value, returns.times.count);
     }
+    measurement.own_error = measurement.statistical_error;
     return measurement;
   }
 
@@ -218,6 +218,7 @@ class Comparison {
     double expected = 0;
     for (size_t rung = 0; rung < rungs.size() && expected <= Limit(); ++rung) {
       const TrajectoryHorizon horizon = HorizonOf(variant, geometry_, rungs[rung]);
+      const double error = horizon.hits.StandardError().value_or(0);
       Tell({.method = variant.method,
             .time_step = variant.time_step,
             .quantity = Quantity::kTrajectory,
@@ -226,7 +227,8 @@ class Comparison {
             .wall_hits = horizon.wall_hits,
             .work = horizon.seconds,
             .value = horizon.hits.mean,
-            .statistical_error = horizon.hits.StandardError().value_or(0)});
+            .statistical_error = error,
+            .own_error = error});
       expected = horizon.seconds * kRungFactor;
     }
   }
@@ -332,9 +334,10 @@ class Check {
   std::vector<std::string> violations_;
 };
 
-// As far as can be told if rho itself is not permitted.
-absl::Status ValidateDelta(double rho, double delta) {
-  return ValidateRho(rho).ok() ? ValidatePairDelta(rho, delta) : ValidateSomeDelta(delta);
+// As far as can be told if rho itself is not permitted. `validate` needs a valid rho.
+absl::Status ValidateDelta(double rho, double delta,
+                           absl::Status (*validate)(double, double) = ValidatePairDelta) {
+  return ValidateRho(rho).ok() ? validate(rho, delta) : ValidateSomeDelta(delta);
 }
 
 }  // namespace
@@ -348,6 +351,9 @@ std::vector<std::string> Violations(const MethodComparisonSpec& spec) {
                             " values; permitted: at most ", kMaxRelaxationDeltas));
   for (const double delta : spec.relaxation_deltas) {
     check.Permit("--relaxation-delta", ValidateDelta(spec.rho, delta));
+  }
+  if (spec.gas_delta != 0) {
+    check.Permit("gas_delta", ValidateDelta(spec.rho, spec.gas_delta, ValidateGasDelta));
   }
   check.Permit(spec.epsilon > 0 && spec.epsilon < 0.5,
                absl::StrCat("--epsilon: ", NumberText(spec.epsilon), " is not in (0, 1/2)"));

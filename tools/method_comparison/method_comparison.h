@@ -51,7 +51,9 @@
 // 256, ... samples (orbits: from 64). The work of the last rung is expected within a factor of two
 // of seconds_per_curve. A method is left out if by a rough prediction even 16 samples take longer.
 // The truth of a relaxation time takes about 8 times seconds_per_curve. A delta is left out if the
-// truth would not reach kFewestTruthOrbits in this time. So for any valid spec the program takes
+// truth would not reach kFewestTruthOrbits in this time. For kHeatCurrent the same holds: its truth
+// takes about as long, and the quantity is left out below kFewestTruthReplicas. So for any valid
+// spec the program takes
 // some 50 times seconds_per_curve, 20 times more for the heat current, and 10 times more for each
 // delta of a relaxation time.
 //
@@ -109,7 +111,8 @@ struct MethodMeasurement {
   std::optional<bool> bias_resolved = {};  // empty for kTrajectory, whose value is no deviation
 };
 
-// One sentence for each value that is not permitted. It begins with the program's flag.
+// One sentence for each value that is not permitted. It begins with the program's flag, or with
+// gas_delta, which has none: the program takes DefaultGasDelta.
 std::vector<std::string> Violations(const MethodComparisonSpec& spec);
 
 // The values among 0.2, 0.1, 0.05 and 0.025 that rho permits.

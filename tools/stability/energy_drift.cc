@@ -9,6 +9,7 @@
 #include "core/geometry/paper.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/flows/precise_flow.h"
+#include "tools/stability/error_size.h"
 #include "tools/stability/event_methods.h"
 #include "tools/stability/fixed_step_events.h"
 #include "tools/stability/lane_methods.h"
@@ -106,7 +107,7 @@ void EnergyRecord::Add(double share_of_run, double error) {
   Stretch& stretch = stretches_[std::min(place, kStretches - 1)];
   ++stretch.count;
   stretch.sum += error;
-  worst_ = std::max(worst_, std::fabs(error));
+  worst_ = std::max(worst_, ErrorSize(error));
 }
 
 double EnergyRecord::Mean(size_t stretch) const {
@@ -145,7 +146,8 @@ double EnergyRecord::DriftError() const {
 
 bool Drifts(const EnergyRun& run) {
   const double drift = std::fabs(run.record.Drift());
-  return drift > 4 * run.record.DriftError() && drift > 2.2e-16;
+  // As a negation, so that a drift that is not a number is one.
+  return !(drift <= 4 * run.record.DriftError() || drift <= 2.2e-16);
 }
 
 std::vector<EnergyRun> EnergyRuns(double effort) {

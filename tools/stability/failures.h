@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "tools/stability/error_size.h"
+
 namespace ballpiston::stability {
 
 struct Failures {
@@ -22,13 +24,11 @@ struct Failures {
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
   uint64_t beyond_walls = 0;    // pistons of a gas that come to a turn or a contact beyond a wall
   double deepest = 0;           // inside a disc, of orbits that did not escape
-  double energy = kNoEnergy;    // worst |dE/E|, if it was looked at
+  double energy = kNoEnergy;    // worst |dE/E|, if it was looked at; infinite if that is no number
 
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
-  void SeeEnergy(double error) {
-    if (!(error <= energy)) energy = error;
-  }
+  void SeeEnergy(double error) { energy = std::fmax(energy, ErrorSize(error)); }  // fmax drops NaN
 
   uint64_t Total() const {
     return escapes + negative_times + loops + inward + missed + phantoms + beyond_walls;
@@ -46,7 +46,7 @@ struct Failures {
     phantoms += other.phantoms;
     beyond_walls += other.beyond_walls;
     deepest = std::max(deepest, other.deepest);
-    if (!std::isnan(other.energy)) SeeEnergy(other.energy);
+    energy = std::fmax(energy, other.energy);
   }
 };
 

@@ -8,6 +8,7 @@
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
 #include "core/geometry/paper.h"
+#include "tools/stability/error_size.h"
 #include "tools/stability/fixed_step_gas_events.h"
 #include "tools/stability/gas_methods.h"
 #include "tools/stability/metered_gases.h"
@@ -40,11 +41,6 @@ double TimeOf(double exchanges) {
   return exchanges / (static_cast<double>(gas.contacts()) * GasExchangeRate(gas, 1));
 }
 
-void AddError(double error, GasEnergyRun& run) {
-  run.errors.Add(error);
-  run.worst = std::max(run.worst, std::fabs(error));
-}
-
 GasEnergyRun OfEngine(const char* name, GasEngine engine, double exchanges) {
   GasEnergyRun run = {.method = name, .promised = true};
   const std::vector<GasReplica> replicas = EnergyReplicas();
@@ -52,7 +48,7 @@ GasEnergyRun OfEngine(const char* name, GasEngine engine, double exchanges) {
   gases.AdvanceTo(TimeOf(exchanges));
   for (size_t i = 0; i < gases.size(); ++i) {
     run.exchanges += gases.meter(i).exchanges();
-    AddError(gases.meter(i).TotalEnergy() / gases.EnergyAtStart(i) - 1, run);
+    run.Add(gases.meter(i).TotalEnergy() / gases.EnergyAtStart(i) - 1);
   }
   return run;
 }
@@ -81,16 +77,22 @@ GasEnergyRun OfEvents(const char* name, double exchanges) {
       run.exchanges += kind == EventKind::kBallPiston;
       has_escaped = kind == EventKind::kEscape;
     }
-    AddError(TotalEnergy(StateOf(gas, end)) / TotalEnergy(replica.state) - 1, run);
+    run.Add(TotalEnergy(StateOf(gas, end)) / TotalEnergy(replica.state) - 1);
   }
   return run;
 }
 
 }  // namespace
 
+void GasEnergyRun::Add(double error) {
+  errors.Add(error);
+  worst = std::max(worst, ErrorSize(error));
+}
+
 bool HasTrend(const GasEnergyRun& run) {
   const double mean = std::fabs(run.errors.mean);
-  return mean > 4 * run.errors.StandardError().value_or(0) && mean > kUlp;
+  // As a negation, so that a mean or a standard error that is not a number is a trend.
+  return !(mean <= 4 * run.errors.StandardError().value_or(0) || mean <= kUlp);
 }
 
 bool LosesEnergy(const GasEnergyRun& run) {

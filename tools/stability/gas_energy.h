@@ -19,10 +19,14 @@ struct GasEnergyRun {
   bool promised;           // to lose no energy
   uint64_t exchanges = 0;  // of all gases
   Moments errors = {};     // signed dE/E at the end, a gas each
-  double worst = 0;
+  double worst = 0;        // infinite if one is not a number
+
+  void Add(double error);
 };
 
-// A mean of more than four of its standard errors (6e-5 false alarms a run) and an ulp.
+// A mean of more than four of its standard errors and an ulp, or one that is not a number. The
+// standard error is that of 48 gases: Student's t with 47 degrees of freedom, 2e-4 false alarms a
+// run.
 bool HasTrend(const GasEnergyRun& run);
 // Errors of more than this many ulps for the root of a gas's exchanges.
 inline constexpr double kUlpsOfAWalk = 4;

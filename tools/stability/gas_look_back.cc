@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/gas/gas_run.h"
+#include "tools/stability/error_size.h"
 
 namespace ballpiston::stability {
 namespace {
@@ -48,7 +49,7 @@ GasReading ByReference(const GasGeometry& geometry, const GasReplica& replica, d
 double Distance(const GasReading& a, const GasReading& b) {
   double distance = 0;
   for (size_t i = 0; i < a.energies.size(); ++i) {
-    distance = std::max(distance, std::fabs(a.energies[i] - b.energies[i]));
+    distance = std::max(distance, ErrorSize(a.energies[i] - b.energies[i]));
   }
   return distance;
 }

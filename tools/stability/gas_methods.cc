@@ -74,7 +74,8 @@ Failures RunLanesToTheEnd(const GasGeometry& geometry, std::span<const GasReplic
 // never come there are one loop.
 Failures RunLanes(const GasGeometry& geometry, std::span<const GasReplica> replicas,
                   double flights) {
-  constexpr unsigned kPatience = 2;  // seconds; it takes a tenth of one
+  // Seconds. It takes a tenth of one; on a machine that is slow it must not be taken for a loop.
+  constexpr unsigned kPatience = 60;
   const auto run = [&] { return RunLanesToTheEnd(geometry, replicas, flights); };
   return InOwnProcess(run, kPatience).value_or(Failures{.orbits = replicas.size(), .loops = 1});
 }

@@ -5,20 +5,40 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <stdexcept>
 #include <type_traits>
+
+#include "absl/strings/str_cat.h"
 
 namespace ballpiston::stability {
 namespace {
 
 static_assert(std::is_trivially_copyable_v<Failures>, "it is sent as bytes");
 
-// A message this short is written at once.
+[[noreturn]] void Fail(const char* call) {
+  throw std::runtime_error(absl::StrCat(call, ": ", std::strerror(errno)));
+}
+
+// The soft limit sends SIGXCPU. A hard limit that is as low would send SIGKILL, as the system also
+// does when there is no memory left.
+bool LimitProcessorTime(unsigned seconds) {
+  const rlimit limit = {.rlim_cur = seconds, .rlim_max = rlim_t{seconds} + 1};
+  return std::signal(SIGXCPU, SIG_DFL) != SIG_ERR && setrlimit(RLIMIT_CPU, &limit) == 0;
+}
+
+// A message this short is written at once. What `compute` throws must not pass through the copy of
+// the caller: noexcept makes it a crash.
 [[noreturn]] void ComputeAndSend(const std::function<Failures()>& compute, unsigned seconds,
-                                 int pipe) {
-  const rlimit limit = {.rlim_cur = seconds, .rlim_max = seconds};
-  setrlimit(RLIMIT_CPU, &limit);
+                                 int pipe) noexcept {
+  if (!LimitProcessorTime(seconds)) {
+    std::perror("stability: cannot limit the processor time");
+    _exit(EXIT_FAILURE);
+  }
   const Failures failures = compute();
   const ssize_t sent = write(pipe, &failures, sizeof failures);
   _exit(sent == sizeof failures ? EXIT_SUCCESS : EXIT_FAILURE);
@@ -34,23 +54,35 @@ std::optional<Failures> Received(int pipe) {
   return failures;
 }
 
-void WaitFor(pid_t process) {
-  while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+int StatusAtEnd(pid_t process) {
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) Fail("waitpid");
   }
+  return status;
+}
+
+std::optional<Failures> ResultOf(int status, const std::optional<Failures>& received) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return std::nullopt;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS && received) return received;
+  throw std::runtime_error(
+      absl::StrCat("a computation in a process of its own ended without a result, by ",
+                   WIFSIGNALED(status) ? absl::StrCat("signal ", WTERMSIG(status))
+                                       : absl::StrCat("exit status ", WEXITSTATUS(status))));
 }
 
 }  // namespace
 
 std::optional<Failures> InOwnProcess(const std::function<Failures()>& compute, unsigned seconds) {
   int ends[2];
-  if (pipe(ends) != 0) return std::nullopt;
+  if (pipe(ends) != 0) Fail("pipe");
   const pid_t process = fork();
+  if (process < 0) Fail("fork");
   if (process == 0) ComputeAndSend(compute, seconds, ends[1]);
   close(ends[1]);
-  const std::optional<Failures> failures = process < 0 ? std::nullopt : Received(ends[0]);
+  const std::optional<Failures> received = Received(ends[0]);
   close(ends[0]);
-  if (process > 0) WaitFor(process);
-  return failures;
+  return ResultOf(StatusAtEnd(process), received);
 }
 
 }  // namespace ballpiston::stability

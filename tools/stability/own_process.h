@@ -9,8 +9,9 @@
 
 namespace ballpiston::stability {
 
-// Empty if the computation takes more than so many seconds of processor time, or does not end by
-// returning. The program must have no other thread.
+// Empty if the computation takes more than so many seconds of processor time. Throws
+// std::runtime_error if the process cannot be run, or ends for another reason without a result: by
+// a crash, or killed for want of memory. The program must have no other thread.
 std::optional<Failures> InOwnProcess(const std::function<Failures()>& compute, unsigned seconds);
 
 }  // namespace ballpiston::stability

@@ -1,5 +1,8 @@
 #include "tools/stability/program.h"
 
+#include <exception>
+#include <optional>
+
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
@@ -26,7 +29,7 @@ starts are fixed: the same program gives the same tables.
   --help       print this text
 
 Exit status: 0 success; 1 an engine failed where it must not, or no method showed one kind of
-failure, or FILE cannot be written; 2 wrong arguments. tools/stability/README.md explains what is
+failure, or the tables cannot be computed or FILE be written; 2 wrong arguments. tools/stability/README.md explains what is
 counted.
 )";
 
@@ -93,6 +96,17 @@ bool Deliver(const Options& options, const std::string& text, std::ostream& out,
   return false;
 }
 
+// Empty if it cannot be made; then `error` says why.
+std::optional<Report> Made(const std::function<Report(double effort)>& make_report, double effort,
+                           std::ostream& error) {
+  try {
+    return make_report(effort);
+  } catch (const std::exception& failure) {
+    error << "stability: cannot compute the tables: " << failure.what() << "\n";
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 int RunProgram(const std::vector<std::string>& arguments,
@@ -109,12 +123,13 @@ int RunProgram(const std::vector<std::string>& arguments,
     error << "stability: " << writable.message() << "\n";
     return 1;
   }
-  const Report report = make_report(options->quick ? 1e-3 : 1);
-  const bool delivered = Deliver(*options, report.text, out, error);
-  for (const std::string& complaint : report.complaints) {
+  const std::optional<Report> report = Made(make_report, options->quick ? 1e-3 : 1, error);
+  if (!report) return 1;
+  const bool delivered = Deliver(*options, report->text, out, error);
+  for (const std::string& complaint : report->complaints) {
     error << "stability: " << complaint << "\n";
   }
-  return delivered && report.complaints.empty() ? 0 : 1;
+  return delivered && report->complaints.empty() ? 0 : 1;
 }
 
 }  // namespace ballpiston::stability

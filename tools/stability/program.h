@@ -6,7 +6,7 @@
 // cannot be written at the end, the tables go to standard output, so that they are not lost.
 //
 // Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (the tables
-// are written all the same); 2 for wrong arguments.
+// are written all the same), or if the report cannot be made (no tables); 2 for wrong arguments.
 #ifndef BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 #define BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 
@@ -19,8 +19,8 @@
 
 namespace ballpiston::stability {
 
-// `make_report` computes the tables; `effort` is the fraction of the starts. `out` and `error` are
-// the program's standard output and standard error.
+// `make_report` computes the tables; `effort` is the fraction of the starts. It may throw. `out`
+// and `error` are the program's standard output and standard error.
 int RunProgram(const std::vector<std::string>& arguments,
                const std::function<Report(double effort)>& make_report, std::ostream& out,
                std::ostream& error);

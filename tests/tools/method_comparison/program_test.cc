@@ -91,6 +91,7 @@ TEST(Program, AnUnknownFlagExitsWithTwoAndHelpWithZero) {
   const ProcessResult help = RunComparison({"--help"});
   EXPECT_THAT(help, ExitsWith(0));
   EXPECT_THAT(help.out, HasSubstr("--relaxation-delta"));
+  EXPECT_THAT(help.out, HasSubstr("It does not change"));
 }
 
 TEST(Program, OutputThatCannotBeWrittenExitsWithOne) {

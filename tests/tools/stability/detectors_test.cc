@@ -9,6 +9,7 @@
 #include "core/billiard/orbits.h"
 #include "core/sampling/invariant_measure.h"
 #include "tools/stability/ball_watch.h"
+#include "tools/stability/energy_drift.h"
 #include "tools/stability/pair_watch.h"
 
 namespace ballpiston::stability {
@@ -109,6 +110,32 @@ TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreSeen) {
   EXPECT_EQ(Watched([](Contact& c) { c.escaped = true; }).escapes, 500u);
   EXPECT_EQ(Watched([](Contact& c) { c.state.position.y() += 0.3; }).escapes, 500u);
   EXPECT_GT(Watched([](Contact& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
+}
+
+TEST(Detectors, AnEnergyErrorThatIsNotANumberIsInfiniteAndNoErrorIsNone) {
+  Failures looked;
+  looked.Merge(Failures());
+  EXPECT_TRUE(std::isnan(looked.energy));
+  looked.SeeEnergy(1e-3);
+  looked.SeeEnergy(std::nan(""));
+  looked.SeeEnergy(1e-3);
+  looked.Merge(Failures());
+  EXPECT_EQ(looked.energy, HUGE_VAL);
+  Failures all = {.energy = 1e-3};
+  all.Merge(looked);
+  EXPECT_EQ(all.energy, HUGE_VAL);
+}
+
+TEST(Detectors, AnEnergyThatIsNotANumberDrifts) {
+  EnergyRun run = {
+      .method = "", .what = "", .hits = 0, .orbits = 1, .promised = true, .record = {}};
+  for (const double share : {0.1, 0.5, 0.9}) run.record.Add(share, 0);
+  EXPECT_FALSE(Drifts(run));
+  EXPECT_EQ(run.record.Worst(), 0);
+  run.record.Add(0.7, std::nan(""));
+  run.record.Add(0.8, 0);
+  EXPECT_TRUE(Drifts(run));
+  EXPECT_EQ(run.record.Worst(), HUGE_VAL);
 }
 
 // On a wall of the lower left disc, halfway between its tips.

@@ -1,14 +1,19 @@
 // The looks at gases find what they look for: a watch is told something else than the reference gas
 // has done, or an engine's reading is changed.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/gas/canonical_gas.h"
 #include "core/gas/reference_gas.h"
@@ -195,6 +200,11 @@ TEST_F(GasLookBack, AnExchangeTooFewIsMissed) {
   EXPECT_EQ(failures.phantoms, 0u);
 }
 
+TEST_F(GasLookBack, AnEnergyThatIsNotANumberIsAPhantom) {
+  const Failures failures = Look([](GasReading& reading) { reading.energies[0] = std::nan(""); });
+  EXPECT_GT(failures.phantoms, 20u);
+}
+
 TEST_F(GasLookBack, OtherEnergiesArePhantoms) {
   const Failures failures =
       Look([](GasReading& reading) { std::swap(reading.energies[0], reading.energies[1]); });
@@ -229,10 +239,7 @@ TEST(GasDetectors, OnlyAGasWithoutThermalWallsTellsItsEnergyError) {
 
 GasEnergyRun RunWithErrors(double mean, double scatter) {
   GasEnergyRun run = {.method = "", .promised = true, .exchanges = 4 * 10'000};
-  for (const int sign : {-1, 1, -1, 1}) {
-    run.errors.Add(mean + sign * scatter);
-    run.worst = std::max(run.worst, std::fabs(mean) + scatter);
-  }
+  for (const int sign : {-1, 1, -1, 1}) run.Add(mean + sign * scatter);
   return run;
 }
 
@@ -243,6 +250,17 @@ TEST(GasDetectors, ALossOfEnergyIsATrendOrMoreThanAWalk) {
   EXPECT_TRUE(HasTrend(RunWithErrors(2e-14, 1e-15)));
   EXPECT_TRUE(LosesEnergy(RunWithErrors(2e-14, 1e-15)));
   EXPECT_TRUE(LosesEnergy(RunWithErrors(0, 1e-12)));
+}
+
+TEST(GasDetectors, AnEnergyErrorThatIsNotANumberIsATrendAndTheWorstError) {
+  for (const double error : {std::nan(""), HUGE_VAL}) {
+    GasEnergyRun run = RunWithErrors(0, 1e-15);
+    run.Add(error);
+    run.Add(1e-15);
+    EXPECT_EQ(run.worst, HUGE_VAL);
+    EXPECT_TRUE(HasTrend(run));
+    EXPECT_TRUE(LosesEnergy(run));
+  }
 }
 
 TEST(OwnProcess, GivesWhatWasComputed) {
@@ -260,21 +278,77 @@ TEST(OwnProcess, EndsWhatNeverEnds) {
     return Failures();
   };
   EXPECT_FALSE(InOwnProcess(endless, 1).has_value());
-  EXPECT_FALSE(InOwnProcess([]() -> Failures { _exit(EXIT_SUCCESS); }, 1).has_value());
 }
 
-// The other starts are any gases with other speeds.
+// SIGKILL is what the system sends when there is no memory left.
+TEST(OwnProcess, AnyOtherEndWithoutAResultIsAnError) {
+  const std::vector<std::function<void()>> ends = {[] { std::abort(); }, [] { raise(SIGKILL); },
+                                                   [] { _exit(EXIT_SUCCESS); }, [] { throw 1; }};
+  for (const auto& end : ends) {
+    const auto compute = [&end] {
+      end();
+      return Failures();
+    };
+    EXPECT_THROW(InOwnProcess(compute, 1), std::runtime_error);
+  }
+}
+
+// As long as the object lives, no file can be opened.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit none = before_;
+    none.rlim_cur = 0;
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit before_;
+};
+
+TEST(OwnProcess, AProcessThatCannotBeStartedIsAnError) {
+  const NoMoreFiles no_more_files;
+  EXPECT_THROW(InOwnProcess([] { return Failures(); }, 1), std::runtime_error);
+}
+
+// The inner process asks for more than the hard limit of the outer one. Only the superuser may
+// raise a hard limit.
+TEST(OwnProcess, ALimitThatCannotBeSetIsAnError) {
+  const auto has_failed = [] {
+    constexpr uid_t kNobody = 65534;
+    if (geteuid() == 0 && setuid(kNobody) != 0) _exit(EXIT_FAILURE);
+    try {
+      InOwnProcess([] { return Failures(); }, 60);
+    } catch (const std::runtime_error&) {
+      return Failures{.orbits = 1};
+    }
+    return Failures();
+  };
+  EXPECT_EQ(InOwnProcess(has_failed, 5).value().orbits, 1u);
+}
+
+void ExpectBallsInCellsAndBeforePistons(const GasGeometry& geometry, const GasState& state,
+                                        const std::string& name) {
+  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
+    const auto& position = state.balls[static_cast<size_t>(ball)].position;
+    EXPECT_TRUE(InsideCell(geometry.pair(), position, 1e-9)) << name;
+    for (int i = 0; i < geometry.directions(); ++i) {
+      EXPECT_GE(GapTo(geometry, state, ball, geometry.DirectionAt(i)), 0) << name;
+    }
+  }
+}
+
 TEST(GasStarts, BallsAreInTheirCellsAndBeforeTheirPistons) {
   for (const GasCase& gas_case : GasCases()) {
     for (const GasGeometry& geometry : gas_case.geometries) {
-      CounterRandom random(95, 0, 0);
-      const GasState state = gas_case.start(geometry, random);
-      for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
-        const auto& position = state.balls[static_cast<size_t>(ball)].position;
-        EXPECT_TRUE(InsideCell(geometry.pair(), position, 1e-9)) << gas_case.name;
-        for (int i = 0; i < geometry.directions(); ++i) {
-          EXPECT_GE(GapTo(geometry, state, ball, geometry.DirectionAt(i)), 0) << gas_case.name;
-        }
+      for (uint64_t draw = 0; draw < 20; ++draw) {
+        CounterRandom random(95, 0, draw);
+        ExpectBallsInCellsAndBeforePistons(geometry, gas_case.start(geometry, random),
+                                           gas_case.name);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -136,6 +137,15 @@ TEST_F(Program, ComplaintsExitWithOneAfterTheTablesAreWritten) {
   EXPECT_EQ(Run({"--out", path_}), 1);
   EXPECT_EQ(Contents(path_), kTables);
   EXPECT_THAT(error_.str(), HasSubstr("stability: lanes fails: grazing\n"));
+}
+
+TEST_F(Program, AReportThatCannotBeMadeExitsWithOneAndLeavesTheFile) {
+  WriteFile(path_, "older tables\n");
+  while_computing_ = [] { throw std::runtime_error("fork: no memory"); };
+  EXPECT_EQ(Run({"--out", path_}), 1);
+  EXPECT_EQ(Contents(path_), "older tables\n");
+  EXPECT_EQ(out_.str(), "");
+  EXPECT_EQ(error_.str(), "stability: cannot compute the tables: fork: no memory\n");
 }
 
 TEST_F(Program, ClosedStandardOutputExitsWithOne) {

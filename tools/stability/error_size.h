@@ -1,0 +1,17 @@
+// The size of an error of the energy. An error that is not a number is infinite: std::max drops
+// NaN, and a comparison with NaN is false, so a NaN would pass every limit.
+#ifndef BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
+#define BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
+
+#include <cmath>
+#include <limits>
+
+namespace ballpiston::stability {
+
+inline double ErrorSize(double error) {
+  return std::isnan(error) ? std::numeric_limits<double>::infinity() : std::fabs(error);
+}
+
+}  // namespace ballpiston::stability
+
+#endif  // BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
