@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/sampling/direction.h"
+
 namespace ballpiston {
 namespace {
 
@@ -13,20 +15,6 @@ namespace {
 // angle, v/pi; a piston to each of its two balls at that of (-v3)+ over its sign, v/2.
 constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
-
-// Uniform in (0, 1), from the lowest 32 bits.
-double FromBits(uint64_t bits) { return (static_cast<double>(bits & 0xffffffff) + 0.5) * 0x1p-32; }
-
-// A uniform direction in the upper half plane: that of z^2, where the complex number z is uniform
-// in a quarter of a disc.
-Eigen::Vector2d DirectionUpward(CounterRandom& random) {
-  for (;;) {
-    const uint64_t bits = random.Bits();
-    const double x = FromBits(bits), y = FromBits(bits >> 32);
-    const double xx = x * x, yy = y * y, square = xx + yy;
-    if (square <= 1) return Eigen::Vector2d(xx - yy, 2 * x * y) / square;
-  }
-}
 
 }  // namespace
 
@@ -182,7 +170,7 @@ void JumpGas::ByPiston(int64_t piston, uint64_t bits) {
     speed = DrawFluxSpeed(walls_.TemperatureAt(piston), random_);
   }
   const int64_t ball = geometry_.BallOf(piston, side);
-  const Eigen::Vector2d velocity = DirectionUpward(random_) * speeds_[static_cast<size_t>(ball)];
+  const Eigen::Vector2d velocity = UniformDirection(random_) * speeds_[static_cast<size_t>(ball)];
   next_ = {.ball = ball,
            .piston = piston,
            .direction = side,

@@ -19,22 +19,22 @@ constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
 // A neighbour of a start is off by so many steps: all directions turned, and all pistons along x
 // and all along y shifted, so that walls and pistons that cross come in any order.
 struct Neighbour {
+  double step;
   int turn;
   int shift_x;
   int shift_y;
 };
 
 void Move(const Neighbour& neighbour, const GasGeometry& geometry, GasState& state) {
-  constexpr double kStep = 1e3 * kGasEpsilon;
-  const double angle = kStep * neighbour.turn, reach = geometry.reach();
+  const double angle = neighbour.step * neighbour.turn, reach = geometry.reach();
   for (GasBall& ball : state.balls) {
     const Eigen::Vector2d u = ball.direction;
     ball.direction = (u + angle * Eigen::Vector2d(-u.y(), u.x())).normalized();
   }
   for (int64_t i = 0; i < geometry.pistons(); ++i) {
-    const double shift = kStep * (geometry.IsAlongX(i) ? neighbour.shift_x : neighbour.shift_y);
+    const int steps = geometry.IsAlongX(i) ? neighbour.shift_x : neighbour.shift_y;
     GasPiston& piston = state.pistons[static_cast<size_t>(i)];
-    piston.offset = std::clamp(piston.offset + shift, -reach, reach);
+    piston.offset = std::clamp(piston.offset + neighbour.step * steps, -reach, reach);
   }
 }
 
@@ -74,13 +74,18 @@ Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica
 }
 
 // All within so many steps.
-std::vector<Neighbour> NeighboursWithin(int steps) {
-  std::vector<Neighbour> neighbours;
+void AddNeighbours(double step, int steps, std::vector<Neighbour>& neighbours) {
   for (int turn = -steps; turn <= steps; ++turn) {
     for (int x = -steps; x <= steps; ++x) {
-      for (int y = -steps; y <= steps; ++y) neighbours.push_back({turn, x, y});
+      for (int y = -steps; y <= steps; ++y) neighbours.push_back({step, turn, x, y});
     }
   }
+}
+
+// Near ones too: in a tip some ulps decide how often ball and piston meet.
+std::vector<Neighbour> ManyNeighbours() {
+  std::vector<Neighbour> neighbours;
+  for (const double step : {4.0, 64.0, 1e3}) AddNeighbours(step * kGasEpsilon, 4, neighbours);
   return neighbours;
 }
 
@@ -100,11 +105,12 @@ GasReading ReadingOf(const GasMeter& meter) {
 
 Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
                   const GasReading& reading) {
-  static constexpr std::array<Neighbour, 2> kNearest = {{{-1, -1, 1}, {1, 1, -1}}};
+  static constexpr std::array<Neighbour, 2> kNearest = {
+      {{1e3 * kGasEpsilon, -1, -1, 1}, {1e3 * kGasEpsilon, 1, 1, -1}}};
   Failures found = AsNeighboursTell(geometry, replica, time, reading, kNearest);
   // The middle is rounded too: where it grazes, two neighbours tell too little.
   if (found.Total() > 0) {
-    found = AsNeighboursTell(geometry, replica, time, reading, NeighboursWithin(4));
+    found = AsNeighboursTell(geometry, replica, time, reading, ManyNeighbours());
   }
   found.looked_back = reading.exchanges;
   return found;
