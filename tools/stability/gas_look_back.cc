@@ -15,27 +15,20 @@ namespace ballpiston::stability {
 namespace {
 
 constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
+constexpr uint64_t kNeighbourSeed = 25;
 
-// A neighbour of a start is off by so many steps: all directions turned, and all pistons along x
-// and all along y shifted, so that walls and pistons that cross come in any order.
-struct Neighbour {
-  double step;
-  int turn;
-  int shift_x;
-  int shift_y;
-};
-
-void Move(const Neighbour& neighbour, const GasGeometry& geometry, GasState& state) {
-  const double angle = neighbour.step * neighbour.turn, reach = geometry.reach();
+// A neighbour of a start: every number is off by up to `most`.
+GasState Moved(double most, const GasGeometry& geometry, GasState state, CounterRandom& random) {
+  const auto off = [&] { return most * (2 * random.Uniform() - 1); };
+  const double reach = geometry.reach();
   for (GasBall& ball : state.balls) {
-    const Eigen::Vector2d u = ball.direction;
-    ball.direction = (u + angle * Eigen::Vector2d(-u.y(), u.x())).normalized();
+    ball.position += Eigen::Vector2d(off(), off());
+    ball.direction = (ball.direction + Eigen::Vector2d(off(), off())).normalized();
   }
-  for (int64_t i = 0; i < geometry.pistons(); ++i) {
-    const int steps = geometry.IsAlongX(i) ? neighbour.shift_x : neighbour.shift_y;
-    GasPiston& piston = state.pistons[static_cast<size_t>(i)];
-    piston.offset = std::clamp(piston.offset + neighbour.step * steps, -reach, reach);
+  for (GasPiston& piston : state.pistons) {
+    piston.offset = std::clamp(piston.offset + off(), -reach, reach);
   }
+  return state;
 }
 
 GasReading ByReference(const GasGeometry& geometry, const GasReplica& replica, double time) {
@@ -54,39 +47,26 @@ double Distance(const GasReading& a, const GasReading& b) {
   return distance;
 }
 
-// What the reference tells of a start and of some neighbours.
+// What the reference tells of a start and of as many neighbours at each scale.
 Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica, double time,
-                          const GasReading& reading, std::span<const Neighbour> neighbours) {
+                          const GasReading& reading, std::span<const double> scales, int each) {
   const GasReading middle = ByReference(geometry, replica, time);
+  CounterRandom random(kNeighbourSeed, 0, 0);
   double nearest = Distance(reading, middle), spread = 0;
-  for (const Neighbour& neighbour : neighbours) {
-    GasReplica moved = replica;
-    Move(neighbour, geometry, moved.state);
-    const GasReading other = ByReference(geometry, moved, time);
-    nearest = std::min(nearest, Distance(reading, other));
-    spread = std::max(spread, Distance(middle, other));
+  for (const double scale : scales) {
+    for (int i = 0; i < each; ++i) {
+      GasReplica moved = replica;
+      moved.state = Moved(scale * kGasEpsilon, geometry, replica.state, random);
+      const GasReading other = ByReference(geometry, moved, time);
+      nearest = std::min(nearest, Distance(reading, other));
+      spread = std::max(spread, Distance(middle, other));
+    }
   }
   Failures found;
   // The neighbours differ from each other by at most twice what they differ from the middle.
   if (nearest <= 1e4 * kGasEpsilon * middle.Total() + 2 * spread) return found;
   (reading.exchanges < middle.exchanges ? found.missed : found.phantoms) = 1;
   return found;
-}
-
-// All within so many steps.
-void AddNeighbours(double step, int steps, std::vector<Neighbour>& neighbours) {
-  for (int turn = -steps; turn <= steps; ++turn) {
-    for (int x = -steps; x <= steps; ++x) {
-      for (int y = -steps; y <= steps; ++y) neighbours.push_back({step, turn, x, y});
-    }
-  }
-}
-
-// Near ones too: in a tip some ulps decide how often ball and piston meet.
-std::vector<Neighbour> ManyNeighbours() {
-  std::vector<Neighbour> neighbours;
-  for (const double step : {4.0, 64.0, 1e3}) AddNeighbours(step * kGasEpsilon, 4, neighbours);
-  return neighbours;
 }
 
 }  // namespace
@@ -105,13 +85,12 @@ GasReading ReadingOf(const GasMeter& meter) {
 
 Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
                   const GasReading& reading) {
-  static constexpr std::array<Neighbour, 2> kNearest = {
-      {{1e3 * kGasEpsilon, -1, -1, 1}, {1e3 * kGasEpsilon, 1, 1, -1}}};
-  Failures found = AsNeighboursTell(geometry, replica, time, reading, kNearest);
-  // The middle is rounded too: where it grazes, two neighbours tell too little.
-  if (found.Total() > 0) {
-    found = AsNeighboursTell(geometry, replica, time, reading, ManyNeighbours());
-  }
+  static constexpr std::array<double, 1> kBeyondRounding = {64};
+  static constexpr std::array<double, 4> kScales = {1, 4, 16, 64};
+  Failures found = AsNeighboursTell(geometry, replica, time, reading, kBeyondRounding, 2);
+  // The middle is rounded too: in a tip, or where it grazes, an ulp decides and two tell too
+  // little.
+  if (found.Total() > 0) found = AsNeighboursTell(geometry, replica, time, reading, kScales, 500);
   found.looked_back = reading.exchanges;
   return found;
 }

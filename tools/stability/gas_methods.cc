@@ -91,7 +91,7 @@ Failures RunJumps(const GasGeometry& geometry, std::span<const GasReplica> repli
 
 const std::vector<GasMethod>& GasMethods() {
   static const auto* const methods = new std::vector<GasMethod>{
-      {"lanes", 1, false, RunLanes},
+      {"lanes", 1, true, RunLanes},
       {"reference", 1, true, RunGasByEvents<ReferenceGas>},
       {"jump process", 1, true, RunJumps},
       {"nearest root", 0.02, false, RunGasByEvents<TextbookGas<TextbookRule::kPositiveRoot>>},
