@@ -52,15 +52,16 @@ TEST(GasExperiments, StatedErrorsInEquilibriumAreTheMeasuredOnes) {
   }
 }
 
+// Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 10,000 to 4 %.
 TEST(GasExperiments, StatedErrorsOfTheCurrentAreTheMeasuredOnes) {
   const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
-                                       double delta = 0.2) {
-    return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, 1000));
+                                       double delta = 0.2, int64_t replicas = 1000) {
+    return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, replicas));
   };
   for (const GasShape& shape : {GasShape{2}, GasShape{4}, GasShape{3, 3, true}}) {
     EXPECT_NEAR(stated_over_measured(shape, 1.5, 0.5, Model::kMarkov), 1, 0.2);
   }
-  EXPECT_NEAR(stated_over_measured({4}, 1.05, 0.95, Model::kMarkov), 1, 0.2);
+  EXPECT_NEAR(stated_over_measured({4}, 1.05, 0.95, Model::kMarkov, 0.2, 10'000), 1, 0.2);
   EXPECT_NEAR(stated_over_measured({2}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
   EXPECT_NEAR(stated_over_measured({4}, 1.5, 0.5, Model::kBilliard), 1, 0.2);
   EXPECT_NEAR(stated_over_measured({2}, 2, 1, Model::kBilliard, 0.1), 1, 0.2);
