@@ -7,7 +7,7 @@ set -eu
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.1}"              # of panels a to c
 : "${epsilon:=0.125}"          # the piston's energy in panels a and b
-# Of panel d, at most 8; empty: those of 0.2,0.1,0.05,0.025 that rho permits.
+# Panel d shows these deltas, at most 8. If empty, it shows those of 0.2,0.1,0.05,0.025 that rho permits.
 : "${relaxation_delta:=}"
 : "${seconds:=1}"              # work of each method's largest run, 0.01 to 60
 : "${seed:=0}"

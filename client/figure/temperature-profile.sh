@@ -9,7 +9,7 @@ set -eu
 : "${hot:=1.5}"                # temperature at x = 0
 : "${cold:=0.5}"               # at x = N
 : "${samples:=2000}"           # replicas of each chain, of the jump process
-: "${billiard_samples:=200}"   # of the billiard, which costs ten times as much
+: "${billiard_samples:=200}"   # of the billiard, which costs some fifty times as much
 : "${seed:=0}"
 
 # Runs a command; if the command succeeds, keeps its output in a file.

@@ -151,7 +151,8 @@ Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree) {
   return std::sqrt(energy) / std::numbers::sqrt2 * solver.eigenvalues();
 }
 
-// Of a pair the distance from the gap is proportional to (n + 1)^-6 within 1 % from degree 10 on.
+// For a pair, the bound of degree n is above the gap by an amount proportional to (n + 1)^-6,
+// within 1 % from degree 10 on.
 ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees) {
   std::vector<double> at, gaps;
   for (const int degree : degrees) {

@@ -39,7 +39,7 @@ std::vector<Cluster> Clusters(const SiteLattice& lattice, int extent) {
   return lattice.has_rows ? LatticeClusters(lattice, extent) : ChainClusters(lattice, extent);
 }
 
-// Of the tail in the degree.
+// What the degrees above n add falls as n to minus this power.
 double DegreePower(const SiteLattice& lattice) {
   return 2 + std::min(lattice.dimensions.a, lattice.dimensions.b);
 }
@@ -48,7 +48,7 @@ class Refinement {
  public:
   explicit Refinement(const SiteLattice& lattice) : lattice_(lattice) {}
 
-  // What a step adds.
+  // The amount by which a step changes the correction.
   ExtrapolatedValue Added(const RefinementStep& step) {
     std::vector<double> degrees, differences;
     for (const int degree : step.degrees) {

@@ -54,8 +54,8 @@ struct ClusterSize {
 // balls and pistons, 24 for equal sites; extent 1 or more. Relative error 1e-9, for rounding.
 double ConductivityBound(const SiteLattice& lattice, ClusterSize size, int degree);
 
-// What the larger cluster adds to the correction, extrapolated from these degrees. `from.extent` is
-// 0 in the first step.
+// The step from one cluster to a larger one. The correction changes by a limit that is extrapolated
+// from these degrees. In the first step `from.extent` is 0: there is no smaller cluster.
 struct RefinementStep {
   ClusterSize from;
   ClusterSize to;

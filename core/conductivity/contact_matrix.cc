@@ -31,7 +31,7 @@ Eigen::VectorXd PairProducts(SiteDimensions dimensions, int degree, double ea, d
   return products;
 }
 
-// Of the energy in the components that the contact leaves alone.
+// The quadrature of the energy in those components that the contact does not change.
 GammaQuadrature OtherComponents(int dimension, int nodes) {
   if (dimension == 1) return {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
   return GammaNodes((dimension - 1) / 2.0, nodes);

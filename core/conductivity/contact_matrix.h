@@ -28,8 +28,8 @@ namespace ballpiston {
 // <(v_a - v_b)+> = 1/sqrt(pi).
 inline constexpr double kContactRate = 0.5641895835477563;
 
-// Of an element, relative to the root of the product of its row's and its column's diagonal
-// elements.
+// The largest error of an element, divided by the root of the product of two diagonal elements:
+// those of its row and of its column.
 inline constexpr double kContactMatrixError = 1e-13;
 
 struct SiteDimensions {

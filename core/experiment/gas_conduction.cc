@@ -262,9 +262,9 @@ double ErrorOfGasConduction(const PointParameters& point) {
   return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
-// What makes a pair's exchanges differ from those by chance does so in a gas, where balls meet more
-// pistons. So the bound is the pair's, times a factor that was measured (docs/gas.md). A pilot
-// would take as long as the billiard's answer.
+// The mechanisms by which a pair's exchanges differ from random ones also act in a gas, where each
+// ball meets more pistons. So the bound is that of the pair times a measured factor (docs/gas.md).
+// There is no pilot, because it would take as long as the billiard's answer.
 double ExpectedLimitErrorOfConduction(const PointParameters& point) {
   constexpr double kOfMorePistons = 1.5;
   return kOfMorePistons * ExpectedLimitError(point);

@@ -147,7 +147,7 @@ PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
                         ExactEstimate("temperature_piston", temperature, 0)}};
 }
 
-// That of the infinite gas in the limit of rare exchanges.
+// Adds the conductivity of the infinite gas in the limit of rare exchanges.
 void AddConductivity(const GasGeometry& geometry, double temperature, PointSummary& summary) {
   const bool is_lattice = geometry.shape().is_lattice;
   const ExtrapolatedValue correction = is_lattice ? kLatticeCorrection : kChainCorrection;

@@ -8,8 +8,8 @@
 //     F = -(1/(n N)) d log Z/dz .
 //
 // Chain. On functions of the offset of a piston the product is an operator of rank two, with the
-// eigenvalues r^2 of the two roots of r (1 - r) = z. A ring of N cells has Z = r1^(2N) + r2^(2N),
-// hence with s = r1 - r2 = sqrt(1 - 4 z) and q = r2/r1
+// eigenvalues r^2 of the two roots of r (1 - r) = z. A ring of N cells has Z = r1^(2N) + r2^(2N).
+// With s = r1 - r2 = sqrt(1 - 4 z) and q = r2/r1 this gives
 //     F = (1 - q^(2N-1))/(s r1 (1 + q^(2N))) .
 //
 // Lattice. Cells choose one after the other, down a column and then to the right: a transfer matrix

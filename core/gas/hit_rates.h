@@ -1,5 +1,5 @@
-// How often balls and pistons hit their walls at temperature 1, as if no ball met a piston: what
-// runs will cost, and how far balls may fly ahead. Hits in a unit of time.
+// Wall hits of a ball and of a piston in a unit of time at temperature 1, as if no ball met a
+// piston. They predict the cost of runs, and decide how far balls fly ahead.
 #ifndef BALLPISTON_CORE_GAS_HIT_RATES_H_
 #define BALLPISTON_CORE_GAS_HIT_RATES_H_
 
@@ -11,18 +11,23 @@
 
 namespace ballpiston {
 
+// Of a ball at temperature 1.
+inline double MeanBallSpeed() { return std::sqrt(std::numbers::pi / 2); }
+
+// Between two walls: pi area/perimeter of the ball's cell, in its mean over the piston's places.
+inline double MeanFlight(const PairGeometry& pair) {
+  const PairMeasures measures = Measures(pair);
+  return std::numbers::pi * measures.cell_area * pair.stroke() / measures.area_ball_wall;
+}
+
 struct HitRates {
   double of_a_ball;
   double of_a_piston;
 };
 
-// A ball's mean speed is sqrt(pi/2), and its mean flight pi area/perimeter of its cell. A piston's
-// mean speed is sqrt(2/pi).
+// A piston's mean speed is sqrt(2/pi).
 inline HitRates HitRatesOf(const PairGeometry& pair) {
-  const PairMeasures measures = Measures(pair);
-  const double flight =
-      std::numbers::pi * measures.cell_area * pair.stroke() / measures.area_ball_wall;
-  return {.of_a_ball = std::sqrt(std::numbers::pi / 2) / flight,
+  return {.of_a_ball = MeanBallSpeed() / MeanFlight(pair),
           .of_a_piston = std::sqrt(2 / std::numbers::pi) / pair.stroke()};
 }
 

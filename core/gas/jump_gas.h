@@ -9,9 +9,8 @@
 // accepted with the ratio of the two; seven in ten are accepted. To draw a body at its rate, any
 // body is drawn and kept with the ratio of its speed to the largest one; one in four is kept. So an
 // exchange costs nearly as much in a large gas as in a small one, until the gas exceeds the caches.
-// An outermost piston
-// has a new thermal velocity at every proposal, because between two of its exchanges it hits its
-// thermal wall many times.
+// An outermost piston has a new thermal velocity at every proposal, because between two of its
+// exchanges it hits its thermal wall many times.
 //
 // Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>,
 // at temperature T in the mean density sqrt(T/pi).

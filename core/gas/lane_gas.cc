@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "core/billiard/exchange.h"
@@ -12,8 +11,6 @@
 
 namespace ballpiston {
 namespace {
-
-const double kMeanSpeed = std::sqrt(std::numbers::pi / 2);  // of a ball at temperature 1
 
 // A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
 constexpr double kAtRest = 1e-18;
@@ -32,7 +29,7 @@ LaneGas::LaneGas(const GasGeometry& geometry, double exchange_rate, std::vector<
     : gas_(geometry),
       balls_each_(static_cast<uint32_t>(geometry.balls())),
       pistons_each_(static_cast<uint32_t>(geometry.pistons())),
-      mean_flight_(kMeanSpeed / HitRatesOf(geometry.pair()).of_a_ball) {
+      mean_flight_(MeanFlight(geometry.pair())) {
   for (GasStart& start : replicas) {
     Place(start.state);
     replicas_.push_back({std::move(start.walls), start.meter});
@@ -72,7 +69,7 @@ void LaneGas::ChooseWindow(double exchange_rate) {
   double energy = 0;
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
   const double temperature = energy / static_cast<double>(gas_.balls.size());
-  const double flights = std::sqrt(temperature) * kMeanSpeed / mean_flight_;
+  const double flights = std::sqrt(temperature) * MeanBallSpeed() / mean_flight_;
   const double exchanges = gas_.geometry.directions() * exchange_rate * std::sqrt(temperature);
   const double best = std::sqrt(kFlightsOfAWindow * flights / std::max(exchanges, kAtRest));
   window_ = std::min(best, kMostFlightsInAWindow) / std::max(flights, kAtRest);

@@ -236,8 +236,8 @@ namespace {
 // it flies into neither of them; returns whether it was reflected.
 bool ReflectOnWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
                     Eigen::Vector2d& direction) {
-  constexpr double kOnAWall =
-      1e-14;  // what a few hits in a tip add up to, and far below kReachSlack
+  // The ways between a few hits in a tip add up to less; it is far below kReachSlack.
+  constexpr double kOnAWall = 1e-14;
   constexpr int kMostHits = 10'000;  // where walls are nearly parallel
   int last_disc = kNoDisc;
   double way = 0;

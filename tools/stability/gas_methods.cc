@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/gas/gas_run.h"
+#include "core/gas/hit_rates.h"
 #include "core/gas/reference_gas.h"
 #include "tools/stability/fixed_step_gas_events.h"
-#include "tools/stability/gas_flights.h"
 #include "tools/stability/gas_look_back.h"
 #include "tools/stability/gas_watch.h"
 #include "tools/stability/metered_gases.h"

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/gas/canonical_gas.h"
+#include "core/gas/hit_rates.h"
 #include "core/gas/reference_gas.h"
 #include "core/gas/thermal_walls.h"
 #include "core/sampling/direction.h"
-#include "tools/stability/gas_flights.h"
 #include "tools/stability/wall_starts.h"
 
 namespace ballpiston::stability {

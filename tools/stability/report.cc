@@ -119,7 +119,7 @@ std::string Text(const Results& results) {
       unit_speed[unit_speed.size() / 2], " hits (median of ", unit_speed.size(),
       " starts at the paper's radius; ", unit_speed.front(), " at the earliest, ",
       unit_speed.back(), " at the latest).\n\n**Energy**\n\n", EnergyTable(results.energy),
-      "\nOf gases of 4x3 cells\n\n", GasEnergyTable(results.gas_energy),
+      "\nGases of 4x3 cells:\n\n", GasEnergyTable(results.gas_energy),
       "\n**Reversal**: distance from the start, in cells, after so many hits and as many back; "
       "medians\n\n",
       ReversalTable(results.ball_reversals, results.pair_reversals),

@@ -48,8 +48,9 @@ TEST(ClusterBasis, ReflectionsDifferInSignOnly) {
   EXPECT_EQ(lattice.Find({At(0, 0, 1), At(0, 1, 1)}), 0);
 }
 
-// Of n(k, d) functions of k neighbouring sites of degree d or less, n(k) - n(k - 1) begin at the
-// first site. Half of those that are not their own reflection remain, from balls and from pistons.
+// There are n(k, d) functions of degree d or less of k neighbouring sites. n(k, d) - n(k - 1, d) of
+// them begin at the first site. The basis has one for each pair of a function and its different
+// reflection, both for clusters that begin with a ball and for those that begin with a piston.
 TEST(ClusterBasis, HasEveryFunctionOfTheCluster) {
   // Sites 1 and 2 apart of degrees (i, j): for neighbours of unlike kind all count, of equal kind
   // only i < j.
