@@ -1,12 +1,16 @@
 // A periodic gas in equilibrium: how often a ball and a piston exchange energy, the temperatures of
-// balls and pistons, and the laws of their speeds. By the spectrum also the conductivity in the
-// limit of rare exchanges.
+// balls and pistons, the laws of their speeds, and the conductivity by Green and Kubo's formula.
+// The spectrum answers it in the limit of rare exchanges.
 //
 // Each replica starts from the canonical ensemble, so nothing has to be burnt in, and its energy
-// fluctuates as it should. It is followed until a ball and a piston have exchanged some times. It
-// runs at temperature 1: all of the gas scales.
+// fluctuates as it should. It is followed until a ball and a piston have exchanged some times. Half
+// of that time is the window in which the current's autocorrelation counts. A replica runs at
+// temperature 1: all of the gas scales.
 //   batch means, a replica each  [0] exchanges, contacts times duration
 //                                [1] sum of the balls' mean energies, balls  [2] twice the pistons'
+//   moments                      [0] conductivity
+//                                [1] to [17] the same up to windows of 0 to 16 steps
+//                                [18] to [33] the current's autocorrelation at 1 to 16 steps
 //   histograms                   [0] speeds of the balls at the end  [1] of the pistons
 #include <algorithm>
 #include <array>
@@ -19,13 +23,16 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/conductivity/conductivity.h"
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/exact_estimate.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
+#include "core/gas/current_meter.h"
 #include "core/gas/gas_exchange_rate.h"
+#include "core/gas/jump_current.h"
 #include "core/statistics/kl_divergence.h"
 
 namespace ballpiston {
@@ -37,7 +44,11 @@ constexpr double kMostSpeed = 6;  // beyond it one in 10^8 of a ball's speeds, i
 // A replica's exchanges, of a contact. Few where there are many contacts, because then the energy
 // fluctuates little and starts cost most.
 double ExchangesOf(const GasGeometry& geometry) {
-  return std::clamp(4e4 / static_cast<double>(geometry.contacts()), 0.5, 4.0);
+  return std::clamp(4e4 / static_cast<double>(geometry.contacts()), 0.5, 8.0);
+}
+
+ExtrapolatedValue LimitCorrection(const GasGeometry& geometry) {
+  return geometry.shape().is_lattice ? kLatticeCorrection : kChainCorrection;
 }
 
 GasTimes TimesInEquilibrium(const GasGeometry& geometry) {
@@ -62,8 +73,13 @@ std::array<std::vector<double>, 2> SpeedLaws() {
           SpeedProbabilities([](double v) { return std::erfc(v * std::numbers::sqrt2 / 2); })};
 }
 
+// The first of the moments for each window, and for each lag of the autocorrelation.
+constexpr size_t kWindows = 1;
+constexpr size_t kLags = kWindows + kMostLag + 1;
+
 BlockResult NoGasesMeasured() {
   BlockResult result;
+  result.moments.resize(kLags + kMostLag);
   result.batch_means.resize(3);
   result.histograms = EmptySpeeds();
   return result;
@@ -81,8 +97,16 @@ class GasEquilibrium : public GasExperiment {
     return DrawGas(geometry(), TemperatureProfile(1), random);
   }
 
+  std::unique_ptr<CurrentMeter> CurrentOf(const GasState& start) const override {
+    if (gas_engine() == GasEngine::kJumps) {
+      return std::make_unique<JumpCurrent>(geometry(), exchange_rate(), start, times().measure);
+    }
+    return std::make_unique<CarriedCurrent>(start.balls.size(), exchange_rate(), times().measure);
+  }
+
   void Measure(const GasMeter& meter, BlockResult& result) const override {
     AddMeans(meter, 0, result);
+    AddCurrent(meter.current()->Result(), result.moments);
     for (size_t i = 0; i < meter.bodies(); ++i) {
       result.histograms[i < meter.balls() ? 0 : 1].Add(std::sqrt(2 * meter.Energy(i)));
     }
@@ -103,6 +127,7 @@ class GasEquilibrium : public GasExperiment {
     summary.estimates = {FirstEstimate(merged),
                          MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
                          MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)};
+    AddConductivity(merged, summary);
     const auto laws = SpeedLaws();
     constexpr std::array<const char*, 2> kBodies = {"ball", "piston"};
     for (size_t i = 0; i < laws.size(); ++i) {
@@ -118,6 +143,58 @@ class GasEquilibrium : public GasExperiment {
   }
 
  private:
+  static void AddCurrent(const GreenKubo& current, std::vector<Moments>& moments) {
+    moments[0].Add(current.best);
+    for (size_t i = 0; i <= kMostLag; ++i) moments[kWindows + i].Add(current.conductivity[i]);
+    for (size_t i = 0; i < kMostLag; ++i) moments[kLags + i].Add(current.autocorrelation[i + 1]);
+  }
+
+  size_t Window() const {
+    return gas_engine() == GasEngine::kJumps ? JumpCurrent::kWindow : CarriedCurrent::kWindow;
+  }
+
+  // At the gas's temperature, these are times, conductivities and currents squared of a cell.
+  double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature_); }
+  double ConductivityScale() const { return std::sqrt(temperature_); }
+  double AutocorrelationScale() const { return temperature_ * temperature_ * temperature_; }
+
+  void AddConductivity(const BlockResult& merged, PointSummary& summary) const {
+    const double of_static = InfiniteGasExchangeRate(geometry(), 1) / 2;
+    const double limit = 1 + LimitCorrection(geometry()).value;
+    const auto estimate = [&](const char* name, double scale, double unit) {
+      const Moments& m = merged.moments[0];
+      return Estimate{.name = name,
+                      .value = scale * m.mean,
+                      .standard_error = Told(merged, m.StandardError(), scale),
+                      .limit = unit * limit};
+    };
+    const double scale = ConductivityScale();
+    summary.estimates.push_back(estimate("conductivity", scale, scale * of_static));
+    summary.estimates.push_back(estimate("conductivity_ratio", 1 / of_static, 1));
+    Curve windows = {.name = "conductivity_ratio_by_window"};
+    for (size_t i = 0; i <= kMostLag; ++i) {
+      windows.points.push_back(PointOf(merged, kWindows + i, i, 1 / of_static));
+    }
+    Curve autocorrelation = {.name = "current_autocorrelation"};
+    for (size_t i = 0; i < kMostLag; ++i) {
+      autocorrelation.points.push_back(PointOf(merged, kLags + i, i + 1, AutocorrelationScale()));
+    }
+    summary.curves = {std::move(windows), std::move(autocorrelation)};
+    summary.remarks.push_back(absl::StrFormat(
+        "the conductivity counts correlations of the current up to a time of %.3g: %.3g of the "
+        "mean "
+        "times between two exchanges of a ball and a piston",
+        static_cast<double>(Window()) * Step(),
+        ExchangesOf(geometry()) * static_cast<double>(Window()) / kCurrentSteps));
+  }
+
+  CurvePoint PointOf(const BlockResult& merged, size_t index, size_t steps, double scale) const {
+    const Moments& measured = merged.moments[index];
+    return {.at = static_cast<double>(steps) * Step(),
+            .value = scale * measured.mean,
+            .standard_error = Told(merged, measured.StandardError(), scale)};
+  }
+
   // Speeds scale with sqrt T.
   Histogram AtTemperature(const BlockResult& merged, size_t index) const {
     Histogram speeds = merged.histograms[index];
@@ -147,10 +224,9 @@ PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
                         ExactEstimate("temperature_piston", temperature, 0)}};
 }
 
-// Adds the conductivity of the infinite gas in the limit of rare exchanges.
-void AddConductivity(const GasGeometry& geometry, double temperature, PointSummary& summary) {
-  const bool is_lattice = geometry.shape().is_lattice;
-  const ExtrapolatedValue correction = is_lattice ? kLatticeCorrection : kChainCorrection;
+// The conductivity of the infinite gas in the limit of rare exchanges.
+void AddLimitConductivity(const GasGeometry& geometry, double temperature, PointSummary& summary) {
+  const ExtrapolatedValue correction = LimitCorrection(geometry);
   const double of_static = InfiniteGasExchangeRate(geometry, temperature) / 2;
   const auto add = [&](const char* name, double unit) {
     summary.estimates.push_back({.name = name,
@@ -160,7 +236,7 @@ void AddConductivity(const GasGeometry& geometry, double temperature, PointSumma
   add("conductivity", of_static);
   add("conductivity_ratio", 1);
   summary.remarks.push_back(absl::StrCat("the conductivity is that of the infinite ",
-                                         is_lattice ? "lattice" : "chain",
+                                         geometry.shape().is_lattice ? "lattice" : "chain",
                                          " in the limit of rare exchanges"));
 }
 
@@ -171,7 +247,9 @@ std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
     return std::make_unique<GasEquilibrium>(spec, point, geometry);
   }
   PointSummary summary = ExactAnswer(geometry, point[kTemperature]);
-  if (spec.model == Model::kSpectrum) AddConductivity(geometry, point[kTemperature], summary);
+  if (spec.model == Model::kSpectrum) {
+    AddLimitConductivity(geometry, point[kTemperature], summary);
+  }
   return std::make_unique<ComputedAnswer>(spec, point, std::move(summary));
 }
 

@@ -75,6 +75,7 @@ class GasBlocks : public BlockRun {
     GasState state = experiment_.Draw(of_start);
     open.meters.push_back(std::make_unique<GasMeter>(experiment_.geometry(), state));
     GasMeter* const meter = open.meters.back().get();
+    meter->MeasureCurrent(experiment_.CurrentOf(state));
     open.energies.push_back(meter->TotalEnergy());
     running_.push_back(meter);
     return {std::move(state), experiment_.WallsOf(random), random, meter};

@@ -50,6 +50,8 @@ class GasExperiment : public PointExperiment {
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
   virtual GasState Draw(CounterRandom& random) const = 0;
   virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
+  // Measures the current of a replica that starts like this; null if nothing has to be measured.
+  virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
   // Adds one replica's numbers.
   virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 

@@ -1,6 +1,6 @@
 // Measures a gas in a window of time: the number of exchanges, the energy that is carried along x,
 // and each body's mean energy. The engine reports every exchange to the meter, in the order of
-// time.
+// time. It passes exchanges on to a meter of the current, if it has one.
 //
 // Bodies are the balls, then the pistons. Not for sharing between threads.
 #ifndef BALLPISTON_CORE_GAS_GAS_METER_H_
@@ -8,8 +8,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "core/gas/current_meter.h"
 #include "core/gas/gas_geometry.h"
 #include "core/gas/gas_state.h"
 
@@ -35,7 +38,11 @@ class GasMeter {
     for (const GasPiston& piston : start.pistons) bodies_.push_back({.energy = EnergyOf(piston)});
   }
 
-  // Forgets what was measured before.
+  // The current is measured from time 0 on.
+  void MeasureCurrent(std::unique_ptr<CurrentMeter> current) { current_ = std::move(current); }
+  const CurrentMeter* current() const { return current_.get(); }  // or null
+
+  // Forgets what was measured before, but for the current.
   void Begin(double time) {
     begin_ = time;
     exchanges_ = 0;
@@ -46,9 +53,11 @@ class GasMeter {
   void Exchange(const GasExchange& exchange) {
     ++exchanges_;
     Body& ball = bodies_[static_cast<size_t>(exchange.ball)];
-    if (IsAlongX(exchange.direction)) {
-      carried_ += SignOf(exchange.direction) * (ball.energy - exchange.ball_energy);
-    }
+    const double carried = IsAlongX(exchange.direction)
+                               ? SignOf(exchange.direction) * (ball.energy - exchange.ball_energy)
+                               : 0;
+    carried_ += carried;
+    if (current_ != nullptr) current_->Exchange(exchange, carried);
     Set(exchange.time, exchange.ball_energy, ball);
     SetPiston(exchange.time, exchange.piston, exchange.piston_energy);
   }
@@ -63,6 +72,7 @@ class GasMeter {
 
   void End(double time) {
     end_ = time;
+    if (current_ != nullptr) current_->End(time);
     for (Body& body : bodies_) Set(time, body.energy, body);
   }
 
@@ -102,6 +112,7 @@ class GasMeter {
   uint64_t escapes_ = 0;
   uint64_t exchanges_ = 0;
   double carried_ = 0;
+  std::unique_ptr<CurrentMeter> current_;
 };
 
 }  // namespace ballpiston

@@ -1,0 +1,147 @@
+#include "core/conductivity/contact_currents.h"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <numbers>
+
+namespace ballpiston {
+namespace {
+
+using Values = TestFunction::Values;
+
+constexpr double kLargestRoot = 6;  // of a total energy; in equilibrium one in 10^15 is larger
+constexpr size_t kRoots = 97;
+constexpr size_t kPlaces = 49;  // on each side of equal speeds
+
+// f over the angles from 0 to that at which the ball's component is `least`, in [0, speed):
+// v = speed - (speed - least) z^2 is smooth at both ends.
+template <typename F>
+void ForEachAngle(double speed, double least, F f) {
+  using Gauss = boost::math::quadrature::gauss<double, 20>;
+  const double range = speed - least;
+  const auto& nodes = Gauss::abscissa();
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    for (const double sign : {-1, 1}) {
+      const double z = (1 + sign * nodes[k]) / 2;
+      const double v = speed - range * z * z;
+      f(v, Gauss::weights()[k] * std::sqrt(range / (speed + v)));
+    }
+  }
+}
+
+// The changes by an exchange in which the ball's component is v.
+class Changes {
+ public:
+  Changes(const TestFunction& f, double ball_energy, double piston_energy)
+      : f_(f),
+        total_(ball_energy + piston_energy),
+        piston_energy_(piston_energy),
+        ball_(f.OfBall(ball_energy)),
+        piston_(f.OfPiston(piston_energy)) {}
+
+  void AddTo(ContactCurrents& sum, double v, double weight) const {
+    const double piston_energy = v * v / 2;
+    const Values ball = f_.OfBall(total_ - piston_energy), piston = f_.OfPiston(piston_energy);
+    sum.energy += weight * (piston_energy - piston_energy_);
+    for (size_t r = 0; r < ball.size(); ++r) {
+      const double of_ball = ball[r] - ball_[r], of_piston = piston[r] - piston_[r];
+      sum.ball[r] += weight * of_ball;
+      sum.piston[r] += weight * of_piston;
+      sum.products += weight * of_ball * of_piston;
+    }
+  }
+
+ private:
+  const TestFunction& f_;
+  double total_;
+  double piston_energy_;
+  Values ball_;
+  Values piston_;
+};
+
+// Where a value stands between nodes: the first of four, and their weights.
+struct Stencil {
+  Stencil(double at, size_t count)
+      : first(static_cast<size_t>(
+            std::clamp(std::floor(at) - 1, 0.0, static_cast<double>(count) - 4))) {
+    const double t = at - static_cast<double>(first);
+    weights = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2,
+               -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6};
+  }
+
+  size_t first;
+  std::array<double, 4> weights;
+};
+
+constexpr double kRootsInOne = static_cast<double>(kRoots - 1) / kLargestRoot;
+constexpr double kPlacesInOne = static_cast<double>(kPlaces - 1);
+
+}  // namespace
+
+ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, double piston_energy) {
+  const double s = std::sqrt(2 * ball_energy), w = std::sqrt(2 * piston_energy);
+  const Changes changes(f, ball_energy, piston_energy);
+  ContactCurrents sum;
+  // The mean over a quarter of the circle is that over all of it.
+  if (s == 0) {
+    changes.AddTo(sum, 0, w / 2);
+    return sum;
+  }
+  ForEachAngle(
+      s, 0, [&](double v, double weight) { changes.AddTo(sum, v, w / std::numbers::pi * weight); });
+  if (s <= w) return sum;
+  ForEachAngle(s, w, [&](double v, double weight) {
+    changes.AddTo(sum, v, (v - w) / std::numbers::pi * weight);
+  });
+  return sum;
+}
+
+size_t ContactCurrentsTable::NodeAt(bool is_piston_faster, size_t root, size_t place) const {
+  return ((is_piston_faster ? kRoots : 0) + root) * kPlaces + place;
+}
+
+ContactCurrentsTable::ContactCurrentsTable(const TestFunction& f) : f_(f) {
+  nodes_.resize(2 * kRoots * kPlaces);
+  for (const bool is_piston_faster : {false, true}) {
+    for (size_t root = 1; root < kRoots; ++root) {  // all is 0 at energies 0
+      const double sigma = static_cast<double>(root) / kRootsInOne;
+      for (size_t place = 0; place < kPlaces; ++place) {
+        const double y = static_cast<double>(place) / kPlacesInOne;
+        const double half = sigma * sigma / 2, more = half * (1 + y * y), less = half * (1 - y * y);
+        const ContactCurrents c =
+            is_piston_faster ? ContactCurrentsOf(f, less, more) : ContactCurrentsOf(f, more, less);
+        nodes_[NodeAt(is_piston_faster, root, place)] = {c.energy,  c.products,  c.ball[0],
+                                                         c.ball[1], c.piston[0], c.piston[1]};
+      }
+    }
+  }
+}
+
+const ContactCurrentsTable& ContactCurrentsTable::OfChain() {
+  static const ContactCurrentsTable table(kChainTestFunction);
+  return table;
+}
+
+const ContactCurrentsTable& ContactCurrentsTable::OfLattice() {
+  static const ContactCurrentsTable table(kLatticeTestFunction);
+  return table;
+}
+
+ContactCurrents ContactCurrentsTable::At(double ball_energy, double piston_energy) const {
+  const double total = ball_energy + piston_energy;
+  const double y = std::sqrt(std::fabs(ball_energy - piston_energy) / total);
+  const Stencil root(std::sqrt(total) * kRootsInOne, kRoots), place(y * kPlacesInOne, kPlaces);
+  const bool is_piston_faster = piston_energy > ball_energy;
+  Node sum = {};
+  for (size_t i = 0; i < 4; ++i) {
+    const Node* const row = &nodes_[NodeAt(is_piston_faster, root.first + i, place.first)];
+    for (size_t k = 0; k < 4; ++k) {
+      const double weight = root.weights[i] * place.weights[k];
+      for (size_t value = 0; value < kValues; ++value) sum[value] += weight * row[k][value];
+    }
+  }
+  return {sum[0], sum[1], {sum[2], sum[3]}, {sum[4], sum[5]}};
+}
+
+}  // namespace ballpiston

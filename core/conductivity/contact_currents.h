@@ -1,0 +1,66 @@
+// What one contact of a ball and a piston does in the mean, at given energies of the two: the
+// energy that it carries, and how it changes a test function.
+//
+// The ball's angle is uniform and the piston's sign even, so with the speeds s = sqrt(2 e_b) and
+// w = sqrt(2 e_p), and a change D that depends on the exchange by v_a^2 alone,
+//
+//   < (v_a - v_b)+ D > = (w/2) <D> + (1/pi) integral over v_a > w of (v_a - w) D
+//
+// over the angles from 0 to acos(w/s); the last term is 0 where the piston is faster. It has a
+// singularity of the power 3/2 at s = w. So the table has one part on each side, over the root of
+// the total energy and over sqrt(|e_b - e_p|/(e_b + e_p)), in which both are smooth. Between the
+// nodes it is interpolated by cubic polynomials.
+//
+// Units: those of contact_matrix.h. Domain: energies of at least 0, not both 0. Errors:
+// interpolated values, kContactCurrentsError. Test: ContactCurrents.AgreeWithTheirDefinition.
+//
+// Made of +, -, *, / and sqrt alone, so the same bits everywhere. Immutable; safe to share between
+// threads.
+#ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
+#define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/conductivity/test_function.h"
+
+namespace ballpiston {
+
+// Root mean square over the equilibrium, over the root mean square of the value.
+inline constexpr double kContactCurrentsError = 3e-4;
+
+// In a unit of time, the means of
+struct ContactCurrents {
+  double energy = 0;                 // what the piston gains
+  double products = 0;               // sum_r of (change of u_r) (change of w_r)
+  TestFunction::Values ball = {};    // the change of u_r
+  TestFunction::Values piston = {};  // the change of w_r
+};
+
+// By quadrature, to 1e-12.
+ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, double piston_energy);
+
+class ContactCurrentsTable {
+ public:
+  explicit ContactCurrentsTable(const TestFunction& f);
+
+  // Computed once for each process, in some 10 ms.
+  static const ContactCurrentsTable& OfChain();
+  static const ContactCurrentsTable& OfLattice();
+
+  const TestFunction& test_function() const { return f_; }
+  ContactCurrents At(double ball_energy, double piston_energy) const;
+
+ private:
+  static constexpr size_t kValues = 2 + 2 * TestFunction::kTerms;
+  using Node = std::array<double, kValues>;
+  size_t NodeAt(bool is_piston_faster, size_t speed, size_t place) const;
+
+  TestFunction f_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_

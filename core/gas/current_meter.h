@@ -1,0 +1,91 @@
+// The heat current of a periodic gas along x, and Green and Kubo's conductivity from it.
+//
+// The current is measured in equilibrium, integrated over equal steps of time. Its autocorrelation
+// C(t) for one cell gives the conductivity,
+//
+//   kappa T^2 = integral over t > 0 of C(t),
+//
+// cut off at a window: C counts fully up to the window and falls to 0 over one more step. A replica
+// gives one value of everything below, free of bias but for the window. The scatter grows as the
+// root of the window.
+//
+// Properties, each with the test that bears its name:
+//   1. StepsHoldTheWholeCurrent.  2. IndependentCarriersConductAsTheyShould.
+#ifndef BALLPISTON_CORE_GAS_CURRENT_METER_H_
+#define BALLPISTON_CORE_GAS_CURRENT_METER_H_
+
+#include <cstddef>
+#include <vector>
+
+namespace ballpiston {
+
+struct GasExchange;
+
+// The integral of a current over each of several equal steps of time from 0.
+class CurrentSteps {
+ public:
+  CurrentSteps(double duration, size_t count)
+      : steps_(count), per_time_(static_cast<double>(count) / duration) {}
+
+  void AddAt(double time, double amount) { steps_[StepAt(time)] += amount; }
+  // A current that does not change from `begin` to `end`.
+  void AddOver(double begin, double end, double current);
+
+  double length() const { return 1 / per_time_; }
+  const std::vector<double>& values() const { return steps_; }
+
+ private:
+  // The last step has all that comes later.
+  size_t StepAt(double time) const;
+
+  std::vector<double> steps_;
+  double per_time_;
+};
+
+// Of one replica, at temperature 1; for each lag from 0 on, in steps.
+struct GreenKubo {
+  std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
+  std::vector<double> conductivity;     // with a window up to there
+  double best = 0;
+};
+
+inline constexpr size_t kCurrentSteps = 32;  // of a replica
+inline constexpr size_t kMostLag = 16;       // in steps
+
+class CurrentMeter {
+ public:
+  virtual ~CurrentMeter() = default;
+  // `carried` is the energy that the exchange moved toward +x, from a ball to a piston or back.
+  virtual void Exchange(const GasExchange& exchange, double carried) = 0;
+  virtual void End(double time) = 0;
+  virtual GreenKubo Result() const = 0;
+};
+
+// By the energy that exchanges carry over half a cell. What each exchange has in common with itself
+// alone gives the static conductivity, half of the exchange rate. That is known exactly, so its
+// scatter is left out: the conductivity is the static one and what different exchanges have in
+// common.
+class CarriedCurrent : public CurrentMeter {
+ public:
+  // `exchange_rate` is that of the gas at temperature 1.
+  CarriedCurrent(size_t cells, double exchange_rate, double duration)
+      : cells_(static_cast<double>(cells)),
+        exchange_rate_(exchange_rate),
+        steps_(duration, kCurrentSteps) {}
+
+  static constexpr size_t kWindow = 8;  // of the best value, in steps
+
+  void Exchange(const GasExchange& exchange, double carried) override;
+  void End(double) override {}
+  GreenKubo Result() const override;
+
+ private:
+  double cells_;
+  double exchange_rate_;
+  CurrentSteps steps_;
+  double squares_ = 0;  // the sum of those of all exchanges
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_CURRENT_METER_H_

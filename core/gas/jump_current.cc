@@ -1,0 +1,143 @@
+#include "core/gas/jump_current.h"
+
+#include "core/conductivity/contact_matrix.h"
+#include "core/gas/gas_meter.h"
+#include "core/statistics/lag_products.h"
+
+namespace ballpiston {
+namespace {
+
+using Values = TestFunction::Values;
+
+double Product(const Values& one, const Values& other) {
+  double sum = 0;
+  for (size_t r = 0; r < one.size(); ++r) sum += one[r] * other[r];
+  return sum;
+}
+
+Values Difference(const Values& one, const Values& other) {
+  Values difference;
+  for (size_t r = 0; r < one.size(); ++r) difference[r] = one[r] - other[r];
+  return difference;
+}
+
+// Adds `now` - `before`.
+void Replace(const Values& before, const Values& now, Values& sum) {
+  for (size_t r = 0; r < sum.size(); ++r) sum[r] += now[r] - before[r];
+}
+
+const ContactCurrentsTable& TableOf(const GasGeometry& geometry) {
+  return geometry.shape().is_lattice ? ContactCurrentsTable::OfLattice()
+                                     : ContactCurrentsTable::OfChain();
+}
+
+double SignAlongX(Direction direction) { return IsAlongX(direction) ? SignOf(direction) : 0; }
+
+}  // namespace
+
+JumpCurrent::JumpCurrent(const GasGeometry& geometry, double exchange_rate, const GasState& start,
+                         double duration)
+    : table_(TableOf(geometry)),
+      directions_(static_cast<size_t>(geometry.directions())),
+      bound_(geometry.shape().columns > 1 ? table_.test_function().bound : 0),
+      density_(exchange_rate / kContactRate),
+      balls_(start.balls.size()),
+      pistons_(start.pistons.size()),
+      steps_(duration, kCurrentSteps),
+      steps_left_(duration, kCurrentSteps) {
+  const TestFunction& f = table_.test_function();
+  for (size_t i = 0; i < balls_.size(); ++i) balls_[i].energy = EnergyOf(start.balls[i]);
+  for (size_t i = 0; i < pistons_.size(); ++i) pistons_[i].energy = EnergyOf(start.pistons[i]);
+  for (Body& ball : balls_) ball.values = f.OfBall(ball.energy);
+  for (Body& piston : pistons_) piston.values = f.OfPiston(piston.energy);
+  Connect(geometry);
+  for (Contact& contact : contacts_) FindContact(contact);
+  for (size_t ball = 0; ball < balls_.size(); ++ball) FindBallTerm(ball);
+  for (size_t piston = 0; piston < pistons_.size(); ++piston) FindPistonTerm(piston);
+}
+
+void JumpCurrent::Connect(const GasGeometry& geometry) {
+  sides_.resize(pistons_.size());
+  for (int64_t ball = 0; ball < geometry.balls(); ++ball) {
+    for (int i = 0; i < geometry.directions(); ++i) {
+      const Direction direction = geometry.DirectionAt(i);
+      const int64_t piston = geometry.PistonOf(ball, direction);
+      sides_[static_cast<size_t>(piston)][SignOf(direction) > 0 ? 0 : 1] = contacts_.size();
+      contacts_.push_back({.ball = static_cast<size_t>(ball),
+                           .piston = static_cast<size_t>(piston),
+                           .sign = SignAlongX(direction)});
+    }
+  }
+}
+
+void JumpCurrent::FindContact(Contact& contact) {
+  Body &ball = balls_[contact.ball], &piston = pistons_[contact.piston];
+  const ContactCurrents before = contact.now;
+  contact.now = table_.At(ball.energy, piston.energy);
+  Replace(before.ball, contact.now.ball, ball.change);
+  Replace(before.piston, contact.now.piston, piston.change);
+  const double more = contact.sign * (contact.now.energy - before.energy);
+  current_ += more;
+  current_left_ += more + contact.sign * (contact.now.products - before.products);
+}
+
+void JumpCurrent::SetTerm(double term, Body& body) {
+  current_left_ += term - body.term;
+  body.term = term;
+}
+
+// The first of its directions is to the right, and the one opposite in the middle of the list.
+void JumpCurrent::FindBallTerm(size_t ball) {
+  const Contact& right = contacts_[ball * directions_];
+  const Contact& left = contacts_[ball * directions_ + directions_ / 2];
+  const Values neighbours = Difference(pistons_[right.piston].values, pistons_[left.piston].values);
+  SetTerm(Product(neighbours, balls_[ball].change), balls_[ball]);
+}
+
+void JumpCurrent::FindPistonTerm(size_t piston) {
+  const auto& [before, after] = sides_[piston];
+  if (contacts_[before].sign == 0) return;
+  const Values neighbours =
+      Difference(balls_[contacts_[before].ball].values, balls_[contacts_[after].ball].values);
+  SetTerm(Product(neighbours, pistons_[piston].change), pistons_[piston]);
+}
+
+void JumpCurrent::Exchange(const GasExchange& exchange, double) {
+  AddUntil(exchange.time);
+  const auto ball = static_cast<size_t>(exchange.ball);
+  const auto piston = static_cast<size_t>(exchange.piston);
+  const TestFunction& f = table_.test_function();
+  balls_[ball].energy = exchange.ball_energy;
+  balls_[ball].values = f.OfBall(exchange.ball_energy);
+  pistons_[piston].energy = exchange.piston_energy;
+  pistons_[piston].values = f.OfPiston(exchange.piston_energy);
+  for (size_t i = 0; i < directions_; ++i) FindContact(contacts_[ball * directions_ + i]);
+  for (const size_t side : sides_[piston]) {
+    if (contacts_[side].ball != ball) FindContact(contacts_[side]);
+  }
+  for (const size_t side : sides_[piston]) FindBallTerm(contacts_[side].ball);
+  for (size_t i = 0; i < directions_; ++i) FindPistonTerm(contacts_[ball * directions_ + i].piston);
+  FindPistonTerm(piston);
+}
+
+void JumpCurrent::AddUntil(double time) {
+  steps_.AddOver(since_, time, current_);
+  steps_left_.AddOver(since_, time, current_left_);
+  since_ = time;
+}
+
+GreenKubo JumpCurrent::Result() const {
+  const double step = steps_.length(), cells = static_cast<double>(balls_.size());
+  const double unit = density_ * density_ / (4 * cells * step);  // 4: twice the currents
+  const double static_value = density_ * kContactRate / 2;
+  GreenKubo result;
+  result.autocorrelation = LagProducts(steps_.values(), kMostLag);
+  result.conductivity = IntegralsOf(result.autocorrelation);
+  for (double& c : result.autocorrelation) c *= -unit / step;
+  for (double& k : result.conductivity) k = static_value - unit * k;
+  const double left = IntegralsOf(LagProducts(steps_left_.values(), kWindow)).back();
+  result.best = static_value * (1 + bound_) - unit * left;
+  return result;
+}
+
+}  // namespace ballpiston

@@ -1,0 +1,96 @@
+// The conductivity of the jump process by Green and Kubo's formula, with little scatter.
+//
+// Between exchanges the current that is expected at the present energies is known exactly: J =
+// sum over the contacts along x of (1/2) j(e_b, e_p). The process is reversible, so
+//
+//   kappa T^2 = kappa_0 T^2 - (integral over t > 0 of <J(0) J(t)>)/cells
+//
+// and the scatter is that of a correction of 0.2 %, not of the conductivity. J changes only where
+// an exchange was, and is integrated exactly over each step. Its part that is linear in functions
+// of one energy adds up to 0 round a ring.
+//
+// The same formula holds with the current J' = L(X + f) that a test function leaves, and a bound in
+// place of kappa_0 (conductivity/test_function.h): that gives `best`. With f = sum_r u_r(ball)
+// A_r(ball), where A_r is w_r of the piston on its right less that on its left, and B_r of a piston
+// is u_r of the ball on its left less that on its right,
+//
+//   2 J' = sum over contacts along x of +-(j + sum_r <(change of u_r) (change of w_r)>)
+//        + sum over balls, r of A_r (L u_r) + sum over pistons along x, r of B_r (L w_r).
+//
+// L u_r of a ball is the sum over its contacts. An exchange changes the terms of two balls and two
+// pistons. In one column there is no current.
+//
+// Properties, each with the test that bears its name:
+//   1. CurrentsAreThoseOfTheirDefinition.  2. BothGiveTheGalerkinValue.
+#ifndef BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
+#define BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/conductivity/contact_currents.h"
+#include "core/gas/current_meter.h"
+#include "core/gas/gas_geometry.h"
+#include "core/gas/gas_state.h"
+
+namespace ballpiston {
+
+class JumpCurrent : public CurrentMeter {
+ public:
+  // `exchange_rate` is that of the gas at temperature 1. The gas is periodic.
+  JumpCurrent(const GasGeometry& geometry, double exchange_rate, const GasState& start,
+              double duration);
+
+  static constexpr size_t kWindow = kMostLag;  // of the best value, in steps
+
+  void Exchange(const GasExchange& exchange, double carried) override;
+  void End(double time) override { AddUntil(time); }
+  GreenKubo Result() const override;
+
+  // Twice the currents J and J' at the present energies, where exchanges have a density of 1.
+  double current() const { return current_; }
+  double current_left() const { return current_left_; }
+
+ private:
+  using Values = TestFunction::Values;
+
+  struct Body {
+    double energy = 0;
+    Values values = {};  // u_r of a ball, w_r of a piston
+    Values change = {};  // L u_r, L w_r
+    double term = 0;     // of 2 J'
+  };
+  struct Contact {
+    size_t ball = 0;
+    size_t piston = 0;
+    double sign = 0;  // that of x from ball to piston
+    ContactCurrents now = {};
+  };
+
+  void Connect(const GasGeometry& geometry);
+  void FindContact(Contact& contact);
+  void FindBallTerm(size_t ball);
+  void FindPistonTerm(size_t piston);
+  void SetTerm(double term, Body& body);
+  void AddUntil(double time);
+
+  const ContactCurrentsTable& table_;
+  size_t directions_;
+  double bound_;
+  double density_;
+  std::vector<Body> balls_;
+  std::vector<Body> pistons_;
+  std::vector<Contact> contacts_;  // of each ball, in the order of its directions
+  // The contacts of each piston: with the ball before it and with the one after it.
+  std::vector<std::array<size_t, 2>> sides_;
+  double current_ = 0;
+  double current_left_ = 0;
+  double since_ = 0;
+  CurrentSteps steps_;
+  CurrentSteps steps_left_;
+};
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
