@@ -11,17 +11,17 @@
 namespace ballpiston {
 namespace {
 
-using Values = std::array<double, 6>;
+using SixValues = std::array<double, 6>;
 
-Values Listed(const ContactCurrents& c) {
+SixValues Listed(const ContactCurrents& c) {
   return {c.energy, c.products, c.ball[0], c.ball[1], c.piston[0], c.piston[1]};
 }
 
 // The sum over angles and signs, by the rule of the middles.
-Values ByDefinition(const TestFunction& f, double ball, double piston) {
+SixValues ByDefinition(const TestFunction& f, double ball, double piston) {
   constexpr int kAngles = 40'000;
   const TestFunction::Values u = f.OfBall(ball), w = f.OfPiston(piston);
-  Values sum = {};
+  SixValues sum = {};
   for (const double v3 : {std::sqrt(2 * piston), -std::sqrt(2 * piston)}) {
     for (int k = 0; k < kAngles; ++k) {
       const double v1 = std::sqrt(2 * ball) * std::cos(std::numbers::pi * (k + 0.5) / kAngles);
@@ -44,8 +44,8 @@ TEST(ContactCurrents, AgreeWithTheirDefinition) {
   for (const TestFunction& f : {kChainTestFunction, kLatticeTestFunction}) {
     for (const auto& [ball, piston] : std::vector<std::pair<double, double>>{
              {1, 0.5}, {0.5, 1}, {2, 1.99}, {1, 1}, {0, 0.7}, {0.7, 0}, {6, 0.01}, {0.01, 4}}) {
-      const Values expected = ByDefinition(f, ball, piston);
-      const Values found = Listed(ContactCurrentsOf(f, ball, piston));
+      const SixValues expected = ByDefinition(f, ball, piston);
+      const SixValues found = Listed(ContactCurrentsOf(f, ball, piston));
       for (size_t i = 0; i < found.size(); ++i) {
         EXPECT_NEAR(found[i], expected[i], 1e-8) << ball << " " << piston << " value " << i;
       }
@@ -58,11 +58,11 @@ TEST(ContactCurrents, TableIsWithinItsErrorOfThem) {
   std::gamma_distribution<double> of_a_ball(1), of_a_piston(0.5);
   for (const ContactCurrentsTable* table :
        {&ContactCurrentsTable::OfChain(), &ContactCurrentsTable::OfLattice()}) {
-    Values squares = {}, errors = {};
+    SixValues squares = {}, errors = {};
     for (int i = 0; i < 20'000; ++i) {
       const double ball = of_a_ball(random), piston = of_a_piston(random);
-      const Values exact = Listed(ContactCurrentsOf(table->test_function(), ball, piston));
-      const Values found = Listed(table->At(ball, piston));
+      const SixValues exact = Listed(ContactCurrentsOf(table->test_function(), ball, piston));
+      const SixValues found = Listed(table->At(ball, piston));
       for (size_t k = 0; k < exact.size(); ++k) {
         squares[k] += exact[k] * exact[k];
         errors[k] += (found[k] - exact[k]) * (found[k] - exact[k]);
