@@ -74,12 +74,12 @@ std::array<std::vector<double>, 2> SpeedLaws() {
 }
 
 // The first of the moments for each window, and for each lag of the autocorrelation.
-constexpr size_t kWindows = 1;
-constexpr size_t kLags = kWindows + kMostLag + 1;
+constexpr size_t kFirstWindow = 1;
+constexpr size_t kFirstLag = kFirstWindow + kWindow + 1;
 
 BlockResult NoGasesMeasured() {
   BlockResult result;
-  result.moments.resize(kLags + kMostLag);
+  result.moments.resize(kFirstLag + kWindow);
   result.batch_means.resize(3);
   result.histograms = EmptySpeeds();
   return result;
@@ -145,12 +145,8 @@ class GasEquilibrium : public GasExperiment {
  private:
   static void AddCurrent(const GreenKubo& current, std::vector<Moments>& moments) {
     moments[0].Add(current.best);
-    for (size_t i = 0; i <= kMostLag; ++i) moments[kWindows + i].Add(current.conductivity[i]);
-    for (size_t i = 0; i < kMostLag; ++i) moments[kLags + i].Add(current.autocorrelation[i + 1]);
-  }
-
-  size_t Window() const {
-    return gas_engine() == GasEngine::kJumps ? JumpCurrent::kWindow : CarriedCurrent::kWindow;
+    for (size_t i = 0; i <= kWindow; ++i) moments[kFirstWindow + i].Add(current.conductivity[i]);
+    for (size_t i = 0; i < kWindow; ++i) moments[kFirstLag + i].Add(current.autocorrelation[i + 1]);
   }
 
   // At the gas's temperature, these are times, conductivities and currents squared of a cell.
@@ -158,34 +154,43 @@ class GasEquilibrium : public GasExperiment {
   double ConductivityScale() const { return std::sqrt(temperature_); }
   double AutocorrelationScale() const { return temperature_ * temperature_ * temperature_; }
 
+  // The limit beside it is that of the infinite gas.
+  Estimate Conductivity(const char* name, const BlockResult& merged, double scale) const {
+    const Moments& measured = merged.moments[0];
+    return {.name = name,
+            .value = scale * measured.mean,
+            .standard_error = Told(merged, measured.StandardError(), scale),
+            .limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value)};
+  }
+
+  // Of the infinite gas at temperature 1.
+  double StaticConductivity() const { return InfiniteGasExchangeRate(geometry(), 1) / 2; }
+
+  Curve RatioByWindow(const BlockResult& merged) const {
+    Curve curve = {.name = "conductivity_ratio_by_window"};
+    for (size_t i = 0; i <= kWindow; ++i) {
+      curve.points.push_back(PointOf(merged, kFirstWindow + i, i, 1 / StaticConductivity()));
+    }
+    return curve;
+  }
+
+  Curve Autocorrelation(const BlockResult& merged) const {
+    Curve curve = {.name = "current_autocorrelation"};
+    for (size_t i = 1; i <= kWindow; ++i) {
+      curve.points.push_back(PointOf(merged, kFirstLag + i - 1, i, AutocorrelationScale()));
+    }
+    return curve;
+  }
+
   void AddConductivity(const BlockResult& merged, PointSummary& summary) const {
-    const double of_static = InfiniteGasExchangeRate(geometry(), 1) / 2;
-    const double limit = 1 + LimitCorrection(geometry()).value;
-    const auto estimate = [&](const char* name, double scale, double unit) {
-      const Moments& m = merged.moments[0];
-      return Estimate{.name = name,
-                      .value = scale * m.mean,
-                      .standard_error = Told(merged, m.StandardError(), scale),
-                      .limit = unit * limit};
-    };
-    const double scale = ConductivityScale();
-    summary.estimates.push_back(estimate("conductivity", scale, scale * of_static));
-    summary.estimates.push_back(estimate("conductivity_ratio", 1 / of_static, 1));
-    Curve windows = {.name = "conductivity_ratio_by_window"};
-    for (size_t i = 0; i <= kMostLag; ++i) {
-      windows.points.push_back(PointOf(merged, kWindows + i, i, 1 / of_static));
-    }
-    Curve autocorrelation = {.name = "current_autocorrelation"};
-    for (size_t i = 0; i < kMostLag; ++i) {
-      autocorrelation.points.push_back(PointOf(merged, kLags + i, i + 1, AutocorrelationScale()));
-    }
-    summary.curves = {std::move(windows), std::move(autocorrelation)};
+    summary.estimates.push_back(Conductivity("conductivity", merged, ConductivityScale()));
+    summary.estimates.push_back(
+        Conductivity("conductivity_ratio", merged, 1 / StaticConductivity()));
+    summary.curves = {RatioByWindow(merged), Autocorrelation(merged)};
     summary.remarks.push_back(absl::StrFormat(
-        "the conductivity counts correlations of the current up to a time of %.3g: %.3g of the "
-        "mean "
-        "times between two exchanges of a ball and a piston",
-        static_cast<double>(Window()) * Step(),
-        ExchangesOf(geometry()) * static_cast<double>(Window()) / kCurrentSteps));
+        "the conductivity counts the current's correlations up to a time of %.3g, %.2g mean times "
+        "between exchanges of a ball and a piston",
+        kWindow * Step(), ExchangesOf(geometry()) * kWindow / kCurrentSteps));
   }
 
   CurvePoint PointOf(const BlockResult& merged, size_t index, size_t steps, double scale) const {

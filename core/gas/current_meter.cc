@@ -29,13 +29,13 @@ void CarriedCurrent::Exchange(const GasExchange& exchange, double carried) {
 
 GreenKubo CarriedCurrent::Result() const {
   GreenKubo result;
-  result.autocorrelation = LagProducts(steps_.values(), kMostLag);
+  result.autocorrelation = LagProducts(steps_.values(), kWindow);
   result.autocorrelation[0] -= squares_ / static_cast<double>(kCurrentSteps);
   result.conductivity = IntegralsOf(result.autocorrelation);
   const double step = steps_.length();
   for (double& c : result.autocorrelation) c /= cells_ * step * step;
   for (double& k : result.conductivity) k = exchange_rate_ / 2 + k / (cells_ * step);
-  result.best = result.conductivity[kWindow];
+  result.best = result.conductivity.back();
   return result;
 }
 

@@ -46,11 +46,11 @@ class CurrentSteps {
 struct GreenKubo {
   std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
   std::vector<double> conductivity;     // with a window up to there
-  double best = 0;
+  double best = 0;                      // with all of the window
 };
 
 inline constexpr size_t kCurrentSteps = 32;  // of a replica
-inline constexpr size_t kMostLag = 16;       // in steps
+inline constexpr size_t kWindow = 16;        // in steps
 
 class CurrentMeter {
  public:
@@ -72,8 +72,6 @@ class CarriedCurrent : public CurrentMeter {
       : cells_(static_cast<double>(cells)),
         exchange_rate_(exchange_rate),
         steps_(duration, kCurrentSteps) {}
-
-  static constexpr size_t kWindow = 8;  // of the best value, in steps
 
   void Exchange(const GasExchange& exchange, double carried) override;
   void End(double) override {}

@@ -131,7 +131,7 @@ GreenKubo JumpCurrent::Result() const {
   const double unit = density_ * density_ / (4 * cells * step);  // 4: twice the currents
   const double static_value = density_ * kContactRate / 2;
   GreenKubo result;
-  result.autocorrelation = LagProducts(steps_.values(), kMostLag);
+  result.autocorrelation = LagProducts(steps_.values(), kWindow);
   result.conductivity = IntegralsOf(result.autocorrelation);
   for (double& c : result.autocorrelation) c *= -unit / step;
   for (double& k : result.conductivity) k = static_value - unit * k;

@@ -42,8 +42,6 @@ class JumpCurrent : public CurrentMeter {
   JumpCurrent(const GasGeometry& geometry, double exchange_rate, const GasState& start,
               double duration);
 
-  static constexpr size_t kWindow = kMostLag;  // of the best value, in steps
-
   void Exchange(const GasExchange& exchange, double carried) override;
   void End(double time) override { AddUntil(time); }
   GreenKubo Result() const override;

@@ -44,13 +44,13 @@ TEST(CarriedCurrent, CountsWhatDifferentExchangesHaveInCommon) {
   current.Exchange({.time = 13.7 * kStep}, -4);
   const GreenKubo result = current.Result();
   const double product = 3 * -2 / static_cast<double>(kCurrentSteps - 3);
-  for (size_t lag = 0; lag <= kMostLag; ++lag) {
+  for (size_t lag = 0; lag <= kWindow; ++lag) {
     EXPECT_NEAR(result.autocorrelation[lag], lag == 3 ? product / (kCells * kStep * kStep) : 0,
                 1e-14);
     EXPECT_NEAR(result.conductivity[lag], kRate / 2 + (lag < 3 ? 0 : product / (kCells * kStep)),
                 1e-14);
   }
-  EXPECT_EQ(result.best, result.conductivity[CarriedCurrent::kWindow]);
+  EXPECT_EQ(result.best, result.conductivity[kWindow]);
 }
 
 }  // namespace
