@@ -282,6 +282,13 @@ constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
                                                 .is_known = HasRelaxationTimeAt,
                                                 .expected = ExpectedLimitError};
 
+// At energies that have no relaxation time, for which a tolerance is not permitted, the first
+// estimate is the decay integral.
+constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
+                                                .models = kModelsOfRelaxation,
+                                                .error = ErrorOfAnOrbit,
+                                                .limit_error = &kLimitErrorOfRelaxation}};
+
 }  // namespace
 
 constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
@@ -289,12 +296,11 @@ constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
                                                     .parameters = kParametersOfRelaxation,
                                                     .unit = TargetUnit::kEither,
                                                     .models = kModelsOfRelaxation,
+                                                    .aims = kAimsOfRelaxation,
                                                     .create = CreateRelaxation,
                                                     .check_grid = CheckPairGrid,
                                                     .check_tolerance = CheckToleranceOfDecay,
                                                     .work = WorkOfAnOrbit,
-                                                    .collisions = CollisionsPerOrbit,
-                                                    .error = ErrorOfAnOrbit,
-                                                    .limit_error = &kLimitErrorOfRelaxation};
+                                                    .collisions = CollisionsPerOrbit};
 
 }  // namespace ballpiston

@@ -262,14 +262,7 @@ double ErrorOfGasConduction(const PointParameters& point) {
   return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
-// The mechanisms by which a pair's exchanges differ from random ones also act in a gas, where each
-// ball meets more pistons. So the bound is that of the pair times a measured factor (docs/gas.md).
 // There is no pilot, because it would take as long as the billiard's answer.
-double ExpectedLimitErrorOfConduction(const PointParameters& point) {
-  constexpr double kOfMorePistons = 1.5;
-  return kOfMorePistons * ExpectedLimitError(point);
-}
-
 constexpr LimitError kLimitErrorOfConduction = {
     .model = Model::kMarkov,
     .has_pilots = false,
@@ -281,6 +274,11 @@ constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
 constexpr ParameterUse kParametersOfGasConduction[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kHot}, {&kCold}};
 
+constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
+                                                   .models = kModelsOfGasConduction,
+                                                   .error = ErrorOfGasConduction,
+                                                   .limit_error = &kLimitErrorOfConduction}};
+
 }  // namespace
 
 constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
@@ -288,12 +286,11 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .parameters = kParametersOfGasConduction,
                                                  .unit = TargetUnit::kEither,
                                                  .models = kModelsOfGasConduction,
+                                                 .aims = kAimsOfGasConduction,
                                                  .create = CreateGasConduction,
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
-                                                 .collisions = ExchangesOfAConductionSample,
-                                                 .error = ErrorOfGasConduction,
-                                                 .limit_error = &kLimitErrorOfConduction};
+                                                 .collisions = ExchangesOfAConductionSample};
 
 }  // namespace ballpiston

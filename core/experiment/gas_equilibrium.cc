@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -23,6 +24,7 @@
 #include "core/ensemble/computed_answer.h"
 #include "core/experiment/all_experiments.h"
 #include "core/experiment/exact_estimate.h"
+#include "core/experiment/expected_limit_error.h"
 #include "core/experiment/gas_experiment.h"
 #include "core/gas/canonical_gas.h"
 #include "core/gas/gas_exchange_rate.h"
@@ -69,13 +71,18 @@ BlockResult NoGasesMeasured() {
   return result;
 }
 
+constexpr char kConductivity[] = "conductivity";
+
+bool AimsAtConductivity(const EnsembleSpec& spec) { return AimOf(spec).name == kConductivity; }
+
 class GasEquilibrium : public GasExperiment {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point,
                  const GasGeometry& geometry)
       : GasExperiment(spec, point, geometry, TimesInEquilibrium(geometry)),
         temperature_(point[kTemperature]),
-        exact_rate_(GasExchangeRate(geometry, temperature_)) {}
+        exact_rate_(GasExchangeRate(geometry, temperature_)),
+        aims_at_conductivity_(AimsAtConductivity(spec)) {}
 
   GasState Draw(CounterRandom& random) const override {
     return DrawGas(geometry(), TemperatureProfile(1), random);
@@ -95,14 +102,17 @@ class GasEquilibrium : public GasExperiment {
   }
 
   Estimate FirstEstimate(const BlockResult& merged) const override {
-    return MeanBeside(exact_rate_, "exchange_rate", merged, 0, std::sqrt(temperature_));
+    return aims_at_conductivity_ ? Conductivity(merged) : ExchangeRate(merged);
   }
 
   PointSummary Summarize(const BlockResult& merged) const override {
     PointSummary summary = {.samples = merged.samples, .health = merged.health};
-    summary.estimates = {FirstEstimate(merged),
-                         MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
-                         MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)};
+    if (aims_at_conductivity_) summary.estimates.push_back(Conductivity(merged));
+    summary.estimates.insert(
+        summary.estimates.end(),
+        {ExchangeRate(merged),
+         MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
+         MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)});
     const auto laws = SpeedLaws();
     constexpr std::array<const char*, 2> kBodies = {"ball", "piston"};
     for (size_t i = 0; i < laws.size(); ++i) {
@@ -118,6 +128,14 @@ class GasEquilibrium : public GasExperiment {
   }
 
  private:
+  Estimate ExchangeRate(const BlockResult& merged) const {
+    return MeanBeside(exact_rate_, "exchange_rate", merged, 0, std::sqrt(temperature_));
+  }
+
+  Estimate Conductivity(const BlockResult&) const {
+    return {.name = kConductivity, .value = std::numeric_limits<double>::quiet_NaN()};
+  }
+
   // Speeds scale with sqrt T.
   Histogram AtTemperature(const BlockResult& merged, size_t index) const {
     Histogram speeds = merged.histograms[index];
@@ -134,6 +152,7 @@ class GasEquilibrium : public GasExperiment {
 
   double temperature_;
   double exact_rate_;
+  bool aims_at_conductivity_;
 };
 
 GasGeometry PeriodicGasOf(const PointParameters& point) {
@@ -147,31 +166,40 @@ PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
                         ExactEstimate("temperature_piston", temperature, 0)}};
 }
 
-// Adds the conductivity of the infinite gas in the limit of rare exchanges.
-void AddConductivity(const GasGeometry& geometry, double temperature, PointSummary& summary) {
+// Of the infinite gas in the limit of rare exchanges.
+std::vector<Estimate> ConductivityOfLimit(const GasGeometry& geometry, double temperature) {
   const bool is_lattice = geometry.shape().is_lattice;
   const ExtrapolatedValue correction = is_lattice ? kLatticeCorrection : kChainCorrection;
   const double of_static = InfiniteGasExchangeRate(geometry, temperature) / 2;
-  const auto add = [&](const char* name, double unit) {
-    summary.estimates.push_back({.name = name,
-                                 .value = unit * (1 + correction.value),
-                                 .standard_error = unit * correction.error});
+  const auto in = [&](const char* name, double unit) {
+    return Estimate{.name = name,
+                    .value = unit * (1 + correction.value),
+                    .standard_error = unit * correction.error};
   };
-  add("conductivity", of_static);
-  add("conductivity_ratio", 1);
+  return {in(kConductivity, of_static), in("conductivity_ratio", 1)};
+}
+
+// The closed forms, and the conductivity before or after them.
+PointSummary BySpectrum(const EnsembleSpec& spec, const GasGeometry& geometry, double temperature) {
+  PointSummary summary = ExactAnswer(geometry, temperature);
+  const std::vector<Estimate> limit = ConductivityOfLimit(geometry, temperature);
+  const auto place = AimsAtConductivity(spec) ? summary.estimates.begin() : summary.estimates.end();
+  summary.estimates.insert(place, limit.begin(), limit.end());
   summary.remarks.push_back(absl::StrCat("the conductivity is that of the infinite ",
-                                         is_lattice ? "lattice" : "chain",
+                                         geometry.shape().is_lattice ? "lattice" : "chain",
                                          " in the limit of rare exchanges"));
+  return summary;
 }
 
 std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
                                                       const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  if (spec.model != Model::kClosedForm && spec.model != Model::kSpectrum) {
+  if (TakesSamples(spec.model)) {
     return std::make_unique<GasEquilibrium>(spec, point, geometry);
   }
-  PointSummary summary = ExactAnswer(geometry, point[kTemperature]);
-  if (spec.model == Model::kSpectrum) AddConductivity(geometry, point[kTemperature], summary);
+  PointSummary summary = spec.model == Model::kSpectrum
+                             ? BySpectrum(spec, geometry, point[kTemperature])
+                             : ExactAnswer(geometry, point[kTemperature]);
   return std::make_unique<ComputedAnswer>(spec, point, std::move(summary));
 }
 
@@ -192,6 +220,8 @@ double ErrorOfGasEquilibrium(const PointParameters& point) {
   return std::sqrt(1.3 / ExchangesOfASample(point) + 0.5 / freedom);
 }
 
+double ErrorOfConductivity(const PointParameters&) { return 1; }
+
 std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
   const auto laws = SpeedLaws();
   return {laws.begin(), laws.end()};
@@ -201,6 +231,19 @@ constexpr ParameterUse kParametersOfGasEquilibrium[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kTemperature}};
 constexpr Model kModelsOfGasEquilibrium[] = {Model::kClosedForm, Model::kSpectrum, Model::kMarkov,
                                              Model::kBilliard, Model::kBilliardReference};
+constexpr Model kModelsOfConductivity[] = {Model::kSpectrum, Model::kMarkov, Model::kBilliard,
+                                           Model::kBilliardReference};
+constexpr LimitError kLimitErrorOfConductivity = {
+    .model = Model::kSpectrum,
+    .has_pilots = false,
+    .is_known = [](const PointParameters&) { return true; },
+    .expected = ExpectedLimitErrorOfConduction};
+constexpr AimedEstimate kAimsOfGasEquilibrium[] = {
+    {.name = "exchange_rate", .models = kModelsOfGasEquilibrium, .error = ErrorOfGasEquilibrium},
+    {.name = kConductivity,
+     .models = kModelsOfConductivity,
+     .error = ErrorOfConductivity,
+     .limit_error = &kLimitErrorOfConductivity}};
 
 }  // namespace
 
@@ -209,11 +252,11 @@ constinit const ExperimentKind kGasEquilibrium = {.name = "gas-equilibrium",
                                                   .parameters = kParametersOfGasEquilibrium,
                                                   .unit = TargetUnit::kEither,
                                                   .models = kModelsOfGasEquilibrium,
+                                                  .aims = kAimsOfGasEquilibrium,
                                                   .create = CreateGasEquilibrium,
                                                   .check_grid = CheckGasGrid,
                                                   .work = WorkOfGasEquilibrium,
                                                   .collisions = ExchangesOfASample,
-                                                  .error = ErrorOfGasEquilibrium,
                                                   .expected_probabilities = SpeedProbabilitiesAt};
 
 }  // namespace ballpiston

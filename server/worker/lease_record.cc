@@ -56,20 +56,25 @@ void FillTarget(const Target& target, storage::Question& record) {
   if (target.samples) record.set_samples(*target.samples);
   if (target.collisions) record.set_collisions(*target.collisions);
   if (target.tolerance) record.set_tolerance(*target.tolerance);
+  record.set_estimate(target.estimate);
 }
 
 Target TargetOf(const storage::Question& record) {
+  Target target = {.estimate = record.estimate()};
   switch (record.target_case()) {
     case storage::Question::kSamples:
-      return {.samples = record.samples()};
+      target.samples = record.samples();
+      break;
     case storage::Question::kCollisions:
-      return {.collisions = record.collisions()};
+      target.collisions = record.collisions();
+      break;
     case storage::Question::kTolerance:
-      return {.tolerance = record.tolerance()};
+      target.tolerance = record.tolerance();
+      break;
     case storage::Question::TARGET_NOT_SET:
       break;
   }
-  return {};
+  return target;
 }
 
 void FillPoint(const Grid& grid, storage::Question& record) {
