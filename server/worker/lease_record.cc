@@ -111,8 +111,9 @@ absl::Status CheckRest(EnsembleSpec spec) {
   return DamagedRecord(absl::StrCat("question.", found[0].field), found[0].description);
 }
 
+// The rest of the spec has no violations.
 absl::Status CheckModel(const EnsembleSpec& spec) {
-  if (!spec.experiment->IsAnsweredBy(spec.model)) {
+  if (!AimOf(spec).IsAnsweredBy(spec.model)) {
     return DamagedRecord(
         "question.model",
         absl::StrCat("is ", Name(spec.model), ", which cannot answer ", spec.experiment->name));
@@ -224,8 +225,8 @@ absl::StatusOr<EnsembleSpec> SpecOfQuestion(const storage::Question& question) {
   absl::StatusOr<Grid> grid = PointOf(question);
   if (!grid.ok()) return grid.status();
   spec.grid = *std::move(grid);
-  absl::Status checked = CheckModel(spec);
-  if (checked.ok()) checked = CheckRest(spec);
+  absl::Status checked = CheckRest(spec);
+  if (checked.ok()) checked = CheckModel(spec);
   if (!checked.ok()) return checked;
   return spec;
 }
