@@ -44,7 +44,7 @@ absl::Status CheckAlone(const std::string& whole, const std::string& other,
   return absl::InvalidArgumentError(
       absl::StrCat(whole,
                    " holds the whole specification: give no EXPERIMENT, grid, target, --seed, "
-                   "--model, --verify, --precision or ",
+                   "--model, --estimate, --verify, --precision or ",
                    other, " with it"));
 }
 

@@ -52,6 +52,17 @@ void SetBudget(Options& options, double seconds) {
   budget.set_nanos(static_cast<int32_t>((seconds - std::trunc(seconds)) * 1e9));
 }
 
+// Shell completion offers the names of the one experiment that has a choice. The server checks the
+// name.
+Value NameOfEstimate() {
+  Value value = Text(
+      "NAME",
+      [](Options& o, std::string name) { o.spec.mutable_target()->set_estimate(std::move(name)); },
+      Offer::kChoices);
+  value.choices = {"exchange_rate", "conductivity"};
+  return value;
+}
+
 Choices<Format> Formats() {
   return {{"table", Format::kTable},
           {"json", Format::kJson},
@@ -136,6 +147,9 @@ const FlagGroup kMethod = {
       OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
       "by default auto, which chooses the cheapest model that can answer"},
+     {"--estimate", NameOfEstimate(),
+      "name of the estimate that --tolerance and --model auto refer to; it is the first estimate "
+      "of the answer; only gas-equilibrium has a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),

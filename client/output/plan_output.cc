@@ -69,6 +69,7 @@ std::string BudgetText(const google::protobuf::Duration& budget) {
 // Empty if nothing was said: the server has its own default.
 std::string TargetText(const v1::Target& target) {
   Cells texts;
+  if (!target.estimate().empty()) texts.push_back(absl::StrCat("estimate ", target.estimate()));
   if (target.has_samples()) texts.push_back(absl::StrCat(target.samples(), " samples a point"));
   if (target.has_collisions()) {
     texts.push_back(absl::StrCat(target.collisions(), " collisions a point"));

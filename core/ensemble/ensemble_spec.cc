@@ -25,7 +25,7 @@ EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point
 
 bool IsAnsweredByClosedForm(const EnsembleSpec& spec) {
   return spec.model == Model::kClosedForm ||
-         (spec.model == Model::kAuto && !spec.verify && spec.experiment->HasClosedForm());
+         (spec.model == Model::kAuto && !spec.verify && AimOf(spec).HasClosedForm());
 }
 
 bool NeedsNoSamples(const EnsembleSpec& spec) {

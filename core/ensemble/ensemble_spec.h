@@ -24,13 +24,16 @@ inline constexpr int64_t kMaxSamples = 1'000'000'000'000;
 inline constexpr int64_t kMaxPoints = 100'000;
 inline constexpr double kMaxBudgetSeconds = 1e6;
 
-// At most one member is set, except that a budget and a tolerance may be set together. If no member
-// is set, the target is kDefaultSamples samples or collisions.
+// At most one of the numbers is set, except that a budget and a tolerance may be set together. If
+// none is set, the target is kDefaultSamples samples or collisions.
 struct Target {
   std::optional<int64_t> samples = {};     // first hits, or orbits, a point
   std::optional<int64_t> collisions = {};  // ball-piston collisions a point
   std::optional<double> tolerance = {};    // relative standard error of the first estimate
   std::optional<double> budget_seconds = {};
+  // The name of the estimate that the tolerance and the choice of the model refer to. It is the
+  // first estimate of the answer. Empty: the experiment's first aim (experiment_kind.h).
+  std::string estimate = {};
 
   // The number of samples is not known in advance.
   bool IsOpenEnded() const { return tolerance || budget_seconds; }

@@ -4,8 +4,28 @@
 
 namespace ballpiston {
 
-bool ExperimentKind::IsAnsweredBy(Model model) const {
+namespace {
+
+bool IsOneOf(std::span<const Model> models, Model model) {
   return model == Model::kAuto || std::find(models.begin(), models.end(), model) != models.end();
+}
+
+}  // namespace
+
+bool AimedEstimate::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
+
+bool ExperimentKind::IsAnsweredBy(Model model) const { return IsOneOf(models, model); }
+
+const AimedEstimate* ExperimentKind::FindAim(absl::string_view aim) const {
+  if (aim.empty()) return &aims.front();
+  for (const AimedEstimate& known : aims) {
+    if (known.name == aim) return &known;
+  }
+  return nullptr;
+}
+
+const AimedEstimate& AimOf(const EnsembleSpec& spec) {
+  return *spec.experiment->FindAim(spec.target.estimate);
 }
 
 const ExperimentKind* FindExperiment(uint64_t number) {

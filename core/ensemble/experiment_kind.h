@@ -25,7 +25,7 @@ struct ParameterUse {
 // The unit of a number in the target.
 enum class TargetUnit { kSamples, kCollisions, kEither };
 
-// How far the limit delta -> 0 is from the billiard, in the experiment's first estimate.
+// How far the limit delta -> 0 is from the billiard, in one estimate.
 struct LimitError {
   Model model;      // the cheapest one that answers in the limit
   bool has_pilots;  // whether pilot runs can check the bound (model_choice/limit_error.h)
@@ -33,12 +33,28 @@ struct LimitError {
   double (*expected)(const PointParameters& point);  // upper bound of the relative error
 };
 
+// An estimate that a target can name. The tolerance, the predicted error and the choice of the
+// model refer to it, and it is the first estimate of the answer.
+struct AimedEstimate {
+  absl::string_view name;
+  std::span<const Model> models;  // that can answer it; cheapest first
+  // The relative standard error of one sample by a model that takes samples. The error of n samples
+  // is 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
+  double (*error)(Model model, const PointParameters& point);
+  const LimitError* limit_error = nullptr;  // null: no bound is known
+
+  // Besides AUTO, which answers everything.
+  bool IsAnsweredBy(Model model) const;
+  bool HasClosedForm() const { return IsAnsweredBy(Model::kClosedForm); }
+};
+
 struct ExperimentKind {
   absl::string_view name;  // as users write it: "first-hit"
   uint64_t number;         // as in the API; decides the random streams
   std::span<const ParameterUse> parameters;
   TargetUnit unit = TargetUnit::kSamples;
-  std::span<const Model> models;  // that can answer; cheapest first
+  std::span<const Model> models;        // that can answer one of the aims; cheapest first
+  std::span<const AimedEstimate> aims;  // the first one is the default
 
   // `spec` has one point, which is `point`, and a model of `models`.
   std::unique_ptr<PointExperiment> (*create)(const EnsembleSpec& spec,
@@ -49,17 +65,13 @@ struct ExperimentKind {
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
-  // These three describe one sample: its work by `model`, its mean number of ball-piston
-  // collisions, and the relative standard error of its first estimate. The error of n samples is
-  // 1/sqrt(n) times that of one; it is infinite if no number of samples is enough.
+  // These two describe one sample: its work by `model`, and its mean number of ball-piston
+  // collisions.
   SampleWork (*work)(Model model, const PointParameters& point);
   double (*collisions)(const PointParameters& point);
-  double (*error)(const PointParameters& point);
 
   // Samples of one orbit that are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
-
-  const LimitError* limit_error = nullptr;  // null: no bound is known
 
   // The exact probabilities of the bins of each histogram. They sum to 1 over the histograms of one
   // law: over both signs of the piston's velocity, and in each histogram of a gas. Null if no exact
@@ -69,9 +81,12 @@ struct ExperimentKind {
 
   // Besides AUTO, which answers everything.
   bool IsAnsweredBy(Model model) const;
-  // Whether the whole answer has a closed form.
-  bool HasClosedForm() const { return IsAnsweredBy(Model::kClosedForm); }
+  // The aim of this name; the default if the name is empty, null if there is none.
+  const AimedEstimate* FindAim(absl::string_view aim) const;
 };
+
+// The aim that the spec's target names. The spec must have no violations.
+const AimedEstimate& AimOf(const EnsembleSpec& spec);
 
 // In the order of their numbers; experiment/all_experiments.cc.
 std::span<const ExperimentKind* const> AllExperiments();

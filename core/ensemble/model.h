@@ -20,6 +20,11 @@ constexpr bool IsOfTheLimit(Model model) {
   return model == Model::kSpectrum || model == Model::kMarkov;
 }
 
+// Of AUTO it is not known.
+constexpr bool TakesSamples(Model model) {
+  return model != Model::kClosedForm && model != Model::kSpectrum;
+}
+
 // Names as users write them, e.g. "billiard_reference".
 constexpr absl::string_view Name(Model model) {
   switch (model) {

@@ -26,7 +26,7 @@ uint64_t ExpectedChunks(const EnsembleSpec& spec, const PointParameters& point,
 }  // namespace
 
 double SamplesFor(double tolerance, const EnsembleSpec& spec, const PointParameters& point) {
-  const double ratio = spec.experiment->error(point) / tolerance;
+  const double ratio = AimOf(spec).error(Sampled(spec.model), point) / tolerance;
   return ratio * ratio;
 }
 

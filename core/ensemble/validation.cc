@@ -91,9 +91,42 @@ void CheckTolerance(const EnsembleSpec& spec, Found& found) {
     found.push_back({"target.tolerance", absl::StrCat("is ", NumberText(*spec.target.tolerance),
                                                       "; permitted: 0 < tolerance < 1")});
   }
+  const bool is_known = spec.experiment->FindAim(spec.target.estimate) != nullptr;
   const bool can_be_missed =
-      spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
+      is_known && spec.experiment->check_tolerance != nullptr && !IsAnsweredByClosedForm(spec);
   if (can_be_missed && !HasTooManyPoints(spec.grid)) spec.experiment->check_tolerance(spec, found);
+}
+
+std::string NamesOfAims(const ExperimentKind& experiment, Model model) {
+  std::vector<absl::string_view> names;
+  for (const AimedEstimate& aim : experiment.aims) {
+    if (aim.IsAnsweredBy(model)) names.push_back(aim.name);
+  }
+  return absl::StrJoin(names, ", ");
+}
+
+std::string NamesOf(std::span<const Model> models) {
+  return absl::StrCat(Name(Model::kAuto), ", ",
+                      absl::StrJoin(models, ", ", [](std::string* out, Model model) {
+                        absl::StrAppend(out, Name(model));
+                      }));
+}
+
+// A model that answers no estimate of the experiment is a violation of the field `model` alone.
+void CheckEstimate(const EnsembleSpec& spec, Found& found) {
+  const ExperimentKind& experiment = *spec.experiment;
+  const AimedEstimate* const aim = experiment.FindAim(spec.target.estimate);
+  if (aim == nullptr) {
+    found.push_back({"target.estimate",
+                     absl::StrCat("is ", spec.target.estimate, "; permitted with ", experiment.name,
+                                  ": ", NamesOfAims(experiment, Model::kAuto))});
+  } else if (!aim->IsAnsweredBy(spec.model) && experiment.IsAnsweredBy(spec.model)) {
+    found.push_back(
+        {"target.estimate",
+         absl::StrCat("is ", aim->name, ", which model ", Name(spec.model),
+                      " cannot answer; permitted: ", NamesOfAims(experiment, spec.model),
+                      ", or model ", NamesOf(aim->models))});
+  }
 }
 
 void CheckBudget(const Target& target, Found& found) {
@@ -118,22 +151,16 @@ void CheckTarget(const EnsembleSpec& spec, Found& found) {
   CheckUnit(spec, found);
   CheckCount("samples", target.samples, found);
   CheckCount("collisions", target.collisions, found);
+  CheckEstimate(spec, found);
   CheckTolerance(spec, found);
   CheckBudget(target, found);
-}
-
-std::string AnsweringModels(const ExperimentKind& experiment) {
-  return absl::StrCat(Name(Model::kAuto), ", ",
-                      absl::StrJoin(experiment.models, ", ", [](std::string* out, Model model) {
-                        absl::StrAppend(out, Name(model));
-                      }));
 }
 
 void CheckModel(const EnsembleSpec& spec, Found& found) {
   if (!spec.experiment->IsAnsweredBy(spec.model)) {
     found.push_back({"model", absl::StrCat("is ", Name(spec.model), ", which cannot answer ",
                                            spec.experiment->name,
-                                           "; permitted: ", AnsweringModels(*spec.experiment))});
+                                           "; permitted: ", NamesOf(spec.experiment->models))});
   }
   if (spec.precision == Precision::kSingle && spec.model != Model::kAuto &&
       spec.model != Model::kBilliard) {

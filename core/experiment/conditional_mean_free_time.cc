@@ -93,6 +93,9 @@ constexpr ParameterUse kParametersOfReturns[] = {{&kRho}, {&kDelta}, {&kEpsilon}
 constexpr Model kModelsOfReturns[] = {Model::kClosedForm, Model::kBilliard,
                                       Model::kBilliardReference};
 
+constexpr AimedEstimate kAimsOfReturns[] = {
+    {.name = "mean_free_time_conditional", .models = kModelsOfReturns, .error = ErrorOfAReturn}};
+
 }  // namespace
 
 constinit const ExperimentKind kConditionalMeanFreeTime = {
@@ -101,11 +104,11 @@ constinit const ExperimentKind kConditionalMeanFreeTime = {
     .parameters = kParametersOfReturns,
     .unit = TargetUnit::kSamples,
     .models = kModelsOfReturns,
+    .aims = kAimsOfReturns,
     .create = CreateConditional,
     .check_grid = CheckPairGrid,
     .check_tolerance = CheckToleranceOfReturns,
     .work = WorkOfAReturn,
-    .collisions = OneCollision,
-    .error = ErrorOfAReturn};
+    .collisions = OneCollision};
 
 }  // namespace ballpiston

@@ -254,7 +254,7 @@ double ErrorOfDecay(const PointParameters& point) {
   return std::fabs(kScatter * 4 * relaxation.unit() / decay);
 }
 
-double ErrorOfAnOrbit(const PointParameters& point) {
+double ErrorOfAnOrbit(Model, const PointParameters& point) {
   if (!HasRelaxationTimeAt(point)) return std::numeric_limits<double>::infinity();
   return point.Find(kEpsilon) ? ErrorOfDecay(point) : 1.25;
 }
@@ -282,6 +282,13 @@ constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
                                                 .is_known = HasRelaxationTimeAt,
                                                 .expected = ExpectedLimitError};
 
+// At energies that have no relaxation time, for which a tolerance is not permitted, the first
+// estimate is the decay integral.
+constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
+                                                .models = kModelsOfRelaxation,
+                                                .error = ErrorOfAnOrbit,
+                                                .limit_error = &kLimitErrorOfRelaxation}};
+
 }  // namespace
 
 constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
@@ -289,12 +296,11 @@ constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
                                                     .parameters = kParametersOfRelaxation,
                                                     .unit = TargetUnit::kEither,
                                                     .models = kModelsOfRelaxation,
+                                                    .aims = kAimsOfRelaxation,
                                                     .create = CreateRelaxation,
                                                     .check_grid = CheckPairGrid,
                                                     .check_tolerance = CheckToleranceOfDecay,
                                                     .work = WorkOfAnOrbit,
-                                                    .collisions = CollisionsPerOrbit,
-                                                    .error = ErrorOfAnOrbit,
-                                                    .limit_error = &kLimitErrorOfRelaxation};
+                                                    .collisions = CollisionsPerOrbit};
 
 }  // namespace ballpiston

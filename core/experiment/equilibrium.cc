@@ -164,10 +164,14 @@ SampleWork WorkInEquilibrium(Model, const PointParameters& point) {
   return WorkOfACollision(GeometryOf(point));
 }
 
-double ErrorInEquilibrium(const PointParameters&) { return 1.05; }
+double ErrorInEquilibrium(Model, const PointParameters&) { return 1.05; }
 
 constexpr Model kModelsOfEquilibrium[] = {Model::kClosedForm, Model::kBilliard,
                                           Model::kBilliardReference};
+
+constexpr AimedEstimate kAimsOfEquilibrium[] = {{.name = "mean_free_time_ball_piston",
+                                                 .models = kModelsOfEquilibrium,
+                                                 .error = ErrorInEquilibrium}};
 
 }  // namespace
 
@@ -176,10 +180,10 @@ constinit const ExperimentKind kEquilibrium = {.name = "equilibrium",
                                                .parameters = kPairAlone,
                                                .unit = TargetUnit::kCollisions,
                                                .models = kModelsOfEquilibrium,
+                                               .aims = kAimsOfEquilibrium,
                                                .create = CreateEquilibrium,
                                                .check_grid = CheckPairGrid,
                                                .work = WorkInEquilibrium,
-                                               .collisions = OneCollision,
-                                               .error = ErrorInEquilibrium};
+                                               .collisions = OneCollision};
 
 }  // namespace ballpiston

@@ -69,4 +69,9 @@ double ExpectedLimitError(const PointParameters& point) {
   return DecayError(scales, *epsilon) / std::fabs(LimitOfDecay(scales, point));
 }
 
+double ExpectedLimitErrorOfConduction(const PointParameters& point) {
+  constexpr double kOfMorePistons = 1.5;
+  return kOfMorePistons * ExpectedLimitError(point);
+}
+
 }  // namespace ballpiston

@@ -35,8 +35,14 @@
 namespace ballpiston {
 
 // Upper bound of |billiard - limit|/limit of the relaxation time. Requires rho and delta, and with
-// an epsilon one that has a relaxation time. gas-conduction uses the bound without epsilon.
+// an epsilon one that has a relaxation time.
 double ExpectedLimitError(const PointParameters& point);
+
+// Upper bound of |billiard - limit|/limit of the heat conduction of a gas. Requires rho and delta.
+// The mechanisms by which a pair's exchanges differ from random ones also act in a gas, where each
+// ball meets more pistons. So this is the bound of the pair in equilibrium times a measured factor
+// (docs/gas.md).
+double ExpectedLimitErrorOfConduction(const PointParameters& point);
 
 }  // namespace ballpiston
 

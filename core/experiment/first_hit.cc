@@ -158,6 +158,9 @@ std::unique_ptr<PointExperiment> CreateFirstHit(const EnsembleSpec& spec,
 
 constexpr ParameterUse kParametersOfFirstHit[] = {{&kRho}, {&kDelta}, {&kEpsilon}, {&kExponent}};
 
+constexpr AimedEstimate kAimsOfFirstHit[] = {
+    {.name = "mean_hit_time", .models = kBilliards, .error = ErrorOfAReturn}};
+
 }  // namespace
 
 // No closed form answers this experiment, not even at exponent 1, because it measures a law.
@@ -166,12 +169,12 @@ constinit const ExperimentKind kFirstHit = {.name = "first-hit",
                                             .parameters = kParametersOfFirstHit,
                                             .unit = TargetUnit::kSamples,
                                             .models = kBilliards,
+                                            .aims = kAimsOfFirstHit,
                                             .create = CreateFirstHit,
                                             .check_grid = CheckPairGrid,
                                             .check_tolerance = CheckToleranceOfReturns,
                                             .work = WorkOfAReturn,
                                             .collisions = OneCollision,
-                                            .error = ErrorOfAReturn,
                                             .expected_probabilities = ExpectedProbabilities};
 
 }  // namespace ballpiston

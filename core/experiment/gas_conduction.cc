@@ -248,28 +248,21 @@ double ExchangesOfAConductionSample(const PointParameters& point) {
 // The current's fluctuations in local equilibrium, 2 kappa T^2/(N t), over the current itself.
 // kappa T^2 grows as T^(5/2), whose mean over the gas is taken by Simpson's rule. Measured errors
 // are up to 15 % larger.
-double ErrorOfGasConduction(const PointParameters& point) {
+double ErrorOfGasConduction(Model model, const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   const double temperature = MeanTemperature(point);
   const double hot = point[kHot] / temperature, cold = point[kCold] / temperature;
   const double fall = hot - cold;
   if (fall == 0) return std::numeric_limits<double>::infinity();
   const double mean_power = (std::pow(hot, 2.5) + 4 + std::pow(cold, 2.5)) / 6;
-  const double time = TimesAt(Model::kBilliard, point).measure;
+  const double time = TimesAt(model, point).measure;
   const double conductivity = InfiniteGasExchangeRate(geometry, 1) / 2;
   const auto columns = static_cast<double>(geometry.shape().columns);
   const auto rows = static_cast<double>(geometry.shape().rows);
   return std::sqrt(2 * mean_power * columns / (conductivity * time * rows)) / fall;
 }
 
-// The mechanisms by which a pair's exchanges differ from random ones also act in a gas, where each
-// ball meets more pistons. So the bound is that of the pair times a measured factor (docs/gas.md).
 // There is no pilot, because it would take as long as the billiard's answer.
-double ExpectedLimitErrorOfConduction(const PointParameters& point) {
-  constexpr double kOfMorePistons = 1.5;
-  return kOfMorePistons * ExpectedLimitError(point);
-}
-
 constexpr LimitError kLimitErrorOfConduction = {
     .model = Model::kMarkov,
     .has_pilots = false,
@@ -281,6 +274,11 @@ constexpr Model kModelsOfGasConduction[] = {Model::kMarkov, Model::kBilliard,
 constexpr ParameterUse kParametersOfGasConduction[] = {
     {&kRho}, {&kDelta}, {&kCells}, {&kHot}, {&kCold}};
 
+constexpr AimedEstimate kAimsOfGasConduction[] = {{.name = "heat_current",
+                                                   .models = kModelsOfGasConduction,
+                                                   .error = ErrorOfGasConduction,
+                                                   .limit_error = &kLimitErrorOfConduction}};
+
 }  // namespace
 
 constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
@@ -288,12 +286,11 @@ constinit const ExperimentKind kGasConduction = {.name = "gas-conduction",
                                                  .parameters = kParametersOfGasConduction,
                                                  .unit = TargetUnit::kEither,
                                                  .models = kModelsOfGasConduction,
+                                                 .aims = kAimsOfGasConduction,
                                                  .create = CreateGasConduction,
                                                  .check_grid = CheckConductionGrid,
                                                  .check_tolerance = CheckConductionTolerance,
                                                  .work = WorkOfGasConduction,
-                                                 .collisions = ExchangesOfAConductionSample,
-                                                 .error = ErrorOfGasConduction,
-                                                 .limit_error = &kLimitErrorOfConduction};
+                                                 .collisions = ExchangesOfAConductionSample};
 
 }  // namespace ballpiston

@@ -198,7 +198,7 @@ SampleWork WorkOfAnExchange(Model model, const PointParameters& point) {
   return model == Model::kMarkov ? SampleWork{.jumps = 1} : WorkOfACollision(GeometryOf(point));
 }
 
-double ErrorOfWhatTendsToZero(const PointParameters&) {
+double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
   return std::numeric_limits<double>::infinity();
 }
 
@@ -211,6 +211,10 @@ void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<Field
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,
                                              Model::kBilliardReference};
 
+constexpr AimedEstimate kAimsOfMarkovProperty[] = {{.name = "memory_correlation",
+                                                    .models = kModelsOfMarkovProperty,
+                                                    .error = ErrorOfWhatTendsToZero}};
+
 }  // namespace
 
 constinit const ExperimentKind kMarkovProperty = {
@@ -219,12 +223,12 @@ constinit const ExperimentKind kMarkovProperty = {
     .parameters = kPairAlone,
     .unit = TargetUnit::kCollisions,
     .models = kModelsOfMarkovProperty,
+    .aims = kAimsOfMarkovProperty,
     .create = CreateMarkovProperty,
     .check_grid = CheckPairGrid,
     .check_tolerance = CheckToleranceOfWhatTendsToZero,
     .work = WorkOfAnExchange,
     .collisions = OneCollision,
-    .error = ErrorOfWhatTendsToZero,
     .samples_together = kExchangesPerOrbit};
 
 }  // namespace ballpiston

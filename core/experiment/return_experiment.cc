@@ -24,7 +24,7 @@ SampleWork WorkOfAReturn(Model, const PointParameters& point) {
   return {.ball_wall = hits.ball_wall, .piston_wall = hits.piston_wall, .starts = StartsOf(point)};
 }
 
-double ErrorOfAReturn(const PointParameters& point) {
+double ErrorOfAReturn(Model, const PointParameters& point) {
   const double long_returns = LongReturnsPerSample(GeometryOf(point), point[kEpsilon]);
   if (long_returns == 0) return std::numeric_limits<double>::infinity();
   return std::sqrt(0.9 * (1 + 1 / long_returns));

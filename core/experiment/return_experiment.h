@@ -13,7 +13,7 @@ SampleWork WorkOfAReturn(Model model, const PointParameters& point);
 
 // The relative error of the mean return time for one sample. Rare long returns dominate the mean,
 // so the scatter of their number is its error.
-double ErrorOfAReturn(const PointParameters& point);
+double ErrorOfAReturn(Model, const PointParameters& point);
 
 // Finds a tolerance at epsilon = 0, where the return time has no variance.
 void CheckToleranceOfReturns(const EnsembleSpec& spec, std::vector<FieldViolation>& found);

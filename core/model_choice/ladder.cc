@@ -37,19 +37,25 @@ class Question {
   const EnsembleSpec& spec() const { return spec_; }
   const PointParameters& point() const { return point_; }
   const Target& target() const { return spec_.target; }
-  const ExperimentKind& experiment() const { return *spec_.experiment; }
-  bool HasLimit() const { return experiment().limit_error != nullptr; }
+  const AimedEstimate& aim() const { return AimOf(spec_); }
+  bool HasLimit() const { return aim().limit_error != nullptr; }
   // Whether a bound of the limit's error is known.
-  bool HasLimitError() const { return HasLimit() && experiment().limit_error->is_known(point_); }
-  bool HasPilots() const { return HasLimitError() && experiment().limit_error->has_pilots; }
-  double ExpectedLimitError() const { return experiment().limit_error->expected(point_); }
-  Model ModelOfLimit() const { return experiment().limit_error->model; }
+  bool HasLimitError() const { return HasLimit() && aim().limit_error->is_known(point_); }
+  bool HasPilots() const { return HasLimitError() && aim().limit_error->has_pilots; }
+  double ExpectedLimitError() const { return aim().limit_error->expected(point_); }
+  Model ModelOfLimit() const { return aim().limit_error->model; }
+
+  // The experiment, or the estimate if it is not the experiment's default.
+  absl::string_view subject() const {
+    const bool is_default = &aim() == &spec_.experiment->aims.front();
+    return is_default ? spec_.experiment->name : aim().name;
+  }
 
   // The model error of a billiard model: its error without the statistical error. Empty if the
   // first estimate has no relative error.
   std::optional<double> ErrorOfPrecision(Model model) const {
     if (EngineFor(By(model)) != Engine::kLanesSingle) return 0.0;
-    if (!std::isfinite(ErrorOf(1))) return std::nullopt;
+    if (!HasRelativeError()) return std::nullopt;
     return kSinglePrecisionError;
   }
 
@@ -74,11 +80,14 @@ class Question {
     return ballpiston::SamplesFor(tolerance, spec_, point_);
   }
 
-  double ErrorOf(double samples) const { return experiment().error(point_) / std::sqrt(samples); }
+  double ErrorOf(Model model, double samples) const {
+    return aim().error(model, point_) / std::sqrt(samples);
+  }
+  bool HasRelativeError() const { return std::isfinite(ErrorOf(Model::kBilliard, 1)); }
 
   // The statistical error when the budget is used up; 0 for the spectrum, which has no samples.
   double ErrorInBudget(Model model) const {
-    return model == Model::kSpectrum ? 0 : ErrorOf(SamplesInBudget(model));
+    return model == Model::kSpectrum ? 0 : ErrorOf(model, SamplesInBudget(model));
   }
 
  private:
@@ -132,12 +141,14 @@ std::string FoundBy(const Pilot& pilot, const PilotPlace& place) {
       Rounded(place.delta));
 }
 
-// The limit's model samples: a half of the tolerance is for its scatter.
+// If the limit's model samples, half of the tolerance is for its scatter.
 Answer ByItsBound(const Question& question) {
+  const bool samples = TakesSamples(question.ModelOfLimit());
   const double error = question.ExpectedLimitError();
-  const bool is_within = error <= *question.target().tolerance / 2;
+  const bool is_within = error <= *question.target().tolerance / (samples ? 2 : 1);
   const std::string why = absl::StrCat("the limit's error, up to ", Rounded(error), ", is ",
-                                       is_within ? "within" : "beyond", " half of the tolerance");
+                                       is_within ? "within " : "beyond ",
+                                       samples ? "half of the tolerance" : "the tolerance");
   if (!is_within) return Billiard(question, why);
   return {question.ModelOfLimit(), why, error};
 }
@@ -178,7 +189,7 @@ std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSo
   if (!question.HasLimitError()) {
     return Billiard(question, "the limit's error is not known there");
   }
-  if (!std::isfinite(question.ErrorOf(1))) {
+  if (!question.HasRelativeError()) {
     return Billiard(question,
                     "the value has no relative error there, so the limit's error cannot be judged");
   }
@@ -187,21 +198,21 @@ std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSo
   return Billiard(question, "without a tolerance the limit's error cannot be weighed");
 }
 
-std::string NothingCheaper(const ExperimentKind& experiment) {
-  if (!experiment.IsAnsweredBy(Model::kMarkov)) {
-    return absl::StrCat("nothing cheaper answers ", experiment.name);
+std::string NothingCheaper(const Question& question) {
+  if (!question.aim().IsAnsweredBy(Model::kMarkov)) {
+    return absl::StrCat("nothing cheaper answers ", question.subject());
   }
-  return absl::StrCat("the limit's error is not known for ", experiment.name);
+  return absl::StrCat("the limit's error is not known for ", question.subject());
 }
 
 std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pilots) {
-  const EnsembleSpec& spec = question.spec();
-  if (spec.experiment->HasClosedForm()) {
-    if (!spec.verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
+  const bool verify = question.spec().verify;
+  if (question.aim().HasClosedForm()) {
+    if (!verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
     return Billiard(question, "asked to verify the closed form");
   }
   if (question.HasLimit()) return AnswerNearTheLimit(question, pilots);
-  return Billiard(question, NothingCheaper(*spec.experiment));
+  return Billiard(question, NothingCheaper(question));
 }
 
 Answer ExplicitAnswer(const Question& question) {
@@ -213,9 +224,9 @@ Answer ExplicitAnswer(const Question& question) {
 
 // ---- all rungs ----
 
-std::string CannotAnswer(Model model, const ExperimentKind& experiment) {
+std::string CannotAnswer(Model model, const Question& question) {
   return absl::StrCat("there is no ", model == Model::kClosedForm ? "closed form" : "answer by it",
-                      " for ", experiment.name);
+                      " for ", question.subject());
 }
 
 void PredictWithoutSamples(const Machine& machine, Rung& rung) {
@@ -233,7 +244,7 @@ void PredictSamples(const Question& question, Rung& rung) {
   rung.samples = question.SamplesBy(rung.model);
   const double work = *rung.samples * question.SecondsBy(rung.model);
   if (std::isfinite(work)) rung.work = work;
-  const double error = question.ErrorOf(*rung.samples);
+  const double error = question.ErrorOf(rung.model, *rung.samples);
   if (std::isfinite(error)) rung.statistical_error = error;
   if (!IsOfTheLimit(rung.model)) {
     rung.model_error = question.ErrorOfPrecision(rung.model);
@@ -261,15 +272,15 @@ Rung RungFor(Model model, const Question& question, const Machine& machine,
              const PilotSource& pilots) {
   Rung rung;
   rung.model = model;
-  rung.answers = question.experiment().IsAnsweredBy(model);
+  rung.answers = question.aim().IsAnsweredBy(model);
   if (!rung.answers) {
-    rung.reason = CannotAnswer(model, question.experiment());
+    rung.reason = CannotAnswer(model, question);
     return rung;
   }
-  if (model == Model::kClosedForm || model == Model::kSpectrum) {
-    PredictWithoutSamples(machine, rung);
-  } else {
+  if (TakesSamples(model)) {
     PredictSamples(question, rung);
+  } else {
+    PredictWithoutSamples(machine, rung);
   }
   if (IsOfTheLimit(model)) SetLimitError(question, pilots, rung);
   return rung;
@@ -342,7 +353,8 @@ double LeastTolerance(const EnsembleSpec& spec) {
     }
     if (spec.model == Model::kSpectrum) continue;
     least = std::max(least, question.ErrorOfPrecision(spec.model).value_or(0));
-    const double sampled = question.ErrorOf(static_cast<double>(kMaxSamples));
+    const Model sampling = spec.model == Model::kAuto ? Model::kBilliard : spec.model;
+    const double sampled = question.ErrorOf(sampling, static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }
   return least;

@@ -58,7 +58,7 @@ double SecondsOfPilot(const PilotPlace& place, const MachineRates& rates) {
 
 Pilot PredictedPilot(const PilotPlace& place) {
   const PointParameters point = PointOf(place);
-  const double error = kEnergyRelaxation.error(point);
+  const double error = kEnergyRelaxation.aims.front().error(Model::kBilliard, point);
   return {.difference = ExpectedLimitError(point),
           .standard_error = error / std::sqrt(static_cast<double>(kPilotOrbits)),
           .predicted = true};

@@ -83,7 +83,8 @@ const google::protobuf::FieldDescriptor* FieldOf(const google::protobuf::Message
   return message.GetDescriptor()->FindFieldByName(std::string(parameter.name));
 }
 
-// The form in which an error shows a text of the user that is not a shape.
+// The form in which an error shows a text of the user that is not known. It leaves the names of
+// shapes and estimates as they are.
 std::string Shown(absl::string_view text) {
   constexpr size_t kLongest = 100;
   const std::string shown = absl::CEscape(text.substr(0, kLongest));
@@ -146,6 +147,7 @@ Target TargetOf(const v1::Target& message) {
       break;
   }
   if (message.has_budget()) target.budget_seconds = Seconds(message.budget());
+  target.estimate = Shown(message.estimate());
   return target;
 }
 
@@ -197,6 +199,7 @@ v1::Target TargetMessage(const Target& target) {
     message.mutable_budget()->set_seconds(nanos / 1'000'000'000);
     message.mutable_budget()->set_nanos(static_cast<int32_t>(nanos % 1'000'000'000));
   }
+  message.set_estimate(target.estimate);
   return message;
 }
 
@@ -264,6 +267,16 @@ v1::EnsembleSpec::Model ModelMessage(Model model) {
       return v1::EnsembleSpec::BILLIARD_REFERENCE;
   }
   return v1::EnsembleSpec::MODEL_UNSPECIFIED;
+}
+
+std::string QuestionBytes(v1::EnsembleSpec message) {
+  const ExperimentKind* const experiment =
+      FindExperiment(static_cast<uint64_t>(message.experiment()));
+  const std::string& estimate = message.target().estimate();
+  if (experiment != nullptr && experiment->aims.front().name == estimate) {
+    message.mutable_target()->clear_estimate();
+  }
+  return DeterministicBytes(message);
 }
 
 std::string SpecBytes(const v1::EnsembleSpec& message) { return DeterministicBytes(message); }

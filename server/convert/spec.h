@@ -31,6 +31,8 @@ v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
 v1::PointParameters ParametersMessage(const PointParameters& parameters);
 v1::EnsembleSpec::Model ModelMessage(Model model);
 
+// The same bytes for the same question: the name of the default estimate is left out.
+std::string QuestionBytes(v1::EnsembleSpec message);
 // The same bytes for the same specification: what the store keeps.
 std::string SpecBytes(const v1::EnsembleSpec& message);
 absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const std::string& bytes);  // DATA_LOSS

@@ -8,12 +8,12 @@ namespace ballpiston::server {
 
 std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version) {
   if (spec.target().has_budget()) return std::string();
-  return Sha256(absl::StrCat(engine_version, "\n", SpecBytes(spec)));
+  return Sha256(absl::StrCat(engine_version, "\n", QuestionBytes(spec)));
 }
 
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request) {
   return Sha256(absl::StrCat(request.fresh() ? "fresh" : "", "\n", request.priority(), "\n",
-                             SpecBytes(request.spec())));
+                             QuestionBytes(request.spec())));
 }
 
 }  // namespace ballpiston::server

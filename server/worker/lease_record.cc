@@ -56,20 +56,25 @@ void FillTarget(const Target& target, storage::Question& record) {
   if (target.samples) record.set_samples(*target.samples);
   if (target.collisions) record.set_collisions(*target.collisions);
   if (target.tolerance) record.set_tolerance(*target.tolerance);
+  record.set_estimate(target.estimate);
 }
 
 Target TargetOf(const storage::Question& record) {
+  Target target = {.estimate = record.estimate()};
   switch (record.target_case()) {
     case storage::Question::kSamples:
-      return {.samples = record.samples()};
+      target.samples = record.samples();
+      break;
     case storage::Question::kCollisions:
-      return {.collisions = record.collisions()};
+      target.collisions = record.collisions();
+      break;
     case storage::Question::kTolerance:
-      return {.tolerance = record.tolerance()};
+      target.tolerance = record.tolerance();
+      break;
     case storage::Question::TARGET_NOT_SET:
       break;
   }
-  return {};
+  return target;
 }
 
 void FillPoint(const Grid& grid, storage::Question& record) {
@@ -106,8 +111,9 @@ absl::Status CheckRest(EnsembleSpec spec) {
   return DamagedRecord(absl::StrCat("question.", found[0].field), found[0].description);
 }
 
+// The rest of the spec has no violations.
 absl::Status CheckModel(const EnsembleSpec& spec) {
-  if (!spec.experiment->IsAnsweredBy(spec.model)) {
+  if (!AimOf(spec).IsAnsweredBy(spec.model)) {
     return DamagedRecord(
         "question.model",
         absl::StrCat("is ", Name(spec.model), ", which cannot answer ", spec.experiment->name));
@@ -219,8 +225,8 @@ absl::StatusOr<EnsembleSpec> SpecOfQuestion(const storage::Question& question) {
   absl::StatusOr<Grid> grid = PointOf(question);
   if (!grid.ok()) return grid.status();
   spec.grid = *std::move(grid);
-  absl::Status checked = CheckModel(spec);
-  if (checked.ok()) checked = CheckRest(spec);
+  absl::Status checked = CheckRest(spec);
+  if (checked.ok()) checked = CheckModel(spec);
   if (!checked.ok()) return checked;
   return spec;
 }

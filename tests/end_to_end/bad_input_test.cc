@@ -111,6 +111,19 @@ std::vector<BadInput> Table(const std::string& cancelled) {
       {relaxation + "--model spectrum --tolerance 1e-4",
        2,
        {"spec.target.tolerance", "is 1e-04", "spectrum", "tolerance >= 0.0"}},
+      // an estimate that is not known, or that the model cannot answer
+      {"run gas-equilibrium --rho 0.53 --delta 0.1 --cells 8 --temperature 1 --estimate current",
+       2,
+       {"spec.target.estimate: is current; permitted with gas-equilibrium: exchange_rate, "
+        "conductivity"}},
+      {"run gas-equilibrium --rho 0.53 --delta 0.1 --cells 8 --temperature 1 --estimate "
+       "conductivity --model closed_form",
+       2,
+       {"spec.target.estimate: is conductivity, which model closed_form cannot answer",
+        "permitted: exchange_rate, or model auto, spectrum, "}},
+      {first_hit + "--estimate conductivity",
+       2,
+       {"spec.target.estimate", "permitted with first-hit: mean_hit_time"}},
       // a model that cannot answer
       {relaxation + "--model closed_form",
        2,

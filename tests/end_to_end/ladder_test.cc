@@ -65,6 +65,12 @@ TEST_F(LadderTest, APlanNamesTheModelAndMakesNoJob) {
       {"markov-property --delta 0.1", "BILLIARD"},
       {"gas-equilibrium --delta 0.1 --cells 8 --temperature 1", "CLOSED_FORM"},
       {"gas-equilibrium --delta 0.1 --cells 8 --temperature 1 --verify", "BILLIARD"},
+      {"gas-equilibrium --delta 0.01 --cells 8 --temperature 1 --estimate conductivity "
+       "--tolerance 0.05",
+       "SPECTRUM"},
+      {"gas-equilibrium --delta 0.19 --cells 8 --temperature 1 --estimate conductivity "
+       "--tolerance 0.05",
+       "BILLIARD"},
       {"gas-conduction --delta 0.1 --cells 8 --hot 2 --cold 1", "BILLIARD"},
       {"gas-conduction --delta 0.19 --cells 8 --hot 2 --cold 1 --tolerance 0.02", "BILLIARD"},
       {"gas-conduction --delta 0.02 --cells 8 --hot 2 --cold 1 --tolerance 0.02", "MARKOV"},
@@ -79,6 +85,20 @@ TEST_F(LadderTest, APlanNamesTheModelAndMakesNoJob) {
     EXPECT_GT(At(plan, "work").number_value(), 0) << question.words;
   }
   EXPECT_EQ(Length(At(Ask("list"), "jobs")), 0);
+}
+
+TEST_F(LadderTest, TheNamedEstimateIsTheFirstOfTheAnswer) {
+  const std::string question =
+      std::string("run gas-equilibrium --delta 0.01 --cells 8 --temperature 1 --tolerance 0.05") +
+      kRadius;
+  const auto answer = Ask(question + " --estimate conductivity");
+  const auto& estimates = At(answer, "points", 0, "estimates");
+  EXPECT_EQ(At(estimates, 0, "name").string_value(), "conductivity");
+  EXPECT_EQ(At(answer, "job", "spec", "target", "estimate").string_value(), "conductivity");
+  // The default estimate may be named or left out.
+  const auto left_out = Ask(question), named = Ask(question + " --estimate exchange_rate");
+  EXPECT_EQ(At(left_out, "points", 0, "estimates", 0, "name").string_value(), "exchange_rate");
+  EXPECT_EQ(At(named, "job", "name").string_value(), At(left_out, "job", "name").string_value());
 }
 
 TEST_F(LadderTest, AMeanFreeTimeIsAnsweredByItsClosedFormWithoutASample) {

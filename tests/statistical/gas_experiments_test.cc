@@ -33,8 +33,8 @@ EnsembleSpec Conduction(double delta, const GasShape& shape, double hot, double 
 double StatedOverMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& first = summary.estimates.front();
-  const double stated =
-      spec.experiment->error(PointAt(spec, 0)) / std::sqrt(static_cast<double>(summary.samples));
+  const double stated = AimOf(spec).error(spec.model, PointAt(spec, 0)) /
+                        std::sqrt(static_cast<double>(summary.samples));
   const double ratio = stated * std::fabs(first.value) / *first.standard_error;
   std::cout << spec.experiment->name << " by " << Name(spec.model) << ", "
             << Text(ShapeOf(spec.grid[kCells][0])) << " cells, delta " << spec.grid[kDelta][0]

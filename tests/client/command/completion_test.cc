@@ -64,6 +64,8 @@ TEST_F(CompletionTest, OffersTheChoicesOfAValue) {
   EXPECT_THAT(Offers({"run", "first-hit", "--format=c"}),  // the one word of zsh and fish
               ElementsAre("--format=table", "--format=json", "--format=jsonl", "--format=csv"));
   EXPECT_THAT(Offers({"list", "--state", ""}), Contains("running"));
+  EXPECT_THAT(Offers({"plan", "gas-equilibrium", "--estimate", ""}),
+              ElementsAre("exchange_rate", "conductivity"));
   EXPECT_THAT(Offers({"run", "--rho", ""}), IsEmpty());
   EXPECT_THAT(Offers({"run", "--dance=x"}), IsEmpty());
 }

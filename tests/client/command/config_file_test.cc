@@ -96,6 +96,7 @@ TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
       "cells = [\"12\", \"4x3\", 8]\n"
       "hot = 2\n"
       "samples = 1e6\n"
+      "estimate = \"conductivity\"\n"
       "verify = false\n");
   ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"run", "first-hit"}));
   EXPECT_TRUE(line.options.quiet);
@@ -105,7 +106,16 @@ TEST_F(ConfigFileTest, HoldsValuesOfEveryKind) {
   EXPECT_THAT(line.options.spec.grid().cells(), ElementsAre("12", "4x3", "8"));
   EXPECT_THAT(line.options.spec.grid().hot(), ElementsAre(2));
   EXPECT_EQ(line.options.spec.target().samples(), 1'000'000);
+  EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
   EXPECT_FALSE(line.options.spec.verify());
+}
+
+TEST_F(ConfigFileTest, ATargetOnTheCommandLineKeepsTheEstimate) {
+  home_.WriteConfig("[run]\nsamples = 100\nestimate = \"conductivity\"\n");
+  ASSERT_OK_AND_ASSIGN(const CommandLine line,
+                       ParseCommandLine({"run", "gas-equilibrium", "--tolerance", "0.1"}));
+  EXPECT_EQ(line.options.spec.target().kind_case(), v1::Target::kTolerance);
+  EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
 }
 
 TEST_F(ConfigFileTest, AFlagOfOtherVerbsIsLeftToThem) {

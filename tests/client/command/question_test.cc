@@ -44,6 +44,9 @@ TEST_F(QuestionTest, EachFlagReachesItsField) {
       {"--budget -0.25", "target { budget { nanos: -250000000 } }"},
       {"--budget 1e300", "target { budget { seconds: 315576000000 } }"},
       {"--budget 10 --tolerance 1e-3", "target { tolerance: 1e-3 budget { seconds: 10 } }"},
+      {"--estimate conductivity", "target { estimate: 'conductivity' }"},
+      {"--tolerance 0.05 --estimate=anything", "target { tolerance: 0.05 estimate: 'anything' }"},
+      {"--samples 5 --estimate exchange_rate", "target { samples: 5 estimate: 'exchange_rate' }"},
       {"--seed 18446744073709551615", "seed: 18446744073709551615"},
       {"--model billiard_reference", "model: BILLIARD_REFERENCE"},
       {"--model closed-form", "model: CLOSED_FORM"},
@@ -103,7 +106,8 @@ TEST_F(QuestionTest, AFileExcludesExperimentGridTargetAndMethod) {
   WriteFile(file, R"({"experiment": "FIRST_HIT", "seed": 7})");
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec, Spec("--spec " + file + " --priority 3"));
   EXPECT_EQ(spec.seed(), 7u);
-  for (const char* word : {" first-hit", " --rho 0.53", " --samples 9", " --seed 1", " --verify"}) {
+  for (const char* word : {" first-hit", " --rho 0.53", " --samples 9", " --seed 1", " --verify",
+                           " --estimate conductivity"}) {
     EXPECT_THAT(Spec("--spec " + file + word),
                 StatusIs(absl::StatusCode::kInvalidArgument,
                          HasSubstr("--spec holds the whole specification")));
@@ -142,6 +146,7 @@ TEST_F(QuestionOfJobTest, AJobExcludesExperimentGridTargetAndMethod) {
                                                 {"--rho", "0.53"},
                                                 {"--samples", "9"},
                                                 {"--seed", "1"},
+                                                {"--estimate", "conductivity"},
                                                 {"--verify"},
                                                 {"--spec", "question.json"}}) {
     std::vector<std::string> all = {"submit", "--again", "abc"};
@@ -150,7 +155,7 @@ TEST_F(QuestionOfJobTest, AJobExcludesExperimentGridTargetAndMethod) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.err,
               "ballpiston: --again holds the whole specification: give no EXPERIMENT, grid, "
-              "target, --seed, --model, --verify, --precision or --spec with it\n");
+              "target, --seed, --model, --estimate, --verify, --precision or --spec with it\n");
   }
   EXPECT_EQ(WithServer({"submit", "--again", "a/b"}).code, 2);
   EXPECT_THAT(server_.ensemble.Asked().create, testing::IsEmpty());

@@ -17,8 +17,10 @@ using ::testing::HasSubstr;
 TEST(SpecFile, ReadsProtoJsonWithEitherFieldNames) {
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleSpec spec,
                        ParseSpec("s.json", R"({"experiment": "FIRST_HIT", "grid": {"rho": [0.53]},
-                              "target": {"samples": "100"}, "seed": 7})"));
+                              "target": {"samples": "100", "estimate": "conductivity"},
+                              "seed": 7})"));
   EXPECT_EQ(spec.target().samples(), 100);
+  EXPECT_EQ(spec.target().estimate(), "conductivity");
   EXPECT_EQ(spec.seed(), 7u);
 }
 

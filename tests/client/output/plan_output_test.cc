@@ -54,6 +54,11 @@ std::string PrintedPlan(Format format, const v1::PlanEnsembleJobResponse& plan =
   return out.str();
 }
 
+TEST(PlanTable, HeadingNamesTheEstimateThatWasNamed) {
+  EXPECT_THAT(PrintedPlan(Format::kTable, Plan(), Question("tolerance: 1e-2 estimate: 'current'")),
+              StartsWith("energy-relaxation, estimate current, tolerance 0.01, 2 points"));
+}
+
 TEST(PlanTable, PrintsTheLadderOfEachPointAndMarksTheChoice) {
   EXPECT_EQ(
       PrintedPlan(Format::kTable),

@@ -336,6 +336,76 @@ TEST(EnsembleSpec, ToleranceAtARestingPistonIsForTheClosedForm) {
   EXPECT_THAT(Violations(relaxation), IsEmpty());
 }
 
+EnsembleSpec ValidGas() {
+  return {.experiment = &kGasEquilibrium,
+          .grid = {{kRho, {0.55}}, {kDelta, {0.1}}, {kCells, {4}}, {kTemperature, {1}}}};
+}
+
+TEST(EnsembleSpec, EachExperimentPermitsTheNamesOfItsAims) {
+  for (const ExperimentKind* experiment : kAllExperiments) {
+    EXPECT_EQ(experiment->FindAim(""), &experiment->aims.front());
+    for (const AimedEstimate& aim : experiment->aims) {
+      EXPECT_EQ(experiment->FindAim(aim.name), &aim);
+      for (const Model model : aim.models) EXPECT_TRUE(experiment->IsAnsweredBy(model));
+    }
+  }
+  EnsembleSpec spec = ValidGas();
+  for (const char* name : {"", "exchange_rate", "conductivity"}) {
+    spec.target.estimate = name;
+    EXPECT_THAT(Violations(spec), IsEmpty()) << name;
+  }
+}
+
+TEST(EnsembleSpec, AnUnknownEstimateIsRefusedWithThoseThatAreKnown) {
+  EnsembleSpec spec = ValidGas();
+  for (const char* name : {"conduct", "Conductivity", "temperature_ball"}) {
+    spec.target.estimate = name;
+    EXPECT_THAT(Violations(spec),
+                ElementsAre(Names("target.estimate", std::string("is ") + name +
+                                                         "; permitted with gas-equilibrium: "
+                                                         "exchange_rate, conductivity")));
+  }
+  // Beside a tolerance that some experiments check point by point.
+  for (EnsembleSpec other : {ValidFirstHit(), ValidRelaxation()}) {
+    other.target = {.tolerance = 2, .estimate = "conductivity"};
+    EXPECT_THAT(Violations(other),
+                UnorderedElementsAre(Names("target.estimate", std::string(other.experiment->name)),
+                                     Names("target.tolerance", "is 2")));
+  }
+}
+
+TEST(EnsembleSpec, AnEstimateThatTheModelCannotAnswerIsRefused) {
+  EnsembleSpec spec = ValidGas();
+  spec.target.estimate = "conductivity";
+  spec.model = Model::kClosedForm;
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Names("target.estimate",
+                                "is conductivity, which model closed_form cannot answer; "
+                                "permitted: exchange_rate, or model auto, spectrum, markov, "
+                                "billiard, billiard_reference")));
+  for (const Model model : {Model::kAuto, Model::kSpectrum, Model::kMarkov, Model::kBilliard,
+                            Model::kBilliardReference}) {
+    spec.model = model;
+    EXPECT_THAT(Violations(spec), IsEmpty()) << Name(model);
+  }
+  // A model that answers no estimate of the experiment is one violation.
+  EnsembleSpec first_hit = ValidFirstHit();
+  first_hit.target.estimate = "mean_hit_time";
+  first_hit.model = Model::kMarkov;
+  EXPECT_THAT(Violations(first_hit), ElementsAre(Names("model", "cannot answer first-hit")));
+}
+
+TEST(EnsembleSpec, TheEstimateDecidesWhetherTheClosedFormAnswers) {
+  EnsembleSpec spec = ValidGas();
+  EXPECT_TRUE(IsAnsweredByClosedForm(spec));
+  spec.target.estimate = "exchange_rate";
+  EXPECT_TRUE(NeedsNoSamples(spec));
+  spec.target.estimate = "conductivity";
+  EXPECT_FALSE(IsAnsweredByClosedForm(spec));
+  EXPECT_FALSE(NeedsNoSamples(spec));
+  EXPECT_EQ(OnePointSpec(spec, PointAt(spec, 0), Model::kMarkov).target.estimate, "conductivity");
+}
+
 TEST(EnsembleSpec, NamesAreAsUsersWriteThem) {
   EXPECT_EQ(kEnergyRelaxation.name, "energy-relaxation");
   EXPECT_EQ(kMarkovProperty.name, "markov-property");

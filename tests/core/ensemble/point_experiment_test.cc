@@ -148,6 +148,26 @@ TEST(PointExperiment, AToleranceIsReachedWhenTheErrorIsWithinIt) {
   }
 }
 
+TEST(PointExperiment, TheNamedEstimateIsTheFirst) {
+  for (EnsembleSpec spec : OneOfEach()) {
+    for (const AimedEstimate& aim : spec.experiment->aims) {
+      for (const Model model : aim.models) {
+        spec.model = model;
+        spec.target.estimate = std::string(aim.name);
+        SCOPED_TRACE(absl::StrCat(Described(spec), ", ", aim.name));
+        ASSERT_TRUE(Violations(spec).empty());
+        const auto point = PointExperiment::Create(spec, 0);
+        const std::optional<BlockResult> merged = FoldPoint(*point);
+        EXPECT_EQ(point->FirstEstimate(*merged).name, aim.name);
+        EXPECT_EQ(point->Summarize(*merged).estimates.front().name, aim.name);
+      }
+    }
+    spec.target.estimate = "";
+    const auto point = PointExperiment::Create(spec, 0);
+    EXPECT_EQ(point->FirstEstimate(*FoldPoint(*point)).name, spec.experiment->aims.front().name);
+  }
+}
+
 // Ball and piston collide once in 1e13 time units here, so only the stop ends a billiard's block.
 TEST(PointExperiment, StopEndsABlock) {
   for (EnsembleSpec spec : OneOfEach()) {
@@ -187,7 +207,7 @@ double FirstClosedForm(const ExperimentKind* experiment) {
 
 TEST(PointExperiment, ClosedFormsAnswerWithoutABlock) {
   for (EnsembleSpec spec : OneOfEach()) {
-    if (!spec.experiment->HasClosedForm()) continue;
+    if (!AimOf(spec).HasClosedForm()) continue;
     spec.model = Model::kClosedForm;
     for (const Target& target : {Target{}, Target{.tolerance = 1e-12}, spec.target}) {
       spec.target = target;
@@ -212,7 +232,7 @@ TEST(PointExperiment, ClosedFormsAnswerWithoutABlock) {
 // Closed form, sampling and their names belong together: a z-score of 5 for 1000 samples.
 TEST(PointExperiment, ClosedFormsAreNamedAsTheEstimatesTheyStandFor) {
   for (EnsembleSpec spec : OneOfEach()) {
-    if (!spec.experiment->HasClosedForm()) continue;
+    if (!AimOf(spec).HasClosedForm()) continue;
     spec.model = Model::kBilliard;
     const auto sampled = PointExperiment::Create(spec, 0);
     spec.model = Model::kClosedForm;
@@ -273,9 +293,13 @@ TEST(ExperimentKind, RowsAreComplete) {
   std::set<absl::string_view> names;
   std::set<uint64_t> numbers;
   for (const ExperimentKind* kind : AllExperiments()) {
-    EXPECT_TRUE(kind->create && kind->check_grid && kind->work && kind->collisions && kind->error)
+    EXPECT_TRUE(kind->create && kind->check_grid && kind->work && kind->collisions &&
+                !kind->aims.empty())
         << kind->name;
     EXPECT_FALSE(kind->parameters.empty() || kind->models.empty()) << kind->name;
+    for (const AimedEstimate& aim : kind->aims) {
+      EXPECT_TRUE(aim.error && !aim.name.empty() && !aim.models.empty()) << kind->name;
+    }
     EXPECT_EQ(FindExperiment(kind->number), kind);
     names.insert(kind->name);
     numbers.insert(kind->number);

@@ -47,6 +47,31 @@ TEST(GasEquilibrium, EstimatesHaveTheirNamesAndExactValues) {
   }
 }
 
+std::vector<std::string> NamesFor(const std::string& estimate, Model model) {
+  EnsembleSpec spec = SpecAt(2, model);
+  spec.target.estimate = estimate;
+  std::vector<std::string> names;
+  for (const Estimate& found : RunPoint(spec).estimates) names.push_back(found.name);
+  return names;
+}
+
+TEST(GasEquilibrium, TheConductivityComesFirstIfItIsNamed) {
+  const std::vector<std::string> rates = {"exchange_rate", "temperature_ball",
+                                          "temperature_piston"};
+  std::vector<std::string> named = {"conductivity", "conductivity_ratio"}, unnamed = rates;
+  unnamed.insert(unnamed.end(), named.begin(), named.end());
+  named.insert(named.end(), rates.begin(), rates.end());
+  EXPECT_EQ(NamesFor("conductivity", Model::kSpectrum), named);
+  for (const char* estimate : {"", "exchange_rate"}) {
+    EXPECT_EQ(NamesFor(estimate, Model::kSpectrum), unnamed);
+  }
+  for (const Model model : kModelsThatSampleGases) {
+    EXPECT_EQ(NamesFor("conductivity", model)[0], "conductivity");
+    EXPECT_EQ(NamesFor("conductivity", model)[1], "exchange_rate");
+    EXPECT_EQ(NamesFor("exchange_rate", model)[0], "exchange_rate");
+  }
+}
+
 TEST(GasEquilibrium, EveryModelGivesTheSameEstimates) {
   for (const Model model : kModelsThatSampleGases) {
     const PointSummary summary = RunPoint(SpecAt(2, model));

@@ -245,6 +245,58 @@ TEST(Ladder, TheJumpProcessAnswersWhereItsBoundIsWithinHalfOfTheTolerance) {
   }
 }
 
+EnsembleSpec Conductivity(double delta, Target target = {}) {
+  target.estimate = "conductivity";
+  return Asked(&kGasEquilibrium, delta, target);
+}
+
+TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance) {
+  EXPECT_EQ(Choice(Conductivity(0.01, {.tolerance = 0.05}), MayNotBeAsked)->model,
+            Model::kSpectrum);
+  EXPECT_EQ(Choice(Conductivity(0.2, {.tolerance = 0.05}), MayNotBeAsked)->model, Model::kBilliard);
+  for (double delta = 0.2; delta > 1e-3; delta /= 2) {
+    const double bound = 1.5 * ExpectedLimitError(PaperPoint(delta));
+    for (const double share : {0.999, 1.001}) {
+      const EnsembleSpec spec = Conductivity(delta, {.tolerance = bound / share});
+      const Answer answer = *Choice(spec, MayNotBeAsked);
+      EXPECT_EQ(answer.model, share < 1 ? Model::kSpectrum : Model::kBilliard) << delta;
+      EXPECT_EQ(answer.model_error, share < 1 ? bound : 0) << delta;
+      EXPECT_THAT(answer.reason,
+                  HasSubstr(share < 1 ? "is within the tolerance" : "is beyond the tolerance"));
+    }
+  }
+}
+
+TEST(Ladder, WithoutAToleranceTheConductivityIsTheBilliards) {
+  for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
+    const Answer answer = *Choice(Conductivity(1e-4, target), MayNotBeAsked);
+    EXPECT_EQ(answer.model, Model::kBilliard);
+    EXPECT_THAT(answer.reason, HasSubstr("without a tolerance"));
+  }
+  EXPECT_EQ(Choice(Conductivity(1e-4, {.budget_seconds = 1}), MayNotBeAsked)->model,
+            Model::kSpectrum);
+  EXPECT_EQ(Choice(Conductivity(0.2, {.budget_seconds = 1e6}), MayNotBeAsked)->model,
+            Model::kBilliard);
+}
+
+TEST(Ladder, ThePlanIsThatOfTheNamedEstimate) {
+  EnsembleSpec spec = Conductivity(0.01, {.tolerance = 0.05});
+  const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  EXPECT_FALSE(ladder.rungs[0].answers);
+  EXPECT_EQ(ladder.rungs[0].reason, "there is no closed form for conductivity");
+  const double bound = 1.5 * ExpectedLimitError(PaperPoint(0.01));
+  for (const size_t i : {1, 2}) EXPECT_EQ(ladder.rungs[i].model_error, bound);
+  EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
+  const double one = kGasEquilibrium.FindAim("conductivity")->error(PointAt(spec, 0));
+  const Rung& billiard = ladder.rungs[3];
+  EXPECT_EQ(billiard.statistical_error, one / std::sqrt(*billiard.samples));
+  // The same question with the default estimate.
+  spec.target.estimate = "exchange_rate";
+  const Ladder of_rate = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
+  EXPECT_EQ(of_rate.answer.model, Model::kClosedForm);
+  EXPECT_FALSE(of_rate.rungs[1].model_error);
+}
+
 TEST(Ladder, ABudgetWeighsTheStatisticalErrorOfTheJumpProcess) {
   const EnsembleSpec scarce = Asked(&kGasConduction, 0.0125, {.budget_seconds = 1e-3});
   EXPECT_EQ(Choice(scarce, MayNotBeAsked)->model, Model::kMarkov);
@@ -265,8 +317,8 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
       const bool limit = model == Model::kSpectrum || model == Model::kMarkov;
       if (!limit) {
         EXPECT_EQ(answer.model_error, 0);
-      } else if (experiment->limit_error != nullptr) {
-        EXPECT_EQ(answer.model_error, experiment->limit_error->expected(PointAt(spec, 0)));
+      } else if (AimOf(spec).limit_error != nullptr) {
+        EXPECT_EQ(answer.model_error, AimOf(spec).limit_error->expected(PointAt(spec, 0)));
       } else {
         EXPECT_FALSE(answer.model_error);  // nobody knows
       }

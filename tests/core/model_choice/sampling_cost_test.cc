@@ -34,7 +34,7 @@ void ExpectWithinAFactor(double factor, const EnsembleSpec& spec) {
   ASSERT_TRUE(Violations(spec).empty());
   const PointParameters point = PointAt(spec, 0);
   const Measured measured = ErrorMeasured(spec);
-  const double predicted = spec.experiment->error(point) / std::sqrt(measured.samples);
+  const double predicted = AimOf(spec).error(spec.model, point) / std::sqrt(measured.samples);
   std::cout << spec.experiment->name << " by " << Name(spec.model) << ", delta " << point[kDelta]
             << ", epsilon " << point.Find(kEpsilon).value_or(-1) << ": predicted " << predicted
             << ", measured " << measured.relative_error << "\n";
@@ -79,7 +79,7 @@ TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwoAndAHalf) {
 TEST(SamplingCost, NoNumberOfSamplesIsEnoughWhereThereIsNoVariance) {
   EnsembleSpec spec = Asked(&kConditionalMeanFreeTime, 0.1);
   spec.grid[kEpsilon] = {0};
-  EXPECT_TRUE(std::isinf(spec.experiment->error(PointAt(spec, 0))));
+  EXPECT_TRUE(std::isinf(AimOf(spec).error(spec.model, PointAt(spec, 0))));
 }
 
 // ---- costs, which follow from counts and a machine's rates ----

@@ -283,6 +283,35 @@ TEST(Spec, VerifyComesBack) {
   EXPECT_FALSE(SpecMessage(CheckSpec(message).spec).verify());
 }
 
+v1::EnsembleSpec OneGas(const std::string& estimate) {
+  v1::EnsembleSpec message;
+  message.set_experiment(v1::EnsembleSpec::GAS_EQUILIBRIUM);
+  message.mutable_grid()->add_rho(0.53);
+  message.mutable_grid()->add_delta(0.1);
+  message.mutable_grid()->add_cells("4");
+  message.mutable_grid()->add_temperature(1);
+  message.mutable_target()->set_tolerance(0.05);
+  message.mutable_target()->set_estimate(estimate);
+  return message;
+}
+
+TEST(Spec, TheNamedEstimateComesBack) {
+  for (const std::string name : {"", "exchange_rate", "conductivity"}) {
+    const CheckedSpec checked = CheckSpec(OneGas(name));
+    EXPECT_TRUE(checked.violations.empty()) << name;
+    EXPECT_EQ(checked.spec.target.estimate, name);
+    EXPECT_EQ(SpecMessage(checked.spec).target().estimate(), name);
+  }
+}
+
+TEST(Spec, AnUnknownEstimateIsAViolationEscapedAndShortened) {
+  const CheckedSpec checked = CheckSpec(OneGas("\x1b[2J" + std::string(1'000'000, 'y')));
+  ASSERT_THAT(ViolatedFields(checked), testing::ElementsAre("spec.target.estimate"));
+  EXPECT_EQ(checked.violations[0].description,
+            "is \\033[2J" + std::string(96, 'y') +
+                "...; permitted with gas-equilibrium: exchange_rate, conductivity");
+}
+
 TEST(Spec, ABudgetBesideAToleranceComesBackToTheNanosecond) {
   v1::EnsembleSpec message = OneFirstHit();
   message.mutable_target()->set_tolerance(0.01);

@@ -326,6 +326,24 @@ TEST(Question, EveryFieldOfTheSpecificationIsPartOfIt) {
   EXPECT_GE(changes, 15);
 }
 
+TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
+  v1::EnsembleSpec gas = Question();
+  gas.set_experiment(v1::EnsembleSpec::GAS_EQUILIBRIUM);
+  const auto question_of = [&gas](const std::string& estimate) {
+    gas.mutable_target()->set_estimate(estimate);
+    return QuestionOf(gas, "1") + " " + PayloadOf(CreateRequest(gas, kUuid));
+  };
+  EXPECT_EQ(question_of("exchange_rate"), question_of(""));
+  EXPECT_NE(question_of("conductivity"), question_of(""));
+  EXPECT_NE(question_of("unknown"), question_of(""));
+  gas.set_experiment(v1::EnsembleSpec::GAS_CONDUCTION);
+  EXPECT_EQ(question_of("heat_current"), question_of(""));
+  EXPECT_NE(question_of("exchange_rate"), question_of(""));
+  // Of a newer client.
+  gas.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(999));
+  EXPECT_NE(question_of("exchange_rate"), question_of(""));
+}
+
 TEST(Question, TheEngineIsPartOfIt) {
   EXPECT_NE(QuestionOf(Question(), "1"), QuestionOf(Question(), "2"));
   EXPECT_EQ(QuestionOf(Question(), "1"), QuestionOf(Question(), "1"));

@@ -84,6 +84,20 @@ TEST(LeaseRecord, EveryQuestionKeepsItsPlanAndItsBits) {
   }
 }
 
+// The worker judges the tolerance by the named estimate.
+TEST(LeaseRecord, TheNamedEstimateComesBack) {
+  for (const char* name : {"", "exchange_rate", "conductivity"}) {
+    EnsembleSpec spec = SpecOf(kGasEquilibrium, Model::kBilliard, 150);
+    spec.target.estimate = name;
+    const IdentifiedLease lease = LeaseOf(spec);
+    ExpectComesBack(lease);
+    ASSERT_OK_AND_ASSIGN(const IdentifiedLease back, ReadBack(lease));
+    EXPECT_EQ(back.lease.spec->target.estimate, name);
+    EXPECT_EQ(back.lease.experiment->FirstEstimate(back.lease.experiment->EmptyResult()).name,
+              AimOf(spec).name);
+  }
+}
+
 TEST(LeaseRecord, APointOfAGridComesBack) {
   EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
   spec.grid[kDelta] = {0.1, 0.07, 1.0 / 30};
@@ -185,6 +199,8 @@ TEST(LeaseRecord, ADamagedQuestionIsDataLossWithItsField) {
            {"question.target.samples", [](Record& r) { r.mutable_question()->set_samples(-7); }},
            {"question.target.collisions",
             [](Record& r) { r.mutable_question()->set_collisions(9); }},
+           {"question.target.estimate",
+            [](Record& r) { r.mutable_question()->set_estimate("conductivity"); }},
            {"question.target.tolerance",
             [](Record& r) { r.mutable_question()->set_tolerance(kNan); }},
        }) {
