@@ -140,7 +140,6 @@ class GasEquilibrium : public GasExperiment {
     summary.estimates = {ExchangeRate(merged),
                          MeanBeside(temperature_, "temperature_ball", merged, 1, temperature_),
                          MeanBeside(temperature_, "temperature_piston", merged, 2, temperature_)};
-    AddConductivity(merged, summary);
     const auto laws = SpeedLaws();
     constexpr std::array<const char*, 2> kBodies = {"ball", "piston"};
     for (size_t i = 0; i < laws.size(); ++i) {
@@ -152,6 +151,7 @@ class GasEquilibrium : public GasExperiment {
       summary.histograms.push_back(
           {.name = absl::StrCat(kBodies[i], "_speed"), .histogram = AtTemperature(merged, i)});
     }
+    AddConductivity(merged, summary);
     return summary;
   }
 

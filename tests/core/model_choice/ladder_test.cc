@@ -287,7 +287,7 @@ TEST(Ladder, ThePlanIsThatOfTheNamedEstimate) {
   const double bound = 1.5 * ExpectedLimitError(PaperPoint(0.01));
   for (const size_t i : {1, 2}) EXPECT_EQ(ladder.rungs[i].model_error, bound);
   EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
-  const double one = kGasEquilibrium.FindAim("conductivity")->error(PointAt(spec, 0));
+  const double one = kGasEquilibrium.FindAim("conductivity")->error(spec.model, PointAt(spec, 0));
   const Rung& billiard = ladder.rungs[3];
   EXPECT_EQ(billiard.statistical_error, one / std::sqrt(*billiard.samples));
   // The same question with the default estimate.
