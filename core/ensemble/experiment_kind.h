@@ -65,10 +65,10 @@ struct ExperimentKind {
   // Finds why sampling cannot reach a tolerance; null if it always can.
   void (*check_tolerance)(const EnsembleSpec& spec, std::vector<FieldViolation>& found) = nullptr;
 
-  // These two describe one sample: its work by `model`, and its mean number of ball-piston
+  // These two describe one sample by `model`: its work, and its mean number of ball-piston
   // collisions.
   SampleWork (*work)(Model model, const PointParameters& point);
-  double (*collisions)(const PointParameters& point);
+  double (*collisions)(Model model, const PointParameters& point);
 
   // Samples of one orbit that are measured together; a power of two up to 64.
   uint64_t samples_together = 1;

@@ -34,8 +34,8 @@ uint64_t SamplesAskedFor(const EnsembleSpec& spec, const PointParameters& point)
   const Target& target = spec.target;
   if (target.IsOpenEnded()) return kMaxSamples;
   if (!target.collisions) return static_cast<uint64_t>(target.samples.value_or(kDefaultSamples));
-  return static_cast<uint64_t>(
-      std::ceil(static_cast<double>(*target.collisions) / spec.experiment->collisions(point)));
+  return static_cast<uint64_t>(std::ceil(static_cast<double>(*target.collisions) /
+                                         spec.experiment->collisions(Sampled(spec.model), point)));
 }
 
 PointExperiment::PointExperiment(const EnsembleSpec& spec, const PointParameters& parameters)

@@ -284,6 +284,10 @@ constexpr LimitError kLimitErrorOfRelaxation = {.model = Model::kSpectrum,
 
 // At energies that have no relaxation time, for which a tolerance is not permitted, the first
 // estimate is the decay integral.
+double CollisionsOfASample(Model, const PointParameters& point) {
+  return CollisionsPerOrbit(point);
+}
+
 constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
                                                 .models = kModelsOfRelaxation,
                                                 .error = ErrorOfAnOrbit,
@@ -301,6 +305,6 @@ constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
                                                     .check_grid = CheckPairGrid,
                                                     .check_tolerance = CheckToleranceOfDecay,
                                                     .work = WorkOfAnOrbit,
-                                                    .collisions = CollisionsPerOrbit};
+                                                    .collisions = CollisionsOfASample};
 
 }  // namespace ballpiston

@@ -239,10 +239,10 @@ SampleWork WorkOfGasConduction(Model model, const PointParameters& point) {
   return WorkOfReplica(model, OpenGasOf(point), TimesAt(model, point).Total());
 }
 
-double ExchangesOfAConductionSample(const PointParameters& point) {
+double ExchangesOfAConductionSample(Model model, const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   return static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) *
-         TimesAt(Model::kBilliard, point).measure;
+         TimesAt(model, point).measure;
 }
 
 // The current's fluctuations in local equilibrium, 2 kappa T^2/(N t), over the current itself.

@@ -44,17 +44,19 @@ constexpr size_t kSpeedBins = 120;
 constexpr double kMostSpeed = 6;  // beyond it one in 10^8 of a ball's speeds, in the last bin
 
 // A replica's exchanges, of a contact. Few where there are many contacts, because then the energy
-// fluctuates little and starts cost most.
-double ExchangesOf(const GasGeometry& geometry) {
-  return std::clamp(4e4 / static_cast<double>(geometry.contacts()), 0.5, 8.0);
+// fluctuates little and starts cost most. The jump process knows its conductivity to so many digits
+// that it needs a longer window.
+double ExchangesOf(Model model, const GasGeometry& geometry) {
+  const double most = model == Model::kMarkov ? 16 : 8;
+  return std::clamp(4e4 / static_cast<double>(geometry.contacts()), 0.5, most);
 }
 
 ExtrapolatedValue LimitCorrection(const GasGeometry& geometry) {
   return geometry.shape().is_lattice ? kLatticeCorrection : kChainCorrection;
 }
 
-GasTimes TimesInEquilibrium(const GasGeometry& geometry) {
-  return {.measure = ExchangesOf(geometry) / InfiniteGasExchangeRate(geometry, 1)};
+GasTimes TimesInEquilibrium(Model model, const GasGeometry& geometry) {
+  return {.measure = ExchangesOf(model, geometry) / InfiniteGasExchangeRate(geometry, 1)};
 }
 
 std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
@@ -101,7 +103,7 @@ class GasEquilibrium : public GasExperiment {
  public:
   GasEquilibrium(const EnsembleSpec& spec, const PointParameters& point,
                  const GasGeometry& geometry)
-      : GasExperiment(spec, point, geometry, TimesInEquilibrium(geometry)),
+      : GasExperiment(spec, point, geometry, TimesInEquilibrium(spec.model, geometry)),
         temperature_(point[kTemperature]),
         exact_rate_(GasExchangeRate(geometry, temperature_)),
         aims_at_conductivity_(AimsAtConductivity(spec)) {}
@@ -211,7 +213,7 @@ class GasEquilibrium : public GasExperiment {
     summary.remarks.push_back(absl::StrFormat(
         "the conductivity counts the current's correlations up to a time of %.3g, %.2g mean times "
         "between exchanges of a ball and a piston",
-        kWindow * Step(), ExchangesOf(geometry()) * kWindow / kCurrentSteps));
+        kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
   }
 
   CurvePoint PointOf(const BlockResult& merged, size_t index, size_t steps, double scale) const {
@@ -289,28 +291,28 @@ std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
 // to nothing.
 SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  SampleWork work = WorkOfReplica(model, geometry, TimesInEquilibrium(geometry).Total());
+  SampleWork work = WorkOfReplica(model, geometry, TimesInEquilibrium(model, geometry).Total());
   work.jumps *= 3;
   return work;
 }
 
-double ExchangesOfASample(const PointParameters& point) {
+double ExchangesOfASample(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
-  return static_cast<double>(geometry.contacts()) * ExchangesOf(geometry);
+  return static_cast<double>(geometry.contacts()) * ExchangesOf(model, geometry);
 }
 
 // Exchanges that come by chance, and the energy of the replica, whose root is in the rate.
-double ErrorOfGasEquilibrium(Model, const PointParameters& point) {
+double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   const auto freedom = static_cast<double>(2 * geometry.balls() + geometry.pistons());
-  return std::sqrt(1.3 / ExchangesOfASample(point) + 0.5 / freedom);
+  return std::sqrt(1.3 / ExchangesOfASample(model, point) + 0.5 / freedom);
 }
 
 // A correlation up to the window has errors of its own from each of its lags. They were measured,
 // in gases of 2 to 100 cells, where they hardly depend on the number. The jump process measures its
 // correction alone.
 double ErrorOfConductivity(Model model, const PointParameters&) {
-  return model == Model::kMarkov ? 0.0012 : 2.7;
+  return model == Model::kMarkov ? 0.001 : 2.7;
 }
 
 std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {

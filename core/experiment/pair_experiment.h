@@ -30,7 +30,7 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
 // which single precision is not permitted (billiard/single_precision.h).
 void CheckPairGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
-inline double OneCollision(const PointParameters&) { return 1; }
+inline double OneCollision(Model, const PointParameters&) { return 1; }
 
 // The work of a sample that is one collision of an orbit in equilibrium.
 SampleWork WorkOfACollision(const PairGeometry& geometry);

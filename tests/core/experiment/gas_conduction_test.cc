@@ -187,7 +187,7 @@ TEST(GasConduction, ReplicasThatAreLongEnoughGiveErrorsAndNoRemark) {
 TEST(GasConduction, AReplicaIsFollowedForTheRelaxationTime) {
   const auto exchanges_a_contact = [](int64_t columns) {
     const PointParameters point = PointAt(SpecBetween(3, 1, {.columns = columns}), 0);
-    return kGasConduction.collisions(point) / static_cast<double>(2 * columns);
+    return kGasConduction.collisions(Model::kBilliard, point) / static_cast<double>(2 * columns);
   };
   EXPECT_NEAR(exchanges_a_contact(19) / exchanges_a_contact(9), 4, 1e-12);
   EXPECT_LT(exchanges_a_contact(30'000) / exchanges_a_contact(299), 1e4);
