@@ -312,7 +312,7 @@ double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
 // in gases of 2 to 100 cells, where they hardly depend on the number. The jump process measures its
 // correction alone.
 double ErrorOfConductivity(Model model, const PointParameters&) {
-  return model == Model::kMarkov ? 0.001 : 2.7;
+  return model == Model::kMarkov ? 0.001 : 2.5;
 }
 
 std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {

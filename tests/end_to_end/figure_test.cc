@@ -130,11 +130,27 @@ TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
   EXPECT_THAT(Contents(folder_ + "/temperature-profile.svg"), HasSubstr("N = 3"));
 }
 
+TEST_F(FigureTest, ConductivitiesStandBesideTheirLimit) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure conductivity --cells 2,3 --samples 100 --delta 0.15,0.2 --billiard-cells 2 "
+            "--billiard-samples 50 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(Contents(folder_ + "/conductivity-billiard.csv"),
+              HasSubstr(",0.2,,,2,1,billiard,50,conductivity_ratio,"));
+  EXPECT_THAT(Contents(folder_ + "/conductivity-rings.csv"),
+              HasSubstr(",0.15,,,3,1,markov,100,conductivity_ratio,"));
+  EXPECT_THAT(Contents(folder_ + "/conductivity.svg"), HasSubstr("infinite: -1.8073"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
+  EXPECT_THAT(result.out, HasSubstr("conductivity: "));
   EXPECT_THAT(result.out, HasSubstr("gas: "));
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
 }

@@ -1,0 +1,34 @@
+# Conductivities of gases over the static one: against delta, and of rare exchanges against 1/N
+#
+# Run by `ballpiston figure conductivity --out DIR`, whose flags replace these values, or by hand:
+# sh conductivity.sh. It takes some five minutes of one core.
+set -eu
+: "${rho:=0.529561127988977}"        # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${delta:=0.05,0.1,0.15,0.2}"      # of the billiard
+: "${billiard_cells:=4}"             # in a ring, of the billiard
+: "${cells:=2,3,4,6,8,16,32}"        # in a ring, of the jump process, the limit delta -> 0
+: "${billiard_samples:=300000}"      # replicas at each delta
+: "${samples:=5000}"                 # replicas of each ring
+: "${seed:=0}"
+
+# Runs a command; if the command succeeds, keeps its output in a file.
+into() {
+  file=$1
+  shift
+  "$@" >"$file.part"
+  mv "$file.part" "$file"
+}
+
+measure() {
+  ballpiston run gas-equilibrium --rho "$rho" --delta "$2" --cells "$3" --temperature 1 \
+    --model "$1" --samples "$4" --seed "$seed" --estimate conductivity --resume --format csv
+}
+into conductivity-billiard.csv measure billiard "$delta" "$billiard_cells" "$billiard_samples"
+# The correction of the limit depends neither on rho nor on delta.
+into conductivity-rings.csv measure markov "${delta%%[,:]*}" "$cells" "$samples"
+
+if command -v gnuplot >/dev/null; then
+  gnuplot conductivity.gnuplot
+else
+  echo "gnuplot is not installed; to draw the figure later: gnuplot conductivity.gnuplot" >&2
+fi
