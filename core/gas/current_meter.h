@@ -10,7 +10,8 @@
 // root of the window.
 //
 // Properties, each with the test that bears its name:
-//   1. StepsHoldTheWholeCurrent.  2. IndependentCarriersConductAsTheyShould.
+//   1. StepsHoldTheWholeCurrent.  2. CountsWhatDifferentExchangesHaveInCommon.
+//   3. OfTheJumpProcessGivesItsConductivity.
 #ifndef BALLPISTON_CORE_GAS_CURRENT_METER_H_
 #define BALLPISTON_CORE_GAS_CURRENT_METER_H_
 

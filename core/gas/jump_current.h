@@ -21,7 +21,7 @@
 // pistons. In one column there is no current.
 //
 // Properties, each with the test that bears its name:
-//   1. CurrentsAreThoseOfTheirDefinition.  2. BothGiveTheGalerkinValue.
+//   1. CurrentsAreThoseOfTheirDefinition.  2. TheJumpProcessConductsAsTheSpectrumSays.
 #ifndef BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
 #define BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
 
