@@ -308,11 +308,12 @@ double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
   return std::sqrt(1.3 / ExchangesOfASample(model, point) + 0.5 / freedom);
 }
 
-// A correlation up to the window has errors of its own from each of its lags. They were measured,
-// in gases of 2 to 100 cells, where they hardly depend on the number. The jump process measures its
-// correction alone.
-double ErrorOfConductivity(Model model, const PointParameters&) {
-  return model == Model::kMarkov ? 0.001 : 2.5;
+// Measured. They hardly depend on the number of cells, because the error of a correlation is its
+// scale, however many cells add to it. The jump process measures its correction alone.
+double ErrorOfConductivity(Model model, const PointParameters& point) {
+  const bool is_lattice = ShapeOf(point[kCells]).is_lattice;
+  if (model == Model::kMarkov) return is_lattice ? 0.0005 : 0.001;
+  return is_lattice ? 2 : 2.5;
 }
 
 std::vector<std::vector<double>> SpeedProbabilitiesAt(const PointParameters&) {
