@@ -267,6 +267,7 @@ const FlagGroup kVariables = {
       "penetrations at which relaxation times are compared, at most 8"},
      {"--epsilon", Variable("X", "epsilon"), "the piston's energy"},
      {"--cells", Variable("LIST", "cells"), "shape of the gas, or lengths of the chains"},
+     {"--billiard-cells", Variable("LIST", "billiard_cells"), "lengths of the billiard's rings"},
      {"--temperature", Variable("X", "temperature"), "temperature of the gas"},
      {"--hot", Variable("X", "hot"), "temperature of the hot reservoir"},
      {"--cold", Variable("X", "cold"), "temperature of the cold reservoir"},

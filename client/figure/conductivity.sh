@@ -1,7 +1,7 @@
 # Conductivities of gases over the static one: against delta, and of rare exchanges against 1/N
 #
 # Run by `ballpiston figure conductivity --out DIR`, whose flags replace these values, or by hand:
-# sh conductivity.sh. It takes some five minutes of one core.
+# sh conductivity.sh. It takes some ten minutes of one core.
 set -eu
 : "${rho:=0.529561127988977}"        # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.05,0.1,0.15,0.2}"      # of the billiard

@@ -11,8 +11,9 @@
 // the total energy and over sqrt(|e_b - e_p|/(e_b + e_p)), in which both are smooth. Between the
 // nodes it is interpolated by cubic polynomials.
 //
-// Units: those of contact_matrix.h. Domain: energies of at least 0, not both 0. Errors:
-// interpolated values, kContactCurrentsError. Test: ContactCurrents.AgreeWithTheirDefinition.
+// Units: those of contact_matrix.h. Domain: energies of at least 0, not both 0. Error of the table:
+// kContactCurrentsError. Properties, each with the test that bears its name:
+//   1. AgreeWithTheirDefinition.  2. TableIsWithinItsErrorOfThem.  3. TableTakesEveryEnergy.
 //
 // Made of +, -, *, / and sqrt alone, so the same bits everywhere. Immutable; safe to share between
 // threads.
@@ -38,7 +39,7 @@ struct ContactCurrents {
   TestFunction::Values piston = {};  // the change of w_r
 };
 
-// By quadrature, to 1e-12.
+// By quadrature: to 1e-12 for energies up to 10, to 2e-8 up to 36.
 ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, double piston_energy);
 
 class ContactCurrentsTable {
@@ -55,7 +56,7 @@ class ContactCurrentsTable {
  private:
   static constexpr size_t kValues = 2 + 2 * TestFunction::kTerms;
   using Node = std::array<double, kValues>;
-  size_t NodeAt(bool is_piston_faster, size_t speed, size_t place) const;
+  size_t NodeAt(bool is_piston_faster, size_t root, size_t place) const;
 
   TestFunction f_;
   std::vector<Node> nodes_;

@@ -20,10 +20,13 @@ constexpr bool IsOfTheLimit(Model model) {
   return model == Model::kSpectrum || model == Model::kMarkov;
 }
 
-// Of AUTO it is not known.
+// Requires a model other than AUTO.
 constexpr bool TakesSamples(Model model) {
   return model != Model::kClosedForm && model != Model::kSpectrum;
 }
+
+// The model itself; for AUTO the billiard, which answers every experiment by samples.
+constexpr Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
 
 // Names as users write them, e.g. "billiard_reference".
 constexpr absl::string_view Name(Model model) {

@@ -9,8 +9,6 @@
 namespace ballpiston {
 namespace {
 
-Model Sampled(Model model) { return model == Model::kAuto ? Model::kBilliard : model; }
-
 ChunkPlan PlanFor(const EnsembleSpec& spec, const PointParameters& point) {
   const SampleWork work = spec.experiment->work(Sampled(spec.model), point);
   return ChunkPlan(SamplesAskedFor(spec, point), EngineFor(spec), work.Events(),

@@ -35,7 +35,7 @@ GreenKubo CarriedCurrent::Result() const {
   const double step = steps_.length();
   for (double& c : result.autocorrelation) c /= cells_ * step * step;
   for (double& k : result.conductivity) k = exchange_rate_ / 2 + k / (cells_ * step);
-  result.best = result.conductivity.back();
+  result.plain = result.conductivity.back();
   return result;
 }
 

@@ -47,7 +47,7 @@ class CurrentSteps {
 struct GreenKubo {
   std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
   std::vector<double> conductivity;     // with a window up to there
-  double best = 0;                      // with all of the window
+  double plain = 0;  // the last one, where the jump process uses no test function
 };
 
 inline constexpr size_t kCurrentSteps = 32;  // of a replica

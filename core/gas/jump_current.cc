@@ -117,7 +117,6 @@ void JumpCurrent::Exchange(const GasExchange& exchange, double) {
   }
   for (const size_t side : sides_[piston]) FindBallTerm(contacts_[side].ball);
   for (size_t i = 0; i < directions_; ++i) FindPistonTerm(contacts_[ball * directions_ + i].piston);
-  FindPistonTerm(piston);
 }
 
 void JumpCurrent::AddUntil(double time) {
@@ -132,11 +131,10 @@ GreenKubo JumpCurrent::Result() const {
   const double static_value = density_ * kContactRate / 2;
   GreenKubo result;
   result.autocorrelation = LagProducts(steps_.values(), kWindow);
-  result.conductivity = IntegralsOf(result.autocorrelation);
+  result.plain = static_value - unit * IntegralsOf(result.autocorrelation).back();
   for (double& c : result.autocorrelation) c *= -unit / step;
-  for (double& k : result.conductivity) k = static_value - unit * k;
-  const double left = IntegralsOf(LagProducts(steps_left_.values(), kWindow)).back();
-  result.best = static_value * (1 + bound_) - unit * left;
+  result.conductivity = IntegralsOf(LagProducts(steps_left_.values(), kWindow));
+  for (double& k : result.conductivity) k = static_value * (1 + bound_) - unit * k;
   return result;
 }
 

@@ -10,9 +10,9 @@
 // of one energy adds up to 0 round a ring.
 //
 // The same formula holds with the current J' = L(X + f) that a test function leaves, and a bound in
-// place of kappa_0 (conductivity/test_function.h): that gives `best`. With f = sum_r u_r(ball)
-// A_r(ball), where A_r is w_r of the piston on its right less that on its left, and B_r of a piston
-// is u_r of the ball on its left less that on its right,
+// place of kappa_0 (conductivity/test_function.h): that gives `conductivity`. With f = sum_r
+// u_r(ball) A_r(ball), where A_r is w_r of the piston on its right less that on its left, and B_r
+// of a piston is u_r of the ball on its left less that on its right,
 //
 //   2 J' = sum over contacts along x of +-(j + sum_r <(change of u_r) (change of w_r)>)
 //        + sum over balls, r of A_r (L u_r) + sum over pistons along x, r of B_r (L w_r).

@@ -348,13 +348,13 @@ double LeastTolerance(const EnsembleSpec& spec) {
   for (size_t i = 0; i < PointCount(spec); ++i) {
     const PointParameters point = PointAt(spec, i);
     const Question question(spec, point, Machine());
-    if (IsOfTheLimit(spec.model) && question.HasPilots()) {
+    const bool is_checked = question.HasPilots() || spec.model == Model::kSpectrum;
+    if (IsOfTheLimit(spec.model) && question.HasLimitError() && is_checked) {
       least = std::max(least, question.ExpectedLimitError());
     }
     if (spec.model == Model::kSpectrum) continue;
     least = std::max(least, question.ErrorOfPrecision(spec.model).value_or(0));
-    const Model sampling = spec.model == Model::kAuto ? Model::kBilliard : spec.model;
-    const double sampled = question.ErrorOf(sampling, static_cast<double>(kMaxSamples));
+    const double sampled = question.ErrorOf(Sampled(spec.model), static_cast<double>(kMaxSamples));
     if (std::isfinite(sampled)) least = std::max(least, sampled);
   }
   return least;

@@ -64,8 +64,8 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 
 // Finds a tolerance that the answering model cannot reach: a tolerance below the model's own error,
 // or below the statistical error of the largest permitted number of samples. The limit's error
-// counts only where pilots can check it; elsewhere the tolerance of `markov` is that of its
-// samples.
+// counts for the spectrum, and for `markov` where pilots can check it; elsewhere the tolerance of
+// `markov` is that of its samples.
 std::vector<FieldViolation> ToleranceViolations(const EnsembleSpec& spec);
 
 // Processor time of a budget for each point of the grid.

@@ -15,7 +15,7 @@ double WallHits(Engine engine, const SampleWork& work) {
 
 double SecondsPerSample(const EnsembleSpec& spec, const PointParameters& point,
                         const MachineRates& rates) {
-  const Model model = spec.model == Model::kAuto ? Model::kBilliard : spec.model;
+  const Model model = Sampled(spec.model);
   const SampleWork work = spec.experiment->work(model, point);
   const Engine engine = EngineFor(spec);
   const EngineRate& rate = rates.Of(engine);

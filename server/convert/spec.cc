@@ -275,6 +275,7 @@ std::string QuestionBytes(v1::EnsembleSpec message) {
   const std::string& estimate = message.target().estimate();
   if (experiment != nullptr && experiment->aims.front().name == estimate) {
     message.mutable_target()->clear_estimate();
+    if (message.target().ByteSizeLong() == 0) message.clear_target();
   }
   return DeterministicBytes(message);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <vector>
 
 #include "core/conductivity/chain_gap.h"
 
@@ -42,6 +43,36 @@ TEST(Conductivity, FinePlanGivesSpheres) {
 
 TEST(ChainGap, GapOfThePairIsExactToTwelveDigits) {
   EXPECT_NEAR(ChainGap({2, 1}, {20, 24, 30, 36}).value, 0.152087126613526, 1e-12);
+}
+
+struct ClosedChain {
+  std::vector<int> dimensions;
+  std::vector<int> degrees;
+  ExtrapolatedValue documented;
+};
+
+// The values of docs/conductivity.md, by fewer degrees. An error is the change by the last term, so
+// it is told to a factor of two.
+TEST(ChainGap, ClosedChainsHaveTheirDocumentedGaps) {
+  const ClosedChain chains[] = {
+      {{2, 1, 2}, {12, 14, 16, 18, 20}, {0.113388479, 2e-9}},
+      {{1, 2, 1}, {12, 14, 16, 18, 20}, {0.146330848, 1e-9}},
+      {{2, 1, 2, 1}, {8, 10, 12, 14}, {0.10916656, 3e-8}},
+      {{2, 1, 2, 1, 2}, {6, 8, 10}, {0.0824165, 1e-7}},
+      {{1, 2, 1, 2, 1}, {6, 8, 10}, {0.1018311, 2e-7}},
+      {{2, 1, 2, 1, 2, 1}, {4, 6, 8}, {0.067823, 1e-6}},
+  };
+  for (const ClosedChain& chain : chains) {
+    for (const int site : chain.dimensions) std::cout << site;
+    for (const int degree : chain.degrees) {
+      std::cout << "  degree " << degree << ": " << std::setprecision(9)
+                << ChainRates(chain.dimensions, degree)[0];
+    }
+    const ExtrapolatedValue gap = ChainGap(chain.dimensions, chain.degrees);
+    std::cout << "  extrapolated " << gap.value << " +- " << gap.error << "\n";
+    EXPECT_NEAR(gap.value, chain.documented.value, 2 * gap.error + chain.documented.error);
+    EXPECT_LT(gap.error, 2e-6 * gap.value);
+  }
 }
 
 }  // namespace

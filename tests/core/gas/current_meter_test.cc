@@ -50,7 +50,7 @@ TEST(CarriedCurrent, CountsWhatDifferentExchangesHaveInCommon) {
     EXPECT_NEAR(result.conductivity[lag], kRate / 2 + (lag < 3 ? 0 : product / (kCells * kStep)),
                 1e-14);
   }
-  EXPECT_EQ(result.best, result.conductivity[kWindow]);
+  EXPECT_EQ(result.plain, result.conductivity[kWindow]);
 }
 
 }  // namespace

@@ -250,12 +250,30 @@ EnsembleSpec Conductivity(double delta, Target target = {}) {
   return Asked(&kGasEquilibrium, delta, target);
 }
 
+double BoundOfConductivity(const EnsembleSpec& spec) {
+  return kGasEquilibrium.FindAim("conductivity")->limit_error->expected(PointAt(spec, 0));
+}
+
+// The bound of the limit, that of the gas's size, and the error of the spectrum's value. One cell
+// has no correlations at all, and another exchange rate.
+TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
+  EnsembleSpec spec = Conductivity(0.01);
+  const double of_limit = 1.5 * ExpectedLimitError(PaperPoint(0.01));
+  EXPECT_NEAR(BoundOfConductivity(spec), of_limit + 1.04e-5, 1e-8);
+  spec.grid[kCells] = {CodeOf({.columns = 2})};
+  EXPECT_NEAR(BoundOfConductivity(spec), of_limit + 5e-4, 1e-6);
+  spec = Conductivity(0.2);
+  spec.grid[kCells] = {CodeOf({.columns = 1})};
+  EXPECT_NEAR(BoundOfConductivity(spec),
+              1.5 * ExpectedLimitError(PaperPoint(0.2)) + 0.0018 + 0.0119, 1e-4);
+}
+
 TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance) {
   EXPECT_EQ(Choice(Conductivity(0.01, {.tolerance = 0.05}), MayNotBeAsked)->model,
             Model::kSpectrum);
   EXPECT_EQ(Choice(Conductivity(0.2, {.tolerance = 0.05}), MayNotBeAsked)->model, Model::kBilliard);
   for (double delta = 0.2; delta > 1e-3; delta /= 2) {
-    const double bound = 1.5 * ExpectedLimitError(PaperPoint(delta));
+    const double bound = BoundOfConductivity(Conductivity(delta));
     for (const double share : {0.999, 1.001}) {
       const EnsembleSpec spec = Conductivity(delta, {.tolerance = bound / share});
       const Answer answer = *Choice(spec, MayNotBeAsked);
@@ -284,7 +302,7 @@ TEST(Ladder, ThePlanIsThatOfTheNamedEstimate) {
   const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
   EXPECT_FALSE(ladder.rungs[0].answers);
   EXPECT_EQ(ladder.rungs[0].reason, "there is no closed form for conductivity");
-  const double bound = 1.5 * ExpectedLimitError(PaperPoint(0.01));
+  const double bound = BoundOfConductivity(spec);
   for (const size_t i : {1, 2}) EXPECT_EQ(ladder.rungs[i].model_error, bound);
   EXPECT_EQ(ladder.rungs[1].statistical_error, 0);
   const double one = kGasEquilibrium.FindAim("conductivity")->error(spec.model, PointAt(spec, 0));
