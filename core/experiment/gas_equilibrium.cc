@@ -333,7 +333,7 @@ double ErrorOfConductivity(Model model, const PointParameters& point) {
   if (model != Model::kMarkov) return shape.is_lattice ? 2 : 2.5;
   if (shape.columns == 1) return 0;
   if (shape.columns == 2) return 0.0003;
-  return shape.is_lattice ? 0.0005 : 0.001;
+  return shape.rows > 1 ? 0.0005 : 0.001;
 }
 
 // How far the spectrum, which has the conductivity of the infinite gas, is from a gas of so many

@@ -81,13 +81,13 @@ class SquaresMeter : public CurrentMeter {
   double& sum_;
 };
 
-// CarriedCurrent leaves these squares out, because their mean is known. To 0.2 % and 1 %; four
+// CarriedCurrent leaves these squares out, because their mean is known. To 0.3 % and 1.4 %; four
 // standard errors are exceeded in 6e-5 of all cases.
 TEST(CarriedCurrent, SquaresOfWhatExchangesCarryAreTheStaticConductivity) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4");
   const double rate = GasExchangeRate(gas, 1), duration = 8 / rate;
   for (const auto& [engine, replicas] :
-       {std::pair(GasEngine::kJumps, 40'000), {GasEngine::kReference, 2000}}) {
+       {std::pair(GasEngine::kJumps, 200'000), {GasEngine::kReference, 8000}}) {
     Moments squares;
     for (int replica = 0; replica < replicas; ++replica) {
       const GasRandom random(kGasSeed, 7, static_cast<uint64_t>(replica));
@@ -102,7 +102,7 @@ TEST(CarriedCurrent, SquaresOfWhatExchangesCarryAreTheStaticConductivity) {
       squares.Add(sum / (2 * 4 * duration) / (rate / 2));
     }
     EXPECT_LT(StandardErrorsOff(squares, 1), 4) << squares.mean;
-    EXPECT_LT(squares.StandardError().value(), engine == GasEngine::kJumps ? 0.0025 : 0.012);
+    EXPECT_LT(squares.StandardError().value(), engine == GasEngine::kJumps ? 0.0035 : 0.018);
   }
 }
 

@@ -258,6 +258,7 @@ double BoundOfConductivity(const EnsembleSpec& spec) {
 // has no correlations at all, and another exchange rate.
 TEST(Ladder, TheBoundOfTheConductivityCountsTheSizeOfTheGas) {
   EnsembleSpec spec = Conductivity(0.01);
+  spec.grid[kCells] = {CodeOf({.columns = 8})};
   const double of_limit = 1.5 * ExpectedLimitError(PaperPoint(0.01));
   EXPECT_NEAR(BoundOfConductivity(spec), of_limit + 1.04e-5, 1e-8);
   spec.grid[kCells] = {CodeOf({.columns = 2})};
