@@ -1,5 +1,5 @@
-// What one contact of a ball and a piston does in the mean, at given energies of the two: the
-// energy that it carries, and how it changes a test function.
+// Mean effects of the exchanges of one contact, at given energies of its ball and piston: the
+// energy that they carry, and the change of a test function.
 //
 // The ball's angle is uniform and the piston's sign even, so with the speeds s = sqrt(2 e_b) and
 // w = sqrt(2 e_p), and a change D that depends on the exchange by v_a^2 alone,
@@ -28,7 +28,7 @@
 
 namespace ballpiston {
 
-// Root mean square over the equilibrium, over the root mean square of the value.
+// Root mean square error in equilibrium, divided by the root mean square of the value.
 inline constexpr double kContactCurrentsError = 3e-4;
 
 // In a unit of time, the means of

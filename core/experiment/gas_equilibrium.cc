@@ -3,9 +3,9 @@
 // The spectrum answers it in the limit of rare exchanges.
 //
 // Each replica starts from the canonical ensemble, so nothing has to be burnt in, and its energy
-// fluctuates as it should. It is followed until a ball and a piston have exchanged some times. Half
-// of that time is the window in which the current's autocorrelation counts. A replica runs at
-// temperature 1: all of the gas scales.
+// fluctuates as it should. It is followed for a fixed time, at most 8 mean times between
+// exchanges of a contact, 16 by the jump process. Half of that time is the window of the current's
+// autocorrelation. A replica runs at temperature 1, and its results are scaled.
 //   batch means, a replica each  [0] exchanges, contacts times duration
 //                                [1] sum of the balls' mean energies, balls  [2] twice the pistons'
 //   moments                      [0] conductivity without a test function (gas/jump_current.h)
@@ -43,16 +43,16 @@ namespace {
 constexpr size_t kSpeedBins = 120;
 constexpr double kMostSpeed = 6;  // beyond it one in 10^8 of a ball's speeds, in the last bin
 
-// Gases with more contacts are followed for a shorter time, which is no window for a conductivity.
-// That of a smaller gas is the same.
+// Replicas of gases with more contacts are too short to measure the conductivity. A smaller gas has
+// nearly the same conductivity.
 constexpr int64_t kMostContacts = 5000;
 bool MeasuresConductivity(const GasGeometry& geometry) {
   return geometry.contacts() <= kMostContacts;
 }
 
-// A replica's exchanges, of a contact. Few where there are many contacts, because then the energy
-// fluctuates little and starts cost most. The jump process knows its conductivity to so many digits
-// that it needs a longer window.
+// The mean number of exchanges of each contact in a replica. It is small in gases of many contacts,
+// where the energy fluctuates little and starts cost most. The jump process has a longer window,
+// because its scatter is smaller than what a shorter window leaves out.
 double ExchangesOf(Model model, const GasGeometry& geometry) {
   const double most = model == Model::kMarkov ? 16 : 8;
   const double share =
@@ -218,8 +218,9 @@ class GasEquilibrium : public GasExperiment {
   void AddConductivity(const BlockResult& merged, PointSummary& summary) const {
     if (!MeasuresConductivity(geometry())) {
       summary.remarks.push_back(
-          absl::StrFormat("no conductivity is measured in gases of more than %d contacts; a "
-                          "smaller gas has the same",
+          absl::StrFormat("the conductivity is not measured in gases of more than %d contacts; "
+                          "that of a smaller gas "
+                          "is nearly the same",
                           kMostContacts));
       return;
     }
@@ -366,7 +367,7 @@ void CheckEquilibriumGrid(const EnsembleSpec& spec, std::vector<FieldViolation>&
     found.push_back(
         {absl::StrFormat("grid.cells[%d]", i),
          absl::StrFormat("is %s, which has %d contacts; permitted with estimate conductivity: up "
-                         "to %d, or model spectrum; a smaller gas has the same conductivity",
+                         "to %d, or model spectrum; a smaller gas has nearly the same conductivity",
                          Text(shape), contacts, kMostContacts)});
   }
 }

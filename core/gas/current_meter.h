@@ -10,8 +10,8 @@
 // root of the window.
 //
 // Properties, each with the test that bears its name:
-//   1. StepsHoldTheWholeCurrent.  2. CountsWhatDifferentExchangesHaveInCommon.
-//   3. OfTheJumpProcessGivesItsConductivity.
+//   1. StepsHoldTheWholeCurrent.  2. CountsProductsOfDifferentExchanges.
+//   3. SquaresOfWhatExchangesCarryAreTheStaticConductivity.
 #ifndef BALLPISTON_CORE_GAS_CURRENT_METER_H_
 #define BALLPISTON_CORE_GAS_CURRENT_METER_H_
 
@@ -62,10 +62,10 @@ class CurrentMeter {
   virtual GreenKubo Result() const = 0;
 };
 
-// By the energy that exchanges carry over half a cell. What each exchange has in common with itself
-// alone gives the static conductivity, half of the exchange rate. That is known exactly, so its
-// scatter is left out: the conductivity is the static one and what different exchanges have in
-// common.
+// The current is the energy that exchanges carry over half a cell. The products of each exchange
+// with itself give the static conductivity, half of the exchange rate. It is known exactly, so it
+// replaces these products. The result is the static conductivity plus the products of different
+// exchanges.
 class CarriedCurrent : public CurrentMeter {
  public:
   // `exchange_rate` is that of the gas at temperature 1.

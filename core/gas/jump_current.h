@@ -5,8 +5,8 @@
 //
 //   kappa T^2 = kappa_0 T^2 - (integral over t > 0 of <J(0) J(t)>)/cells
 //
-// and the scatter is that of a correction of 0.2 %, not of the conductivity. J changes only where
-// an exchange was, and is integrated exactly over each step. Its part that is linear in functions
+// and the scatter is that of a correction of 0.2 %, not of the conductivity. J changes only at
+// exchanges, so its integral over each step is exact. Its part that is linear in functions
 // of one energy adds up to 0 round a ring.
 //
 // The same formula holds with the current J' = L(X + f) that a test function leaves, and a bound in
@@ -46,7 +46,7 @@ class JumpCurrent : public CurrentMeter {
   void End(double time) override { AddUntil(time); }
   GreenKubo Result() const override;
 
-  // Twice the currents J and J' at the present energies, where exchanges have a density of 1.
+  // 2 J and 2 J' at the present energies, in the units of conductivity/contact_matrix.h.
   double current() const { return current_; }
   double current_left() const { return current_left_; }
 

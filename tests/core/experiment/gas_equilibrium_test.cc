@@ -101,8 +101,9 @@ TEST(GasEquilibrium, RatiosByWindowEndAtTheRatio) {
   }
 }
 
-// Of 5001 contacts and more no conductivity is measured, and none may be asked for.
-TEST(GasEquilibrium, LargeGasesHaveNoConductivity) {
+// The conductivity is measured up to 5000 contacts. A question that names it for a larger gas is
+// rejected.
+TEST(GasEquilibrium, ConductivityIsMeasuredUpTo5000Contacts) {
   for (const auto& [columns, has] : {std::pair(2500, true), {2501, false}}) {
     EnsembleSpec spec = SpecAt(1, Model::kMarkov, {.columns = columns});
     spec.target = {.samples = 2};

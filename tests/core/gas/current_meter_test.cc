@@ -35,8 +35,8 @@ TEST(CurrentSteps, StepsHoldTheWholeCurrent) {
 }
 
 // Two exchanges, three steps apart, and nothing else: their product counts from a window of three
-// steps on, and what each has in common with itself does not count at all.
-TEST(CarriedCurrent, CountsWhatDifferentExchangesHaveInCommon) {
+// steps on, and the product of an exchange with itself does not count.
+TEST(CarriedCurrent, CountsProductsOfDifferentExchanges) {
   constexpr double kStep = 0.5, kRate = 0.25;
   constexpr size_t kCells = 2;
   CarriedCurrent current(kCells, kRate, kStep * kCurrentSteps);
