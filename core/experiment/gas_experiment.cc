@@ -41,14 +41,19 @@ class GasBlocks : public BlockRun {
   }
 
  private:
-  static constexpr int64_t kBallsTogether = 1536;
+  // So many that the lanes are full. The other engines gain nothing by more than one replica.
+  int64_t BallsTogether() const {
+    constexpr int64_t kOfLanes = 1536;
+    return experiment_.gas_engine() == GasEngine::kLanes ? kOfLanes : 1;
+  }
+
   static constexpr double kSecondsOfASlice = 0.01;
 
   // Takes replicas until there are enough balls. Returns false if there are none.
   bool Begin() {
     std::vector<GasStart> starts;
     const int64_t each = experiment_.geometry().balls();
-    for (int64_t balls = 0; balls < kBallsTogether && HasNext(); balls += each) {
+    for (int64_t balls = 0; balls < BallsTogether() && HasNext(); balls += each) {
       starts.push_back(Start());
     }
     if (starts.empty()) return false;
@@ -157,16 +162,16 @@ void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found) 
 // Factors measured with chains of 8, 100 and 10^4 cells and with 16x16, at deltas from 0.025 to
 // 0.2. In lanes a wall hit costs as much as four of the pair's, and an exchange, after which two
 // balls fly again, as much as a collision of the pair and 900 wall hits. A hit of a thermal wall,
-// after which one ball flies again, costs 600 wall hits. An event of the reference costs as much
+// after which one ball flies again, costs 1000 wall hits. An event of the reference costs as much
 // as 2.6 of the pair's events with 16 bodies in the queue, and 6.6 with 20,000. An exchange of the
-// jump process costs as much as 2.2 of the pair's jumps, which are measured with their
+// jump process costs as much as 2.6 of the pair's jumps, which are measured with their
 // correlations.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) {
   const auto balls = static_cast<double>(geometry.balls());
   const auto pistons = static_cast<double>(geometry.pistons());
   const double exchanges =
       static_cast<double>(geometry.contacts()) * InfiniteGasExchangeRate(geometry, 1) * time;
-  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.2 * exchanges};
+  if (model == Model::kMarkov) return {.starts = balls, .jumps = 2.6 * exchanges};
   const HitRates rates = HitRatesOf(geometry.pair());
   const double ball_hits = rates.of_a_ball * balls * time;
   if (model == Model::kBilliardReference) {
@@ -177,7 +182,7 @@ SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time) 
             .starts = balls};
   }
   const double thermal_hits = ThermalHitsOf(geometry, rates) * time;
-  return {.ball_wall = 4 * ball_hits + 900 * exchanges + 600 * thermal_hits,
+  return {.ball_wall = 4 * ball_hits + 900 * exchanges + 1000 * thermal_hits,
           .collisions = exchanges,
           .starts = balls};
 }
