@@ -265,7 +265,7 @@ const FlagGroup kVariables = {
      {"--delta", Variable("LIST", "delta"), "the piston's penetrations"},
      {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
       "penetrations at which relaxation times are compared, at most 8"},
-     {"--epsilon", Variable("X", "epsilon"), "the piston's energy"},
+     {"--epsilon", Variable("LIST", "epsilon"), "the piston's energies"},
      {"--cells", Variable("LIST", "cells"), "shape of the gas, or lengths of the chains"},
      {"--billiard-cells", Variable("LIST", "billiard_cells"), "lengths of the billiard's rings"},
      {"--temperature", Variable("X", "temperature"), "temperature of the gas"},

@@ -145,12 +145,26 @@ TEST_F(FigureTest, ConductivitiesStandBesideTheirLimit) {
   EXPECT_THAT(Contents(folder_ + "/conductivity.svg"), HasSubstr("infinite: -1.8073"));
 }
 
+TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure relative-entropy --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 100 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/relative-entropy.csv");
+  EXPECT_THAT(data, HasSubstr(",0.3,0.375,10,billiard,100,kl_divergence,"));
+  EXPECT_THAT(data, HasSubstr(",0.2,0.125,0,billiard,100,kl_noise_floor,"));
+  EXPECT_THAT(Contents(folder_ + "/relative-entropy.svg"), HasSubstr("ε = 0.125"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));
+  EXPECT_THAT(result.out, HasSubstr("relative-entropy: "));
   EXPECT_THAT(result.out, HasSubstr("gas: "));
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
 }

@@ -1,0 +1,52 @@
+# Draws relative-entropy.svg. Change it as you like; run it with:
+# gnuplot relative-entropy.gnuplot
+#
+# The relative entropy of the ingoing law of first hits to the equilibrium law h^(1), against delta,
+# from four outgoing laws h^(n), at several energies of the piston, with one standard error. Lines
+# are noise floors, the mean that samples from h^(1) itself would give. Below epsilon = 1/4 the
+# histograms have twice as many cells, so the floor is twice as high.
+# relative-entropy.sh lists the commands that write the data.
+
+# ---- Settings ----
+set terminal svg size 960,840 enhanced font "Helvetica,Arial,sans-serif,18" background rgb "white"
+set output "relative-entropy.svg"
+measured = "relative-entropy.csv"
+exponents = "0 1 5 10"  # one panel each
+colours = "#3b4cc0 #1b9e77 #404040 #d95f02 #b40426"  # one for each energy
+grid_colour = "#e6e6e6"
+
+# ---- The data ----
+set encoding utf8
+set datafile separator comma
+set datafile columnheaders
+set datafile missing NaN  # joins lines across rows of other energies
+is_of(name, n) = strcol("name") eq name && column("exponent") == n
+energies = ""
+note(e) = (energies = strstrt(energies." ", " ".e." ") ? energies : energies." ".e, 1)
+stats measured using (note(strcol("epsilon"))) nooutput
+count = words(energies)
+energy(i) = real(word(energies, i))
+colour(i) = word(colours, (i - 1) % words(colours) + 1)
+of(i, n, name) = is_of(name, n) && column("epsilon") == energy(i) ? column("value") : NaN
+
+set multiplot layout 2,2 margins 0.11,0.98,0.09,0.97 spacing 0.09,0.07
+set border lw 1.2
+set logscale xy
+set xrange [0.011:0.37]
+set format y "10^{%T}"
+set grid xtics ytics lc rgb grid_colour lw 1 lt 1
+set xtics ("0.0125" 0.0125, "0.025" 0.025, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2)
+set key top left Left reverse samplen 0.8 spacing 1.05 width -2 font ",15"
+do for [panel=1:words(exponents)] {
+  n = int(word(exponents, panel))
+  if (panel > 2) { set xlabel "δ" } else { unset xlabel }
+  if (panel % 2 == 1) { set ylabel "relative entropy" } else { unset ylabel }
+  set label 1 sprintf("n = %d", n) at graph 0.97, graph 0.06 right
+  if (panel == 2) { set key } else { unset key }
+  plot for [i=1:count] measured using (column("delta")):(of(i, n, "kl_noise_floor")) \
+         with lines lw 1 dt 2 lc rgb colour(i) notitle, \
+       for [i=1:count] measured using (column("delta")):(of(i, n, "kl_divergence")): \
+         (column("standard_error")) with yerrorbars pt 7 ps 0.6 lw 1.2 lc rgb colour(i) \
+         title "ε = ".word(energies, i)
+}
+unset multiplot
