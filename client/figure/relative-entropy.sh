@@ -1,7 +1,7 @@
 # Relative entropies of first hits fall to their noise floor with delta (the paper's figure)
 #
 # Run by `ballpiston figure relative-entropy --out DIR`, whose flags replace these values, or by
-# hand: sh relative-entropy.sh. It takes some five minutes of two cores.
+# hand: sh relative-entropy.sh. It takes some three minutes of one core.
 set -eu
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.0125:0.325:14:log}"

@@ -39,7 +39,7 @@ std::vector<Cluster> Clusters(const SiteLattice& lattice, int extent) {
   return lattice.has_rows ? LatticeClusters(lattice, extent) : ChainClusters(lattice, extent);
 }
 
-// What the degrees above n add falls as n to minus this power.
+// The bound changes above degree n by an amount that falls as n^-p; returns p.
 double DegreePower(const SiteLattice& lattice) {
   return 2 + std::min(lattice.dimensions.a, lattice.dimensions.b);
 }

@@ -30,7 +30,7 @@ namespace ballpiston {
 struct TestFunction {
   static constexpr size_t kTerms = 2;
   using Values = std::array<double, kTerms>;  // one for each term
-  // Of the three exponentials, for each term.
+  // The coefficients of the three exponentials, for each term.
   using Coefficients = std::array<std::array<double, 3>, kTerms>;
 
   Coefficients of_ball;    // u_r

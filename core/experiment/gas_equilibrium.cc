@@ -86,13 +86,14 @@ std::array<std::vector<double>, 2> SpeedLaws() {
           SpeedProbabilities([](double v) { return std::erfc(v * std::numbers::sqrt2 / 2); })};
 }
 
-// First, if the target names the conductivity.
+// Adds estimates at the front or at the end. The conductivity is at the front if the target names
+// it.
 void Insert(const std::vector<Estimate>& added, bool are_first, PointSummary& summary) {
   std::vector<Estimate>& estimates = summary.estimates;
   estimates.insert(are_first ? estimates.begin() : estimates.end(), added.begin(), added.end());
 }
 
-// The first of the moments for each window, and for each lag of the autocorrelation.
+// Where the moments of the windows begin, and those of the lags of the autocorrelation.
 constexpr size_t kFirstWindow = 1;
 constexpr size_t kFirstLag = kFirstWindow + kWindow + 1;
 
@@ -196,7 +197,7 @@ class GasEquilibrium : public GasExperiment {
             .limit = scale * StaticConductivity() * (1 + LimitCorrection(geometry()).value)};
   }
 
-  // Of the infinite gas at temperature 1.
+  // The static conductivity of the infinite gas at temperature 1.
   double StaticConductivity() const { return InfiniteGasExchangeRate(geometry(), 1) / 2; }
 
   Curve RatioByWindow(const BlockResult& merged) const {
@@ -271,7 +272,8 @@ PointSummary ExactAnswer(const GasGeometry& geometry, double temperature) {
                         ExactEstimate("temperature_piston", temperature, 0)}};
 }
 
-// Of the infinite gas in the limit of rare exchanges.
+// The conductivity of the infinite gas in the limit of rare exchanges, and its ratio to the static
+// one.
 std::vector<Estimate> ConductivityOfLimit(const GasGeometry& geometry, double temperature) {
   const ExtrapolatedValue correction = LimitCorrection(geometry);
   const double of_static = InfiniteGasExchangeRate(geometry, temperature) / 2;
@@ -310,7 +312,7 @@ std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
 SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   SampleWork work = WorkOfReplica(model, geometry, TimesInEquilibrium(model, geometry).Total());
-  work.jumps *= 3;
+  if (MeasuresConductivity(geometry)) work.jumps *= 3;
   return work;
 }
 
@@ -362,13 +364,12 @@ void CheckEquilibriumGrid(const EnsembleSpec& spec, std::vector<FieldViolation>&
   const std::vector<double>& cells = spec.grid[kCells];
   for (size_t i = 0; i < cells.size(); ++i) {
     const GasShape shape = ShapeOf(cells[i]);
-    const int64_t contacts = shape.cells() * shape.directions();
-    if (contacts <= kMostContacts) continue;
+    if (shape.contacts() <= kMostContacts) continue;
     found.push_back(
         {absl::StrFormat("grid.cells[%d]", i),
          absl::StrFormat("is %s, which has %d contacts; permitted with estimate conductivity: up "
                          "to %d, or model spectrum; a smaller gas has nearly the same conductivity",
-                         Text(shape), contacts, kMostContacts)});
+                         Text(shape), shape.contacts(), kMostContacts)});
   }
 }
 

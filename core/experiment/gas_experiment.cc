@@ -41,7 +41,8 @@ class GasBlocks : public BlockRun {
   }
 
  private:
-  // So many that the lanes are full. The other engines gain nothing by more than one replica.
+  // The lanes need this many balls to be full. The other engines run one replica at a time, because
+  // more replicas would not make them faster.
   int64_t BallsTogether() const {
     constexpr int64_t kOfLanes = 1536;
     return experiment_.gas_engine() == GasEngine::kLanes ? kOfLanes : 1;

@@ -43,11 +43,11 @@ class CurrentSteps {
   double per_time_;
 };
 
-// Of one replica, at temperature 1; for each lag from 0 on, in steps.
+// What one replica at temperature 1 gives. The lists have a value for each lag, from 0 steps on.
 struct GreenKubo {
   std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
-  std::vector<double> conductivity;     // with a window up to there
-  double plain = 0;  // the last one, where the jump process uses no test function
+  std::vector<double> conductivity;     // with a window of so many steps
+  double plain = 0;  // the conductivity with the longest window, without a test function
 };
 
 inline constexpr size_t kCurrentSteps = 32;  // of a replica

@@ -44,7 +44,7 @@ class GasGeometry {
 
   int64_t balls() const { return shape_.cells(); }
   int64_t pistons() const;
-  int64_t contacts() const { return balls() * directions(); }  // pairs of ball and piston that meet
+  int64_t contacts() const { return shape_.contacts(); }
   int directions() const { return shape_.directions(); }
   Direction DirectionAt(int i) const {  // i < directions()
     return static_cast<Direction>(shape_.is_lattice ? i : 2 * i);

@@ -24,7 +24,8 @@ struct GasShape {
   bool is_lattice = false;  // or a chain, which has one row
 
   int64_t cells() const { return columns * rows; }
-  int directions() const { return is_lattice ? 4 : 2; }  // in which a ball has a piston
+  int directions() const { return is_lattice ? 4 : 2; }        // in which a ball has a piston
+  int64_t contacts() const { return cells() * directions(); }  // pairs of ball and piston that meet
 
   friend bool operator==(const GasShape&, const GasShape&) = default;
 };

@@ -11,7 +11,7 @@
 
 namespace ballpiston {
 
-// Of a ball at temperature 1.
+// The mean speed of a ball at temperature 1.
 inline double MeanBallSpeed() { return std::sqrt(std::numbers::pi / 2); }
 
 // Between two walls: pi area/perimeter of the ball's cell, in its mean over the piston's places.

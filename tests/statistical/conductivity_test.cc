@@ -51,8 +51,8 @@ struct ClosedChain {
   ExtrapolatedValue documented;
 };
 
-// The values of docs/conductivity.md, by fewer degrees. An error is the change by the last term, so
-// it is told to a factor of two.
+// The values of docs/conductivity.md, by fewer degrees. The stated error is
+// the change by the last term, which can be half of the true error.
 TEST(ChainGap, ClosedChainsHaveTheirDocumentedGaps) {
   const ClosedChain chains[] = {
       {{2, 1, 2}, {12, 14, 16, 18, 20}, {0.113388479, 2e-9}},

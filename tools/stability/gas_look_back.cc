@@ -47,7 +47,8 @@ double Distance(const GasReading& a, const GasReading& b) {
   return distance;
 }
 
-// What the reference tells of a start and of as many neighbours at each scale.
+// Compares the reading with the reference, from the same start and, at each scale, from `each`
+// neighbouring starts.
 Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica, double time,
                           const GasReading& reading, std::span<const double> scales, int each) {
   const GasReading middle = ByReference(geometry, replica, time);

@@ -74,7 +74,7 @@ TEST(ContactCurrents, TableIsWithinItsErrorOfThem) {
   }
 }
 
-// Far beyond the table as well: no more than a wrong number there, which equilibrium never visits.
+// Energies beyond the table give inexact but finite numbers. Equilibrium never has such energies.
 TEST(ContactCurrents, TableTakesEveryEnergy) {
   for (const double energy : {1e-300, 1e-10, 35.9, 36.1, 1e3}) {
     for (const double value : Listed(ContactCurrentsTable::OfChain().At(energy, energy / 3))) {

@@ -14,7 +14,8 @@ namespace {
 // A function on a ring or torus, by its coefficients.
 using Function = std::map<std::vector<Factor>, double>;
 
-// Of the ring, or of a side of the torus: no function of the examples meets itself.
+// Cells of the ring, or of a side of the torus. There are so many that no function of the examples
+// overlaps itself.
 int Cells(const SiteLattice& lattice) { return lattice.has_rows ? 3 : 6; }
 int Rows(const SiteLattice& lattice) { return lattice.has_rows ? Cells(lattice) : 1; }
 

@@ -339,7 +339,7 @@ TEST(Question, TheDefaultEstimateMayBeNamedOrLeftOut) {
   gas.set_experiment(v1::EnsembleSpec::GAS_CONDUCTION);
   EXPECT_EQ(question_of("heat_current"), question_of(""));
   EXPECT_NE(question_of("exchange_rate"), question_of(""));
-  // Of a newer client.
+  // A newer client can name an experiment that this server does not know.
   gas.set_experiment(static_cast<v1::EnsembleSpec::Experiment>(999));
   EXPECT_NE(question_of("exchange_rate"), question_of(""));
 }
