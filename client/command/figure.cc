@@ -3,8 +3,9 @@
 // paths.
 //
 // The figures are files: the scripts NAME.sh and NAME.gnuplot in share/ballpiston/figures beside
-// the folder of this program. They are copied to the --out folder unless they exist there: the user
-// may have edited them. A script takes its variables from the environment: ${rho:=...}.
+// the folder of this program, and figure.sh and style.gnuplot, which they share. They are copied to
+// the --out folder unless they exist there: the user may have edited them. A script takes its
+// variables from the environment: ${rho:=...}.
 #include <signal.h>
 #include <unistd.h>
 
@@ -35,6 +36,7 @@ namespace fs = std::filesystem;
 
 constexpr char kScript[] = ".sh";
 constexpr char kPicture[] = ".gnuplot";
+constexpr const char* kShared[] = {"figure.sh", "style.gnuplot"};
 
 fs::path ProgramFolder() { return fs::path(ProgramBeside("")).parent_path(); }
 
@@ -95,6 +97,16 @@ absl::Status Provide(const fs::path& folder, const std::string& name, const Term
   return absl::OkStatus();
 }
 
+absl::Status ProvideScripts(const fs::path& folder, const std::string& figure,
+                            const Terminal& terminal) {
+  std::vector<std::string> names = {std::begin(kShared), std::end(kShared)};
+  names.insert(names.begin(), {figure + kScript, figure + kPicture});
+  for (const std::string& name : names) {
+    if (absl::Status status = Provide(folder, name, terminal); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
 // The script in the folder, else the installed one.
 std::string ScriptFor(const fs::path& folder, const std::string& name) {
   std::error_code error;
@@ -134,6 +146,7 @@ void SetEnvironment(const Options& options, const std::set<std::string>& names) 
   set("BALLPISTON_CONFIG", "/dev/null");
   if (StyleOf(options) == ProgressStyle::kNone) set("BALLPISTON_PROGRESS", "none");
   for (const std::string& name : names) unsetenv(name.c_str());
+  set("effort", options.effort);
   for (const auto& [name, value] : options.variables) set(name, value);
 }
 
@@ -154,12 +167,24 @@ absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) 
   return WaitForChild(*pid);
 }
 
-// The paths of the files whose names begin with the figure's name, in order.
+// NAME.csv and NAME-data.csv are files of the figure NAME, unless NAME-data begins with the longer
+// name of another figure.
+bool IsFileOf(const std::string& file, const std::string& figure) {
+  const auto begins_with = [&file](const std::string& name) {
+    return absl::StartsWith(file, name + ".") || absl::StartsWith(file, name + "-");
+  };
+  const std::vector<std::string> names = FigureNames();
+  return begins_with(figure) && std::none_of(names.begin(), names.end(), [&](const auto& other) {
+           return other.size() > figure.size() && begins_with(other);
+         });
+}
+
+// The paths of the figure's files, in order.
 void PrintFiles(const fs::path& folder, const std::string& figure, const Terminal& terminal) {
   std::set<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (absl::StartsWith(entry.path().filename().string(), figure)) files.insert(entry);
+    if (IsFileOf(entry.path().filename(), figure)) files.insert(entry);
   }
   for (const fs::path& file : files) terminal.out << file.string() << '\n';
 }
@@ -170,7 +195,10 @@ std::vector<std::string> FigureNames() {
   std::set<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(InstalledFolder(), error)) {
-    if (entry.path().extension() == kScript) names.insert(entry.path().stem());
+    if (entry.path().extension() == kPicture &&
+        fs::exists(fs::path(entry).replace_extension(kScript))) {
+      names.insert(entry.path().stem());
+    }
   }
   return {names.begin(), names.end()};
 }
@@ -181,9 +209,8 @@ VerbResult Figure(const Options& options, Terminal& terminal) {
   const fs::path folder = options.out;
   const std::set<std::string> names = VariablesOf(ScriptFor(folder, options.figure + kScript));
   if (absl::Status bad = CheckVariables(options, names); !bad.ok()) return bad;
-  for (const char* suffix : {kScript, kPicture}) {
-    absl::Status status = Provide(folder, options.figure + suffix, terminal);
-    if (!status.ok()) return status;
+  if (absl::Status status = ProvideScripts(folder, options.figure, terminal); !status.ok()) {
+    return status;
   }
   if (!options.edit) {
     SetEnvironment(options, names);

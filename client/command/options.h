@@ -44,6 +44,7 @@ struct Options {
   std::vector<std::string> server_flags;  // for ballpistond
 
   std::string figure, out;
+  std::string effort = "default";  // of a figure: quick, default or full
   bool list = false, edit = false;
   std::map<std::string, std::string> variables;  // of the figure's script
 

@@ -70,6 +70,20 @@ Choices<Format> Formats() {
           {"csv", Format::kCsv}};
 }
 
+// Of results, which have histograms and curves too.
+Choices<Format> ResultFormats() {
+  Choices<Format> formats = Formats();
+  formats.push_back({"csv-histograms", Format::kCsvHistograms});
+  formats.push_back({"csv-curves", Format::kCsvCurves});
+  return formats;
+}
+
+Value Effort(std::string effort) {
+  return Switch([effort](Options& options, bool on) {
+    if (on) options.effort = effort;
+  });
+}
+
 // Clamped to the range of the API's field. The server checks the permitted range.
 int32_t Clamped(int64_t priority) {
   using Limits = std::numeric_limits<int32_t>;
@@ -181,6 +195,12 @@ const FlagGroup kFormat = {"Output",
                            {{"--format", OneOf("FORMAT", Formats(), To(&Options::format)),
                              "format of the result on standard output, by default table"}}};
 
+const FlagGroup kResultFormat = {
+    "Output",
+    {{"--format", OneOf("FORMAT", ResultFormats(), To(&Options::format)),
+      "format of the result on standard output, by default table; csv has the estimates, "
+      "csv-histograms the bins of all histograms, csv-curves the points of all curves"}}};
+
 const FlagGroup kProgress = {
     "Progress",
     {{"--progress",
@@ -256,6 +276,8 @@ const FlagGroup kFigure = {
     "Figure",
     {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
+     {"--quick", Effort("quick"), "few samples: the figure takes seconds in place of minutes"},
+     {"--full", Effort("full"), "the paper's number of samples or more: minutes to hours"},
      {"--edit", Switch(To(&Options::edit)),
       "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
 
@@ -341,7 +363,7 @@ std::vector<Verb> JobVerbs() {
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
        "the server has answered the same question before, it returns the stored answer.",
        {kExperiment},
-       With(kQuestion, {&kJob, &kFormat, &kProgress, &kServer}),
+       With(kQuestion, {&kJob, &kResultFormat, &kProgress, &kServer}),
        {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
         "run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1,2 --samples 1e5 "
         "--format csv"},
@@ -365,7 +387,7 @@ std::vector<Verb> JobVerbs() {
        "print a job's result: the points that it has finished so far",
        "",
        {kOneJob},
-       With({&kPoint, &kFormat, &kServer}, {}),
+       With({&kPoint, &kResultFormat, &kServer}, {}),
        {"result ensembleJobs/ID", "result ID --point 17 --format json >point.json"},
        &Result},
       {"list",

@@ -7,18 +7,15 @@
 # conductivity.sh lists the commands that write the data.
 
 # ---- Settings ----
-set terminal svg size 960,520 enhanced font "Helvetica,Arial,sans-serif,18" background rgb "white"
+load "style.gnuplot"
+set terminal svg size 960,520 enhanced font font background rgb "white"
 set output "conductivity.svg"
 billiard = "conductivity-billiard.csv"
 rings = "conductivity-rings.csv"
 measured_colour = "#3b4cc0"
 exact_colour = "#b40426"
-grid_colour = "#e6e6e6"
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 is_ratio(_) = strcol("name") eq "conductivity_ratio"
 ratio(_) = is_ratio(0) ? column("value") : NaN
 correction(_) = is_ratio(0) ? 1000*(column("value") - 1) : NaN
@@ -27,10 +24,8 @@ error(_) = strcol("standard_error") eq "" ? 0 : column("standard_error")
 stats rings using (is_ratio(0) ? limit = column("limit") : NaN) nooutput
 
 set multiplot layout 1,2
-set border lw 1.2
 set mxtics 2
 set mytics 2
-set grid xtics ytics lc rgb grid_colour lw 1 lt 1
 set tmargin screen 0.95
 set bmargin screen 0.16
 unset key

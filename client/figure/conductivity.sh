@@ -3,6 +3,7 @@
 # Run by `ballpiston figure conductivity --out DIR`, whose flags replace these values, or by hand:
 # sh conductivity.sh. It takes some ten minutes of one core.
 set -eu
+. ./figure.sh
 : "${rho:=0.529561127988977}"        # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.05,0.1,0.15,0.2}"      # of the billiard
 : "${billiard_cells:=4}"             # in a ring, of the billiard
@@ -10,14 +11,6 @@ set -eu
 : "${billiard_samples:=300000}"      # replicas at each delta
 : "${samples:=5000}"                 # replicas of each ring
 : "${seed:=0}"
-
-# Runs a command; if the command succeeds, keeps its output in a file.
-into() {
-  file=$1
-  shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
-}
 
 measure() {
   ballpiston run gas-equilibrium --rho "$rho" --delta "$2" --cells "$3" --temperature 1 \
@@ -27,8 +20,4 @@ into conductivity-billiard.csv measure billiard "$delta" "$billiard_cells" "$bil
 # The correction of the limit depends neither on rho nor on delta.
 into conductivity-rings.csv measure markov "${delta%%[,:]*}" "$cells" "$samples"
 
-if command -v gnuplot >/dev/null; then
-  gnuplot conductivity.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot conductivity.gnuplot" >&2
-fi
+draw conductivity

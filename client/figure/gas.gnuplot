@@ -7,6 +7,7 @@
 # gas.sh lists the commands that write the data.
 
 # ---- Settings ----
+load "style.gnuplot"
 balls = "gas-balls.csv"
 pistons = "gas-pistons.csv"
 geometry = "gas-geometry.csv"
@@ -20,9 +21,6 @@ edge_colour = "#8c8c8c"
 margin = 0.22            # of discs around the gas, in cells
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 stats geometry using (rho = column("rho"), delta = column("delta"), lambda = column("lambda"), \
                       eta = column("eta"), temperature = column("temperature"), \
                       columns = column("columns"), rows = column("rows"), 1) nooutput
@@ -35,7 +33,7 @@ legend = 0.915
 height = 0.976*(right - left)*width*high/wide
 height = height < 260 ? 260 : height
 set terminal svg size width,(height/0.976) enhanced \
-  font "Helvetica,Arial,sans-serif,18" background rgb "white"
+  font font background rgb "white"
 set output "gas.svg"
 
 unset key

@@ -2,19 +2,12 @@
 #
 # Run by `ballpiston figure gas --out DIR`, whose flags replace these values, or by hand: sh gas.sh
 set -eu
+. ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.15}"
 : "${cells:=6x4}"              # a lattice, NxM, or a chain, N
 : "${temperature:=1}"
 : "${seed:=0}"
-
-# Runs a command; if the command succeeds, keeps its output in a file.
-into() {
-  file=$1
-  shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
-}
 
 into gas.jsonl ballpiston trace --rho "$rho" --delta "$delta" --cells "$cells" \
   --temperature "$temperature" --seed "$seed" --events 1
@@ -37,8 +30,4 @@ into gas-balls.csv bodies balls x,y,vx,vy,energy
 into gas-pistons.csv bodies pistons x,y,vx,vy,energy,vertical
 into gas-geometry.csv geometry
 
-if command -v gnuplot >/dev/null; then
-  gnuplot gas.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot gas.gnuplot" >&2
-fi
+draw gas

@@ -5,7 +5,8 @@
 # mean-free-time.sh lists the commands that write the data.
 
 # ---- Settings ----
-set terminal svg size 960,640 enhanced font "Helvetica,Arial,sans-serif,18" background rgb "white"
+load "style.gnuplot"
+set terminal svg size 960,640 enhanced font font background rgb "white"
 set output "mean-free-time.svg"
 measured = "mean-free-time.csv"     # conditional mean free times
 inset = "mean-free-time-inset.csv"  # mean free times in equilibrium
@@ -13,13 +14,9 @@ phi = "mean-free-time-phi.csv"      # exact phi(epsilon)
 rate = "mean-free-time-rate.csv"    # exact tau_bp(delta)
 colours = "#3b4cc0 #1b9e77 #d95f02 #b40426 #7570b3 #66a61e #e6ab02 #a6761d"  # one for each delta
 exact_colour = "black"
-grid_colour = "#e6e6e6"
 margin = 0.7  # of the inset's axis, beside the smallest and the largest delta, as a factor
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 
 # The names of the rows of the data.
 conditional = "mean_free_time_conditional"
@@ -46,7 +43,6 @@ error_of(scale) = rate_of(scale)*column("standard_error")/column("value")
 low(scale) = rate_of(scale) - error_of(scale)
 
 set multiplot
-set border lw 1.2
 
 # ---- The main panel: measured rates, and the exact curve on top of them ----
 # Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
@@ -56,7 +52,6 @@ set xtics 0.1
 set mxtics 2
 set ytics 0.1
 set mytics 2
-set grid xtics ytics lc rgb grid_colour lw 1 lt 1
 set xlabel "piston energy ε"
 set ylabel "τ_{bp}/τ(ε)"
 set key bottom right Left reverse samplen 1.2 spacing 1.2 width 1

@@ -3,6 +3,7 @@
 # Run by `ballpiston figure mean-free-time --out DIR`, whose flags replace these values, or by hand:
 # sh mean-free-time.sh
 set -eu
+. ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.2,0.1,0.05}"
 : "${samples:=10000}"          # at each energy and delta
@@ -10,14 +11,6 @@ set -eu
 : "${seed:=0}"
 # The paper's 59: 1/100, ..., 49/100, and 1/200, 1/400, ..., 1/3200 from either end.
 energies=0.0003125,0.000625,0.00125,0.0025,0.005,0.01:0.49:49,0.495,0.4975,0.49875,0.499375,0.4996875
-
-# Runs a command; if the command succeeds, keeps its output in a file.
-into() {
-  file=$1
-  shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
-}
 
 # --model billiard is given, because by default the server would answer with the closed forms that
 # the figure tests.
@@ -34,8 +27,4 @@ bound=$(ballpiston analytic --rho "$rho" --delta 1e-9 --format jsonl |
 into mean-free-time-rate.csv ballpiston analytic --rho "$rho" --delta "0.00001:$bound:300:log" \
   --format csv
 
-if command -v gnuplot >/dev/null; then
-  gnuplot mean-free-time.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot mean-free-time.gnuplot" >&2
-fi
+draw mean-free-time

@@ -8,17 +8,14 @@
 # relative-entropy.sh lists the commands that write the data.
 
 # ---- Settings ----
-set terminal svg size 960,840 enhanced font "Helvetica,Arial,sans-serif,18" background rgb "white"
+load "style.gnuplot"
+set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "relative-entropy.svg"
 measured = "relative-entropy.csv"
 exponents = "0 1 5 10"  # one panel each
 colours = "#3b4cc0 #1b9e77 #404040 #d95f02 #b40426"  # one for each energy
-grid_colour = "#e6e6e6"
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 set datafile missing NaN  # joins lines across rows of other energies
 is_of(name, n) = strcol("name") eq name && column("exponent") == n
 energies = ""
@@ -30,11 +27,9 @@ colour(i) = word(colours, (i - 1) % words(colours) + 1)
 of(i, n, name) = is_of(name, n) && column("epsilon") == energy(i) ? column("value") : NaN
 
 set multiplot layout 2,2 margins 0.11,0.98,0.09,0.97 spacing 0.09,0.07
-set border lw 1.2
 set logscale xy
 set xrange [0.011:0.37]
 set format y "10^{%T}"
-set grid xtics ytics lc rgb grid_colour lw 1 lt 1
 set xtics ("0.0125" 0.0125, "0.025" 0.025, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2)
 set key top left Left reverse samplen 0.8 spacing 1.05 width -2 font ",15"
 do for [panel=1:words(exponents)] {

@@ -3,25 +3,14 @@
 # Run by `ballpiston figure relative-entropy --out DIR`, whose flags replace these values, or by
 # hand: sh relative-entropy.sh. It takes some three minutes of one core.
 set -eu
+. ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.0125:0.325:14:log}"
 : "${epsilon:=0.03125,0.125,0.25,0.375,0.46875}"  # energies of the piston
 : "${samples:=200000}"         # first hits of each point; the noise floor falls as 1/samples
 : "${seed:=0}"
 
-# Runs a command; if the command succeeds, keeps its output in a file.
-into() {
-  file=$1
-  shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
-}
-
 into relative-entropy.csv ballpiston run first-hit --rho "$rho" --delta "$delta" \
   --epsilon "$epsilon" --exponent 0,1,5,10 --samples "$samples" --seed "$seed" --resume --format csv
 
-if command -v gnuplot >/dev/null; then
-  gnuplot relative-entropy.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot relative-entropy.gnuplot" >&2
-fi
+draw relative-entropy

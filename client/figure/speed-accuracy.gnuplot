@@ -17,6 +17,7 @@
 # whether a point is pale.
 
 # ---- Settings ----
+load "style.gnuplot"
 data = "speed-accuracy.csv"
 
 # The methods of panels a to c and e. Colours by Okabe and Ito, told apart by all kinds of colour
@@ -34,7 +35,6 @@ markers = "2 8 9 11 13 7 6 5 4"  # gnuplot's point types
 viridis = "#440154 #482475 #414487 #355f8d #2a788e #21918c #22a884 #3bbb75"
 walk_colour = "#999999"
 legend_colour = "#444444"
-grid_colour = "#e6e6e6"
 small = ",12"  # fonts
 text = ",13"
 
@@ -81,9 +81,6 @@ spread(r) = r == 1 ? y[label(1)] : min(y[label(r)], spread(r - 1)/gap)
 gap_of(low, high) = (high/low)**line_of_text
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 
 # Curves of a to c and e, each a method at a time step (as method@step); and the deltas of d,
 # descending.
@@ -142,8 +139,6 @@ note_bias(i) = bias_from[i] == 0 && column("statistical_error") < bias[i] ? \
                (bias_from[i] = column("work_seconds"), 1) : 0
 
 set multiplot
-set border lw 1.2
-set grid xtics ytics lc rgb grid_colour lw 1 lt 1
 set tics nomirror
 set mxtics 10
 set mytics 10

@@ -3,6 +3,7 @@
 # Run by `ballpiston figure speed-accuracy --out DIR`, whose flags replace these values, or by hand:
 # sh speed-accuracy.sh. It needs no server. No other program should be busy on the machine.
 set -eu
+. ./figure.sh
 # Panel e has a delta of its own: 0.2, or the gas's bound if that is smaller.
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.1}"              # of panels a to c
@@ -23,8 +24,4 @@ method_comparison --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
   >speed-accuracy.csv.part
 mv speed-accuracy.csv.part speed-accuracy.csv
 
-if command -v gnuplot >/dev/null; then
-  gnuplot speed-accuracy.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot speed-accuracy.gnuplot" >&2
-fi
+draw speed-accuracy

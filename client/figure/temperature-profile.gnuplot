@@ -7,18 +7,15 @@
 # temperature-profile.sh lists the commands that write the data.
 
 # ---- Settings ----
-set terminal svg size 960,840 enhanced font "Helvetica,Arial,sans-serif,18" background rgb "white"
+load "style.gnuplot"
+set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "temperature-profile.svg"
 measured = "temperature-profile.csv"
 colours = "#3b4cc0 #1b9e77 #d95f02 #b40426 #7570b3 #66a61e #e6ab02 #a6761d"  # one for each N
 exact_colour = "black"
-grid_colour = "#e6e6e6"
 aside = 0.007  # by how much the billiard's points are moved to the right, so that both are seen
 
 # ---- The data ----
-set encoding utf8
-set datafile separator comma
-set datafile columnheaders
 
 lengths = ""
 note(n) = (lengths = strstrt(lengths." ", " ".n." ") ? lengths : lengths." ".n, 1)
@@ -41,12 +38,10 @@ shape(model, piston) = (piston ? 4 : 6) + (model eq "markov" ? 1 : 0)
 size(piston) = piston ? 0.62 : 0.7
 
 set multiplot
-set border lw 1.2
 set xrange [-0.02:1.03]
 set xtics 0.2
 set mxtics 2
 set mytics 2
-set grid xtics ytics lc rgb grid_colour lw 1 lt 1
 set lmargin screen 0.115
 set rmargin screen 0.975
 

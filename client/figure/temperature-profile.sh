@@ -3,6 +3,7 @@
 # Run by `ballpiston figure temperature-profile --out DIR`, whose flags replace these values, or by
 # hand: sh temperature-profile.sh. It takes some two minutes of one core.
 set -eu
+. ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.1}"              # of the billiard; the jump process is its limit delta -> 0
 : "${cells:=4,8,16}"           # lengths of the chains
@@ -11,14 +12,6 @@ set -eu
 : "${samples:=2000}"           # replicas of each chain, of the jump process
 : "${billiard_samples:=200}"   # of the billiard, which costs some fifty times as much
 : "${seed:=0}"
-
-# Runs a command; if the command succeeds, keeps its output in a file.
-into() {
-  file=$1
-  shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
-}
 
 conduct() {
   ballpiston run gas-conduction --rho "$rho" --delta "$delta" --cells "$cells" --hot "$hot" \
@@ -43,8 +36,4 @@ profiles() {
 }
 into temperature-profile.csv profiles
 
-if command -v gnuplot >/dev/null; then
-  gnuplot temperature-profile.gnuplot
-else
-  echo "gnuplot is not installed; to draw the figure later: gnuplot temperature-profile.gnuplot" >&2
-fi
+draw temperature-profile

@@ -130,6 +130,8 @@ void PrintAnalytics(const v1::EvaluatePairsResponse& response,
     case Format::kJsonl:
       return PrintJsonLines(response.points(), out);
     case Format::kCsv:
+    case Format::kCsvHistograms:
+    case Format::kCsvCurves:
       return PrintCsv(response, out);
   }
 }

@@ -112,6 +112,8 @@ void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format 
     case Format::kJsonl:
       return PrintJsonLines(jobs, out);
     case Format::kCsv:
+    case Format::kCsvHistograms:
+    case Format::kCsvCurves:
       return PrintCsv(jobs, out);
   }
 }

@@ -196,6 +196,8 @@ void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& 
     case Format::kJsonl:
       return PrintJsonLines(plan.points(), out);
     case Format::kCsv:
+    case Format::kCsvHistograms:
+    case Format::kCsvCurves:
       return PrintCsv(spec, plan, out);
   }
 }

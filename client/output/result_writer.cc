@@ -10,7 +10,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/output/csv_row.h"
+#include "client/output/csv_writer.h"
+#include "client/output/estimate_rows.h"
 #include "client/output/json.h"
 #include "client/output/model_reasons.h"
 #include "client/output/number_text.h"
@@ -20,69 +21,6 @@
 
 namespace ballpiston::client {
 namespace {
-
-// The estimates in their order, then the divergence and its noise floor where they exist.
-std::vector<v1::Estimate> EstimatesOf(const v1::PointResult& point) {
-  std::vector<v1::Estimate> rows(point.estimates().begin(), point.estimates().end());
-  if (!point.has_kl_divergence()) return rows;
-  const v1::KlDivergence& kl = point.kl_divergence();
-  const auto add = [&rows](const char* name, double value, double error) {
-    rows.emplace_back().set_name(name);
-    rows.back().set_value(value);
-    rows.back().set_standard_error(error);
-  };
-  add("kl_divergence", kl.value(), kl.standard_error());
-  add("kl_noise_floor", kl.noise_floor(), kl.noise_error());
-  return rows;
-}
-
-// A field of an estimate that may be absent.
-struct Field {
-  bool (v1::Estimate::*is_there)() const;
-  double (v1::Estimate::*value)() const;
-
-  std::optional<double> Of(const v1::Estimate& estimate) const {
-    if (!(estimate.*is_there)()) return std::nullopt;
-    return (estimate.*value)();
-  }
-};
-
-constexpr Field kError = {&v1::Estimate::has_standard_error, &v1::Estimate::standard_error};
-constexpr Field kExact = {&v1::Estimate::has_exact, &v1::Estimate::exact};
-constexpr Field kZScore = {&v1::Estimate::has_z_score, &v1::Estimate::z_score};
-constexpr Field kModelError = {&v1::Estimate::has_model_error, &v1::Estimate::model_error};
-constexpr Field kNoiseFloor = {&v1::Estimate::has_noise_floor, &v1::Estimate::noise_floor};
-constexpr Field kLimit = {&v1::Estimate::has_limit, &v1::Estimate::limit};
-
-class CsvWriter : public ResultWriter {
- public:
-  explicit CsvWriter(std::ostream& out) : out_(out) {}
-
-  void Begin(const v1::EnsembleJob& job) override {
-    parameters_ = ParameterColumns(job.spec().grid());
-    out_
-        << absl::StrJoin(parameters_.Titles(), ",")
-        << ",model,samples,name,value,standard_error,exact,z_score,model_error,noise_floor,limit\n";
-  }
-  void Add(const v1::PointResult& point) override {
-    std::vector<std::string> cells = parameters_.Cells(point.parameters());
-    cells.insert(cells.end(), {Spelling(point.model()), ExactText(point.samples())});
-    for (const v1::Estimate& row : EstimatesOf(point)) {
-      std::vector<std::string> all = cells;
-      all.insert(all.end(), {row.name(), ExactText(row.value())});
-      for (const Field& field : {kError, kExact, kZScore, kModelError, kNoiseFloor, kLimit}) {
-        const std::optional<double> x = field.Of(row);
-        all.push_back(x ? ExactText(*x) : "");
-      }
-      out_ << CsvRow(all);
-    }
-  }
-  void End() override {}
-
- private:
-  std::ostream& out_;
-  ParameterColumns parameters_{v1::Grid()};
-};
 
 class JsonlWriter : public ResultWriter {
  public:
@@ -238,7 +176,11 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) 
     case Format::kJsonl:
       return std::make_unique<JsonlWriter>(out);
     case Format::kCsv:
-      return std::make_unique<CsvWriter>(out);
+      return NewEstimateCsvWriter(out);
+    case Format::kCsvHistograms:
+      return NewHistogramCsvWriter(out);
+    case Format::kCsvCurves:
+      return NewCurveCsvWriter(out);
     case Format::kTable:
       break;
   }
@@ -246,8 +188,8 @@ std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out) 
 }
 
 v1::ListResultsRequest::View ViewFor(Format format) {
-  const bool is_json = format == Format::kJson || format == Format::kJsonl;
-  return is_json ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
+  const bool is_basic = format == Format::kTable || format == Format::kCsv;
+  return is_basic ? v1::ListResultsRequest::BASIC : v1::ListResultsRequest::FULL;
 }
 
 }  // namespace ballpiston::client

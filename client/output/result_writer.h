@@ -6,12 +6,17 @@
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
 //           model_error,noise_floor,limit; after exponent the other parameters of the question
 //           (parameter_text.h)
+//   csv-histograms  the same first columns up to samples, then name,sigma,time,lower,upper,count,
+//           density,exact_density; one row for each bin
+//   csv-curves  the same first columns up to samples, then name,time,position,value,
+//           standard_error,limit; one row for each point of a curve
 //
 // In tables and CSV a Kullback-Leibler divergence becomes two rows of its own, kl_divergence and
 // kl_noise_floor. What does not exist stays empty; a table has the columns model, model_error,
 // noise_floor and limit only where they tell something, and below it the reasons for the models
 // (model_reasons.h). A table has a line for each remark, below the estimates of its point; CSV has
-// no remarks. Histograms and curves are in JSON only. The same points give the same bytes.
+// no remarks. Tables and csv have neither histograms nor curves. The same points give the same
+// bytes.
 #ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 #define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 

@@ -174,6 +174,38 @@ TEST(ResultCsv, HasColumnsForTheParametersOfAGasAndNoRemarks) {
 )");
 }
 
+TEST(ResultCsv, HistogramsHaveARowForEachBinWithDensitiesThatSumToOne) {
+  std::vector<v1::PointResult> points = {TwoPoints()[0]};
+  *points[0].mutable_histograms(0) = FromText<v1::Histogram>(R"(
+    name: "alpha" sigma: 1 lower: 0 upper: 0.5 counts: [1, 2]
+    expected_probabilities: [0.25, 0.25])");
+  *points[0].add_histograms() = FromText<v1::Histogram>(R"(
+    name: "alpha" sigma: -1 lower: 0 upper: 0.25 counts: [1] expected_probabilities: [0.5])");
+  *points[0].add_histograms() = FromText<v1::Histogram>(R"(
+    name: "piston_energy" lower: 0 upper: 0.5 expected_probabilities: [1] time: 2)");
+  EXPECT_EQ(
+      Written(Format::kCsvHistograms, points),
+      R"(rho,delta,epsilon,exponent,model,samples,name,sigma,time,lower,upper,count,density,exact_density
+0.53,0.2,0,1,billiard-reference,10000,alpha,1,,0,0.25,1,1,1
+0.53,0.2,0,1,billiard-reference,10000,alpha,1,,0.25,0.5,2,2,1
+0.53,0.2,0,1,billiard-reference,10000,alpha,-1,,0,0.25,1,1,2
+0.53,0.2,0,1,billiard-reference,10000,piston_energy,0,2,0,0.5,,,2
+)");
+}
+
+TEST(ResultCsv, CurvesHaveARowForEachPoint) {
+  std::vector<v1::PointResult> points = {PointsOfTheLadder()[0]};
+  *points[0].mutable_curves(0) = FromText<v1::Curve>(R"(
+    name: "energy_autocorrelation" points { time: 0 value: 1 limit: 1 }
+    points { position: 0.5 value: 0.5 standard_error: 0.125 })");
+  EXPECT_EQ(
+      Written(Format::kCsvCurves, points),
+      R"(rho,delta,epsilon,exponent,model,samples,name,time,position,value,standard_error,limit
+0.53,0.1,,,billiard,1000000,energy_autocorrelation,0,,1,,1
+0.53,0.1,,,billiard,1000000,energy_autocorrelation,,0.5,0.5,0.125,
+)");
+}
+
 TEST(ResultJson, HasShapesPositionsAndRemarks) {
   const std::string text = Written(Format::kJsonl, PointsOfAGas(), JobOfAGas());
   EXPECT_THAT(text, HasSubstr(R"("cells":"12","hot":2,"cold":1})"));
@@ -220,7 +252,9 @@ TEST(ResultJsonl, HasALineForEachPoint) {
   EXPECT_THAT(text, HasSubstr("\n{\"index\":1,"));
 }
 
-TEST(ResultWriter, OnlyJsonNeedsHistogramsAndCurves) {
+TEST(ResultWriter, TablesAndCsvOfEstimatesNeedNoHistogramsAndCurves) {
+  EXPECT_EQ(ViewFor(Format::kCsvHistograms), v1::ListResultsRequest::FULL);
+  EXPECT_EQ(ViewFor(Format::kCsvCurves), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kJson), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kJsonl), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kTable), v1::ListResultsRequest::BASIC);
@@ -228,7 +262,8 @@ TEST(ResultWriter, OnlyJsonNeedsHistogramsAndCurves) {
 }
 
 TEST(ResultWriter, SamePointsGiveTheSameBytes) {
-  for (const Format format : {Format::kTable, Format::kJson, Format::kJsonl, Format::kCsv}) {
+  for (const Format format : {Format::kTable, Format::kJson, Format::kJsonl, Format::kCsv,
+                              Format::kCsvHistograms, Format::kCsvCurves}) {
     EXPECT_EQ(Written(format), Written(format));
   }
 }

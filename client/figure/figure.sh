@@ -1,0 +1,37 @@
+# Functions that the figures' scripts share; each script reads this file: . ./figure.sh
+
+# The statistics: "quick" takes seconds, "default" minutes, "full" is what the paper has or better.
+: "${effort:=default}"
+case $effort in
+  quick | default | full) ;;
+  *)
+    echo "effort: \"$effort\" is not one of quick, default, full" >&2
+    exit 2
+    ;;
+esac
+
+# Prints the argument for the effort: by_effort QUICK DEFAULT FULL.
+by_effort() {
+  case $effort in
+    quick) echo "$1" ;;
+    default) echo "$2" ;;
+    full) echo "$3" ;;
+  esac
+}
+
+# Runs a command; if the command succeeds, keeps its output in a file: into FILE COMMAND.
+into() {
+  file=$1
+  shift
+  "$@" >"$file.part"
+  mv "$file.part" "$file"
+}
+
+# Draws the picture with NAME.gnuplot, if gnuplot is installed.
+draw() {
+  if command -v gnuplot >/dev/null; then
+    gnuplot "$1.gnuplot"
+  else
+    echo "gnuplot is not installed; to draw the figure later: gnuplot $1.gnuplot" >&2
+  fi
+}

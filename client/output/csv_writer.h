@@ -1,0 +1,20 @@
+// Results as CSV: a header, then one row for each estimate, for each bin of the histograms, or for
+// each point of the curves (result_writer.h has the columns).
+#ifndef BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
+#define BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
+
+#include <memory>
+#include <ostream>
+
+#include "client/output/result_writer.h"
+
+namespace ballpiston::client {
+
+// `out` has to outlive the writers.
+std::unique_ptr<ResultWriter> NewEstimateCsvWriter(std::ostream& out);
+std::unique_ptr<ResultWriter> NewHistogramCsvWriter(std::ostream& out);
+std::unique_ptr<ResultWriter> NewCurveCsvWriter(std::ostream& out);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
