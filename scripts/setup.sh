@@ -22,6 +22,7 @@ readonly PACKAGES=(
   libxxhash-dev                                                # files of the server and its workers
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
+  libcpp-httplib-dev pkgconf                                   # the client's page
   gnuplot-nox)                                                 # the client's figures
 
 # The version of the installed CMake or, without one, of the package; empty if neither is known.

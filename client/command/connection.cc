@@ -65,18 +65,6 @@ absl::StatusOr<Connection> Connect(const Options& options, PrivateWay connect) {
       "the private server needs no TLS and no token; name another one with --server");
 }
 
-// An error without a reason did not come from the server but from the way to it.
-absl::Status NameServer(const absl::Status& status, const Connection& connection) {
-  const bool lost = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
-  if (!lost || !ErrorReason(status).empty()) return status;
-  const std::string message(status.message());
-  return absl::Status(
-      status.code(),
-      absl::StrCat("no answer from the server at ", connection.address, ": ", message,
-                   IsSocket(connection.address) ? SocketHint(message)
-                                                : ConnectionHint(connection.security, message)));
-}
-
 VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal& terminal,
                    const VerbOfServer& verb) {
   if (!connection.ok()) return connection.status();
@@ -93,6 +81,18 @@ absl::Status Connection::Revive() const {
   // This channel may still be pausing after its last attempt; a call would fail at once.
   channel->WaitForConnected(absl::ToChronoTime(absl::Now() + kReviveTimeout));
   return absl::OkStatus();
+}
+
+// An error without a reason did not come from the server but from the way to it.
+absl::Status NameServer(const absl::Status& status, const Connection& connection) {
+  const bool lost = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
+  if (!lost || !ErrorReason(status).empty()) return status;
+  const std::string message(status.message());
+  return absl::Status(
+      status.code(),
+      absl::StrCat("no answer from the server at ", connection.address, ": ", message,
+                   IsSocket(connection.address) ? SocketHint(message)
+                                                : ConnectionHint(connection.security, message)));
 }
 
 VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb) {

@@ -44,6 +44,9 @@ struct Connection {
   }
 };
 
+// Names the server in an error that is the connection's, not the server's answer.
+absl::Status NameServer(const absl::Status& status, const Connection& connection);
+
 using VerbOfServer = std::function<VerbResult(const Connection&)>;
 
 // Connects, runs `verb`, and names the server in the error if it did not answer.

@@ -48,6 +48,8 @@ struct Options {
   bool list = false, edit = false;
   std::map<std::string, std::string> variables;  // of the figure's script
 
+  int64_t port = 0;  // of the page; 0: any
+
   Format format = Format::kTable;
   ProgressStyle progress = ProgressStyle::kAuto;
   bool quiet = false, verbose = false;

@@ -301,6 +301,10 @@ const FlagGroup kVariables = {
       "computing time of the longest run of each method"},
      {"--seed", Variable("SEED", "seed"), "seed of the random numbers"}}};
 
+const FlagGroup kWeb = {
+    "Page",
+    {{"--port", Count(To(&Options::port)), "port on the loopback, by default one that is free"}}};
+
 const FlagGroup kDataFolder = {
     "Which server",
     {{"--data-dir", File(To(&Options::data_dir)),
@@ -528,7 +532,16 @@ std::vector<Verb> AllVerbs() {
              "one of the names that --list prints", Argument::kOptional}},
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
            {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
-           &Figure}});
+           &Figure},
+          {"web",
+           "show jobs and results on a page, and pass JSON calls on to the server",
+           "Prints the address of the page, which has an access token, and serves the page on this "
+           "machine until Ctrl-C. The same address answers calls of the API as JSON in the Connect "
+           "protocol, for curl and notebooks: client/README.md has examples.",
+           {},
+           With({&kWeb, &kServer}, {}),
+           {"web", "web --port 8080 --server lab.example.org:50051 --ca authority.pem"},
+           &Web}});
   append(ServerVerbs());
   append({{"help",
            "print the help of the program or of a verb",

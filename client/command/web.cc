@@ -1,0 +1,56 @@
+// ballpiston web: a page on this machine, and a gateway from JSON to the server.
+#include "absl/strings/str_cat.h"
+#include "client/command/connection.h"
+#include "client/web/web_server.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr int64_t kMostPort = 65535;
+
+// A private server may have stopped, idle: it is started again, unless the call has begun to
+// answer.
+absl::Status CallThrough(const Connection& connection, const JsonCall& call,
+                         const JsonReceiver& receive) {
+  bool has_begun = false;
+  const auto attempt = [&] {
+    return CallWithJson(connection.channel, call, [&](const std::string& answer) {
+      has_begun = true;
+      return receive(answer);
+    });
+  };
+  absl::Status status = attempt();
+  if (absl::IsUnavailable(status) && !has_begun && connection.local) {
+    status = connection.Revive();
+    if (status.ok()) status = attempt();
+  }
+  return NameServer(status, connection);
+}
+
+}  // namespace
+
+VerbResult Web(const Options& options, Terminal& terminal) {
+  if (options.port < 0 || options.port > kMostPort) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--port: ", options.port, " is not from 0 to ", kMostPort));
+  }
+  auto files = ReadPageFiles();
+  if (!files.ok()) return files.status();
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    WebServer server(*std::move(files), [&](const JsonCall& call, const JsonReceiver& receive) {
+      return CallThrough(connection, call, receive);
+    });
+    if (absl::Status bound = server.Bind(static_cast<int>(options.port)); !bound.ok()) {
+      return absl::FailedPreconditionError(
+          absl::StrCat("--port ", options.port, ": ", bound.message()));
+    }
+    terminal.out << server.Url() << std::endl;
+    terminal.Note(
+        "The page is there until Ctrl-C; jobs go on without it. Keep the address to "
+        "yourself: whoever has it acts as you.");
+    server.Serve();
+    return ExitCode::kDone;
+  });
+}
+
+}  // namespace ballpiston::client

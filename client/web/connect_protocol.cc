@@ -1,0 +1,131 @@
+#include "client/web/connect_protocol.h"
+
+#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/cord.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "client/library/error_text.h"
+#include "client/output/json.h"
+#include "google/rpc/status.pb.h"
+
+namespace ballpiston::client {
+namespace {
+
+using google::protobuf::ListValue;
+using google::protobuf::Struct;
+
+constexpr size_t kPrefix = 5;  // flags and length
+constexpr char kEndFlag = 2;
+
+std::string CodeName(absl::StatusCode code) {
+  if (code == absl::StatusCode::kCancelled) return "canceled";  // the protocol has one l
+  return absl::AsciiStrToLower(absl::StatusCodeToString(code));
+}
+
+google::rpc::Status AttachedStatus(const absl::Status& status) {
+  google::rpc::Status attached;
+  if (const auto payload = status.GetPayload(kStatusPayload)) {
+    attached.ParseFromString(std::string(*payload));
+  }
+  return attached;
+}
+
+Struct DetailOf(const google::protobuf::Any& any) {
+  Struct detail;
+  auto& fields = *detail.mutable_fields();
+  fields["type"].set_string_value(
+      std::string(absl::StripPrefix(any.type_url(), "type.googleapis.com/")));
+  std::string value = absl::Base64Escape(any.value());
+  value.erase(value.find_last_not_of('=') + 1);  // the protocol omits the padding
+  fields["value"].set_string_value(value);
+  Struct debug;
+  const auto status = google::protobuf::util::JsonStringToMessage(Json(any), &debug);
+  if (status.ok()) *fields["debug"].mutable_struct_value() = std::move(debug);
+  return detail;
+}
+
+Struct ErrorOf(const absl::Status& status) {
+  Struct error;
+  auto& fields = *error.mutable_fields();
+  fields["code"].set_string_value(CodeName(status.code()));
+  fields["message"].set_string_value(std::string(status.message()));
+  const google::rpc::Status attached = AttachedStatus(status);
+  if (attached.details().empty()) return error;
+  ListValue& details = *fields["details"].mutable_list_value();
+  for (const google::protobuf::Any& any : attached.details()) {
+    *details.add_values()->mutable_struct_value() = DetailOf(any);
+  }
+  return error;
+}
+
+std::string Envelope(char flags, absl::string_view message) {
+  std::string envelope(1, flags);
+  const auto length = static_cast<uint32_t>(message.size());
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    envelope.push_back(static_cast<char>(length >> shift & 0xff));
+  }
+  return absl::StrCat(envelope, message);
+}
+
+}  // namespace
+
+// As the protocol's table has it.
+int HttpStatus(absl::StatusCode code) {
+  switch (code) {
+    case absl::StatusCode::kOk:
+      return 200;
+    case absl::StatusCode::kInvalidArgument:
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kOutOfRange:
+      return 400;
+    case absl::StatusCode::kUnauthenticated:
+      return 401;
+    case absl::StatusCode::kPermissionDenied:
+      return 403;
+    case absl::StatusCode::kNotFound:
+      return 404;
+    case absl::StatusCode::kAborted:
+    case absl::StatusCode::kAlreadyExists:
+      return 409;
+    case absl::StatusCode::kResourceExhausted:
+      return 429;
+    case absl::StatusCode::kCancelled:
+      return 499;
+    case absl::StatusCode::kUnimplemented:
+      return 501;
+    case absl::StatusCode::kUnavailable:
+      return 503;
+    case absl::StatusCode::kDeadlineExceeded:
+      return 504;
+    default:
+      return 500;
+  }
+}
+
+std::string ErrorJson(const absl::Status& status) { return Json(ErrorOf(status)); }
+
+std::string Envelope(absl::string_view message) { return Envelope(0, message); }
+
+std::string EndOfStream(const absl::Status& status) {
+  Struct end;
+  if (!status.ok()) *(*end.mutable_fields())["error"].mutable_struct_value() = ErrorOf(status);
+  return Envelope(kEndFlag, Json(end));
+}
+
+absl::StatusOr<std::string> OpenEnvelope(absl::string_view body) {
+  if (body.size() >= kPrefix && Envelope(0, body.substr(kPrefix)) == body) {
+    return std::string(body.substr(kPrefix));
+  }
+  return absl::InvalidArgumentError(
+      "the request of a stream must be one message in an envelope: a byte 0, the length as 4 "
+      "bytes, big-endian, and the JSON");
+}
+
+}  // namespace ballpiston::client

@@ -1,0 +1,35 @@
+// The part of the Connect protocol (connectrpc.com/docs/protocol) that the gateway speaks: unary
+// calls and server streams, in JSON, without compression.
+//
+// A unary call is a POST of JSON. Its answer is JSON; an error is an HTTP status above 399 and
+//   {"code": "not_found", "message": "...", "details": [{"type", "value", "debug"}]}
+// Each message of a stream, the request included, is in an envelope: a byte of flags and the length
+// as 4 bytes, big-endian. The last envelope has the flag 2 and holds {} or {"error": {...}}.
+#ifndef BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
+#define BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace ballpiston::client {
+
+inline constexpr char kUnaryType[] = "application/json";
+inline constexpr char kStreamType[] = "application/connect+json";
+
+int HttpStatus(absl::StatusCode code);
+
+// {"code", "message", "details"}: the details that the server attached, in base64 and as JSON.
+std::string ErrorJson(const absl::Status& status);
+
+std::string Envelope(absl::string_view message);
+std::string EndOfStream(const absl::Status& status);
+
+// The message in an envelope that is all of `body`. INVALID_ARGUMENT if it is not.
+absl::StatusOr<std::string> OpenEnvelope(absl::string_view body);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_

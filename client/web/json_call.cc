@@ -1,0 +1,133 @@
+#include "client/web/json_call.h"
+
+#include <google/protobuf/message.h>
+#include <google/protobuf/util/json_util.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/support/proto_buffer_reader.h>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/time/clock.h"
+#include "client/library/error_text.h"
+#include "client/library/quoted.h"
+#include "client/output/json.h"
+
+namespace ballpiston::client {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::Message;
+using google::protobuf::MessageFactory;
+
+std::unique_ptr<Message> New(const Descriptor* type) {
+  return std::unique_ptr<Message>(MessageFactory::generated_factory()->GetPrototype(type)->New());
+}
+
+absl::StatusOr<grpc::ByteBuffer> RequestBytes(const JsonCall& call) {
+  const Descriptor* type = call.method->input_type();
+  const auto bad = [type](absl::string_view reason) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the request is not JSON of ", type->full_name(), ": ", reason));
+  };
+  const std::string json = call.request.empty() ? "{}" : call.request;
+  // The parser takes `null` and a bare string for an empty message.
+  if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) return bad("not an object");
+  const std::unique_ptr<Message> request = New(type);
+  const auto status = google::protobuf::util::JsonStringToMessage(json, request.get());
+  // The parser repeats a wrong value, however long it is.
+  if (!status.ok()) return bad(Shortened(std::string(status.message()), kLongestMessage));
+  const grpc::Slice slice(request->SerializeAsString());
+  return grpc::ByteBuffer(&slice, 1);
+}
+
+absl::StatusOr<std::string> AnswerJson(const Descriptor* type, grpc::ByteBuffer& bytes) {
+  const std::unique_ptr<Message> answer = New(type);
+  grpc::ProtoBufferReader reader(&bytes);
+  if (answer->ParseFromZeroCopyStream(&reader)) return Json(*answer);
+  return absl::InternalError(absl::StrCat("the answer is not a ", type->full_name()));
+}
+
+// One call, one operation after the other. A method with a single answer is a stream of one.
+class BlockingCall {
+ public:
+  BlockingCall(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call) {
+    if (call.timeout < absl::InfiniteDuration()) {
+      context_.set_deadline(absl::ToChronoTime(absl::Now() + call.timeout));
+    }
+    const std::string path =
+        absl::StrCat("/", call.method->service()->full_name(), "/", call.method->name());
+    call_ = grpc::GenericStub(channel).PrepareCall(&context_, path, &queue_);
+  }
+
+  ~BlockingCall() {
+    queue_.Shutdown();
+    Wait();
+  }
+
+  bool Send(const grpc::ByteBuffer& request) {
+    call_->StartCall(nullptr);
+    if (!Wait()) return false;
+    call_->WriteLast(request, grpc::WriteOptions(), nullptr);
+    return Wait();
+  }
+
+  bool Receive(grpc::ByteBuffer& answer) {
+    call_->Read(&answer, nullptr);
+    return Wait();
+  }
+
+  grpc::Status Finish() {
+    grpc::Status status;
+    call_->Finish(&status, nullptr);
+    Wait();
+    return status;
+  }
+
+  void Cancel() { context_.TryCancel(); }
+
+ private:
+  // Of the one operation in progress.
+  bool Wait() {
+    void* tag = nullptr;
+    bool done = false;
+    return queue_.Next(&tag, &done) && done;
+  }
+
+  grpc::ClientContext context_;
+  grpc::CompletionQueue queue_;
+  std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
+};
+
+// What ends the call before the server does: OK if the receiver wants no more.
+absl::Status End(BlockingCall& call, const absl::Status& status) {
+  call.Cancel();
+  call.Finish();
+  return status;
+}
+
+}  // namespace
+
+const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path) {
+  const auto* method = google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(
+      absl::StrReplaceAll(path, {{"/", "."}}));
+  return method == nullptr || method->client_streaming() ? nullptr : method;
+}
+
+absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& json_call,
+                          const JsonReceiver& receive) {
+  const absl::StatusOr<grpc::ByteBuffer> request = RequestBytes(json_call);
+  if (!request.ok()) return request.status();
+  BlockingCall call(channel, json_call);
+  grpc::ByteBuffer bytes;
+  for (bool more = call.Send(*request) && call.Receive(bytes); more; more = call.Receive(bytes)) {
+    const absl::StatusOr<std::string> answer = AnswerJson(json_call.method->output_type(), bytes);
+    if (!answer.ok()) return End(call, answer.status());
+    if (!receive(*answer)) return End(call, absl::OkStatus());
+  }
+  return FromGrpc(call.Finish());
+}
+
+}  // namespace ballpiston::client

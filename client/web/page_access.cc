@@ -1,0 +1,54 @@
+#include "client/web/page_access.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/library/quoted.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr char kScheme[] = "http://";
+
+// In a time that does not depend on where they differ.
+bool AreEqual(absl::string_view a, absl::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return difference == 0;
+}
+
+}  // namespace
+
+PageAccess::PageAccess(int port, std::string token)
+    : address_(absl::StrCat("127.0.0.1:", port)),
+      localhost_(absl::StrCat("localhost:", port)),
+      token_(std::move(token)) {}
+
+absl::Status PageAccess::CheckOrigin(absl::string_view host, absl::string_view origin) const {
+  if (host != address_ && host != localhost_) {
+    return absl::PermissionDeniedError(absl::StrCat(
+        "Host: ", Quoted(host), " is not this page; permitted: ", address_, ", ", localhost_));
+  }
+  if (origin.empty() || origin == kScheme + address_ || origin == kScheme + localhost_) {
+    return absl::OkStatus();
+  }
+  return absl::PermissionDeniedError(absl::StrCat("Origin: ", Quoted(origin),
+                                                  " is another page; permitted: ", kScheme,
+                                                  address_, ", ", kScheme, localhost_));
+}
+
+absl::Status PageAccess::CheckToken(absl::string_view authorization) const {
+  if (AreEqual(authorization, absl::StrCat("Bearer ", token_))) return absl::OkStatus();
+  return absl::UnauthenticatedError(
+      authorization.empty()
+          ? "the header Authorization: Bearer TOKEN is missing; the address that ballpiston web "
+            "printed has the token"
+          : "wrong token: each run of ballpiston web has a new one, in the address that it prints");
+}
+
+std::string PageAccess::Url() const { return absl::StrCat(kScheme, address_, "/#token=", token_); }
+
+}  // namespace ballpiston::client

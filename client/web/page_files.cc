@@ -1,0 +1,48 @@
+#include "client/web/page_files.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "absl/strings/str_cat.h"
+#include "client/library/child_process.h"
+
+namespace ballpiston::client {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Empty for a file that is no part of the page.
+std::string TypeOf(const fs::path& file) {
+  static const auto* const types =
+      new std::map<std::string, std::string>{{".html", "text/html; charset=utf-8"},
+                                             {".js", "text/javascript; charset=utf-8"},
+                                             {".css", "text/css; charset=utf-8"},
+                                             {".svg", "image/svg+xml"}};
+  const auto type = types->find(file.extension());
+  return type == types->end() ? "" : type->second;
+}
+
+std::string Contents(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles() {
+  const fs::path folder =
+      fs::path(ProgramBeside("")).parent_path().parent_path() / "share" / "ballpiston" / "web";
+  std::map<std::string, PageFile> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string type = TypeOf(entry);
+    if (!type.empty()) files[entry.path().filename()] = {type, Contents(entry)};
+  }
+  if (files.contains("index.html")) return files;
+  return absl::FailedPreconditionError(
+      absl::StrCat("the page is not installed in ", folder.string()));
+}
+
+}  // namespace ballpiston::client

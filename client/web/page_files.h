@@ -1,0 +1,22 @@
+// The files of the page, in share/ballpiston/web beside the folder of this program.
+#ifndef BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
+#define BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
+
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace ballpiston::client {
+
+struct PageFile {
+  std::string type;  // for Content-Type
+  std::string content;
+};
+
+// By name, for instance index.html. FAILED_PRECONDITION if the page is not installed.
+absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles();
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_WEB_PAGE_FILES_H_

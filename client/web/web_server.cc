@@ -1,0 +1,198 @@
+#include "client/web/web_server.h"
+
+#include <httplib.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
+#include "client/library/quoted.h"
+#include "client/library/request_id.h"
+#include "client/web/connect_protocol.h"
+#include "client/web/page_access.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr char kLoopback[] = "127.0.0.1";
+constexpr size_t kMostCallsPerConnection = 1000;
+constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
+
+using httplib::Request;
+using httplib::Response;
+
+// Nothing from elsewhere is loaded or run, and no other page may show this one in a frame.
+const httplib::Headers& SafeHeaders() {
+  static const auto* const headers = new httplib::Headers{
+      {"Content-Security-Policy",
+       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+       "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cache-Control", "no-store"}};
+  return *headers;
+}
+
+// With a provider, because the library would compress a plain body, and slowly.
+void Respond(std::string content, const std::string& type, Response& response) {
+  const auto body = std::make_shared<const std::string>(std::move(content));
+  if (body->empty()) return response.set_content("", type);
+  response.set_content_provider(body->size(), type,
+                                [body](size_t offset, size_t length, httplib::DataSink& sink) {
+                                  return sink.write(body->data() + offset, length);
+                                });
+}
+
+void RespondError(const absl::Status& status, Response& response) {
+  response.status = HttpStatus(status.code());
+  Respond(ErrorJson(status), kUnaryType, response);
+}
+
+bool HasType(const Request& request, const std::string& type) {
+  const std::string given = request.get_header_value("Content-Type");
+  return given == type || absl::StartsWith(given, type + ";");
+}
+
+// Connect-Timeout-Ms, if it is given.
+absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) {
+  const std::string text = request.get_header_value("Connect-Timeout-Ms");
+  if (text.empty()) return std::nullopt;
+  if (int64_t ms = 0; text.size() <= 10 && absl::SimpleAtoi(text, &ms) && ms > 0) {
+    return absl::Milliseconds(ms);
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      "Connect-Timeout-Ms: ", Quoted(text), " is not a whole number of 1 to 10 digits above 0"));
+}
+
+}  // namespace
+
+class WebServer::Implementation {
+ public:
+  Implementation(std::map<std::string, PageFile> files, Call call)
+      : files_(std::move(files)), call_(std::move(call)) {
+    server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
+    server_.set_payload_max_length(kMostRequestBytes);
+    server_.set_keep_alive_max_count(kMostCallsPerConnection);
+    server_.set_default_headers(SafeHeaders());
+    // By default two servers could share a port.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    server_.Get("/([^/]*)", Checked([this](const auto& in, auto& out) { SendFile(in, out); }));
+    server_.Post("/(.+)", Checked([this](const auto& in, auto& out) { PassOn(in, out); }));
+  }
+
+  absl::Status Bind(int port) {
+    if (port == 0) {
+      port = server_.bind_to_any_port(kLoopback);
+    } else if (!server_.bind_to_port(kLoopback, port)) {
+      port = -1;
+    }
+    if (port < 0) return absl::UnavailableError("the port is in use or not permitted");
+    access_.emplace(port, NewRequestId());
+    return absl::OkStatus();
+  }
+
+  std::string Url() const { return access_->Url(); }
+  void Serve() { server_.listen_after_bind(); }
+  void Stop() { server_.stop(); }
+
+ private:
+  // Only for requests from this page or from a program, to this page's own address.
+  httplib::Server::Handler Checked(httplib::Server::Handler handler) {
+    return [this, handler](const Request& request, Response& response) {
+      const absl::Status checked = access_->CheckOrigin(request.get_header_value("Host"),
+                                                        request.get_header_value("Origin"));
+      if (!checked.ok()) return RespondError(checked, response);
+      handler(request, response);
+    };
+  }
+
+  void SendFile(const Request& request, Response& response) const {
+    const std::string name = request.matches[1];
+    const auto file = files_.find(name.empty() ? "index.html" : name);
+    if (file == files_.end()) {
+      response.status = 404;
+      return Respond("no such page\n", "text/plain", response);
+    }
+    Respond(file->second.content, file->second.type, response);
+  }
+
+  void PassOn(const Request& request, Response& response) const {
+    const absl::Status status = access_->CheckToken(request.get_header_value("Authorization"));
+    if (!status.ok()) return RespondError(status, response);
+    const auto* const method = FindMethod(request.matches[1].str());
+    if (method == nullptr) {
+      response.status = 404;
+      return Respond(ErrorJson(absl::UnimplementedError(absl::StrCat(
+                         "no method ", Quoted(request.matches[1].str()), " in this API"))),
+                     kUnaryType, response);
+    }
+    const std::string type = method->server_streaming() ? kStreamType : kUnaryType;
+    if (!HasType(request, type)) {
+      response.status = 415;
+      response.set_header("Accept-Post", type);
+      return;
+    }
+    const auto timeout = TimeoutOf(request);
+    if (!timeout.ok()) return RespondError(timeout.status(), response);
+    if (method->server_streaming()) {
+      PassOnStream({method, request.body, timeout->value_or(absl::InfiniteDuration())}, response);
+    } else {
+      PassOnUnary({method, request.body, timeout->value_or(kUnaryTimeout)}, response);
+    }
+  }
+
+  void PassOnUnary(const JsonCall& call, Response& response) const {
+    std::string answer;
+    const absl::Status status = call_(call, [&answer](const std::string& json) {
+      answer = json;
+      return true;
+    });
+    if (!status.ok()) return RespondError(status, response);
+    Respond(std::move(answer), kUnaryType, response);
+  }
+
+  // The answers go out as they come: the whole call is made while the response is written.
+  void PassOnStream(JsonCall call, Response& response) const {
+    const auto request = OpenEnvelope(call.request);
+    response.set_chunked_content_provider(
+        kStreamType, [this, request, call](size_t, httplib::DataSink& sink) mutable {
+          const auto write = [&sink](const std::string& envelope) {
+            return sink.is_writable() && sink.write(envelope.data(), envelope.size());
+          };
+          absl::Status status = request.status();
+          if (status.ok()) {
+            call.request = *request;
+            status = call_(call, [&](const std::string& json) { return write(Envelope(json)); });
+          }
+          write(EndOfStream(status));
+          sink.done();
+          return true;
+        });
+  }
+
+  const std::map<std::string, PageFile> files_;
+  const Call call_;
+  std::optional<PageAccess> access_;
+  httplib::Server server_;
+};
+
+WebServer::WebServer(std::map<std::string, PageFile> files, Call call)
+    : implementation_(std::make_unique<Implementation>(std::move(files), std::move(call))) {}
+
+WebServer::~WebServer() = default;
+
+absl::Status WebServer::Bind(int port) { return implementation_->Bind(port); }
+std::string WebServer::Url() const { return implementation_->Url(); }
+void WebServer::Serve() { implementation_->Serve(); }
+void WebServer::Stop() { implementation_->Stop(); }
+
+}  // namespace ballpiston::client
