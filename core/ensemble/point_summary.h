@@ -26,11 +26,13 @@ struct Estimate {
   std::optional<double> ZScore() const;
 };
 
-// Counts of the ingoing angle for one sign of the piston's velocity, or of a speed in a gas.
-struct SignedHistogram {
+// Counts of a quantity: of the ingoing angle for one sign of the piston's velocity, of a time, of
+// an energy at a time, or of a speed in a gas. A model without samples has no counts.
+struct NamedHistogram {
   std::string name;
-  int sigma = 0;  // +1 or -1; of a gas 0
+  int sigma = 0;  // of an ingoing angle +1 or -1, else 0
   Histogram histogram;
+  std::optional<double> time = {};  // in cells over unit speed
 };
 
 // The variable of a curve. A time is in cells over unit speed. A position is in cells from the left
@@ -54,7 +56,7 @@ struct PointSummary {
   uint64_t samples = 0;
   std::vector<Estimate> estimates = {};  // the first one is what a tolerance refers to
   std::optional<KlDivergence> kl_divergence = {};
-  std::vector<SignedHistogram> histograms = {};
+  std::vector<NamedHistogram> histograms = {};
   std::vector<Curve> curves = {};
   Health health = {};
   // Sentences for the user about the result, for instance that a run was too short.

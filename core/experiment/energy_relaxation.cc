@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/closed_form/mean_free_time.h"
 #include "core/experiment/without_last_bits.h"
+#include "core/markov/energy_law.h"
 #include "core/statistics/told_error.h"
 
 namespace ballpiston {
@@ -24,12 +26,6 @@ std::optional<double> ErrorOf(const Moments& moments) {
 
 }  // namespace
 
-BlockResult NoRelaxations() {
-  BlockResult result;
-  result.moments.resize(1 + kLags);
-  return result;
-}
-
 bool HasRelaxationTime(const std::optional<double>& epsilon) {
   return !epsilon || *epsilon <= kNoDecayFrom || *epsilon >= kNoDecayTo;
 }
@@ -46,6 +42,21 @@ EnergyRelaxation::EnergyRelaxation(const PairGeometry& geometry, const PointPara
 
 double EnergyRelaxation::orbit_time() const {
   return epsilon_ ? window() : kOriginTimes * mean_free_time_ + window();
+}
+
+BlockResult EnergyRelaxation::Empty() const {
+  BlockResult result;
+  result.moments.resize(1 + kLags);
+  if (epsilon_) result.histograms.assign(kLawLags.size(), Histogram::OfBins(0, 0.5, kEnergyBins));
+  return result;
+}
+
+void EnergyRelaxation::Record(const std::vector<double>& values, BlockResult& result) const {
+  ++result.samples;
+  for (size_t i = 0; i < values.size(); ++i) result.moments[i].Add(values[i]);
+  for (size_t i = 0; i < result.histograms.size(); ++i) {
+    result.histograms[i].Add(values[1 + kLawLags[i]]);
+  }
 }
 
 std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const {
@@ -133,6 +144,33 @@ Curve EnergyRelaxation::MeasuredCurve(const BlockResult& merged) const {
                             .limit = CurveOfLimitAt(Lag(i)).value});
   }
   return curve;
+}
+
+NamedHistogram EnergyRelaxation::Law(size_t i, Histogram histogram) const {
+  return {.name = "piston_energy", .histogram = std::move(histogram), .time = Lag(kLawLags[i])};
+}
+
+std::vector<NamedHistogram> EnergyRelaxation::MeasuredLaws(const BlockResult& merged) const {
+  std::vector<NamedHistogram> laws;
+  for (const Histogram& histogram : merged.histograms) laws.push_back(Law(laws.size(), histogram));
+  return laws;
+}
+
+std::vector<NamedHistogram> EnergyRelaxation::LawsOfLimit() const {
+  std::vector<NamedHistogram> laws = MeasuredLaws(Empty());
+  for (NamedHistogram& law : laws) law.histogram.counts.clear();
+  return laws;
+}
+
+std::vector<std::vector<double>> EnergyRelaxation::ProbabilitiesOfLimit() const {
+  static const auto* const law =
+      new EnergyLaw({.degree = 10, .levels = 5}, static_cast<int>(kEnergyBins));
+  std::vector<std::vector<double>> probabilities;
+  if (!epsilon_) return probabilities;
+  for (const size_t lag : kLawLags) {
+    probabilities.push_back(law->Probabilities(*epsilon_, Lag(lag) / unit_of_limit_));
+  }
+  return probabilities;
 }
 
 Curve EnergyRelaxation::CurveOfLimit() const {

@@ -17,11 +17,14 @@
 // vanishes with lambda/tau, as delta^2.
 //
 // EnergyRelaxation has the scales that all models share, an orbit's measurements and the estimates.
-// Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. A sample is one orbit.
+// Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. With epsilon also
+// histograms of the piston's energy at each of kLawLags: the law P(ep, t) of eq. meq, beside that
+// of the limit (energy_law.h). A sample is one orbit.
 #ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 #define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -46,6 +49,12 @@ inline constexpr double kNoDecayTo = 0.2;
 
 inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
 
+// The law of the energy is measured at 1/4, 1/2, 1, 2, 4 and 8 mean free times.
+inline constexpr std::array<size_t, 6> kLawLags = {1, 2, 4, 8, 16, 32};
+// Over [0, 1/2]. A prime, so that no decimal number between is an edge: there rounding would decide
+// in which bin an orbit counts that has not changed its energy.
+inline constexpr size_t kEnergyBins = 61;
+
 class EnergyRelaxation {
  public:
   EnergyRelaxation(const PairGeometry& geometry, const PointParameters& point);
@@ -54,22 +63,31 @@ class EnergyRelaxation {
   double unit() const { return unit_; }
   double orbit_time() const;  // how far an orbit is followed
 
+  // A result without orbits.
+  BlockResult Empty() const;
+
   // The numbers of one orbit: as many as there are moments.
   std::vector<double> Measure(const StepFunction& energy) const;
+  // Adds the numbers of one orbit.
+  void Record(const std::vector<double>& values, BlockResult& result) const;
 
   // relaxation_time where there is one; with epsilon decay_integral.
   std::vector<Estimate> Estimates(const BlockResult& merged) const;
   Curve MeasuredCurve(const BlockResult& merged) const;
+  std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
   // The same for the limit. The standard errors are those of the computation.
   std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
+  std::vector<NamedHistogram> LawsOfLimit() const;  // their bins, without counts
+  std::vector<std::vector<double>> ProbabilitiesOfLimit() const;
 
  private:
   using ByLag = Eigen::Array<double, kLags, 1>;
 
   ByLag Autocorrelation(const StepFunction& energy) const;
   std::string CurveName() const;
+  NamedHistogram Law(size_t i, Histogram histogram) const;
   double window() const { return kWindowTimes * mean_free_time_; }
   double Lag(size_t i) const { return window() / (kLags - 1) * static_cast<double>(i); }
   SpectralValue CurveOfLimitAt(double time) const;
@@ -86,9 +104,6 @@ class EnergyRelaxation {
 
 // Whether there is a relaxation_time: in equilibrium, and from energies far enough from 1/6.
 bool HasRelaxationTime(const std::optional<double>& epsilon);
-
-// An empty result with the moments of the integral, then of the curve.
-BlockResult NoRelaxations();
 
 // Mean number of ball-piston collisions in an orbit.
 double CollisionsPerOrbit(const PointParameters& point);

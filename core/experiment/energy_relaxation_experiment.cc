@@ -38,11 +38,9 @@ class OrbitMeasurements {
 
   // Those that were set.
   BlockResult Result() const {
-    BlockResult result = NoRelaxations();
+    BlockResult result = relaxation_.Empty();
     for (const std::vector<double>& values : values_) {
-      if (values.empty()) continue;
-      ++result.samples;
-      for (size_t i = 0; i < values.size(); ++i) result.moments[i].Add(values[i]);
+      if (!values.empty()) relaxation_.Record(values, result);
     }
     return result;
   }
@@ -173,6 +171,7 @@ PointSummary BySpectrum(const EnergyRelaxation& relaxation) {
   summary.estimates.push_back(SpectralGap());
   AddFurtherRates(summary.estimates);
   summary.curves = {relaxation.CurveOfLimit()};
+  summary.histograms = relaxation.LawsOfLimit();
   return summary;
 }
 
@@ -194,7 +193,7 @@ class EnergyRelaxationExperiment : public PointExperiment {
         queue);
   }
 
-  BlockResult EmptyResult() const override { return NoRelaxations(); }
+  BlockResult EmptyResult() const override { return relaxation_.Empty(); }
 
   Estimate FirstEstimate(const BlockResult& merged) const override {
     return Estimates(merged).front();
@@ -205,6 +204,7 @@ class EnergyRelaxationExperiment : public PointExperiment {
     summary.estimates = Estimates(merged);
     if (IsLimit()) summary.estimates.push_back(SpectralGap());
     summary.curves.push_back(relaxation_.MeasuredCurve(merged));
+    summary.histograms = relaxation_.MeasuredLaws(merged);
     return summary;
   }
 
@@ -230,6 +230,10 @@ std::unique_ptr<PointExperiment> CreateRelaxation(const EnsembleSpec& spec,
   }
   return std::make_unique<ComputedAnswer>(spec, point,
                                           BySpectrum(EnergyRelaxation(GeometryOf(point), point)));
+}
+
+std::vector<std::vector<double>> ProbabilitiesOfTheLimit(const PointParameters& point) {
+  return EnergyRelaxation(GeometryOf(point), point).ProbabilitiesOfLimit();
 }
 
 // The measurements of a step of the energy take most of a jump's time.
@@ -295,16 +299,18 @@ constexpr AimedEstimate kAimsOfRelaxation[] = {{.name = "relaxation_time",
 
 }  // namespace
 
-constinit const ExperimentKind kEnergyRelaxation = {.name = "energy-relaxation",
-                                                    .number = 4,
-                                                    .parameters = kParametersOfRelaxation,
-                                                    .unit = TargetUnit::kEither,
-                                                    .models = kModelsOfRelaxation,
-                                                    .aims = kAimsOfRelaxation,
-                                                    .create = CreateRelaxation,
-                                                    .check_grid = CheckPairGrid,
-                                                    .check_tolerance = CheckToleranceOfDecay,
-                                                    .work = WorkOfAnOrbit,
-                                                    .collisions = CollisionsOfASample};
+constinit const ExperimentKind kEnergyRelaxation = {
+    .name = "energy-relaxation",
+    .number = 4,
+    .parameters = kParametersOfRelaxation,
+    .unit = TargetUnit::kEither,
+    .models = kModelsOfRelaxation,
+    .aims = kAimsOfRelaxation,
+    .create = CreateRelaxation,
+    .check_grid = CheckPairGrid,
+    .check_tolerance = CheckToleranceOfDecay,
+    .work = WorkOfAnOrbit,
+    .collisions = CollisionsOfASample,
+    .expected_probabilities = ProbabilitiesOfTheLimit};
 
 }  // namespace ballpiston

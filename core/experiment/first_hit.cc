@@ -3,15 +3,18 @@
 //
 // Moments: [0] hit time, [1] cos(alpha), [2] sigma. Histograms of alpha, 1000 bins over the
 // interval allowed to each sign of the piston's velocity: [0] sigma = -1, [1] sigma = +1 (only for
-// epsilon < 1/4). Their relative entropy to h^(1) is the paper's eq. kld. For n = 1 everything is
-// stationary at every delta, and the exact values are given.
+// epsilon < 1/4). Their relative entropy to h^(1) is the paper's eq. kld. The last histogram is
+// that of hit times (hit_time_law.h). For n = 1 everything is stationary at every delta, and the
+// exact values are given.
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/closed_form/ingoing_law.h"
 #include "core/ensemble/block_orbits.h"
 #include "core/experiment/all_experiments.h"
+#include "core/experiment/hit_time_law.h"
 #include "core/experiment/ingoing_cells.h"
 #include "core/experiment/pair_experiment.h"
 #include "core/experiment/return_experiment.h"
@@ -22,12 +25,19 @@
 namespace ballpiston {
 namespace {
 
+// All histograms but the last.
+template <typename Histograms>
+auto IngoingOf(Histograms& histograms) {
+  return std::span(histograms).first(histograms.size() - 1);
+}
+
 void Record(const Return& hit, BlockResult* result) {
   ++result->samples;
   result->moments[0].Add(hit.time);
   result->moments[1].Add(hit.direction.x());
   result->moments[2].Add(hit.sigma);
-  CountIngoing(hit, result->histograms);
+  CountIngoing(hit, IngoingOf(result->histograms));
+  result->histograms.back().Add(hit.time);
 }
 
 std::vector<double> Joined(const std::vector<std::vector<double>>& lists) {
@@ -39,7 +49,9 @@ std::vector<double> Joined(const std::vector<std::vector<double>>& lists) {
 }
 
 std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& point) {
-  return IngoingBinProbabilities(IngoingLaw(point[kEpsilon]));
+  std::vector<std::vector<double>> laws = IngoingBinProbabilities(IngoingLaw(point[kEpsilon]));
+  laws.push_back(ExponentialBinProbabilities());
+  return laws;
 }
 
 Estimate MeanCosAlpha(const Moments& moments) {
@@ -100,6 +112,7 @@ class FirstHitExperiment : public PointExperiment {
     BlockResult result;
     result.moments.resize(3);
     result.histograms = EmptyIngoingHistograms(equilibrium_);
+    result.histograms.push_back(EmptyHitTimes(return_time_.exact_mean()));
     return result;
   }
 
@@ -128,17 +141,18 @@ class FirstHitExperiment : public PointExperiment {
  private:
   bool IsStationary() const { return law_.exponent == 1; }
 
-  std::vector<SignedHistogram> LabelledHistograms(const BlockResult& merged) const {
-    std::vector<SignedHistogram> labelled;
-    for (size_t i = 0; i < merged.histograms.size(); ++i) {
-      labelled.push_back({"alpha", kIngoingSigmas[i], merged.histograms[i]});
+  std::vector<NamedHistogram> LabelledHistograms(const BlockResult& merged) const {
+    std::vector<NamedHistogram> labelled;
+    for (const Histogram& histogram : IngoingOf(merged.histograms)) {
+      labelled.push_back({"alpha", kIngoingSigmas[labelled.size()], histogram});
     }
+    labelled.push_back({"hit_time", 0, merged.histograms.back()});
     return labelled;
   }
 
   KlDivergence DistanceFromEquilibrium(const BlockResult& merged) const {
     std::vector<uint64_t> counts;
-    for (const Histogram& histogram : merged.histograms) {
+    for (const Histogram& histogram : IngoingOf(merged.histograms)) {
       counts.insert(counts.end(), histogram.counts.begin(), histogram.counts.end());
     }
     return RelativeEntropy(counts, expected_);

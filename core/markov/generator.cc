@@ -3,11 +3,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <cstddef>
 
 #include "core/closed_form/kernel_moments.h"
+#include "core/markov/gauss_nodes.h"
 
 namespace ballpiston {
 namespace {
@@ -15,7 +15,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kGrading = 0.15;  // each element's length over its outer neighbour's
-constexpr double kPrefactor = std::numbers::inv_pi / std::numbers::sqrt2;  // of K
 constexpr int kNodes = 30;
 
 // Graded towards both ends of [0, pi/4], and mirrored.
@@ -38,18 +37,9 @@ Eigen::VectorXd Legendre(int degree, double x) {
   return p;
 }
 
-double JumpRate(double u) { return PairCollisionRate(u * u / 2); }
-
-// Calls f(x, weight) at Gauss's nodes: sums are integrals over (lower, upper) of smooth functions.
 template <typename F>
 void ForEachNode(double lower, double upper, F f) {
-  using Gauss = boost::math::quadrature::gauss<double, kNodes>;
-  if (!(upper > lower)) return;
-  const double centre = (lower + upper) / 2, half = (upper - lower) / 2;
-  for (size_t i = 0; i < Gauss::abscissa().size(); ++i) {  // half of them: kNodes is even
-    f(centre - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-    f(centre + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
-  }
+  ForEachGaussNode<kNodes>(lower, upper, f);
 }
 
 // The same for functions that are smooth in sqrt(upper - theta).
@@ -61,6 +51,8 @@ void ForEachNodeWithRoot(double lower, double upper, F f) {
 }
 
 }  // namespace
+
+double JumpRate(double u) { return PairCollisionRate(u * u / 2); }
 
 Generator::Generator(const Discretisation& discretisation)
     : degree_(discretisation.degree), edges_(MeshEdges(discretisation.levels)) {
@@ -98,18 +90,17 @@ Eigen::VectorXd Generator::Basis(size_t e, double theta) const {
 }
 
 // With u' = s sin(phi), du'/sqrt(s^2 - u'^2) = dphi.
-Eigen::VectorXd Generator::KernelRow(double theta) const {
+Eigen::VectorXd Generator::KernelRow(double theta, size_t elements) const {
   const double u = std::sin(theta), s = std::cos(theta);
   const auto angle = [s](double v) { return v < s ? std::asin(v / s) : pi / 2; };
-  const size_t slow = (edges_.size() - 1) / 2;
-  Eigen::VectorXd row = Eigen::VectorXd::Zero(First(slow));
-  for (size_t e = 0; e < slow; ++e) {
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(First(elements));
+  for (size_t e = 0; e < elements; ++e) {
     const double a = std::sin(edges_[e]), b = std::sin(edges_[e + 1]);
     if (a >= s) break;
     const auto add = [&](double phi, double weight) {
       const double v = s * std::sin(phi);
       row.segment(First(e), degree_ + 1) +=
-          weight * kPrefactor * std::max(u, v) * Basis(e, std::asin(v));
+          weight * kJumpKernelPrefactor * std::max(u, v) * Basis(e, std::asin(v));
     };
     const double kink = std::clamp(u, a, b);
     ForEachNode(angle(a), angle(kink), add);
@@ -119,14 +110,15 @@ Eigen::VectorXd Generator::KernelRow(double theta) const {
 }
 
 Eigen::MatrixXd Generator::MinusL() const {
-  const Eigen::Index n = First(edges_.size() - 1);
-  const Eigen::Index slow = n / 2;
+  // Of u' below 1/sqrt(2); the rest follows by symmetry.
+  const size_t slow_elements = (edges_.size() - 1) / 2;
+  const Eigen::Index n = First(edges_.size() - 1), slow = First(slow_elements);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   for (size_t e = 0; e + 1 < edges_.size(); ++e) {
     const Eigen::Index first = First(e), count = degree_ + 1;
     ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
       const Eigen::VectorXd basis = weight * std::cos(theta) * Basis(e, theta);
-      matrix.block(first, 0, count, slow) -= basis * KernelRow(theta).transpose();
+      matrix.block(first, 0, count, slow) -= basis * KernelRow(theta, slow_elements).transpose();
       matrix.block(first, first, count, count) +=
           JumpRate(std::sin(theta)) * basis * Basis(e, theta).transpose();
     });
@@ -144,6 +136,10 @@ Eigen::VectorXd Generator::Coefficients(const std::function<double(double)>& fun
     });
   }
   return functions_.transpose() * projected;
+}
+
+Eigen::VectorXd Generator::Gains(double u) const {
+  return functions_.transpose() * KernelRow(std::asin(u), edges_.size() - 1);
 }
 
 Eigen::VectorXd Generator::At(double u) const {

@@ -36,6 +36,11 @@ inline constexpr double kGeneratorRoundingError = 1e-13;
 inline constexpr double kContinuumBottom = std::numbers::inv_pi / std::numbers::sqrt2;
 inline constexpr double kContinuumTop = std::numbers::sqrt2 / 4;
 
+inline constexpr double kJumpKernelPrefactor = std::numbers::inv_pi / std::numbers::sqrt2;  // of K
+
+// int_0^s K(u, u') du'
+double JumpRate(double u);
+
 struct Discretisation {
   int degree = 10;  // of the polynomials, 1 to 20
   int levels = 5;   // of the mesh's grading, 1 to 8; 4 (levels + 1) elements
@@ -59,6 +64,9 @@ class Generator {
   // Those of a unit mass at u in [0, 1]: <coefficients, At(u)> is the function's value there.
   Eigen::VectorXd At(double u) const;
 
+  // int K(u, u') function_k(u') du' by eigenfunction.
+  Eigen::VectorXd Gains(double u) const;
+
   // |L 1|, and the largest difference of the matrix from its transpose: what quadrature and
   // rounding leave.
   double conservation_error() const { return conservation_error_; }
@@ -73,8 +81,8 @@ class Generator {
   // The element's basis at theta.
   Eigen::VectorXd Basis(size_t element, double theta) const;
   void OrthonormaliseBases();
-  // int K(u, u') basis(u') du' of the bases below u' = 1/sqrt(2); the others follow by symmetry.
-  Eigen::VectorXd KernelRow(double theta) const;
+  // int K(u, u') basis(u') du' of the bases of the first elements.
+  Eigen::VectorXd KernelRow(double theta, size_t elements) const;
   Eigen::MatrixXd MinusL() const;
 
   int degree_;

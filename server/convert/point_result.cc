@@ -60,6 +60,7 @@ void Fill(const storage::Histogram& record, v1::Histogram& message) {
   message.set_lower(record.lower());
   message.set_upper(record.upper());
   message.mutable_counts()->Assign(record.counts().begin(), record.counts().end());
+  if (record.has_time()) message.set_time(record.time());
 }
 
 void Fill(const storage::Curve& record, v1::Curve& message) {

@@ -42,7 +42,7 @@ void SetDivergence(const KlDivergence& divergence, storage::Result& result) {
   record->set_standard_error(divergence.standard_error);
 }
 
-void AddHistogram(const SignedHistogram& histogram, storage::Details& details) {
+void AddHistogram(const NamedHistogram& histogram, storage::Details& details) {
   storage::Histogram* record = details.add_histograms();
   record->set_name(histogram.name);
   record->set_sigma(histogram.sigma);
@@ -50,6 +50,7 @@ void AddHistogram(const SignedHistogram& histogram, storage::Details& details) {
   record->set_upper(histogram.histogram.upper);
   const std::vector<uint64_t>& counts = histogram.histogram.counts;
   record->mutable_counts()->Assign(counts.begin(), counts.end());
+  if (histogram.time) record->set_time(*histogram.time);
 }
 
 void AddCurve(const Curve& curve, storage::Details& details) {
@@ -118,7 +119,7 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
 
 storage::Details DetailsRecordOf(const PointSummary& summary) {
   storage::Details details;
-  for (const SignedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
+  for (const NamedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
   for (const Curve& curve : summary.curves) AddCurve(curve, details);
   return details;
 }

@@ -1,0 +1,25 @@
+// Gauss's quadrature as a loop: sums over the nodes are integrals of smooth functions.
+#ifndef BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
+#define BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <cstddef>
+
+namespace ballpiston {
+
+// Calls f(x, weight) at the nodes of (lower, upper); never, if it is empty.
+template <int nodes, typename F>
+void ForEachGaussNode(double lower, double upper, F f) {
+  static_assert(nodes % 2 == 0);  // Boost lists half of them
+  using Gauss = boost::math::quadrature::gauss<double, nodes>;
+  if (!(upper > lower)) return;
+  const double centre = (lower + upper) / 2, half = (upper - lower) / 2;
+  for (size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+    f(centre - half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+    f(centre + half * Gauss::abscissa()[i], half * Gauss::weights()[i]);
+  }
+}
+
+}  // namespace ballpiston
+
+#endif  // BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_

@@ -1,0 +1,100 @@
+#include "core/markov/energy_law.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/closed_form/kernel_distribution.h"
+#include "core/closed_form/kernel_moments.h"
+#include "core/markov/relaxation_spectrum.h"
+
+namespace ballpiston {
+namespace {
+
+constexpr int kBins = 61;
+constexpr double kEpsilons[] = {0, 0.03125, 0.125, 0.25, 0.251, 0.375, 0.49, 0.5};
+constexpr double kTimes[] = {0, 0.01, 0.5, 2, 8, 30};
+
+double Edge(int bin) { return bin / (2.0 * kBins); }
+
+const EnergyLaw& Fine() {
+  static const EnergyLaw law({.degree = 10, .levels = 5}, kBins);
+  return law;
+}
+
+TEST(EnergyLaw, SumsToOneAtAllTimes) {
+  for (const double epsilon : kEpsilons) {
+    for (const double time : kTimes) {
+      const std::vector<double> p = Fine().Probabilities(epsilon, time);
+      const double sum = std::accumulate(p.begin(), p.end(), 0.0);
+      EXPECT_NEAR(sum, 1, kEnergyLawError) << epsilon << " " << time;
+      for (const double x : p) EXPECT_GE(x, -kEnergyLawError) << epsilon << " " << time;
+    }
+  }
+}
+
+TEST(EnergyLaw, BecomesTheStationaryLaw) {
+  // exp(-0.152 * 200) is 6e-14.
+  const std::vector<double> p = Fine().Probabilities(0.4, 200);
+  for (int bin = 0; bin < kBins; ++bin) {
+    const double exact = std::sqrt(2 * Edge(bin + 1)) - std::sqrt(2 * Edge(bin));
+    EXPECT_NEAR(p[static_cast<size_t>(bin)], exact, 1e-5) << bin;
+  }
+}
+
+// The mass that has not jumped is at one place of its bin; the rest is spread over the bins.
+TEST(EnergyLaw, MeanIsTheSpectrums) {
+  const EnergyLaw narrow({.degree = 8, .levels = 4}, 256);
+  for (const double epsilon : kEpsilons) {
+    for (const double time : {0.5, 2.0, 8.0}) {
+      const std::vector<double> p = narrow.Probabilities(epsilon, time);
+      const double start = std::min(std::floor(2 * epsilon * 256), 255.0) + 0.5;
+      double mean = std::exp(-PairCollisionRate(epsilon) * time) * (epsilon - start / 512);
+      for (size_t bin = 0; bin < p.size(); ++bin) {
+        mean += p[bin] * (static_cast<double>(bin) + 0.5) / (2.0 * static_cast<double>(p.size()));
+      }
+      EXPECT_NEAR(mean, RelaxationSpectrum::Get().MeanEnergy(epsilon, time).value, 5e-4)
+          << epsilon << " " << time;
+    }
+  }
+}
+
+// At short times the mass of a bin comes from a single jump: by the closed form of the kernel.
+TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
+  constexpr double kTime = 1e-4;
+  for (const double epsilon : {0.03125, 0.125, 0.3, 0.4, 0.49}) {
+    const KernelDistribution kernel = KernelDistribution::OfPair(epsilon);
+    const double rate = PairCollisionRate(epsilon);
+    const std::vector<double> p = Fine().Probabilities(epsilon, kTime);
+    const auto below = [&](double x) { return x < 0.5 - epsilon ? kernel.Below(x) : 1; };
+    for (int bin = 0; bin < kBins; ++bin) {
+      if (bin == static_cast<int>(2 * epsilon * kBins)) continue;
+      const double jumps = rate * (below(Edge(bin + 1)) - below(Edge(bin)));
+      // The second order is the rate times the time. The discretisation smooths the kernel's
+      // singularity at the ball's energy, in the bins beside it.
+      EXPECT_NEAR(p[static_cast<size_t>(bin)] / kTime, jumps, 0.02 * jumps + 2e-3)
+          << epsilon << " " << bin;
+    }
+  }
+}
+
+TEST(EnergyLaw, DiffersBetweenDiscretisationsByLessThanItsBound) {
+  const EnergyLaw coarse({.degree = 8, .levels = 4}, kBins);
+  double largest = 0;
+  for (const double epsilon : kEpsilons) {
+    for (const double time : kTimes) {
+      const std::vector<double> a = Fine().Probabilities(epsilon, time);
+      const std::vector<double> b = coarse.Probabilities(epsilon, time);
+      for (size_t bin = 0; bin < a.size(); ++bin) {
+        largest = std::max(largest, std::fabs(a[bin] - b[bin]));
+      }
+    }
+  }
+  EXPECT_LT(largest, kEnergyLawError);
+}
+
+}  // namespace
+}  // namespace ballpiston
