@@ -22,6 +22,9 @@ class FigureTest : public ::testing::Test {
     return Split("figure mean-free-time --delta 0.2,0.1 --out " + folder_ + " " + flags);
   }
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
+  static size_t LineCount(const std::string& text) {
+    return Words(absl::StrSplit(text, '\n', absl::SkipEmpty())).size();
+  }
   static bool HasGnuplot() {
     return RunProgram({.command = {"sh", "-c", "command -v gnuplot"}}).exit_code == 0;
   }
@@ -107,12 +110,9 @@ TEST_F(FigureTest, TheGasIsDrawnFromATrace) {
     return folder;
   };
   const std::string lattice = draw("3x2"), chain = draw("4");
-  const auto lines = [](const std::string& file) {
-    return Words(absl::StrSplit(Contents(file), '\n', absl::SkipEmpty())).size();
-  };
-  EXPECT_EQ(lines(lattice + "/gas-balls.csv"), 1 + 6u);
-  EXPECT_EQ(lines(lattice + "/gas-pistons.csv"), 1 + 12u);
-  EXPECT_EQ(lines(chain + "/gas-pistons.csv"), 1 + 4u);
+  EXPECT_EQ(LineCount(Contents(lattice + "/gas-balls.csv")), 1 + 6u);
+  EXPECT_EQ(LineCount(Contents(lattice + "/gas-pistons.csv")), 1 + 12u);
+  EXPECT_EQ(LineCount(Contents(chain + "/gas-pistons.csv")), 1 + 4u);
 }
 
 TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
@@ -123,10 +123,12 @@ TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
             folder_));
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(result.err, "");
-  const std::string data = Contents(folder_ + "/temperature-profile.csv");
-  EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(), 1 + 2 * (5 + 7u));
-  EXPECT_THAT(data, HasSubstr("\nmarkov,2,1.1,0.5,1.5,"));
-  EXPECT_THAT(data, HasSubstr("\nbilliard,3,1.1,0.5,0,"));
+  const std::string markov = Contents(folder_ + "/temperature-profile-markov.csv");
+  EXPECT_EQ(LineCount(markov), 1 + 5 + 7u);
+  EXPECT_THAT(markov, HasSubstr(",2,1.1,0.5,markov,60,temperature_profile,,1.5,"));
+  const std::string billiard = Contents(folder_ + "/temperature-profile-billiard.csv");
+  EXPECT_EQ(LineCount(billiard), 1 + 5 + 7u);
+  EXPECT_THAT(billiard, HasSubstr(",3,1.1,0.5,billiard,10,temperature_profile,,0,"));
   EXPECT_THAT(Contents(folder_ + "/temperature-profile.svg"), HasSubstr("N = 3"));
 }
 
