@@ -160,6 +160,20 @@ TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
   EXPECT_THAT(Contents(folder_ + "/relative-entropy.svg"), HasSubstr("ε = 0.125"));
 }
 
+TEST_F(FigureTest, IngoingLawsStandOverTheirEquilibrium) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure ingoing-law --quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/ingoing-law.csv");
+  EXPECT_EQ(LineCount(data), 1 + 2 * (2 + 1) * 25u);  // epsilon < 1/4 has two values of sigma
+  EXPECT_THAT(data, HasSubstr("\n0.3,0.125,0,1,"));
+  EXPECT_THAT(data, HasSubstr("\n0.2,0.375,0,-1,"));
+  EXPECT_THAT(Contents(folder_ + "/ingoing-law.svg"), HasSubstr("ε = 0.375"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
@@ -169,6 +183,7 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("relative-entropy: "));
   EXPECT_THAT(result.out, HasSubstr("gas: "));
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
+  EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
 }
 
 }  // namespace
