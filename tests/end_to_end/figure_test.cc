@@ -174,6 +174,19 @@ TEST_F(FigureTest, IngoingLawsStandOverTheirEquilibrium) {
   EXPECT_THAT(Contents(folder_ + "/ingoing-law.svg"), HasSubstr("ε = 0.375"));
 }
 
+TEST_F(FigureTest, RelaxationStandsBesideItsLimit) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure relaxation --delta 0.2,0.3 --epsilon 0.1,0.4 --samples 300 --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string energies = Contents(folder_ + "/relaxation-energy.csv");
+  EXPECT_EQ(LineCount(energies), 1 + 2 * 2 * 33u);
+  EXPECT_THAT(energies, HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,0.4,"));
+  EXPECT_EQ(LineCount(Contents(folder_ + "/relaxation-autocorrelation.csv")), 1 + 2 * 33u);
+  EXPECT_THAT(Contents(folder_ + "/relaxation.svg"), HasSubstr("δ = 0.3"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
@@ -184,6 +197,7 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("gas: "));
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
   EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
+  EXPECT_THAT(result.out, HasSubstr("relaxation: "));
 }
 
 }  // namespace
