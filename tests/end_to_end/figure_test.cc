@@ -182,9 +182,29 @@ TEST_F(FigureTest, RelaxationStandsBesideItsLimit) {
   EXPECT_EQ(result.err, "");
   const std::string energies = Contents(folder_ + "/relaxation-energy.csv");
   EXPECT_EQ(LineCount(energies), 1 + 2 * 2 * 33u);
-  EXPECT_THAT(energies, HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,0.4,"));
+  EXPECT_THAT(energies, HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,"));
   EXPECT_EQ(LineCount(Contents(folder_ + "/relaxation-autocorrelation.csv")), 1 + 2 * 33u);
   EXPECT_THAT(Contents(folder_ + "/relaxation.svg"), HasSubstr("δ = 0.3"));
+}
+
+TEST_F(FigureTest, RatesHaveAllLengthsOfAllKinds) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result =
+      server_.Client(Split("figure rates --quick --epsilon 0.1,0.4 --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/rates.csv");
+  EXPECT_EQ(LineCount(data), 1 + (2 + 2) * 13u);
+  EXPECT_THAT(data, HasSubstr("\nall,,"));
+  EXPECT_THAT(data, HasSubstr("\nconditional,0.4,"));
+  EXPECT_THAT(Contents(folder_ + "/rates.svg"), HasSubstr("ε = 0.4"));
+}
+
+TEST_F(FigureTest, RatesFailIfTheTraceFails) {
+  const ProcessResult result =
+      server_.Client(Split("figure rates --quick --seed none --out " + folder_));
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ + "/rates.csv"));
 }
 
 TEST_F(FigureTest, ListNamesThem) {
@@ -198,6 +218,7 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
   EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
   EXPECT_THAT(result.out, HasSubstr("relaxation: "));
+  EXPECT_THAT(result.out, HasSubstr("rates: "));
 }
 
 }  // namespace
