@@ -13,9 +13,9 @@ events=$(by_effort 40000 400000 1000000)  # of each orbit
 batches=8         # of each orbit; their scatter gives the standard errors
 half_width=0.02   # a conditional rate is that of all energies within epsilon +- half_width
 energies=20       # at which the exact conditional rate is averaged over that interval
-least=0.001       # the windows' lengths, in units of the mean free time
+least=0.0001      # the windows' lengths, in units of the mean free time
 per_decade=4
-lengths=13
+lengths=17
 
 # Prints the interval of each epsilon: epsilon,lower,upper.
 intervals() {

@@ -163,7 +163,8 @@ TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
 TEST_F(FigureTest, IngoingLawsStandOverTheirEquilibrium) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const ProcessResult result = server_.Client(
-      Split("figure ingoing-law --quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500 --out " +
+      Split("figure ingoing-law --quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500 "
+            "--out " +
             folder_));
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(result.err, "");
@@ -194,7 +195,7 @@ TEST_F(FigureTest, RatesHaveAllLengthsOfAllKinds) {
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(result.err, "");
   const std::string data = Contents(folder_ + "/rates.csv");
-  EXPECT_EQ(LineCount(data), 1 + (2 + 2) * 13u);
+  EXPECT_EQ(LineCount(data), 1 + (2 + 2) * 17u);
   EXPECT_THAT(data, HasSubstr("\nall,,"));
   EXPECT_THAT(data, HasSubstr("\nconditional,0.4,"));
   EXPECT_THAT(Contents(folder_ + "/rates.svg"), HasSubstr("ε = 0.4"));
@@ -205,6 +206,22 @@ TEST_F(FigureTest, RatesFailIfTheTraceFails) {
       server_.Client(Split("figure rates --quick --seed none --out " + folder_));
   EXPECT_NE(result.exit_code, 0);
   EXPECT_FALSE(fs::exists(folder_ + "/rates.csv"));
+}
+
+TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure markov-test --quick --delta 0.2:0.325:12:log --epsilon 0.125,0.46875 "
+            "--exponent 1,10 --samples 20000 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-excess.csv")), 1 + 12 * 2 * 2u);
+  // At epsilon = 0.125 fewer than ten points are above the noise, so there is no fit.
+  const std::string fit = Contents(folder_ + "/markov-test-fit.csv");
+  EXPECT_EQ(LineCount(fit), 1 + 4u);
+  EXPECT_THAT(fit, HasSubstr("\n0.46875,10,11,0.2,"));
+  EXPECT_THAT(Contents(folder_ + "/markov-test.svg"), HasSubstr("n = 10"));
 }
 
 TEST_F(FigureTest, ListNamesThem) {
@@ -219,6 +236,7 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
   EXPECT_THAT(result.out, HasSubstr("relaxation: "));
   EXPECT_THAT(result.out, HasSubstr("rates: "));
+  EXPECT_THAT(result.out, HasSubstr("markov-test: "));
 }
 
 }  // namespace
