@@ -39,6 +39,7 @@ longest = STATS_max
 of_delta(i) = strcol("delta") eq word(deltas, i)
 t(i) = of_delta(i) ? column("time")/word(taus, i) : NaN
 t_from(i, start) = column("epsilon") == start ? t(i) : NaN
+t_from_highest(i) = highest > lowest ? t_from(i, highest) + from_highest : NaN
 error(_) = strcol("standard_error") eq "" ? 0 : column("standard_error")
 low(_) = column("value") - error(0)
 high(_) = column("value") + error(0)
@@ -73,8 +74,8 @@ unset arrow 1
 # ---- Their difference from the limit ----
 set tmargin screen 0.38
 set bmargin screen 0.11
-set title "{/:Bold c}  minus the limit: from ".sprintf("%g (●), %g (△)", lowest, highest) \
-  offset 0,-0.4
+set title "{/:Bold c}  minus the limit: from ".sprintf("%g", lowest). \
+  (highest > lowest ? sprintf(" (●), %g (△)", highest) : "") offset 0,-0.4
 set xlabel "t/τ_{bp}"
 set ylabel "difference" offset 1,0
 set format x "%g"
@@ -87,9 +88,9 @@ plot 0 with lines lw 1.8 lc rgb black, \
      for [i=1:n] energies using (t_from(i, lowest)):(excess(0)) \
        with points pt 7 ps 0.5 lc rgb colour(i), \
      for [i=1:n] energies \
-       using (t_from(i, highest) + from_highest):(excess(0) - error(0)):(0):(2*error(0)) \
+       using (t_from_highest(i)):(excess(0) - error(0)):(0):(2*error(0)) \
        with vectors nohead lw 1 lc rgb colour(i), \
-     for [i=1:n] energies using (t_from(i, highest) + from_highest):(excess(0)) \
+     for [i=1:n] energies using (t_from_highest(i)):(excess(0)) \
        with points pt 8 ps 0.7 lw 1.2 lc rgb colour(i)
 
 # ---- The autocorrelation ----
