@@ -4,7 +4,8 @@
 # floor, with one standard error, against delta. A panel for each outgoing law h^(n); a colour for
 # each energy of the piston. The vertical axis is linear near 0 and logarithmic away from it: noise
 # makes values near the floor negative. Lines join the points of one energy.
-# markov-test.sh lists the commands that write the data, and explains markov-test-fit.csv.
+# markov-test.sh lists the commands that write the data, and explains markov-test-decay.csv,
+# markov-test-fit.csv and markov-test-maxima.csv.
 
 # ---- Settings ----
 load "style.gnuplot"

@@ -29,11 +29,55 @@ excess() {
 }
 into markov-test-excess.csv excess
 
+# Does the excess decay differently when the piston is slower than the ball, epsilon < 1/4? Means of
+# the excess over the deltas of each octave below the largest delta, and their ratio to the mean of
+# the first octave, if that mean is above 3 standard errors.
+decay() {
+  echo "epsilon,exponent,lower_delta,upper_delta,points,mean_excess,standard_error,ratio,ratio_error"
+  awk -F, -v OFS=, '
+    NR == 1 { next }
+    {
+      key = $2 OFS $3
+      if (!(key in known)) { known[key] = 1; keys[series++] = key }
+      delta[NR] = $1
+      if ($1 > largest) largest = $1
+      of[NR] = key
+      excess[NR] = $4
+      error[NR] = $5
+    }
+    END {
+      for (i = 2; i <= NR; i++) {
+        # The factor keeps a delta that rounding has moved across the border in its octave.
+        octave = int(log(largest/delta[i])/log(2)*(1 - 1e-9))
+        if (octave > last) last = octave
+        ++count[of[i], octave]
+        sum[of[i], octave] += excess[i]
+        square[of[i], octave] += error[i]^2
+      }
+      for (j = 0; j < series; j++) {
+        for (o = 0; o <= last; o++) {
+          n = count[keys[j], o]
+          if (!n) continue
+          mean = sum[keys[j], o]/n
+          mean_error = sqrt(square[keys[j], o])/n
+          if (o == 0) { first = mean; first_error = mean_error }
+          ratio = ratio_error = ""
+          if (o > 0 && first > 3*first_error) {
+            ratio = mean/first
+            ratio_error = sqrt(mean_error^2 + (ratio*first_error)^2)/first
+          }
+          print keys[j], largest/2^(o + 1), largest/2^o, n, mean, mean_error, ratio, ratio_error
+        }
+      }
+    }' markov-test-excess.csv
+}
+into markov-test-decay.csv decay
+
 # In which variable x does the excess E(delta) oscillate? The models are the power law
 # E = A delta^b and E = A delta^b exp(c cos(omega x + phase)), with x = delta, log(delta), 1/delta.
 # The exponential function equals 1 + c cos(...) for small c, keeps E positive, and makes log E
-# linear in all parameters but omega, which is scanned: from 1.5 to 8 cycles over the data, the same
-# for every x. The fit has the points whose excess is above 3 standard errors, n = 1 excepted: that
+# linear in all parameters but omega, which is scanned: from 1.5 cycles over the data to one cycle in
+# three points, the same for every x. The fit has the points whose excess is above 3 standard errors, n = 1 excepted: that
 # is the equilibrium law.
 #
 # No such model is exact, so every log E has, beside its statistical error, a common error
@@ -46,6 +90,7 @@ into markov-test-excess.csv excess
 # Both are shares of synthetic data sets with a fixed seed, so 0 means less than 1/synthetic.
 #   transform    the p for which x = delta^-p fits best, the logarithm at p = 0, with the range of
 #                all p whose chi^2 is at most 4 larger
+# In rows with the exponent "all", chi^2 is summed over the exponents.
 fit() {
   echo "epsilon,exponent,points,smallest_delta,model_error,model,b,b_error,amplitude,period,\
 chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,transform_high"
@@ -110,7 +155,7 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
         for (i = 1; i <= n; i++) { C[at] = c[i]; S[at++] = s[i] }
       }
     }
-    function cycles(m) { return 1.5 + 0.1*m }
+    function cycles(m) { return 1.5 + 0.15*m }
     # The largest reduction of chi^2 over all frequencies; sets best.
     function scan(v, at,  i, m, a, b, gain, largest) {
       largest = -1
@@ -159,6 +204,19 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       for (i = 1; i <= k; i++) beta[i] = M[i, k + 1]
       b_error = sqrt(M[2, k + 3])
     }
+    # The p with the least chi_of, and the range of those that are at most 4 larger.
+    function p_of(k) { return -2 + k/8 }
+    function find_transform(  k, least) {
+      least = 1e300
+      for (k = 0; k < transforms; k++)
+        if (chi_of[k] < least) { least = chi_of[k]; transform = p_of(k) }
+      low = p_of(transforms)
+      for (k = 0; k < transforms; k++) {
+        if (chi_of[k] > least + 4) continue
+        if (p_of(k) < low) low = p_of(k)
+        high = p_of(k)
+      }
+    }
     function parameters(v,  m, omega, k) {
       k = v < 0 ? 2 : 4
       for (m = 1; m <= n; m++) {
@@ -177,13 +235,15 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       split(key, part, ",")
       n = count[key]
       if (n < 10) return
+      least_delta = 1e300
       for (i = 1; i <= n; i++) {
         l[i] = log_delta[key, i]
+        if (exp(l[i]) < least_delta) least_delta = exp(l[i])
         y[i] = log_excess[key, i]
         e[i] = relative_error[key, i]
       }
-      frequencies = 66
-      while (frequencies > 1 && cycles(frequencies - 1) > n/3) frequencies--
+      frequencies = 1
+      while (cycles(frequencies) < n/3) frequencies++
       size = frequencies*n
       dof = n - 5
       lower = 0
@@ -198,18 +258,12 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
 
       # The transform.
       least = 1e300
-      for (p = -2; p <= 3.0001; p += 0.125) {
-        oscillations(p, 3*size)
-        chi_of[p] = chi0 - scan(z, 3*size)
-        if (chi_of[p] < least) { least = chi_of[p]; transform = p }
+      for (k = 0; k < transforms; k++) {
+        oscillations(p_of(k), 3*size)
+        chi_of[k] = chi0 - scan(z, 3*size)
+        sum_of[part[1], k] += chi_of[k]
       }
-      low = 3
-      high = -2
-      for (p = -2; p <= 3.0001; p += 0.125) {
-        if (chi_of[p] > least + 4) continue
-        if (p < low) low = p
-        if (p > high) high = p
-      }
+      find_transform()
 
       # Truth -1 is the power law, the others are the oscillating models.
       for (v = 0; v < 3; v++) alarms[v] = worse[v] = 0
@@ -233,17 +287,32 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
         }
       }
 
+      if (!(part[1] in fits)) energies[energy_count++] = part[1]
+      ++fits[part[1]]
+      sum_points[part[1]] += n
       for (v = -1; v < 3; v++) {
+        sum_chi[part[1], v] += v < 0 ? chi0 : chi0 - gain[v]
         parameters(v)
-        head = part[1] OFS part[2] OFS n OFS exp(l[1]) OFS error OFS name[v] OFS beta[2] OFS b_error
+        head = part[1] OFS part[2] OFS n OFS least_delta OFS error OFS name[v] OFS beta[2] OFS b_error
         if (v < 0) print head, "", "", chi0, n - 2, "", "", "", "", "", ""
         else print head, sqrt(beta[3]^2 + beta[4]^2), range_of[v]/cycles(best_of[v]), \
           chi0 - gain[v], dof, gain[v], alarms[v]/synthetic, worse[v]/synthetic, \
           transform, low, high
       }
     }
+    # The sums over the exponents of one energy, each with its own frequency and amplitude.
+    function add_up(energy,  k, v) {
+      for (k = 0; k < transforms; k++) chi_of[k] = sum_of[energy, k]
+      find_transform()
+      for (v = -1; v < 3; v++)
+        print energy, "all", sum_points[energy], "", "", name[v], "", "", "", "", \
+          sum_chi[energy, v], sum_points[energy] - (v < 0 ? 2 : 5)*fits[energy], \
+          v < 0 ? "" : sum_chi[energy, -1] - sum_chi[energy, v], "", "", \
+          v < 0 ? "" : transform, v < 0 ? "" : low, v < 0 ? "" : high
+    }
     BEGIN {
       pi = atan2(0, -1)
+      transforms = 41
       state = 20260101
       name[-1] = "power law"
       name[0] = "delta"; power[0] = -1
@@ -259,8 +328,78 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       log_excess[key, i] = log($4)
       relative_error[key, i] = $5/$4
     }
-    END { for (j = 0; j < series; j++) analyse(keys[j]) }' markov-test-excess.csv
+    END {
+      for (j = 0; j < series; j++) analyse(keys[j])
+      for (j = 0; j < energy_count; j++) add_up(energies[j])
+    }' markov-test-excess.csv
 }
 into markov-test-fit.csv fit
+
+# The maxima of the excess from the largest delta down, without a model: their spacings are constant
+# in log(delta) or in 1/delta if the oscillation is periodic there. A maximum counts if the excess is
+# lower by 15 percent and by 3 standard errors somewhere on either side before it is higher again.
+# Its place is that of the parabola of log E through three points.
+maxima() {
+  echo "epsilon,exponent,delta,spacing_of_log_delta,spacing_of_inverse_delta"
+  awk -F, -v OFS=, '
+    NR > 1 && $3 != 1 {
+      key = $2 OFS $3
+      if (!(key in count)) { count[key] = 0; keys[series++] = key }
+      i = ++count[key]
+      x[key, i] = log($1)
+      y[key, i] = $4
+      e[key, i] = $5
+    }
+    function lower(key, i, j) {
+      return y[key, i] < 0.85*y[key, j] && y[key, j] - y[key, i] > 3*sqrt(e[key, i]^2 + e[key, j]^2)
+    }
+    function report(key, i,  a, b, x0, y0, y1, y2, place) {
+      y0 = y[key, i - 1]
+      y1 = y[key, i]
+      y2 = y[key, i + 1]
+      place = x[key, i]
+      if (y0 > 0 && y2 > 0) {
+        a = (log(y2) - log(y1))/(x[key, i + 1] - x[key, i])
+        b = (log(y1) - log(y0))/(x[key, i] - x[key, i - 1])
+        x0 = (x[key, i + 1] - x[key, i - 1])/2
+        if (a != b) place = (x[key, i] + x[key, i - 1])/2 - b*x0/(a - b)
+      }
+      delta = exp(place)
+      print key, delta, last ? last_log - place : "", last ? 1/delta - 1/last : ""
+      last = delta
+      last_log = place
+    }
+    END {
+      for (j = 0; j < series; j++) {
+        key = keys[j]
+        n = count[key]
+        for (i = 2; i <= n; i++)  # in falling order of delta
+          for (k = i; k > 1 && x[key, k] > x[key, k - 1]; k--) {
+            t = x[key, k]; x[key, k] = x[key, k - 1]; x[key, k - 1] = t
+            t = y[key, k]; y[key, k] = y[key, k - 1]; y[key, k - 1] = t
+            t = e[key, k]; e[key, k] = e[key, k - 1]; e[key, k - 1] = t
+          }
+        last = rising = 0
+        top = bottom = 1
+        for (i = 2; i <= n; i++) {
+          if (rising) {
+            if (y[key, i] > y[key, top]) top = i
+            else if (lower(key, i, top)) {
+              report(key, top)
+              rising = 0
+              bottom = i
+            }
+          } else {
+            if (y[key, i] < y[key, bottom]) bottom = i
+            else if (lower(key, bottom, i)) {
+              rising = 1
+              top = i
+            }
+          }
+        }
+      }
+    }' markov-test-excess.csv
+}
+into markov-test-maxima.csv maxima
 
 draw markov-test

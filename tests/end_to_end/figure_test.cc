@@ -219,8 +219,9 @@ TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
   EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-excess.csv")), 1 + 12 * 2 * 2u);
   // At epsilon = 0.125 fewer than ten points are above the noise, so there is no fit.
   const std::string fit = Contents(folder_ + "/markov-test-fit.csv");
-  EXPECT_EQ(LineCount(fit), 1 + 4u);
+  EXPECT_EQ(LineCount(fit), 1 + 4 + 4u);  // the last four are sums over the exponents
   EXPECT_THAT(fit, HasSubstr("\n0.46875,10,11,0.2,"));
+  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-decay.csv")), 1 + 2 * 2u);
   EXPECT_THAT(Contents(folder_ + "/markov-test.svg"), HasSubstr("n = 10"));
 }
 
