@@ -1,9 +1,9 @@
 # Draws ingoing-law.svg. Change it as you like; run it with: gnuplot ingoing-law.gnuplot
 #
-# Densities of the ingoing angle alpha of first hits that start from the outgoing law h^(n), for both
-# directions sigma of the piston, over the law h^(1) of equilibrium (filled). A row for each energy of
-# the piston, a column for each delta. A band of one standard error surrounds each line. The density
-# of sigma = +1 vanishes if the piston is faster than the ball, epsilon >= 1/4.
+# Densities of the ingoing angle alpha of first hits that start from the outgoing law h^(n), for
+# both directions sigma of the piston, over the law h^(1) of equilibrium (filled). A row for each
+# energy of the piston, a column for each delta. A band of one standard error surrounds each line.
+# The density of sigma = +1 vanishes if the piston is faster than the ball, epsilon >= 1/4.
 # ingoing-law.sh lists the commands that write the data.
 
 # ---- Settings ----

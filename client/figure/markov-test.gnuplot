@@ -1,8 +1,8 @@
 # Draws markov-test.svg. Change it as you like; run it with: gnuplot markov-test.gnuplot
 #
-# The relative entropy of the ingoing law of first hits to the equilibrium law h^(1), minus its noise
-# floor, with one standard error, against delta. A panel for each outgoing law h^(n); a colour for
-# each energy of the piston. The vertical axis is linear near 0 and logarithmic away from it: noise
+# The relative entropy of the ingoing law of first hits to the equilibrium law h^(1), minus its
+# noise floor, with one standard error, against delta. A panel for each outgoing law h^(n); a colour
+# for each energy of the piston. The vertical axis is linear near 0 and logarithmic away from it: noise
 # makes values near the floor negative. Lines join the points of one energy.
 # markov-test.sh lists the commands that write the data, and explains markov-test-decay.csv,
 # markov-test-fit.csv and markov-test-maxima.csv.

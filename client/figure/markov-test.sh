@@ -1,7 +1,7 @@
 # Relative entropies of first hits above their noise, and whether they oscillate in log(delta)
 #
 # Run by `ballpiston figure markov-test --out DIR`, whose flags replace these values, or by hand:
-# sh markov-test.sh. Time on two cores: quick 4 s, default 1 min, full 45 min.
+# sh markov-test.sh. Time on two cores: quick 5 s, default 1.5 min, full 45 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
@@ -33,7 +33,8 @@ into markov-test-excess.csv excess
 # the excess over the deltas of each octave below the largest delta, and their ratio to the mean of
 # the first octave, if that mean is above 3 standard errors.
 decay() {
-  echo "epsilon,exponent,lower_delta,upper_delta,points,mean_excess,standard_error,ratio,ratio_error"
+  echo "epsilon,exponent,lower_delta,upper_delta,points,mean_excess,standard_error,ratio,\
+ratio_error"
   awk -F, -v OFS=, '
     NR == 1 { next }
     {
@@ -76,13 +77,13 @@ into markov-test-decay.csv decay
 # In which variable x does the excess E(delta) oscillate? The models are the power law
 # E = A delta^b and E = A delta^b exp(c cos(omega x + phase)), with x = delta, log(delta), 1/delta.
 # The exponential function equals 1 + c cos(...) for small c, keeps E positive, and makes log E
-# linear in all parameters but omega, which is scanned: from 1.5 cycles over the data to one cycle in
-# three points, the same for every x. The fit has the points whose excess is above 3 standard errors, n = 1 excepted: that
-# is the equilibrium law.
+# linear in all parameters but omega, which is scanned: from 1.5 cycles over the data to one cycle
+# in three points, the same for every x. The fit has the points whose excess is above 3 standard
+# errors, n = 1 excepted: that is the equilibrium law.
 #
 # No such model is exact, so every log E has, beside its statistical error, a common error
-# `model_error`, which makes chi^2 of the best oscillating model equal to its degrees of freedom. All
-# models have the same errors, so their chi^2 can be compared.
+# `model_error`, which makes chi^2 of the best oscillating model equal to its degrees of freedom.
+# All models have the same errors, so their chi^2 can be compared.
 #   false_alarm  probability that the scan finds a relative gain in chi^2 as large as here in
 #                data of the plain power law
 #   p_value      probability that this model, if it is the true one, fits worse than the best of
@@ -293,7 +294,8 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       for (v = -1; v < 3; v++) {
         sum_chi[part[1], v] += v < 0 ? chi0 : chi0 - gain[v]
         parameters(v)
-        head = part[1] OFS part[2] OFS n OFS least_delta OFS error OFS name[v] OFS beta[2] OFS b_error
+        head = part[1] OFS part[2] OFS n OFS least_delta OFS error OFS name[v] OFS beta[2] OFS \
+          b_error
         if (v < 0) print head, "", "", chi0, n - 2, "", "", "", "", "", ""
         else print head, sqrt(beta[3]^2 + beta[4]^2), range_of[v]/cycles(best_of[v]), \
           chi0 - gain[v], dof, gain[v], alarms[v]/synthetic, worse[v]/synthetic, \
@@ -336,9 +338,9 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
 into markov-test-fit.csv fit
 
 # The maxima of the excess from the largest delta down, without a model: their spacings are constant
-# in log(delta) or in 1/delta if the oscillation is periodic there. A maximum counts if the excess is
-# lower by 15 percent and by 3 standard errors somewhere on either side before it is higher again.
-# Its place is that of the parabola of log E through three points.
+# in log(delta) or in 1/delta if the oscillation is periodic there. A maximum counts if on either
+# side the excess is lower by 15 percent and by 3 standard errors before it is higher again. Its
+# place is that of the parabola of log E through three points.
 maxima() {
   echo "epsilon,exponent,delta,spacing_of_log_delta,spacing_of_inverse_delta"
   awk -F, -v OFS=, '

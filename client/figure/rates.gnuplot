@@ -1,8 +1,8 @@
 # Draws rates.svg. Change it as you like; run it with: gnuplot rates.gnuplot
 #
-# The probability P(t) of at least one event in a window of length t, over t and over the exact rate,
-# with one standard error, against t in units of the mean free time. As t tends to 0 the ratio tends
-# to 1. Dashed: a Poisson process of the same rate.
+# The probability P(t) of at least one event in a window of length t, over t and over the exact
+# rate, with one standard error, against t in units of the mean free time. As t tends to 0 the ratio
+# tends to 1. Dashed: a Poisson process of the same rate.
 #   a  all events: ball-piston, ball-wall and piston-wall
 #   b  ball-piston events
 #   c  ball-piston events given the piston's energy

@@ -19,7 +19,8 @@ lengths=17
 
 # Prints the interval of each epsilon: epsilon,lower,upper.
 intervals() {
-  ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$epsilon" --format csv >rates-list.csv
+  ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$epsilon" --format csv \
+    >rates-list.csv
   awk -F, -v w="$half_width" '
     NR == 1 { for (i = 1; i <= NF; i++) if ($i == "epsilon") at = i; next }
     { print $at "," ($at > w ? $at - w : 0) "," ($at + w < 0.5 ? $at + w : 0.5) }' rates-list.csv
@@ -35,7 +36,8 @@ list=$(awk -F, -v n="$energies" '{
       printf "%s%.15g", separator, u*u/2
       separator = ","
     } }' rates-intervals.csv)
-into rates-exact.csv ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$list" --format csv
+into rates-exact.csv ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$list" \
+  --format csv
 
 # Prints all events of the orbits.
 trace() {

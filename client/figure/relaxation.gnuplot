@@ -1,7 +1,8 @@
 # Draws relaxation.svg. Change it as you like; run it with: gnuplot relaxation.gnuplot
 #
-# Time is in units of the mean free time between ball-piston collisions. Points are means over orbits
-# of the billiard with one standard error, lines the limit delta -> 0 by the jump process's spectrum.
+# Time is in units of the mean free time between ball-piston collisions. Points are means over
+# orbits of the billiard with one standard error, lines the limit delta -> 0 by the jump process's
+# spectrum.
 #   a  mean energy of the piston from several starts; it tends to 1/6
 #   b  autocorrelation of the piston's energy in equilibrium
 #   c  the difference of a from the limit, from the lowest and the highest start

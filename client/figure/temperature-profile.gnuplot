@@ -17,7 +17,8 @@ aside = 0.007  # by how much the billiard's points are moved to the right, so th
 
 lengths = ""
 note(n) = (lengths = strstrt(lengths." ", " ".n." ") ? lengths : lengths." ".n, 1)
-stats measured("markov") using (hot = column("hot"), cold = column("cold"), note(strcol("cells"))) nooutput
+stats measured("markov") \
+  using (hot = column("hot"), cold = column("cold"), note(strcol("cells"))) nooutput
 n = words(lengths)
 
 line(t) = (hot**1.5 + (cold**1.5 - hot**1.5)*t)**(2/3.0)
