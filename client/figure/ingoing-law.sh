@@ -1,7 +1,7 @@
 # Angles of first hits beside their equilibrium law, at several delta (the paper's histograms)
 #
 # Run by `ballpiston figure ingoing-law --out DIR`, whose flags replace these values, or by hand:
-# sh ingoing-law.sh. Time on two cores: quick 2 s, default 20 s, full 1 min.
+# sh ingoing-law.sh. Time on two cores: quick 1 s, default 10 s, full 1 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))

@@ -1,7 +1,7 @@
 # Collision rates from the probability of a collision in a short time (three equations of the paper)
 #
 # Run by `ballpiston figure rates --out DIR`, whose flags replace these values, or by hand:
-# sh rates.sh. Time on two cores: quick 3 s, default 40 s, full 6 min.
+# sh rates.sh. Time on two cores: quick 3 s, default 25 s, full 4 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"             # the paper's, (sqrt(33) - 2)/(5 sqrt(2))

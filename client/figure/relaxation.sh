@@ -1,7 +1,7 @@
 # Relaxation of the piston's energy: from given energies, and in equilibrium, beside the limit
 #
 # Run by `ballpiston figure relaxation --out DIR`, whose flags replace these values, or by hand:
-# sh relaxation.sh. Time on two cores: quick 4 s, default 45 s, full 7 min.
+# sh relaxation.sh. Time on two cores: quick 2 s, default 25 s, full 4 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"         # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
