@@ -1,7 +1,7 @@
 # Relative entropies of first hits above their noise, and whether they oscillate in log(delta)
 #
 # Run by `ballpiston figure markov-test --out DIR`, whose flags replace these values, or by hand:
-# sh markov-test.sh. Time on two cores: quick 5 s, default 1.5 min, full 45 min.
+# sh markov-test.sh. Time on two cores: quick 5 s, default 1 min, full 45 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
