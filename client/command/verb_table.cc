@@ -288,6 +288,7 @@ const FlagGroup kVariables = {
      {"--relaxation-delta", Variable("LIST", "relaxation_delta"),
       "penetrations at which relaxation times are compared, at most 8"},
      {"--epsilon", Variable("LIST", "epsilon"), "the piston's energies"},
+     {"--exponent", Variable("LIST", "exponent"), "n of the outgoing law h^(n)"},
      {"--cells", Variable("LIST", "cells"), "shape of the gas, or lengths of the chains"},
      {"--billiard-cells", Variable("LIST", "billiard_cells"), "lengths of the billiard's rings"},
      {"--temperature", Variable("X", "temperature"), "temperature of the gas"},

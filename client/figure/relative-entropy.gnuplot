@@ -13,7 +13,6 @@ set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "relative-entropy.svg"
 measured = "relative-entropy.csv"
 exponents = "0 1 5 10"  # one panel each
-colours = "#3b4cc0 #1b9e77 #404040 #d95f02 #b40426"  # one for each energy
 
 # ---- The data ----
 set datafile missing NaN  # joins lines across rows of other energies
@@ -22,15 +21,18 @@ energies = ""
 note(e) = (energies = strstrt(energies." ", " ".e." ") ? energies : energies." ".e, 1)
 stats measured using (note(strcol("epsilon"))) nooutput
 count = words(energies)
+stats measured using (column("delta")) nooutput
+smallest = STATS_min
+largest = STATS_max
 energy(i) = real(word(energies, i))
-colour(i) = word(colours, (i - 1) % words(colours) + 1)
 of(i, n, name) = is_of(name, n) && column("epsilon") == energy(i) ? column("value") : NaN
 
 set multiplot layout 2,2 margins 0.11,0.98,0.09,0.97 spacing 0.09,0.07
 set logscale xy
-set xrange [0.011:0.37]
+set xrange [0.88*smallest:1.14*largest]
 set format y "10^{%T}"
-set xtics ("0.0125" 0.0125, "0.025" 0.025, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2)
+set xtics ("0.0004" 0.0004, "0.0008" 0.0008, "0.0016" 0.0016, "0.003" 0.003, "0.006" 0.006, \
+           "0.0125" 0.0125, "0.025" 0.025, "0.05" 0.05, "0.1" 0.1, "0.2" 0.2)
 set key top left Left reverse samplen 0.8 spacing 1.05 width -2 font ",15"
 do for [panel=1:words(exponents)] {
   n = int(word(exponents, panel))

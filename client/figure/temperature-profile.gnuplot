@@ -10,29 +10,26 @@
 load "style.gnuplot"
 set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "temperature-profile.svg"
-measured = "temperature-profile.csv"
-colours = "#3b4cc0 #1b9e77 #d95f02 #b40426 #7570b3 #66a61e #e6ab02 #a6761d"  # one for each N
-exact_colour = "black"
+measured(model) = "temperature-profile-".model.".csv"
 aside = 0.007  # by how much the billiard's points are moved to the right, so that both are seen
 
 # ---- The data ----
 
 lengths = ""
 note(n) = (lengths = strstrt(lengths." ", " ".n." ") ? lengths : lengths." ".n, 1)
-stats measured using (hot = column("hot"), cold = column("cold"), note(strcol("cells"))) nooutput
+stats measured("markov") \
+  using (hot = column("hot"), cold = column("cold"), note(strcol("cells"))) nooutput
 n = words(lengths)
-colour(i) = word(colours, (i - 1) % words(colours) + 1)
 
 line(t) = (hot**1.5 + (cold**1.5 - hot**1.5)*t)**(2/3.0)
 is_piston(_) = column("position") == floor(column("position"))
 part(_) = column("position")/column("cells")
-# The bodies of one kind, by one model, in the chain i.
-of(i, model, piston) = strcol("cells") eq word(lengths, i) && strcol("model") eq model && \
-                       is_piston(0) == piston
-at(i, model, piston) = of(i, model, piston) ? part(0) + (model eq "billiard" ? aside : 0) : NaN
+# The bodies of one kind in the chain i.
+of(i, piston) = strcol("cells") eq word(lengths, i) && is_piston(0) == piston
+at(i, model, piston) = of(i, piston) ? part(0) + (model eq "billiard" ? aside : 0) : NaN
 error(_) = strcol("standard_error") eq "" ? 0 : column("standard_error")
-temperature(_) = column("temperature")
-excess(_) = column("temperature") - line(part(0))
+temperature(_) = column("value")
+excess(_) = column("value") - line(part(0))
 # Filled points are those of the jump process; balls are round, pistons square.
 shape(model, piston) = (piston ? 4 : 6) + (model eq "markov" ? 1 : 0)
 size(piston) = piston ? 0.62 : 0.7
@@ -52,8 +49,8 @@ set format x ""
 set ylabel "temperature T"
 set key top right Left reverse samplen 1.2 spacing 1.15 width 1
 models = "markov billiard"
-plot x < 0 || x > 1 ? NaN : line(x) with lines lw 2 lc rgb exact_colour title "linear T^{3/2}", \
-     for [i=1:n] for [piston=0:1] for [model in models] measured \
+plot x < 0 || x > 1 ? NaN : line(x) with lines lw 2 lc rgb black title "linear T^{3/2}", \
+     for [i=1:n] for [piston=0:1] for [model in models] measured(model) \
        using (at(i, model, piston)):(temperature(0)) \
        with points pt shape(model, piston) ps size(piston) lw 1.3 lc rgb colour(i) notitle, \
      for [i=1:n] NaN with points pt 7 ps 0.8 lc rgb colour(i) \
@@ -71,11 +68,11 @@ set format x "%g"
 set xlabel "x/N"
 set ylabel "T minus the line"
 unset key
-plot 0 with lines lw 2 lc rgb exact_colour, \
-     for [i=1:n] for [piston=0:1] for [model in models] measured \
+plot 0 with lines lw 2 lc rgb black, \
+     for [i=1:n] for [piston=0:1] for [model in models] measured(model) \
        using (at(i, model, piston)):(excess(0) - error(0)):(0):(2*error(0)) \
        with vectors nohead lw 1 lc rgb colour(i), \
-     for [i=1:n] for [piston=0:1] for [model in models] measured \
+     for [i=1:n] for [piston=0:1] for [model in models] measured(model) \
        using (at(i, model, piston)):(excess(0)) \
        with points pt shape(model, piston) ps size(piston) lw 1.3 lc rgb colour(i)
 unset multiplot

@@ -22,6 +22,9 @@ class FigureTest : public ::testing::Test {
     return Split("figure mean-free-time --delta 0.2,0.1 --out " + folder_ + " " + flags);
   }
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
+  static size_t LineCount(const std::string& text) {
+    return Words(absl::StrSplit(text, '\n', absl::SkipEmpty())).size();
+  }
   static bool HasGnuplot() {
     return RunProgram({.command = {"sh", "-c", "command -v gnuplot"}}).exit_code == 0;
   }
@@ -107,12 +110,9 @@ TEST_F(FigureTest, TheGasIsDrawnFromATrace) {
     return folder;
   };
   const std::string lattice = draw("3x2"), chain = draw("4");
-  const auto lines = [](const std::string& file) {
-    return Words(absl::StrSplit(Contents(file), '\n', absl::SkipEmpty())).size();
-  };
-  EXPECT_EQ(lines(lattice + "/gas-balls.csv"), 1 + 6u);
-  EXPECT_EQ(lines(lattice + "/gas-pistons.csv"), 1 + 12u);
-  EXPECT_EQ(lines(chain + "/gas-pistons.csv"), 1 + 4u);
+  EXPECT_EQ(LineCount(Contents(lattice + "/gas-balls.csv")), 1 + 6u);
+  EXPECT_EQ(LineCount(Contents(lattice + "/gas-pistons.csv")), 1 + 12u);
+  EXPECT_EQ(LineCount(Contents(chain + "/gas-pistons.csv")), 1 + 4u);
 }
 
 TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
@@ -123,10 +123,12 @@ TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
             folder_));
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_EQ(result.err, "");
-  const std::string data = Contents(folder_ + "/temperature-profile.csv");
-  EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(), 1 + 2 * (5 + 7u));
-  EXPECT_THAT(data, HasSubstr("\nmarkov,2,1.1,0.5,1.5,"));
-  EXPECT_THAT(data, HasSubstr("\nbilliard,3,1.1,0.5,0,"));
+  const std::string markov = Contents(folder_ + "/temperature-profile-markov.csv");
+  EXPECT_EQ(LineCount(markov), 1 + 5 + 7u);
+  EXPECT_THAT(markov, HasSubstr(",2,1.1,0.5,markov,60,temperature_profile,,1.5,"));
+  const std::string billiard = Contents(folder_ + "/temperature-profile-billiard.csv");
+  EXPECT_EQ(LineCount(billiard), 1 + 5 + 7u);
+  EXPECT_THAT(billiard, HasSubstr(",3,1.1,0.5,billiard,10,temperature_profile,,0,"));
   EXPECT_THAT(Contents(folder_ + "/temperature-profile.svg"), HasSubstr("N = 3"));
 }
 
@@ -158,6 +160,71 @@ TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
   EXPECT_THAT(Contents(folder_ + "/relative-entropy.svg"), HasSubstr("ε = 0.125"));
 }
 
+TEST_F(FigureTest, IngoingLawsStandOverTheirEquilibrium) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure ingoing-law --quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500 "
+            "--out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/ingoing-law.csv");
+  EXPECT_EQ(LineCount(data), 1 + 2 * (2 + 1) * 25u);  // epsilon < 1/4 has two values of sigma
+  EXPECT_THAT(data, HasSubstr("\n0.3,0.125,0,1,"));
+  EXPECT_THAT(data, HasSubstr("\n0.2,0.375,0,-1,"));
+  EXPECT_THAT(Contents(folder_ + "/ingoing-law.svg"), HasSubstr("ε = 0.375"));
+}
+
+TEST_F(FigureTest, RelaxationStandsBesideItsLimit) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure relaxation --delta 0.2,0.3 --epsilon 0.1,0.4 --samples 300 --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string energies = Contents(folder_ + "/relaxation-energy.csv");
+  EXPECT_EQ(LineCount(energies), 1 + 2 * 2 * 33u);
+  EXPECT_THAT(energies, HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,"));
+  EXPECT_EQ(LineCount(Contents(folder_ + "/relaxation-autocorrelation.csv")), 1 + 2 * 33u);
+  EXPECT_THAT(Contents(folder_ + "/relaxation.svg"), HasSubstr("δ = 0.3"));
+}
+
+TEST_F(FigureTest, RatesHaveAllLengthsOfAllKinds) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result =
+      server_.Client(Split("figure rates --quick --epsilon 0.1,0.4 --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  const std::string data = Contents(folder_ + "/rates.csv");
+  EXPECT_EQ(LineCount(data), 1 + (2 + 2) * 17u);
+  EXPECT_THAT(data, HasSubstr("\nall,,"));
+  EXPECT_THAT(data, HasSubstr("\nconditional,0.4,"));
+  EXPECT_THAT(Contents(folder_ + "/rates.svg"), HasSubstr("ε = 0.4"));
+}
+
+TEST_F(FigureTest, RatesFailIfTheTraceFails) {
+  const ProcessResult result =
+      server_.Client(Split("figure rates --quick --seed none --out " + folder_));
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ + "/rates.csv"));
+}
+
+TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const ProcessResult result = server_.Client(
+      Split("figure markov-test --quick --delta 0.2:0.325:12:log --epsilon 0.125,0.46875 "
+            "--exponent 1,10 --samples 20000 --out " +
+            folder_));
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-excess.csv")), 1 + 12 * 2 * 2u);
+  // At epsilon = 0.125 fewer than ten points are above the noise, so there is no fit.
+  const std::string fit = Contents(folder_ + "/markov-test-fit.csv");
+  EXPECT_EQ(LineCount(fit), 1 + 4 + 4u);  // the last four are sums over the exponents
+  EXPECT_THAT(fit, HasSubstr("\n0.46875,10,11,0.2,"));
+  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-decay.csv")), 1 + 2 * 2u);
+  EXPECT_THAT(Contents(folder_ + "/markov-test.svg"), HasSubstr("n = 10"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
@@ -167,6 +234,10 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("relative-entropy: "));
   EXPECT_THAT(result.out, HasSubstr("gas: "));
   EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
+  EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
+  EXPECT_THAT(result.out, HasSubstr("relaxation: "));
+  EXPECT_THAT(result.out, HasSubstr("rates: "));
+  EXPECT_THAT(result.out, HasSubstr("markov-test: "));
 }
 
 }  // namespace
