@@ -73,8 +73,8 @@ struct ExperimentKind {
   // Samples of one orbit that are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
 
-  // The exact probabilities of the bins of each histogram; of a hit time or of the energy at a time
-  // those of the limit delta -> 0. They sum to 1 over the histograms of one law: over both signs of
+  // The exact probabilities of the bins of each histogram; of the energy at a time those of the
+  // limit delta -> 0. They sum to 1 over the histograms of one law: over both signs of
   // the piston's velocity, and in each other histogram. Null if no law of the histograms is known,
   // or there are none.
   std::vector<std::vector<double>> (*expected_probabilities)(const PointParameters& point) =

@@ -26,8 +26,8 @@ struct Estimate {
   std::optional<double> ZScore() const;
 };
 
-// Counts of a quantity: of the ingoing angle for one sign of the piston's velocity, of a time, of
-// an energy at a time, or of a speed in a gas. A model without samples has no counts.
+// Counts of the ingoing angle for one sign of the piston's velocity, of an energy at a time, or of
+// a speed in a gas. A model without samples has no counts.
 struct NamedHistogram {
   std::string name;
   int sigma = 0;  // of an ingoing angle +1 or -1, else 0

@@ -49,9 +49,7 @@ std::vector<double> Joined(const std::vector<std::vector<double>>& lists) {
 }
 
 std::vector<std::vector<double>> ExpectedProbabilities(const PointParameters& point) {
-  std::vector<std::vector<double>> laws = IngoingBinProbabilities(IngoingLaw(point[kEpsilon]));
-  laws.push_back(ExponentialBinProbabilities());
-  return laws;
+  return IngoingBinProbabilities(IngoingLaw(point[kEpsilon]));
 }
 
 Estimate MeanCosAlpha(const Moments& moments) {
@@ -134,6 +132,7 @@ class FirstHitExperiment : public PointExperiment {
       summary.estimates.push_back(*variation);
     }
     summary.histograms = LabelledHistograms(merged);
+    summary.curves = {SurvivalCurve(merged.histograms.back())};
     if (merged.samples > 0) summary.kl_divergence = DistanceFromEquilibrium(merged);
     return summary;
   }
@@ -146,7 +145,6 @@ class FirstHitExperiment : public PointExperiment {
     for (const Histogram& histogram : IngoingOf(merged.histograms)) {
       labelled.push_back({"alpha", kIngoingSigmas[labelled.size()], histogram});
     }
-    labelled.push_back({"hit_time", 0, merged.histograms.back()});
     return labelled;
   }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/experiment/without_last_bits.h"
+#include "core/statistics/told_error.h"
 
 namespace ballpiston {
 
@@ -10,15 +11,21 @@ Histogram EmptyHitTimes(double mean) {
   return Histogram::OfBins(0, WithoutLastBits(kHitTimeMeans * mean), kHitTimeBins);
 }
 
-std::vector<double> ExponentialBinProbabilities() {
-  constexpr double kWidth = kHitTimeMeans / kHitTimeBins;
-  const auto later_than = [](size_t bin) { return std::exp(-kWidth * static_cast<double>(bin)); };
-  std::vector<double> probabilities(kHitTimeBins);
+Curve SurvivalCurve(const Histogram& hit_times) {
+  Curve curve = {.name = "survival"};
+  const auto samples = static_cast<double>(hit_times.Total());
+  if (samples == 0) return curve;
+  double later = samples;
   for (size_t bin = 0; bin < kHitTimeBins; ++bin) {
-    probabilities[bin] = later_than(bin) - later_than(bin + 1);
+    const double share = later / samples, both = later * (1 - share);
+    curve.points.push_back(
+        {.at = hit_times.Edge(bin),
+         .value = share,
+         .standard_error = bin == 0 ? 0 : ToldError(both, std::sqrt(both) / samples),
+         .limit = std::exp(-kHitTimeMeans / kHitTimeBins * static_cast<double>(bin))});
+    later -= static_cast<double>(hit_times.counts[bin]);
   }
-  probabilities.back() = later_than(kHitTimeBins - 1);
-  return probabilities;
+  return curve;
 }
 
 }  // namespace ballpiston

@@ -1,25 +1,27 @@
-// Bins of the time to the first ball-piston collision, and the exponential law beside them.
+// The law of the time to the first ball-piston collision, beside its limit delta -> 0, in which it
+// is expected to become exponential with the rate of eq. fmftbpeprate.
 //
-// The bins reach up to kHitTimeMeans mean return times; later hits count in the last bin. The law
-// of hit times is expected to become exponential as delta -> 0, with the rate of eq. fmftbpeprate.
+// Counted in kHitTimeBins bins, each a tenth of the mean return time at this energy; later hits
+// count in the last bin. Told as the curve `survival`: the probability that ball and piston have
+// not met up to a time.
 #ifndef BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 #define BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 
 #include <cstddef>
-#include <vector>
 
+#include "core/ensemble/point_summary.h"
 #include "core/statistics/histogram.h"
 
 namespace ballpiston {
 
-inline constexpr size_t kHitTimeBins = 160;
-inline constexpr double kHitTimeMeans = 8;
+inline constexpr size_t kHitTimeBins = 80;
+inline constexpr double kHitTimeMeans = 8;  // up to which the bins reach
 
 // `mean`: the mean return time at this energy.
 Histogram EmptyHitTimes(double mean);
 
-// Of an exponential law with this mean. The last bin has all times above its lower edge.
-std::vector<double> ExponentialBinProbabilities();
+// At the lower edges of the bins. The errors are binomial.
+Curve SurvivalCurve(const Histogram& hit_times);
 
 }  // namespace ballpiston
 

@@ -57,12 +57,13 @@ TEST_F(CompletionTest, OffersFlagsWithTheirTexts) {
 }
 
 TEST_F(CompletionTest, OffersTheChoicesOfAValue) {
-  const auto formats = ElementsAre("table", "json", "jsonl", "csv");
+  const auto formats = ElementsAre("table", "json", "jsonl", "csv", "csv-histograms", "csv-curves");
   EXPECT_THAT(Offers({"run", "first-hit", "--format", ""}), formats);
   EXPECT_THAT(Offers({"run", "first-hit", "--format", "="}), formats);  // bash's three words
   EXPECT_THAT(Offers({"run", "first-hit", "--format", "=", "c"}), formats);
   EXPECT_THAT(Offers({"run", "first-hit", "--format=c"}),  // the one word of zsh and fish
-              ElementsAre("--format=table", "--format=json", "--format=jsonl", "--format=csv"));
+              ElementsAre("--format=table", "--format=json", "--format=jsonl", "--format=csv",
+                          "--format=csv-histograms", "--format=csv-curves"));
   EXPECT_THAT(Offers({"list", "--state", ""}), Contains("running"));
   EXPECT_THAT(Offers({"plan", "gas-equilibrium", "--estimate", ""}),
               ElementsAre("exchange_rate", "conductivity"));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "tests/core/one_point_spec.h"
 #include "tests/core/run_point.h"
@@ -11,41 +10,44 @@
 namespace ballpiston {
 namespace {
 
-TEST(HitTimeLaw, ExponentialProbabilitiesSumToOneAndHaveMeanOne) {
-  const std::vector<double> p = ExponentialBinProbabilities();
-  EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1, 1e-14);
-  double mean = 0;
-  const double width = kHitTimeMeans / kHitTimeBins;
-  for (size_t bin = 0; bin < p.size(); ++bin) {
-    mean += p[bin] * (static_cast<double>(bin) + 0.5) * width;
+TEST(HitTimeLaw, SurvivalIsTheShareOfLaterHits) {
+  Histogram times = EmptyHitTimes(1);
+  for (int i = 0; i < 300; ++i) times.Add(0.05);
+  for (int i = 0; i < 100; ++i) times.Add(100);
+  const Curve curve = SurvivalCurve(times);
+  ASSERT_EQ(curve.points.size(), kHitTimeBins);
+  EXPECT_EQ(curve.points[0].value, 1);
+  EXPECT_EQ(curve.points[0].standard_error, 0);
+  for (size_t i = 1; i < kHitTimeBins; ++i) {
+    EXPECT_NEAR(curve.points[i].at, 0.1 * static_cast<double>(i), 1e-6);
+    EXPECT_NEAR(*curve.points[i].limit, std::exp(-0.1 * static_cast<double>(i)), 1e-12);
+    EXPECT_EQ(curve.points[i].value, 0.25);
+    EXPECT_NEAR(*curve.points[i].standard_error, std::sqrt(0.25 * 0.75 / 400), 1e-15);
   }
-  // The last bin lacks exp(-8) of a mean; the middles of bins are off by width^2/12.
-  EXPECT_NEAR(mean, 1, 1e-3);
 }
 
-// The same times as those of the mean.
-TEST(HitTimeLaw, CountsEachFirstHitInTheBinOfItsTime) {
+// The integral of the survival probability is the mean; by the trapezoidal rule, without the part
+// beyond the last bin. Both leave out less than 0.002 of it.
+TEST(HitTimeLaw, IntegralOfTheSurvivalIsTheMeanHitTime) {
   for (const double exponent : {0.0, 1.0, 10.0}) {
     const PointSummary summary = RunPoint(
         SpecOf(&kFirstHit, PaperPoint(0.2, 0.125, exponent), {.samples = 5'000}, Model::kBilliard));
-    const NamedHistogram& law = summary.histograms.back();
-    EXPECT_EQ(law.name, "hit_time");
-    EXPECT_EQ(law.histogram.Total(), 5'000u);
-    EXPECT_EQ(law.histogram.lower, 0);
-    double sum = 0;
-    for (size_t bin = 0; bin < kHitTimeBins; ++bin) {
-      sum += static_cast<double>(law.histogram.counts[bin]) *
-             (law.histogram.Edge(bin) + law.histogram.Edge(bin + 1)) / 2;
+    ASSERT_EQ(summary.curves.size(), 1u);
+    const Curve& curve = summary.curves[0];
+    EXPECT_EQ(curve.name, "survival");
+    double integral = 0;
+    for (size_t i = 1; i < curve.points.size(); ++i) {
+      integral += (curve.points[i].at - curve.points[i - 1].at) *
+                  (curve.points[i].value + curve.points[i - 1].value) / 2;
     }
-    // Within a bin times are spread evenly, nearly: 0.003 of the mean. Some in 3,000 are later.
-    EXPECT_NEAR(sum / 5'000 / summary.estimates[0].value, 1, 0.01) << exponent;
+    EXPECT_NEAR(integral / summary.estimates[0].value, 1, 0.004) << exponent;
   }
 }
 
-TEST(HitTimeLaw, TheDivergenceOfTheAngleLeavesTimesOut) {
+TEST(HitTimeLaw, HistogramsAndDivergenceAreOfTheAngleAlone) {
   const PointSummary summary =
       RunPoint(SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 1), {.samples = 1'000}, Model::kBilliard));
-  ASSERT_EQ(summary.histograms.size(), 2u);
+  ASSERT_EQ(summary.histograms.size(), 1u);
   EXPECT_EQ(summary.kl_divergence->cells, 1000);
 }
 
