@@ -14,12 +14,21 @@ namespace ballpiston {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class FigureTest : public ::testing::Test {
  protected:
   Words Draw(const std::string& flags) const {
     return Split("figure mean-free-time --delta 0.2,0.1 --out " + folder_ + " " + flags);
+  }
+  // Draws a figure without messages and returns its SVG.
+  std::string Svg(const std::string& name, const std::string& flags = "") const {
+    const ProcessResult result =
+        server_.Client(Split("figure " + name + " --out " + folder_ + (flags.empty() ? "" : " ") + flags));
+    EXPECT_THAT(result, ExitsWith(0));
+    EXPECT_EQ(result.err, "");
+    return Contents(folder_ + "/" + name + ".svg");
   }
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
   static bool HasGnuplot() {
@@ -158,9 +167,23 @@ TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
   EXPECT_THAT(Contents(folder_ + "/relative-entropy.svg"), HasSubstr("ε = 0.125"));
 }
 
+TEST_F(FigureTest, TheCellShowsItsParameters) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("cell", "--delta 0.1 --seed 3"), HasSubstr("δ = 0.1"));
+  EXPECT_THAT(Contents(folder_ + "/cell.csv"), HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
+}
+
+TEST_F(FigureTest, TheCellInThreeDimensionsShowsItsCollisionSurface) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("cell-3d", "--rho 0.65 --delta 0.08"),
+              AllOf(HasSubstr("q₁ = q₃"), HasSubstr("heights drawn × ")));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_THAT(result.out, HasSubstr("cell: "));
+  EXPECT_THAT(result.out, HasSubstr("cell-3d: "));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));
