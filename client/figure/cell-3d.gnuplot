@@ -2,8 +2,8 @@
 #
 # The ball at (q1, q2) and the piston at q3 are one point of a three-dimensional billiard, seen here
 # from below. Its vertical walls stand over the arcs of the ball's cell; its floor and ceiling are
-# the piston's walls. The ball is left of the piston, so the slanted plane q1 = q3 cuts off the lower
-# end of the right tip: this is the collision surface.
+# the piston's walls. The ball is left of the piston, so the slanted plane q1 = q3 cuts off the
+# lower end of the right tip: this is the collision surface.
 # cell-3d.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -95,7 +95,8 @@ do for [k=0:3] {
     set arrow from xa,ya,bottom(xa) to xb,yb,bottom(xb) arrowstyle 1
     if (k == 1 || k == 2) { set arrow from xa,ya,ceiling to xb,yb,ceiling arrowstyle 1 }
   }
-  if (k > 0) { set arrow from x(k, 0),y(k, 0),bottom(x(k, 0)) to x(k, 0),y(k, 0),ceiling arrowstyle 1 }
+  xa = x(k, 0); ya = y(k, 0)
+  if (k > 0) { set arrow from xa,ya,bottom(xa) to xa,ya,ceiling arrowstyle 1 }
 }
 set arrow from low,-eta/2,low to low,eta/2,low arrowstyle 1
 
@@ -121,7 +122,7 @@ set arrow from ox,oy,oz to ox,oy,oz + axis arrowstyle 2
 set label "q₁" at ox + 1.25*axis,oy,oz center front
 set label "q₂" at ox,oy + 1.25*axis,oz center front
 set label "q₃" at ox,oy,oz + 1.2*axis center front
-set label "wall of a disc" at 0.5 - rho*cos(pi/4),-0.5 + rho*sin(pi/4),0.55*ceiling + 0.45*low center front
+set label "wall of a disc" at x(1, 0.5),y(1, 0.5),0.55*ceiling + 0.45*low center front
 set label "floor: q₃ = 1/2 - λ/2 - δ" at -tip,0,low center offset 0,-1.2 front
 set label "ceiling: q₃ = 1/2 + λ/2 + δ" at tip,0,ceiling center offset 0,1 front
 set label "collision surface:" at tip,0,drawn(tip) left offset 9.5,0.6 front tc rgb "#b40426"

@@ -1,4 +1,4 @@
-# The three-dimensional billiard of ball and piston, with its collision surface (a figure of the paper)
+# Ball and piston as one billiard in three dimensions (a figure of the paper)
 #
 # Run by `ballpiston figure cell-3d --out DIR`, whose flags replace these values, or by hand:
 # sh cell-3d.sh

@@ -1,9 +1,9 @@
 # Draws cell.svg. Change it as you like; run it with: gnuplot cell.gnuplot
 #
 # The minimal ball-piston model. The ball moves in the cell between four discs of radius rho at the
-# corners of the unit square. The piston, a vertical segment of height eta, moves in the piston cell,
-# which is lambda + 2 delta long. lambda, with tan(theta) = lambda, is the length of the overlap of
-# two opposite discs. Arrows are proportional to the velocities.
+# corners of the unit square. The piston, a vertical segment of height eta, moves in the piston
+# cell, which is lambda + 2 delta long. lambda, with tan(theta) = lambda, is the length of the
+# overlap of two opposite discs. Arrows are proportional to the velocities.
 # cell.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -77,8 +77,8 @@ do for [n=0:4] {
 set print
 
 # ---- The parameters ----
-set style arrow 1 heads size 0.022,18 filled front lw 1.3 lc rgb black   # dimensions
-set style arrow 2 nohead front dt (5,4) lw 1 lc rgb edge_colour          # what they are measured from
+set style arrow 1 heads size 0.022,18 filled front lw 1.3 lc rgb black # dimensions
+set style arrow 2 nohead front dt (5,4) lw 1 lc rgb edge_colour   # their ends
 
 # rho: from the centre of the lower left disc
 direction = pi/4
@@ -127,8 +127,8 @@ set arrow from -0.5,-0.5 to -0.5,-0.575 arrowstyle 2
 set arrow from 0.5,-0.5 to 0.5,-0.575 arrowstyle 2
 set label "1" at 0,-0.555 center offset 0,-0.9
 
-set label sprintf("ρ = %.6g     λ = tan θ = %.4g     δ = %.4g     η = %.4g", rho, lambda, delta, \
-                  eta) at -0.5,0.575 left font ",15"
+set label sprintf("ρ = %.6g     λ = tan θ = %.4g     δ = %.4g     η = %.4g", \
+                  rho, lambda, delta, eta) at -0.5,0.575 left font ",15"
 
 plot $circles with lines lw 0.7 lc rgb edge_colour, \
      $overlap with filledcurves closed fillcolor rgb overlap_colour, \

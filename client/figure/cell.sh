@@ -1,6 +1,7 @@
 # The ball-piston pair and the parameters of its cell (the paper's figure of the minimal model)
 #
-# Run by `ballpiston figure cell --out DIR`, whose flags replace these values, or by hand: sh cell.sh
+# Run by `ballpiston figure cell --out DIR`, whose flags replace these values, or by hand:
+# sh cell.sh
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))

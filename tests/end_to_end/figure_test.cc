@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class FigureTest : public ::testing::Test {
  protected:
@@ -24,8 +25,8 @@ class FigureTest : public ::testing::Test {
   }
   // Draws a figure without messages and returns its SVG.
   std::string Svg(const std::string& name, const std::string& flags = "") const {
-    const ProcessResult result =
-        server_.Client(Split("figure " + name + " --out " + folder_ + (flags.empty() ? "" : " ") + flags));
+    const ProcessResult result = server_.Client(
+        Split("figure " + name + " --out " + folder_ + (flags.empty() ? "" : " ") + flags));
     EXPECT_THAT(result, ExitsWith(0));
     EXPECT_EQ(result.err, "");
     return Contents(folder_ + "/" + name + ".svg");
@@ -170,7 +171,8 @@ TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
 TEST_F(FigureTest, TheCellShowsItsParameters) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("cell", "--delta 0.1 --seed 3"), HasSubstr("δ = 0.1"));
-  EXPECT_THAT(Contents(folder_ + "/cell.csv"), HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
+  EXPECT_THAT(Contents(folder_ + "/cell.csv"),
+              HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
 }
 
 TEST_F(FigureTest, TheCellInThreeDimensionsShowsItsCollisionSurface) {
@@ -179,11 +181,29 @@ TEST_F(FigureTest, TheCellInThreeDimensionsShowsItsCollisionSurface) {
               AllOf(HasSubstr("q₁ = q₃"), HasSubstr("heights drawn × ")));
 }
 
+TEST_F(FigureTest, TheCollisionSurfaceHasTheVelocitiesOfOneEnergy) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("collision-surface", "--epsilon 0.3"), HasSubstr("ε = 0.3<"));
+}
+
+TEST_F(FigureTest, AnOrbitHasTheEventsOfBothBodies) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("orbit"), HasSubstr("piston, q₃"));
+  for (const std::string body : {"ball", "piston"}) {
+    const std::string data = Contents(folder_ + "/orbit-" + body + ".csv");
+    EXPECT_THAT(data, StartsWith("time,event,x,y,energy\n0,start,"));
+    EXPECT_THAT(data, HasSubstr("," + body + "_wall,"));
+    EXPECT_THAT(data, HasSubstr(",ball_piston,"));
+  }
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
   EXPECT_THAT(result.out, HasSubstr("cell: "));
   EXPECT_THAT(result.out, HasSubstr("cell-3d: "));
+  EXPECT_THAT(result.out, HasSubstr("collision-surface: "));
+  EXPECT_THAT(result.out, HasSubstr("orbit: "));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));
