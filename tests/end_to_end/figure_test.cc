@@ -197,6 +197,24 @@ TEST_F(FigureTest, AnOrbitHasTheEventsOfBothBodies) {
   }
 }
 
+TEST_F(FigureTest, TheKernelStandsBesideCollisionsOfTheBilliard) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("kernel", "--quick --epsilon 0.1,0.3"), HasSubstr("ε = 0.3<"));
+  EXPECT_EQ(Words(absl::StrSplit(Contents(folder_ + "/kernel-exact.csv"), '\n', absl::SkipEmpty()))
+                .size(),
+            1 + 2 * 499u);
+  EXPECT_THAT(Contents(folder_ + "/kernel-measured.csv"), HasSubstr("\n0.1,"));
+}
+
+TEST_F(FigureTest, TheSpectrumHasRatesAndAutocorrelations) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("spectrum", "--delta 0.2,0.1 --samples 1000"),
+              AllOf(HasSubstr("0.1521"), HasSubstr("δ = 0.1<")));
+  EXPECT_THAT(Contents(folder_ + "/spectrum.csv"), HasSubstr(",spectral_gap,0.15208712661"));
+  EXPECT_THAT(Contents(folder_ + "/spectrum-billiard.csv"),
+              HasSubstr(",0.1,,,billiard,1000,energy_autocorrelation,"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
@@ -204,6 +222,8 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("cell-3d: "));
   EXPECT_THAT(result.out, HasSubstr("collision-surface: "));
   EXPECT_THAT(result.out, HasSubstr("orbit: "));
+  EXPECT_THAT(result.out, HasSubstr("kernel: "));
+  EXPECT_THAT(result.out, HasSubstr("spectrum: "));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));
