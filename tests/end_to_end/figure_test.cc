@@ -224,6 +224,7 @@ TEST_F(FigureTest, ListNamesThem) {
   EXPECT_THAT(result.out, HasSubstr("orbit: "));
   EXPECT_THAT(result.out, HasSubstr("kernel: "));
   EXPECT_THAT(result.out, HasSubstr("spectrum: "));
+  EXPECT_THAT(result.out, HasSubstr("stability: "));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));
