@@ -9,7 +9,7 @@ STABILITY_OUT ?= stability.md
 TEST_PACKAGES := libgtest-dev libgmock-dev
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
-PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison pages
+PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder

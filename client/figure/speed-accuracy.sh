@@ -2,17 +2,18 @@
 #
 # Run by `ballpiston figure speed-accuracy --out DIR`, whose flags replace these values, or by hand:
 # sh speed-accuracy.sh. It needs no server. No other program should be busy on the machine.
-# Time on one core: quick 12 s, default 1 min, full 10 min.
+# Time on one core: quick 3 s, default 1 min, full 20 min.
 set -eu
 . ./figure.sh
-# Panel e has a delta of its own: 0.2, or the gas's bound if that is smaller.
+# Panel f has a delta of its own: 0.2, or the gas's bound if that is smaller.
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
-: "${delta:=0.1}"              # of panels a to c
-: "${epsilon:=0.125}"          # the piston's energy in panels a and b
-# Panel d shows these deltas, at most 8. If empty, it shows those of 0.2,0.1,0.05,0.025 that rho permits.
+: "${delta:=0.1}"              # of panels a to d
+: "${epsilon:=0.125}"          # the piston's energy in panels a to c
+# Panel e chooses among these deltas, at most 8. If empty, among those of 0.2,0.1,0.05,0.025 that
+# rho permits.
 : "${relaxation_delta:=}"
 # Work of each method's largest run, 0.01 to 60.
-: "${seconds:=$(by_effort 0.1 0.5 5)}"
+: "${seconds:=$(by_effort 0.03 0.5 10)}"
 : "${seed:=0}"
 
 case ${BALLPISTON_PROGRESS:-auto} in

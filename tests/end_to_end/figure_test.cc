@@ -14,12 +14,22 @@ namespace ballpiston {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class FigureTest : public ::testing::Test {
  protected:
   Words Draw(const std::string& flags) const {
     return Split("figure mean-free-time --delta 0.2,0.1 --out " + folder_ + " " + flags);
+  }
+  // Draws a figure without messages and returns its SVG.
+  std::string Svg(const std::string& name, const std::string& flags = "") const {
+    const ProcessResult result = server_.Client(
+        Split("figure " + name + " --out " + folder_ + (flags.empty() ? "" : " ") + flags));
+    EXPECT_THAT(result, ExitsWith(0));
+    EXPECT_EQ(result.err, "");
+    return Contents(folder_ + "/" + name + ".svg");
   }
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
   static size_t LineCount(const std::string& text) {
@@ -225,9 +235,63 @@ TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
   EXPECT_THAT(Contents(folder_ + "/markov-test.svg"), HasSubstr("n = 10"));
 }
 
+TEST_F(FigureTest, TheCellShowsItsParameters) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("cell", "--delta 0.1 --seed 3"), HasSubstr("δ = 0.1"));
+  EXPECT_THAT(Contents(folder_ + "/cell.csv"),
+              HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
+}
+
+TEST_F(FigureTest, TheCellInThreeDimensionsShowsItsCollisionSurface) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("cell-3d", "--rho 0.65 --delta 0.08"),
+              AllOf(HasSubstr("q₁ = q₃"), HasSubstr("heights drawn × ")));
+}
+
+TEST_F(FigureTest, TheCollisionSurfaceHasTheVelocitiesOfOneEnergy) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("collision-surface", "--epsilon 0.3"), HasSubstr("ε = 0.3<"));
+}
+
+TEST_F(FigureTest, AnOrbitHasTheEventsOfBothBodies) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("orbit"), HasSubstr("piston, q₃"));
+  for (const std::string body : {"ball", "piston"}) {
+    const std::string data = Contents(folder_ + "/orbit-" + body + ".csv");
+    EXPECT_THAT(data, StartsWith("time,event,x,y,energy\n0,start,"));
+    EXPECT_THAT(data, HasSubstr("," + body + "_wall,"));
+    EXPECT_THAT(data, HasSubstr(",ball_piston,"));
+  }
+}
+
+TEST_F(FigureTest, TheKernelStandsBesideCollisionsOfTheBilliard) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("kernel", "--quick --epsilon 0.1,0.3"), HasSubstr("ε = 0.3<"));
+  EXPECT_EQ(Words(absl::StrSplit(Contents(folder_ + "/kernel-exact.csv"), '\n', absl::SkipEmpty()))
+                .size(),
+            1 + 2 * 499u);
+  EXPECT_THAT(Contents(folder_ + "/kernel-measured.csv"), HasSubstr("\n0.1,"));
+}
+
+TEST_F(FigureTest, TheSpectrumHasRatesAndAutocorrelations) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("spectrum", "--delta 0.2,0.1 --samples 1000"),
+              AllOf(HasSubstr("0.1521"), HasSubstr("δ = 0.1<")));
+  EXPECT_THAT(Contents(folder_ + "/spectrum.csv"), HasSubstr(",spectral_gap,0.15208712661"));
+  EXPECT_THAT(Contents(folder_ + "/spectrum-billiard.csv"),
+              HasSubstr(",0.1,,,billiard,1000,energy_autocorrelation,"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_THAT(result.out, HasSubstr("cell: "));
+  EXPECT_THAT(result.out, HasSubstr("cell-3d: "));
+  EXPECT_THAT(result.out, HasSubstr("collision-surface: "));
+  EXPECT_THAT(result.out, HasSubstr("orbit: "));
+  EXPECT_THAT(result.out, HasSubstr("kernel: "));
+  EXPECT_THAT(result.out, HasSubstr("spectrum: "));
+  EXPECT_THAT(result.out, HasSubstr("stability: "));
   EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
   EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
   EXPECT_THAT(result.out, HasSubstr("conductivity: "));

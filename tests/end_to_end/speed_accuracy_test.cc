@@ -57,7 +57,7 @@ TEST_F(SpeedAccuracy, LeavesDataScriptsAndPicture) {
   }
   EXPECT_TRUE(fs::exists(figure_ + "/speed-accuracy.gnuplot"));
   if (result.err.find("gnuplot is not installed") != std::string::npos) GTEST_SKIP();
-  for (const char* text : {"vector lanes, double", "heat current of a gas"}) {
+  for (const char* text : {"vector lanes", "heat current of a gas"}) {
     EXPECT_THAT(Contents(figure_ + "/speed-accuracy.svg"), HasSubstr(text));
   }
   EXPECT_THAT(result.out, HasSubstr(figure_ + "/speed-accuracy.svg\n"));

@@ -40,8 +40,8 @@ void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) 
   app.add_option("--rho", spec.rho, "radius of the discs")->capture_default_str();
   app.add_option(
          "--delta", spec.delta,
-         "how far the piston reaches, for panels a to c of the chart. It does not change "
-         "panel d (see --relaxation-delta), nor e, the heat current, whose delta is 0.2, or "
+         "how far the piston reaches, for panels a to d of the chart. It does not change "
+         "panel e (see --relaxation-delta), nor f, the heat current, whose delta is 0.2, or "
          "the bound of a gas if that is smaller")
       ->capture_default_str();
   app.add_option("--epsilon", spec.epsilon, "energy of the piston, between 0 and 1/2")

@@ -1,0 +1,55 @@
+# Failures of all engines and of naive methods in the situations where methods fail
+#
+# Run by `ballpiston figure stability --out DIR`, or by hand: sh stability.sh. It needs no server:
+# the program `stability` counts. With --full it takes some ten minutes of one core, else it runs a
+# thousandth of the starts.
+set -eu
+. ./figure.sh
+
+# Its progress, on standard error, is only for a terminal.
+count() {
+  quick=$(by_effort --quick --quick "")
+  if [ -t 2 ]; then
+    stability $quick
+  elif ! stability $quick 2>stability.log; then
+    cat stability.log >&2
+    return 1
+  fi
+}
+into stability.md count
+rm -f stability.log
+
+# The tables "All counts" of stability.md, separated by tabs because names have commas, with the sum
+# of all kinds of failures. A case stands only in the first row of its block.
+counts() {
+  printf 'section\trow\tcase\tmethod\tstarts\tfailures\n'
+  awk -F ' *[|] *' '
+    BEGIN {
+      kinds = "^(escapes|negative times|loops|still inward|missed|phantoms|pistons beyond)$"
+    }
+    /^<details>/ { section = $0; sub(/.*All counts: /, "", section); sub(/<.*/, "", section) }
+    /^<\/details>/ { section = "" }
+    section == "" || NF < 5 || /^[|]:?-/ { next }
+    $2 == "case" {
+      for (i = 2; i <= NF; ++i) {
+        name[i] = $i
+        if ($i == "starts") starts = i
+      }
+      next
+    }
+    {
+      if ($2 != "") { ++row; situation = $2 }
+      gsub(/,/, "", $starts)
+      failures = 0
+      for (i = starts + 1; i < NF; ++i) {
+        if (name[i] ~ kinds) {
+          gsub(/,/, "", $i)
+          failures += $i
+        }
+      }
+      printf "%s\t%d\t%s\t%s\t%s\t%d\n", section, row, situation, $3, $starts, failures
+    }' stability.md
+}
+into stability.tsv counts
+
+draw stability

@@ -1,0 +1,31 @@
+// The figure of the failures that the program `stability` counts, without a server.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "absl/strings/str_split.h"
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(StabilityFigure, HasAllSituationsAndMethods) {
+  const TemporaryFolder home;
+  const std::string figure = home.File("figure");
+  const ProcessResult result = RunProgram(ClientCommand(
+      home, {"figure", "stability", "--quick", "--progress", "none", "--out", figure}));
+  EXPECT_THAT(result, ExitsWith(0));
+  const std::string data = Contents(figure + "/stability.tsv");
+  EXPECT_EQ(Words(absl::StrSplit(data, '\n', absl::SkipEmpty())).size(),
+            1 + 6 * 11 + 8 * 10 + 15 * 6u);
+  EXPECT_THAT(data, HasSubstr("\tgrazing, rho = 0.501, 0.5296, 0.6, 0.65, 0.7\tlanes\t"));
+  if (result.err.find("gnuplot is not installed") != std::string::npos) GTEST_SKIP();
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(Contents(figure + "/stability.svg"), HasSubstr("one hot piston"));
+}
+
+}  // namespace
+}  // namespace ballpiston
