@@ -126,7 +126,7 @@
   }
 
   function axis(label, more) {
-    return {label, labelSize: 22, labelFont: '13px system-ui, sans-serif',
+    return {label, labelSize: 20, labelGap: 2, labelFont: '13px system-ui, sans-serif',
       font: '12px system-ui, sans-serif', stroke: () => styleOf('--soft'),
       grid: {stroke: () => styleOf('--grid'), width: 1},
       ticks: {stroke: () => styleOf('--grid'), width: 1, size: 5}, ...more};
@@ -264,7 +264,7 @@
             range: (u, min, max) => this.xRange = rangeOfX(this.chart, min, max)},
           y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
         },
-        axes: [axis(chart.xLabel, {values: tickTexts, space: narrow ? 55 : 70}),
+        axes: [axis(chart.xLabel, {values: tickTexts, size: 28, space: narrow ? 55 : 70}),
           axis(chart.yLabel, {values: tickTexts, size: widthOfTicks})],
         series: [{}, ...chart.lines.map(uplotSeries)],
         hooks: {

@@ -40,7 +40,7 @@
   }
 
   function signedText(value, places = 2) {
-    return isNumber(value) ? (value < 0 ? '−' : '+') + Math.abs(value).toFixed(places) : '';
+    return isNumber(value) ? (value < 0 ? '-' : '+') + Math.abs(value).toFixed(places) : '';
   }
 
   // 1234567: 1,234,567

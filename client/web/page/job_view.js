@@ -118,13 +118,13 @@
       this.title = element('h1', {tabindex: '-1'}, 'Job');
       this.progress = element('progress', {max: 1, value: 0, 'aria-label': 'Progress of the job'});
       this.progressText = element('span');
-      this.state = element('p', {class: 'progress', role: 'status'});
+      this.state = element('span', {role: 'status'});
       this.why = element('p', {class: 'panel', hidden: true});
       this.notes = element('div');
       this.facts = element('div');
       this.spec = element('div');
-      this.element = element('section', {'aria-label': 'The job'}, this.title, this.state,
-        element('p', {class: 'progress'}, this.progress, this.progressText), this.why, this.notes,
+      this.element = element('section', {'aria-label': 'The job'}, this.title,
+        element('p', {class: 'progress'}, this.state, this.progress, this.progressText), this.why, this.notes,
         element('details', {class: 'about'}, element('summary', {}, 'Specification, times and work'),
           this.spec, this.facts));
     }
@@ -139,7 +139,8 @@
         this.spec.replaceChildren(ballpiston.specFacts(job.spec), ballpiston.specJson(job.spec));
       }
       const ended = ENDED.has(job.state);
-      this.progress.value = job.state === 'SUCCEEDED' ? 1 : ballpiston.fractionOf(job.progress);
+      this.progress.hidden = ended;
+      this.progress.value = ballpiston.fractionOf(job.progress);
       this.progressText.textContent = ballpiston.progressText(job.progress);
       const why = whyText(job, status);
       this.why.hidden = why === '';

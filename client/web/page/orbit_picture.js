@@ -6,7 +6,7 @@
   const CIVIDIS = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102],
     [254, 232, 56]];
   const EDGE = 0.06;  // around the cells
-  const BALL = 0.035; // radius of the picture of a ball, which is a point
+  const BALL = 0.02;  // radius of the picture of a ball, which is a point
   const TRAIL = 60;   // corners of the pair's trail
 
   const styleOf = (name) => ballpiston.styleOf(name);

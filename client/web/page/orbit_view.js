@@ -37,7 +37,7 @@
   }
 
   function eventText(event) {
-    const parts = [`t = ${valueText(event.time)}`, words(event.event)];
+    const parts = [`t = ${event.time.toFixed(4)}`, words(event.event)];
     if (event.ball !== undefined) parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
     if (event.piston !== undefined) {
       parts.push(`piston ${event.piston}: energy ${valueText(event.piston_energy, 1e-3)}`);
@@ -63,7 +63,7 @@
     stage() {
       this.canvas = element('canvas', {class: 'orbit', role: 'img', tabindex: '0',
         'aria-label': 'The orbit', onkeydown: (event) => this.onKey(event)});
-      new ResizeObserver(() => this.fit()).observe(this.canvas);
+      new ResizeObserver(() => this.fit()).observe(document.getElementById('main'));
       return this.canvas;
     }
 
@@ -112,7 +112,7 @@
     setSpeed(speed) {
       this.speed = Math.min(Math.max(speed, 0), SPEEDS.length - 1);
       this.speedInput.value = this.speed;
-      this.speedText.textContent = `${SPEEDS[this.speed]} units of time a second`;
+      this.speedText.textContent = `${SPEEDS[this.speed]} ${SPEEDS[this.speed] === 1 ? 'unit' : 'units'} of time a second`;
       this.speedInput.setAttribute('aria-valuetext', this.speedText.textContent);
     }
 
@@ -176,13 +176,14 @@
     // The canvas has as many pixels as the screen, and the shape of what it shows.
     fit() {
       if (!this.picture) return;
-      const width = this.canvas.parentElement.clientWidth;
-      const height = Math.min(width / this.picture.aspect, MOST_HEIGHT * innerHeight);
+      const room = this.canvas.parentElement.clientWidth;
+      const height = Math.min(room / this.picture.aspect, MOST_HEIGHT * innerHeight);
+      const width = height * this.picture.aspect;
       const ratio = devicePixelRatio || 1;
       const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
       if (this.canvas.width !== w || this.canvas.height !== h) {
         Object.assign(this.canvas, {width: w, height: h});
-        this.canvas.style.height = `${Math.round(height)}px`;
+        this.canvas.style.width = `${Math.round(width)}px`;
       }
       this.draw();
     }
@@ -210,10 +211,11 @@
     }
 
     drawChart() {
-      const x = this.exchanges.map((at) => at.time);
       const {isPair} = this.picture;
+      const steps = [...this.exchanges, {...this.exchanges.at(-1), time: this.motion.time}];
+      const x = steps.map((at) => at.time);
       const line = (label, field, colour) => ({label, kind: 'exact', stepped: true, colour, x,
-        y: this.exchanges.map((at) => at[field])});
+        y: steps.map((at) => at[field])});
       this.chart.show({title: isPair ? 'Energies of ball and piston' : 'Mean energies of balls and pistons',
         xLabel: 'time', yLabel: 'energy', fromZero: true, lines: [
           line(isPair ? 'ball' : 'balls', 'ball', 0), line(isPair ? 'piston' : 'pistons', 'piston', 1)]});

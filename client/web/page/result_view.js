@@ -100,6 +100,8 @@
     piston_speed: 'Speed of the pistons'};
   const X_LABELS = {alpha: 'α', ball_speed: 'speed', piston_speed: 'speed'};
 
+  const LAWS = {alpha: 'equilibrium law h⁽¹⁾, exact'};
+
   function histogramTitle(histogram) {
     const name = NAMES[histogram.name] ?? words(histogram.name);
     const sign = histogram.sigma > 0 ? ', σ = +1' : histogram.sigma < 0 ? ', σ = −1' : '';
@@ -122,7 +124,7 @@
         error: counts.map((count) => density(Math.sqrt(count) / total))}];
     if (histogram.expected_probabilities?.length) {
       const law = merged(histogram.expected_probabilities, size).map(density);
-      lines.push({label: 'exact law', kind: 'exact', stepped: true, colour: 1, x: edges, y: held(law)});
+      lines.push({label: LAWS[histogram.name] ?? 'exact law', kind: 'exact', stepped: true, colour: 1, x: edges, y: held(law)});
     }
     return {title: histogramTitle(histogram), xLabel: X_LABELS[histogram.name] ?? histogram.name,
       yLabel: 'probability density', fromZero: true, lines,
