@@ -201,7 +201,7 @@
       this.legend = element('ul', {class: 'legend'});
       this.readout = element('p', {class: 'readout', 'aria-hidden': 'true'});
       this.note = element('p', {class: 'note', hidden: true});
-      this.numbers = element('div', {class: 'scroll'});
+      this.numbers = element('div', {class: 'scroll', tabindex: '0', role: 'region'});
       this.details = element('details', {ontoggle: () => this.showNumbers()},
         element('summary', {}, 'Numbers'), this.numbers);
       this.element = element('figure', {class: 'chart'}, this.title, this.legend, this.plot,
@@ -216,6 +216,7 @@
     show(chart) {
       this.chart = chart;
       this.title.textContent = chart.title;
+      this.numbers.setAttribute('aria-label', `Numbers: ${chart.title}`);
       this.note.textContent = chart.note ?? '';
       this.note.hidden = !chart.note;
       this.plot.setAttribute('aria-label', this.description());

@@ -6,7 +6,7 @@
   const CIVIDIS = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102],
     [254, 232, 56]];
   const EDGE = 0.06;  // around the cells
-  const BALL = 0.02;  // radius of the picture of a ball, which is a point
+  const BALL = 0.025; // radius of the picture of a ball, which is a point
   const TRAIL = 60;   // corners of the pair's trail
 
   const styleOf = (name) => ballpiston.styleOf(name);
@@ -33,8 +33,8 @@
       this.start = start;
       this.isPair = start.cells === undefined;
       this.shape = shapeOf(start.cells);
-      // A ball of the pair has at most 1/2; in a gas 3 T is rarely exceeded.
-      this.mostEnergy = this.isPair ? 0.5 : 3 * start.temperature;
+      // A ball of the pair has at most 1/2. In a gas one ball in seven has more than 2 T.
+      this.mostEnergy = this.isPair ? 0.5 : 2 * start.temperature;
       this.trail = [];
     }
 

@@ -54,10 +54,9 @@
         event.preventDefault();
         this.trace();
       }}, FIELDS.map(fieldElement), element('button', {type: 'submit'}, 'Trace'));
-      this.message = element('p', {class: 'panel error', role: 'alert', hidden: true});
       main.append(element('h1', {tabindex: '-1'}, 'Orbit'),
         element('p', {class: 'soft'}, 'One orbit of the reference billiard, as ballpiston trace prints it.'),
-        this.form, this.message, this.stage(), this.controls(), this.below());
+        this.form, this.stage(), this.controls(), this.below());
     }
 
     stage() {
@@ -78,8 +77,8 @@
       ballpiston.drawEnergyScale(scale);
       this.scaleEnd = element('span', {}, '');
       const controls = element('div', {class: 'choices'}, this.playButton, this.stepButton,
-        element('label', {class: 'choice'}, 'Speed', this.speedInput, this.speedText),
-        element('span', {class: 'choice'}, 'Energy 0', scale, this.scaleEnd));
+        element('label', {class: 'choice'}, element('span', {}, 'Speed'), this.speedInput, this.speedText),
+        element('span', {class: 'choice'}, element('span', {}, 'Energy 0'), scale, this.scaleEnd));
       this.setSpeed(this.speed);
       this.play(this.isPlaying);
       return controls;
@@ -112,7 +111,8 @@
     setSpeed(speed) {
       this.speed = Math.min(Math.max(speed, 0), SPEEDS.length - 1);
       this.speedInput.value = this.speed;
-      this.speedText.textContent = `${SPEEDS[this.speed]} ${SPEEDS[this.speed] === 1 ? 'unit' : 'units'} of time a second`;
+      const shown = SPEEDS[this.speed];
+      this.speedText.textContent = `${shown} ${shown === 1 ? 'unit' : 'units'} of time a second`;
       this.speedInput.setAttribute('aria-valuetext', this.speedText.textContent);
     }
 
@@ -129,13 +129,11 @@
       const tracing = this.tracing = new AbortController();
       const signal = AbortSignal.any([this.signal, tracing.signal]);
       const request = requestOf(this.form);
-      this.message.hidden = true;
       try {
         await keepTrying((progress) => this.read(request, progress, signal), signal);
       } catch (error) {
-        if (signal.aborted) return;
-        this.message.textContent = error.message;
-        this.message.hidden = false;
+        if (signal.aborted || error instanceof ballpiston.CallError) return;  // the banner says it
+        throw error;
       }
     }
 
