@@ -1,0 +1,308 @@
+// Charts on uPlot: points with error bars, exact lines, and steps, each with a legend, a line that
+// reads the values under the pointer, and its numbers as a table.
+//
+// A chart is given by
+//   {title, xLabel, yLabel, logX, logY, fromZero, note, lines}
+// and a line by
+//   {label, kind, colour, x, y, error, shift}
+//   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
+//           'steps' (filled from 0; y[i] holds from x[i] to x[i + 1])
+//   colour  0, 1, ...: index of colour and symbol
+//   error   one standard error for each y; may be missing, as a whole or in parts
+//   shift   of symbols and error bars along x, for the middles of steps
+(function (ballpiston) {
+  'use strict';
+
+  const {element, isNumber, valueText, withError} = ballpiston;
+
+  const HEIGHT = 260;
+  const COLOURS = 6;  // --line-0 to --line-5 in style.css
+  const SYMBOL_RADIUS = 3.5;
+  const MOST_TABLE_ROWS = 200;
+  const ROOM = 0.06;  // of the range of y, above and below
+
+  const charts = new Set();
+
+  const pixels = () => devicePixelRatio || 1;
+  const styleOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colourOf = (line) => styleOf(`--line-${line.colour % COLOURS}`);
+
+  // Symbols tell the lines apart where colours do not.
+  const SYMBOLS = [
+    (c, x, y, r) => c.arc(x, y, r, 0, 2 * Math.PI),
+    (c, x, y, r) => c.rect(x - r, y - r, 2 * r, 2 * r),
+    (c, x, y, r) => polygon(c, x, y, 1.3 * r, 3),
+    (c, x, y, r) => polygon(c, x, y, 1.3 * r, 4),
+    (c, x, y, r) => polygon(c, x, y, 1.2 * r, 5),
+    (c, x, y, r) => polygon(c, x, y, -1.3 * r, 3),
+  ];
+
+  function polygon(c, x, y, r, corners) {
+    for (let i = 0; i < corners; ++i) {
+      const angle = 2 * Math.PI * i / corners;
+      c.lineTo(x + r * Math.sin(angle), y - r * Math.cos(angle));
+    }
+    c.closePath();
+  }
+
+  function drawSymbol(c, line, x, y) {
+    c.beginPath();
+    SYMBOLS[line.colour % SYMBOLS.length](c, x, y, SYMBOL_RADIUS * pixels());
+    c.fill();
+  }
+
+  function drawErrorBar(u, c, x, value, error) {
+    c.beginPath();
+    c.moveTo(x, u.valToPos(value - error, 'y', true));
+    c.lineTo(x, u.valToPos(value + error, 'y', true));
+    c.stroke();
+  }
+
+  function drawMeasured(u, line) {
+    const c = u.ctx;
+    c.fillStyle = c.strokeStyle = colourOf(line);
+    c.lineWidth = 1.5 * pixels();
+    for (let i = 0; i < line.x.length; ++i) {
+      const x = line.x[i] + (line.shift ?? 0);
+      if (!isNumber(line.y[i]) || x < u.scales.x.min || x > u.scales.x.max) continue;
+      const left = u.valToPos(x, 'x', true);
+      if (line.error?.[i] > 0) drawErrorBar(u, c, left, line.y[i], line.error[i]);
+      drawSymbol(c, line, left, u.valToPos(line.y[i], 'y', true));
+    }
+  }
+
+  function drawAllMeasured(u, lines) {
+    const c = u.ctx;
+    c.save();
+    c.beginPath();
+    c.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+    c.clip();
+    for (const line of lines) if (line.kind === 'measured') drawMeasured(u, line);
+    c.restore();
+  }
+
+  // Of all values and error bars whose x is in [left, right].
+  function rangeOfY(chart, [left, right]) {
+    let min = Infinity, max = -Infinity;
+    const see = (y) => {
+      if (!isNumber(y) || (chart.logY && y <= 0)) return;
+      min = Math.min(min, y);
+      max = Math.max(max, y);
+    };
+    if (chart.fromZero && !chart.logY) see(0);
+    for (const line of chart.lines) {
+      for (let i = 0; i < line.x.length; ++i) {
+        if (line.x[i] < left || line.x[i] > right) continue;
+        see(line.y[i] - (line.error?.[i] ?? 0));
+        see(line.y[i] + (line.error?.[i] ?? 0));
+      }
+    }
+    if (min > max) return chart.logY ? [1, 10] : [0, 1];
+    return chart.logY ? [min / 1.2, max * 1.2] : withRoom(min, max, chart.fromZero);
+  }
+
+  function withRoom(min, max, fromZero) {
+    const room = max > min ? ROOM * (max - min) : Math.abs(max) * ROOM || 1;
+    return [fromZero && min === 0 ? 0 : min - room, max + room];
+  }
+
+  function rangeOfX(chart, min, max) {
+    if (min === null || max === null) return chart.logX ? [1, 10] : [0, 1];
+    if (chart.logX) return min === max ? [min / 2, max * 2] : [min / 1.1, max * 1.1];
+    if (chart.lines.some((line) => line.kind === 'steps')) return [min, max];
+    return withRoom(min, max, false);
+  }
+
+  function uplotSeries(line) {
+    const stroke = () => colourOf(line);
+    const common = {label: line.label, points: {show: false}, spanGaps: true};
+    if (line.kind === 'measured') return {...common, stroke, paths: () => null};
+    if (line.kind === 'steps') {
+      return {...common, stroke, width: 1, fill: () => styleOf('--fill'),
+        paths: uPlot.paths.stepped({align: 1})};
+    }
+    if (line.stepped) return {...common, stroke, width: 2, paths: uPlot.paths.stepped({align: 1})};
+    return {...common, stroke, width: 1.5, dash: line.kind === 'limit' ? [6, 5] : undefined};
+  }
+
+  function axis(label, more) {
+    return {label, labelSize: 20, labelGap: 2, labelFont: '13px system-ui, sans-serif',
+      font: '12px system-ui, sans-serif', stroke: () => styleOf('--soft'),
+      grid: {stroke: () => styleOf('--grid'), width: 1},
+      ticks: {stroke: () => styleOf('--grid'), width: 1, size: 5}, ...more};
+  }
+
+  // Tick labels with as many digits as it takes to tell them apart.
+  function tickTexts(u, ticks) {
+    return ticks.map((tick) => tick === null ? '' : tickText(tick));
+  }
+
+  function tickText(tick) {
+    const size = Math.abs(tick);
+    if (size >= 1e5 || (size > 0 && size < 1e-4)) return tick.toExponential().replace('e+', 'e');
+    return String(Number(tick.toPrecision(10)));
+  }
+
+  function widthOfTicks(u, texts) {
+    const longest = Math.max(1, ...(texts ?? []).map((text) => text.length));
+    return 14 + 7 * longest;
+  }
+
+  // All lines over the union of their x; what a line lacks is undefined.
+  function aligned(lines) {
+    return lines.length ? uPlot.join(lines.map((line) => [line.x, line.y])) : [[]];
+  }
+
+  // Charts of the same shape keep their uPlot, and with it the zoom; else a new one is made.
+  const shapeOf = (chart) => JSON.stringify([chart.xLabel, chart.yLabel, chart.logX, chart.logY,
+    chart.lines.map((line) => [line.label, line.kind, line.colour])]);
+
+  function symbolKey(line) {
+    const canvas = element('canvas', {class: 'key', 'aria-hidden': 'true', width: 56, height: 28});
+    const c = canvas.getContext('2d');
+    c.strokeStyle = c.fillStyle = colourOf(line);
+    c.lineWidth = 3;
+    if (line.kind === 'steps') {
+      c.fillStyle = styleOf('--fill');
+      c.fillRect(6, 4, 44, 20);
+      c.strokeRect(6, 4, 44, 20);
+    } else if (line.kind === 'measured') {
+      c.fillRect(26, 2, 3, 24);
+      c.beginPath();
+      SYMBOLS[line.colour % SYMBOLS.length](c, 28, 14, 7);
+      c.fill();
+    } else {
+      if (line.kind === 'limit') c.setLineDash([10, 8]);
+      c.beginPath();
+      c.moveTo(2, 14);
+      c.lineTo(54, 14);
+      c.stroke();
+    }
+    return canvas;
+  }
+
+  function tableOf(chart) {
+    const columns = [{label: chart.xLabel, number: true},
+      ...chart.lines.map((line) => ({label: line.label, number: true}))];
+    const values = aligned(chart.lines);
+    const errors = chart.lines.map((line) => new Map(line.x.map((x, i) => [x, line.error?.[i]])));
+    const step = Math.max(1, Math.ceil(values[0].length / MOST_TABLE_ROWS));
+    const rows = values[0].map((_, i) => i).filter((i) => i % step === 0).map((i) => [
+      valueText(values[0][i]),
+      ...chart.lines.map((_, k) => withError(values[k + 1][i], errors[k].get(values[0][i])))]);
+    const caption = step === 1 ? chart.title : `${chart.title}: each ${step}th of the rows`;
+    return ballpiston.table(caption, columns, rows, {class: 'compact'});
+  }
+
+  class Chart {
+    constructor() {
+      this.title = element('figcaption');
+      this.plot = element('div', {class: 'plot', role: 'img'});
+      this.legend = element('ul', {class: 'legend'});
+      this.readout = element('p', {class: 'readout', 'aria-hidden': 'true'});
+      this.note = element('p', {class: 'note', hidden: true});
+      this.numbers = element('div', {class: 'scroll', tabindex: '0', role: 'region'});
+      this.details = element('details', {ontoggle: () => this.showNumbers()},
+        element('summary', {}, 'Numbers'), this.numbers);
+      this.element = element('figure', {class: 'chart'}, this.title, this.legend, this.plot,
+        this.readout, this.note, this.details);
+      this.uplot = null;
+      charts.add(this);
+      this.resizing = new ResizeObserver(() => this.resize());
+      this.resizing.observe(this.plot);
+    }
+
+    // Shows `chart`; draws only once the element is in the page and has a width.
+    show(chart) {
+      this.chart = chart;
+      this.title.textContent = chart.title;
+      this.numbers.setAttribute('aria-label', `Numbers: ${chart.title}`);
+      this.note.textContent = chart.note ?? '';
+      this.note.hidden = !chart.note;
+      this.plot.setAttribute('aria-label', this.description());
+      if (this.shape !== shapeOf(chart)) this.clear();
+      if (this.uplot) this.uplot.setData(aligned(chart.lines));
+      else this.resize();
+      this.showNumbers();
+    }
+
+    description() {
+      const {title, xLabel, yLabel, lines} = this.chart;
+      const last = lines.filter((line) => line.kind === 'measured' && line.y.length)
+        .map((line) => `${line.label}, last ${withError(line.y.at(-1), line.error?.at(-1))}`);
+      return `Chart: ${title}. ${yLabel} against ${xLabel}. ${last.slice(0, 4).join('; ')}`;
+    }
+
+    clear() {
+      this.uplot?.destroy();
+      this.uplot = null;
+      this.shape = null;
+    }
+
+    remove() {
+      this.clear();
+      this.resizing.disconnect();
+      charts.delete(this);
+      this.element.remove();
+    }
+
+    resize() {
+      const width = Math.floor(this.plot.clientWidth);
+      if (!this.chart || width === 0) return;
+      if (this.uplot) this.uplot.setSize({width, height: HEIGHT});
+      else this.make(width);
+    }
+
+    make(width) {
+      const {chart} = this;
+      this.shape = shapeOf(chart);
+      const narrow = width < 420;
+      this.uplot = new uPlot({
+        width, height: HEIGHT, legend: {show: false}, padding: [10, 14, 0, 0],
+        cursor: {drag: {x: true, y: false}, points: {show: false}},
+        scales: {
+          x: {time: false, distr: chart.logX ? 3 : 1,
+            range: (u, min, max) => this.xRange = rangeOfX(this.chart, min, max)},
+          y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
+        },
+        axes: [axis(chart.xLabel, {values: tickTexts, size: 28, space: narrow ? 55 : 70}),
+          axis(chart.yLabel, {values: tickTexts, size: widthOfTicks})],
+        series: [{}, ...chart.lines.map(uplotSeries)],
+        hooks: {
+          draw: [(u) => drawAllMeasured(u, this.chart.lines)],
+          setCursor: [(u) => this.read(u)],
+        },
+      }, aligned(chart.lines), this.plot);
+      this.legend.replaceChildren(...chart.lines.map((line) =>
+        element('li', {}, symbolKey(line), line.label)));
+    }
+
+    read(u) {
+      const i = u.cursor.idx;
+      this.readout.textContent = isNumber(i) ? this.valuesAt(u.data, i) : '';
+    }
+
+    valuesAt(data, i) {
+      const parts = this.chart.lines.map((line, k) => {
+        const at = line.x.indexOf(data[0][i]);
+        return at < 0 || !isNumber(line.y[at]) ? null
+          : `${line.label}: ${withError(line.y[at], line.error?.[at])}`;
+      });
+      return [`${this.chart.xLabel} = ${valueText(data[0][i])}`, ...parts.filter(Boolean)].join(' · ');
+    }
+
+    showNumbers() {
+      if (this.details.open) this.numbers.replaceChildren(tableOf(this.chart));
+    }
+
+    repaint() {
+      this.clear();
+      this.resize();
+    }
+  }
+
+  // After a change of the theme.
+  ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  ballpiston.Chart = Chart;
+  ballpiston.styleOf = styleOf;
+})(globalThis.ballpiston ??= {});

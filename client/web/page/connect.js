@@ -1,0 +1,128 @@
+// Calls and streams in the Connect protocol (connectrpc.com/docs/protocol), in JSON, to the gateway
+// that served this page.
+(function (ballpiston) {
+  'use strict';
+
+  const PACKAGE = '/ballpiston.v1.';
+  const HEADER_BYTES = 5;  // of an envelope: flags, and the length as 4 bytes, big-endian
+  const LAST = 2;          // the flag of the last envelope: {} or {"error": {...}}
+  const FINAL = new Set(['unauthenticated', 'permission_denied', 'not_found', 'invalid_argument',
+    'failed_precondition', 'out_of_range', 'unimplemented', 'data_loss']);
+
+  // `code` is one of the protocol's, such as not_found. `isFinal`: a retry gives the same error.
+  class CallError extends Error {
+    constructor(code, message) {
+      super(message || code);
+      this.code = code;
+      this.isFinal = FINAL.has(code);
+    }
+  }
+
+  const errorOf = (json, code) => new CallError(json?.code ?? code, json?.message);
+
+  function noAnswer() {
+    return new CallError('unavailable',
+      `no answer from ${location.host}: ballpiston web does not run there any more`);
+  }
+
+  async function post(method, type, body, signal) {
+    let response;
+    try {
+      response = await fetch(PACKAGE + method, {method: 'POST', body, signal, cache: 'no-store',
+        headers: {'Content-Type': type, 'Authorization': `Bearer ${ballpiston.token()}`}});
+    } catch (error) {
+      if (signal?.aborted) throw error;
+      throw noAnswer();
+    }
+    if (response.ok) return response;
+    const error = await response.json().catch(() => null);
+    throw errorOf(error ?? {message: `HTTP status ${response.status}`}, 'unknown');
+  }
+
+  // `method` is SERVICE/METHOD, for instance EnsembleService/GetEnsembleJob.
+  async function call(method, request, signal) {
+    const response = await post(method, 'application/json', JSON.stringify(request), signal);
+    try {
+      return await response.json();
+    } catch (error) {
+      if (signal?.aborted) throw error;
+      throw new CallError('unavailable', 'the answer broke off');
+    }
+  }
+
+  function envelope(message) {
+    const text = new TextEncoder().encode(JSON.stringify(message));
+    const bytes = new Uint8Array(HEADER_BYTES + text.length);
+    new DataView(bytes.buffer).setUint32(1, text.length);
+    bytes.set(text, HEADER_BYTES);
+    return bytes;
+  }
+
+  // The bytes of a stream, taken in the numbers that are asked for.
+  class ByteReader {
+    constructor(reader) {
+      this.reader = reader;
+      this.chunks = [];
+      this.size = 0;
+    }
+
+    async take(count) {
+      while (this.size < count) {
+        const {value, done} = await this.reader.read();
+        if (done) throw new CallError('unavailable', 'the answer broke off');
+        this.chunks.push(value);
+        this.size += value.length;
+      }
+      return this.cut(count);
+    }
+
+    cut(count) {
+      const taken = new Uint8Array(count);
+      let filled = 0;
+      while (filled < count) {
+        const chunk = this.chunks[0];
+        const part = chunk.subarray(0, count - filled);
+        taken.set(part, filled);
+        filled += part.length;
+        if (part.length === chunk.length) this.chunks.shift();
+        else this.chunks[0] = chunk.subarray(part.length);
+      }
+      this.size -= count;
+      return taken;
+    }
+  }
+
+  async function nextEnvelope(bytes) {
+    const header = await bytes.take(HEADER_BYTES);
+    const length = new DataView(header.buffer).getUint32(1);
+    const message = JSON.parse(new TextDecoder().decode(await bytes.take(length)));
+    return {isLast: (header[0] & LAST) !== 0, message};
+  }
+
+  // The messages of a stream. Reads only as fast as the caller takes them, and the server then
+  // computes only as fast.
+  async function* stream(method, request, signal) {
+    const response = await post(method, 'application/connect+json', envelope(request), signal);
+    const reader = response.body.getReader();
+    try {
+      const bytes = new ByteReader(reader);
+      for (;;) {
+        const {isLast, message} = await nextEnvelope(bytes);
+        if (!isLast) {
+          yield message;
+        } else if (message.error) {
+          throw errorOf(message.error, 'unknown');
+        } else {
+          return;
+        }
+      }
+    } catch (error) {
+      if (signal?.aborted || error instanceof CallError) throw error;
+      throw new CallError('unavailable', 'the answer broke off');
+    } finally {
+      reader.cancel().catch(() => {});
+    }
+  }
+
+  Object.assign(ballpiston, {CallError, call, stream});
+})(globalThis.ballpiston ??= {});

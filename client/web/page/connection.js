@@ -1,0 +1,125 @@
+// The token, retries, and the banner that says why there is no answer. What the page shows stays
+// while there is none.
+(function (ballpiston) {
+  'use strict';
+
+  const TOKEN = 'ballpiston-token';
+  const FIRST_DELAY = 500;  // ms; doubles with each failure
+  const LONGEST_DELAY = 8000;
+
+  const token = () => sessionStorage.getItem(TOKEN) ?? '';
+
+  // Moves the token from the address #token=... into this tab's storage: so it is in no bookmark,
+  // and a reload keeps it. True if there was one.
+  function takeToken() {
+    const match = /^#token=([\w-]+)$/.exec(location.hash);
+    if (!match) return false;
+    sessionStorage.setItem(TOKEN, match[1]);
+    history.replaceState(null, '', '#jobs');
+    return true;
+  }
+
+  const banner = () => document.getElementById('connection');
+
+  function say(text) {
+    if (banner().textContent !== text) banner().textContent = text;
+    banner().hidden = text === '';
+  }
+
+  function adviceFor(error) {
+    if (error.code === 'unauthenticated') {
+      return 'Open the whole address that “ballpiston web” printed: it has the token. ';
+    }
+    return '';
+  }
+
+  const answered = () => say('');
+  const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`);
+  const failedForNow = (error) =>
+    say(`No answer; trying again. What is shown is from before. Reason: ${error.message}`);
+
+  // Until `ms` have passed, or the browser is online again, or the signal is aborted.
+  function pause(ms, signal) {
+    return new Promise((resolve) => {
+      const timer = setTimeout(end, ms);
+      function end() {
+        clearTimeout(timer);
+        removeEventListener('online', end);
+        signal?.removeEventListener('abort', end);
+        resolve();
+      }
+      addEventListener('online', end);
+      signal?.addEventListener('abort', end);
+    });
+  }
+
+  // Resolves when this tab is shown. A hidden tab asks for nothing: a browser keeps only six
+  // connections to the gateway, for all tabs.
+  function visible(signal) {
+    return new Promise((resolve) => {
+      function look() {
+        if (document.hidden && !signal?.aborted) return;
+        document.removeEventListener('visibilitychange', look);
+        signal?.removeEventListener('abort', look);
+        resolve();
+      }
+      document.addEventListener('visibilitychange', look);
+      signal?.addEventListener('abort', look);
+      look();
+    });
+  }
+
+  // Calls attempt(progress) until it succeeds or its error is final; progress() says that the
+  // server answers. Throws the final error, after the banner showed it.
+  async function keepTrying(attempt, signal) {
+    let delay = FIRST_DELAY;
+    const progress = () => {
+      delay = FIRST_DELAY;
+      answered();
+    };
+    for (;;) {
+      await visible(signal);
+      signal.throwIfAborted();
+      try {
+        const result = await attempt(progress);
+        progress();
+        return result;
+      } catch (error) {
+        signal.throwIfAborted();
+        if (error instanceof ballpiston.TabHidden) continue;
+        if (error.isFinal || !(error instanceof ballpiston.CallError)) {
+          failed(error);
+          throw error;
+        }
+        failedForNow(error);
+      }
+      await pause(delay, signal);
+      delay = Math.min(2 * delay, LONGEST_DELAY);
+    }
+  }
+
+  // Thrown by an attempt that ended because its tab was hidden.
+  class TabHidden extends Error {}
+
+  // A signal that is aborted with `signal`, or when the tab is hidden for `ms`.
+  function whileVisible(signal, ms = 5000) {
+    const controller = new AbortController();
+    let timer;
+    const look = () => {
+      clearTimeout(timer);
+      if (document.hidden) timer = setTimeout(() => controller.abort(new TabHidden()), ms);
+    };
+    const stop = () => controller.abort(signal.reason);
+    document.addEventListener('visibilitychange', look);
+    signal.addEventListener('abort', stop);
+    controller.signal.addEventListener('abort', () => {
+      clearTimeout(timer);
+      document.removeEventListener('visibilitychange', look);
+      signal.removeEventListener('abort', stop);
+    });
+    look();
+    return controller;
+  }
+
+  Object.assign(ballpiston, {token, takeToken, clearBanner: answered, pause, keepTrying, TabHidden, whileVisible});
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,60 @@
+// Elements of the page, made from text. Strings become text nodes and are never parsed as HTML.
+(function (ballpiston) {
+  'use strict';
+
+  // An attribute that is a function is a listener: {onclick: f}. One that is false, null or
+  // undefined is left out; true gives an empty one.
+  function element(tag, attributes = {}, ...children) {
+    const made = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+      if (typeof value === 'function') {
+        made.addEventListener(name.slice(2), value);
+      } else if (value !== false && value !== null && value !== undefined) {
+        made.setAttribute(name, value === true ? '' : String(value));
+      }
+    }
+    made.append(...children.flat().filter((child) => child !== null && child !== undefined));
+    return made;
+  }
+
+  // Roles are explicit, because the style sheet lays rows out as grids, and some browsers drop the
+  // implied roles then.
+  // `columns`: [{label, number}]; `rows`: arrays of texts or nodes.
+  function table(caption, columns, rows, attributes = {}) {
+    const body = element('tbody', {role: 'rowgroup'});
+    body.append(...rows.map((cells) => tableRow(columns, cells)));
+    return element('table', {role: 'table', ...attributes},
+      element('caption', {}, caption),
+      element('thead', {role: 'rowgroup'}, element('tr', {role: 'row'},
+        columns.map((column) => element('th', {role: 'columnheader', scope: 'col',
+          class: column.number ? 'number' : null}, column.label)))),
+      body);
+  }
+
+  // On narrow screens a row is a card, and each cell shows its column's label.
+  function tableRow(columns, cells) {
+    return element('tr', {role: 'row'}, cells.map((cell, i) => element('td', {
+      role: 'cell', 'data-label': columns[i].label, class: columns[i].number ? 'number' : null},
+    cell)));
+  }
+
+  // [[term, text or node], ...]; a term whose text is empty or missing is left out.
+  function facts(pairs) {
+    const list = element('dl', {class: 'facts'});
+    for (const [term, text] of pairs) {
+      if (text === null || text === undefined || text === '') continue;
+      list.append(element('div', {}, element('dt', {}, term), element('dd', {}, text)));
+    }
+    return list;
+  }
+
+  // A labelled choice. `options`: [{value, label}].
+  function choice(label, options, chosen, onChoose) {
+    const select = element('select', {onchange: () => onChoose(select.value)},
+      options.map((option) => element('option',
+        {value: option.value, selected: option.value === chosen}, option.label)));
+    return element('label', {class: 'choice'}, element('span', {}, label), select);
+  }
+
+  Object.assign(ballpiston, {element, table, tableRow, facts, choice});
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,106 @@
+// Numbers with their errors, times and names, as text.
+(function (ballpiston) {
+  'use strict';
+
+  const SYMBOLS = {rho: 'ρ', delta: 'δ', epsilon: 'ε', exponent: 'n', cells: 'cells',
+    temperature: 'T', hot: 'T hot', cold: 'T cold'};
+  const ERROR_DIGITS = 2;
+  const DIGITS = 8;  // without an error
+
+  const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
+
+  // Digits after the decimal point at which `error` has ERROR_DIGITS digits.
+  function decimals(error) {
+    return ERROR_DIGITS - 1 - Math.floor(Math.log10(error));
+  }
+
+  function isPlain(value, places) {
+    return Math.abs(value) < 1e7 && places >= 0 && places <= 9;
+  }
+
+  // As many digits as the error permits.
+  function valueText(value, error) {
+    if (!isNumber(value)) return '';
+    if (!(error > 0)) return String(Number(value.toPrecision(DIGITS)));
+    const places = decimals(error);
+    if (isPlain(value, places)) return value.toFixed(places);
+    const digits = value === 0 ? 0 : Math.floor(Math.log10(Math.abs(value))) + places;
+    return value.toExponential(Math.min(Math.max(digits, 0), 15));
+  }
+
+  function errorText(error) {
+    if (!isNumber(error)) return '';
+    if (error === 0) return '0';
+    const places = decimals(error);
+    return isPlain(error, places) ? error.toFixed(places) : error.toExponential(ERROR_DIGITS - 1);
+  }
+
+  function withError(value, error) {
+    return isNumber(error) ? `${valueText(value, error)} ± ${errorText(error)}` : valueText(value);
+  }
+
+  function signedText(value, places = 2) {
+    return isNumber(value) ? (value < 0 ? '-' : '+') + Math.abs(value).toFixed(places) : '';
+  }
+
+  // 1234567: 1,234,567
+  function countText(count) {
+    return Number(count).toLocaleString('en', {maximumFractionDigits: 0});
+  }
+
+  function bytesText(bytes) {
+    const units = ['bytes', 'kB', 'MB', 'GB', 'TB'];
+    let i = 0;
+    for (; bytes >= 1000 && i < units.length - 1; ++i) bytes /= 1000;
+    return `${Number(bytes.toPrecision(3))} ${units[i]}`;
+  }
+
+  function durationText(seconds) {
+    if (seconds < 1) return `${Math.round(1000 * seconds)} ms`;
+    if (seconds < 60) return `${Number(seconds.toPrecision(2))} s`;
+    if (seconds < 3600) return `${Number((seconds / 60).toPrecision(2))} min`;
+    if (seconds < 86400) return `${Number((seconds / 3600).toPrecision(2))} h`;
+    return `${Number((seconds / 86400).toPrecision(3))} days`;
+  }
+
+  // A <time> that says how long ago, with the whole time as its title.
+  function timeElement(time, now = Date.now()) {
+    if (!time) return null;
+    const date = new Date(time);
+    const age = (now - date) / 1000;
+    const text = Math.abs(age) < 2 ? 'now'
+      : age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
+    return ballpiston.element('time', {datetime: time, title: date.toLocaleString()}, text);
+  }
+
+  const wholeTime = (time) => time ? new Date(time).toLocaleString('en-GB',
+    {dateStyle: 'medium', timeStyle: 'medium'}) : '';
+
+  // CONDITIONAL_MEAN_FREE_TIME or mean_free_time: in small letters, with spaces.
+  const words = (name) => String(name ?? '').toLowerCase().replaceAll('_', ' ');
+
+  const symbolOf = (parameter) => SYMBOLS[parameter] ?? parameter;
+
+  // The parameters that are there, in the order of SYMBOLS.
+  function parameterPairs(parameters) {
+    return Object.keys(SYMBOLS).filter((name) => parameters?.[name] !== undefined)
+      .map((name) => [name, parameters[name]]);
+  }
+
+  const parameterText = (value) => isNumber(value) ? String(Number(value.toPrecision(10)))
+    : String(value);
+
+  function parametersText(parameters) {
+    return parameterPairs(parameters)
+      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`).join(', ');
+  }
+
+  // For a command line in a POSIX shell.
+  function shellWord(text) {
+    return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
+  }
+
+  Object.assign(ballpiston, {isNumber, valueText, errorText, withError, signedText, countText,
+    bytesText, durationText, timeElement, wholeTime, words, symbolOf, parameterPairs,
+    parameterText, parametersText, shellWord});
+})(globalThis.ballpiston ??= {});

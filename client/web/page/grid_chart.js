@@ -1,0 +1,154 @@
+// One estimate of all points against a parameter of the grid, with the exact values as lines. The
+// reader chooses the estimate, the parameter, and what is shown of it.
+(function (ballpiston) {
+  'use strict';
+
+  const {element, choice, Chart, isNumber, words, symbolOf, parameterPairs, parameterText} = ballpiston;
+
+  const MOST_LINES = 6;  // with colours and symbols of their own
+  const MOST_WITHOUT_LOG = 30;  // ratio of the largest to the smallest x
+
+  const SHOWN = [{value: 'value', label: 'value'}, {value: 'ratio', label: 'value / exact'},
+    {value: 'z', label: 'z, (value − exact)/error'}];
+
+  // {parameter: set of its values}, of those with more than one value.
+  function varyingParameters(points) {
+    const values = {};
+    for (const point of points) {
+      for (const [name, value] of parameterPairs(point.parameters)) {
+        (values[name] ??= new Set()).add(value);
+      }
+    }
+    for (const name of Object.keys(values)) if (values[name].size < 2) delete values[name];
+    return values;
+  }
+
+  // As a number; a lattice NxM is none.
+  const coordinate = (value) => Number(value);
+
+  const isAxis = (values) => [...values].every((value) => isNumber(coordinate(value)));
+
+  function axesOf(points) {
+    const varying = varyingParameters(points);
+    return Object.keys(varying).filter((name) => isAxis(varying[name]))
+      .sort((a, b) => varying[b].size - varying[a].size);
+  }
+
+  const estimatesOf = (points) =>
+    [...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name)))];
+
+  // Points of the same parameters but for `axis`, by their label.
+  function groups(points, axis) {
+    const varying = varyingParameters(points);
+    const grouped = new Map();
+    for (const point of points) {
+      const label = parameterPairs(point.parameters)
+        .filter(([name]) => name !== axis && varying[name])
+        .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`).join(', ');
+      if (!grouped.has(label)) grouped.set(label, []);
+      grouped.get(label).push(point);
+    }
+    return grouped;
+  }
+
+  // At most MOST_LINES of the groups, evenly spread.
+  function spread(grouped) {
+    const entries = [...grouped];
+    const step = Math.max(1, (entries.length - 1) / (MOST_LINES - 1));
+    return entries.length <= MOST_LINES ? entries
+      : Array.from({length: MOST_LINES}, (_, i) => entries[Math.round(i * step)]);
+  }
+
+  // {value, error, exact} in the form that `shown` names; value null if there is none.
+  function inForm(estimate, shown) {
+    const {value, standard_error: error, exact, limit, z_score: z} = estimate ?? {};
+    if (shown === 'z') return {value: z ?? null, error: isNumber(z) ? 1 : null, exact: isNumber(z) ? 0 : null};
+    if (shown === 'value') return {value: value ?? null, error, exact, limit};
+    if (!isNumber(exact) || exact === 0) return {value: null};
+    return {value: value / exact, error: isNumber(error) ? error / Math.abs(exact) : null, exact: 1};
+  }
+
+  function linesOf(label, points, axis, name, shown, colour) {
+    const sorted = points.map((point) => ({x: coordinate(point.parameters[axis]),
+      ...inForm(point.estimates.find((estimate) => estimate.name === name), shown)}))
+      .filter((at) => at.value !== null).sort((a, b) => a.x - b.x);
+    const x = sorted.map((at) => at.x);
+    const lines = [{label: label || 'measured', kind: 'measured', colour, x,
+      y: sorted.map((at) => at.value), error: sorted.map((at) => at.error)}];
+    const further = (field, kind, text) => {
+      if (!sorted.some((at) => isNumber(at[field]))) return;
+      lines.push({label: label ? `${label}, ${text}` : text, kind, colour: label ? colour : 1, x,
+        y: sorted.map((at) => at[field] ?? null)});
+    };
+    further('exact', 'exact', 'exact');
+    further('limit', 'limit', 'Markov limit');
+    return lines;
+  }
+
+  function isWide(x) {
+    const least = x.reduce((a, b) => Math.min(a, b), Infinity);
+    const most = x.reduce((a, b) => Math.max(a, b), 0);
+    return x.length > 2 && least > 0 && most / least > MOST_WITHOUT_LOG;
+  }
+
+  class GridChart {
+    constructor() {
+      this.choices = element('div', {class: 'choices'});
+      this.chart = new Chart();
+      this.element = element('div', {}, this.choices, this.chart.element);
+      this.chosen = {estimate: null, axis: null, shown: 'value'};
+    }
+
+    // False, and nothing is shown, if there are fewer than two points along every parameter.
+    show(points) {
+      this.points = points;
+      const axes = axesOf(points);
+      this.element.hidden = axes.length === 0;
+      if (axes.length === 0) return false;
+      this.offer(estimatesOf(points), axes);
+      this.draw();
+      return true;
+    }
+
+    // Makes the choices again only if there are others, so that an open one stays open.
+    offer(estimates, axes) {
+      const offered = JSON.stringify([estimates, axes]);
+      if (offered === this.offered) return;
+      this.offered = offered;
+      if (!estimates.includes(this.chosen.estimate)) this.chosen.estimate = estimates[0];
+      if (!axes.includes(this.chosen.axis)) this.chosen.axis = axes[0];
+      const chooser = (field) => (value) => {
+        this.chosen[field] = value;
+        this.draw();
+      };
+      this.choices.replaceChildren(
+        choice('Estimate', estimates.map((name) => ({value: name, label: words(name)})),
+          this.chosen.estimate, chooser('estimate')),
+        choice('Against', axes.map((name) => ({value: name, label: symbolOf(name)})),
+          this.chosen.axis, chooser('axis')),
+        choice('Show', SHOWN, this.chosen.shown, chooser('shown')));
+    }
+
+    draw() {
+      const {estimate, axis, shown} = this.chosen;
+      const grouped = groups(this.points, axis);
+      const drawn = spread(grouped);
+      const lines = drawn.flatMap(([label, points], i) =>
+        linesOf(label, points, axis, estimate, shown, i));
+      const hasValues = lines.some((line) => line.y.length);
+      this.chart.show({
+        title: `${words(estimate)} against ${symbolOf(axis)}`, xLabel: symbolOf(axis),
+        yLabel: SHOWN.find((form) => form.value === shown).label, lines,
+        logX: isWide(lines.flatMap((line) => line.x)),
+        note: !hasValues ? 'There is no exact value to compare with.'
+          : drawn.length < grouped.size ? `${drawn.length} of ${grouped.size} lines, evenly spread` : null});
+    }
+
+    remove() {
+      this.chart.remove();
+      this.element.remove();
+    }
+  }
+
+  ballpiston.GridChart = GridChart;
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,83 @@
+// What a job is, how it was asked for, and how it went.
+(function (ballpiston) {
+  'use strict';
+
+  const {element, facts, countText, bytesText, durationText, wholeTime, words, symbolOf,
+    parameterText} = ballpiston;
+
+  const MOST_VALUES = 12;  // of a parameter in the table of the specification
+
+  const idOf = (job) => String(job.name).split('/').slice(1).join('/');
+
+  function gridText(values) {
+    if (values.length <= MOST_VALUES) return values.map(parameterText).join(', ');
+    return `${values.slice(0, 3).map(parameterText).join(', ')}, … ${parameterText(values.at(-1))} ` +
+      `(${countText(values.length)} values)`;
+  }
+
+  function targetText(target) {
+    const parts = [];
+    if (target?.samples !== undefined) parts.push(`${countText(target.samples)} samples a point`);
+    if (target?.collisions !== undefined) parts.push(`${countText(target.collisions)} collisions a point`);
+    if (target?.tolerance !== undefined) parts.push(`relative error ${parameterText(target.tolerance)}`);
+    if (target?.budget) parts.push(`at most ${durationText(parseFloat(target.budget))} of computing`);
+    if (target?.estimate) parts.push(`of ${words(target.estimate)}`);
+    return parts.join(', ') || '10,000 samples or collisions a point';
+  }
+
+  const chosen = (name) => /UNSPECIFIED$/.test(name ?? '') ? null : words(name);
+
+  function specFacts(spec) {
+    const grid = Object.entries(spec?.grid ?? {}).filter(([, values]) => values.length);
+    return facts([
+      ...grid.map(([name, values]) => [symbolOf(name), gridText(values)]),
+      ['Target', targetText(spec?.target)],
+      ['Model', chosen(spec?.model) ?? 'auto'],
+      ['Precision', chosen(spec?.precision) ?? 'double'],
+      ['Closed forms', spec?.verify ? 'verified by simulation' : null],
+      ['Seed', spec?.seed],
+    ]);
+  }
+
+  // Without fields that have their defaults.
+  function shortened(value) {
+    if (Array.isArray(value)) return value;
+    if (typeof value !== 'object' || value === null) return value;
+    const isDefault = (part) => part === '' || part === false || part === null ||
+      (Array.isArray(part) && part.length === 0) || /UNSPECIFIED$/.test(part);
+    return Object.fromEntries(Object.entries(value).filter(([, part]) => !isDefault(part))
+      .map(([name, part]) => [name, shortened(part)]));
+  }
+
+  // To paste into a file for --spec.
+  function specJson(spec) {
+    return element('details', {class: 'spec'},
+      element('summary', {}, 'As JSON, for --spec'),
+      element('pre', {tabindex: '0'}, JSON.stringify(shortened(spec))
+        .replaceAll(/,"(?=\w+":)/g, ',\n "')));
+  }
+
+  function timeTaken(job) {
+    if (!job.start_time || !job.end_time) return null;
+    return durationText((new Date(job.end_time) - new Date(job.start_time)) / 1000);
+  }
+
+  function jobFacts(job) {
+    return facts([
+      ['Job', element('code', {}, job.name)],
+      ['Principal', job.principal],
+      ['Created', wholeTime(job.create_time)],
+      ['Began', wholeTime(job.start_time)],
+      ['Ended', wholeTime(job.end_time)],
+      ['Took', timeTaken(job)],
+      ['Processor time', job.work > 0 ? durationText(job.work) : null],
+      ['Engine', job.engine_version],
+      ['Priority', job.priority ? String(job.priority) : null],
+      ['Stored', job.stored_bytes > 0 ? bytesText(job.stored_bytes) : null],
+      ['Results expire', job.results_expired ? 'expired'
+        : job.pinned ? 'never: pinned' : wholeTime(job.expire_time)],
+    ]);
+  }
+
+  Object.assign(ballpiston, {idOf, specFacts, specJson, jobFacts});
+})(globalThis.ballpiston ??= {});

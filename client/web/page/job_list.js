@@ -1,0 +1,221 @@
+// #jobs: the jobs, newest first. The first page is asked for again every two seconds; more follow
+// on demand. Rows outside the window are not laid out (content-visibility in style.css).
+(function (ballpiston) {
+  'use strict';
+
+  const {element, table, tableRow, choice, call, keepTrying, pause, timeElement, countText, words} =
+    ballpiston;
+
+  const PAGE = 100;
+  const REFRESH = 2000;  // ms
+  const MOST_CALLS = 20; // for one page: with filters a call may give no job although more follow
+
+  const STATES = {QUEUED: 'waits', RUNNING: 'runs', CANCELLING: 'is being cancelled',
+    SUCCEEDED: 'succeeded', FAILED: 'failed', CANCELLED: 'cancelled'};
+
+  const FILTERS = {all: [], active: ['QUEUED', 'RUNNING', 'CANCELLING'], succeeded: ['SUCCEEDED'],
+    failed: ['FAILED'], cancelled: ['CANCELLED']};
+
+  const COLUMNS = [{label: 'Job'}, {label: 'State'}, {label: 'Progress'}, {label: 'Created'},
+    {label: 'Principal'}];
+
+  const stateText = (state) => STATES[state] ?? words(state);
+
+  function stateElement(job) {
+    return element('span', {class: 'state', 'data-state': job.state}, stateText(job.state));
+  }
+
+  const addressOf = (job) => '#' + String(job.name).split('/').map(encodeURIComponent).join('/');
+
+  // Share of the work done, or of the points where the work is not known beforehand.
+  function fractionOf(progress) {
+    if (!progress?.points) return 0;
+    return progress.fraction ?? progress.points_done / progress.points;
+  }
+
+  function progressText(progress) {
+    const {points = 0, points_done: done = 0, samples = 0} = progress ?? {};
+    const share = done < points && progress?.fraction > 0 ? `, ${Math.floor(100 * progress.fraction)} %` : '';
+    return `${countText(done)} of ${countText(points)} ${points === 1 ? 'point' : 'points'}${share}` +
+      (samples > 0 ? `, ${countText(samples)} samples` : '');
+  }
+
+  function progressCell(job) {
+    if (job.state !== 'RUNNING') return progressText(job.progress);
+    return element('span', {class: 'progress'},
+      element('progress', {max: 1, value: fractionOf(job.progress), 'aria-label': 'Progress'}),
+      progressText(job.progress));
+  }
+
+  function notes(job) {
+    return [job.pinned ? 'pinned' : null, job.results_expired ? 'results expired' : null,
+      job.answered_from_store ? 'answered from the store' : null].filter(Boolean).join(', ');
+  }
+
+  function cellsOf(job) {
+    const note = notes(job);
+    return [
+      element('span', {}, element('a', {href: addressOf(job)}, words(job.spec?.experiment)), ' ',
+        element('code', {class: 'soft'}, ballpiston.idOf(job))),
+      element('span', {}, stateElement(job), note ? element('span', {class: 'soft'}, ` ${note}`) : null),
+      progressCell(job), timeElement(job.create_time) ?? '', job.principal ?? ''];
+  }
+
+  // Rows by the name of their job, in the order of creation, newest first.
+  class Rows {
+    constructor(body) {
+      this.body = body;
+      this.rows = new Map();  // name: {row, job, seen}
+    }
+
+    clear() {
+      this.rows.clear();
+      this.body.replaceChildren();
+    }
+
+    put(job, before) {
+      const seen = JSON.stringify(job);
+      const known = this.rows.get(job.name);
+      if (known?.seen === seen) return known.row;
+      const row = tableRow(COLUMNS, cellsOf(job));
+      if (known) known.row.replaceWith(row);
+      else this.body.insertBefore(row, before);
+      if (known?.row.contains(document.activeElement)) row.querySelector('a').focus();
+      this.rows.set(job.name, {row, job, seen});
+      return row;
+    }
+
+    append(jobs) {
+      for (const job of jobs) this.put(job, null);
+    }
+
+    // The first page again: new jobs come first, and those that are gone, or do not match the
+    // filter any more, leave. `isAll`: no job follows this page.
+    refresh(jobs, isAll) {
+      const names = new Set(jobs.map((job) => job.name));
+      const oldest = jobs.at(-1)?.create_time ?? '';
+      for (const [name, {row, job}] of this.rows) {
+        if (names.has(name) || !(isAll || job.create_time > oldest)) continue;
+        row.remove();
+        this.rows.delete(name);
+      }
+      let next = this.body.firstChild;
+      for (const job of jobs) {
+        const row = this.rows.has(job.name) ? this.put(job) : this.put(job, next);
+        if (row === next || !next?.isConnected) next = row.nextSibling;
+      }
+    }
+
+    refreshTimes() {
+      for (const {row, job} of this.rows.values()) {
+        const time = row.querySelector('time');
+        const text = timeElement(job.create_time)?.textContent;
+        if (time && time.textContent !== text) time.textContent = text;
+      }
+    }
+  }
+
+  function statusText(status) {
+    const jobs = (count) => `${countText(count)} ${count === 1 ? 'job' : 'jobs'}`;
+    const state = {DRAINING: ' The server is stopping: it accepts no jobs.',
+      STORE_FAILING: ' The server’s disk refuses writes.'}[status.state] ?? '';
+    const slurm = status.slurm?.problem ? ` Slurm: ${status.slurm.problem}.` : '';
+    return `${status.busy_workers} of ${status.workers} workers are busy; ` +
+      `${jobs(status.running_jobs)} running, ${jobs(status.queued_jobs)} waiting, ` +
+      `${jobs(status.stored_jobs)} stored.${state}${slurm}`;
+  }
+
+  class JobList {
+    constructor(main, signal) {
+      this.signal = signal;
+      this.filter = 'all';
+      this.status = element('p', {class: 'soft'});
+      const list = table('Jobs, newest first', COLUMNS, [], {class: 'rows jobs'});
+      this.rows = new Rows(list.querySelector('tbody'));
+      this.empty = element('p', {hidden: true});
+      this.more = element('button', {type: 'button', hidden: true, onclick: () => this.appendPage()},
+        'More jobs');
+      main.append(element('h1', {tabindex: '-1'}, 'Jobs'), this.status,
+        element('div', {class: 'choices'}, choice('State',
+          Object.keys(FILTERS).map((name) => ({value: name, label: name})), 'all',
+          (name) => this.setFilter(name))),
+        list, this.empty, this.more);
+    }
+
+    setFilter(name) {
+      this.filter = name;
+      this.rows.clear();
+      this.token = null;
+      this.wake?.abort();
+    }
+
+    // At least one job, unless there is none; at most about a page.
+    async page(token) {
+      const jobs = [];
+      for (let calls = 0; calls < MOST_CALLS; ++calls) {
+        const answer = await call('EnsembleService/ListEnsembleJobs', {page_size: PAGE - jobs.length,
+          page_token: token, view: 'BASIC', states: FILTERS[this.filter]}, this.signal);
+        jobs.push(...(answer.jobs ?? []));
+        token = answer.next_page_token ?? '';
+        if (token === '' || jobs.length >= PAGE) break;
+      }
+      return {jobs, token};
+    }
+
+    // The token of the next page is kept from the first answer: later jobs do not move it.
+    async refresh() {
+      const filter = this.filter;
+      const {jobs, token} = await this.page('');
+      if (filter !== this.filter) return;
+      this.rows.refresh(jobs, token === '');
+      this.token ??= token;
+      this.show();
+    }
+
+    async appendPage() {
+      if (this.loading) return;
+      this.loading = true;
+      const filter = this.filter;
+      try {
+        const {jobs, token} = await keepTrying(() => this.page(this.token), this.signal);
+        if (filter !== this.filter) return;
+        this.rows.append(jobs);
+        this.token = token;
+        this.show();
+      } finally {
+        this.loading = false;
+      }
+    }
+
+    show() {
+      const count = this.rows.rows.size;
+      this.more.hidden = !this.token;
+      this.more.textContent = `More jobs (${countText(count)} are shown)`;
+      this.empty.hidden = count > 0;
+      this.empty.textContent = this.filter === 'all'
+        ? 'There are no jobs. Submit one: ballpiston submit conditional-mean-free-time ' +
+          '--rho 0.5296 --delta 0.1 --epsilon 0.1:0.4:4 --samples 1e6 --verify'
+        : 'No job is in this state.';
+    }
+
+    async keepFresh() {
+      while (!this.signal.aborted) {
+        await keepTrying(async () => {
+          await this.refresh();
+          this.status.textContent =
+            statusText(await call('ServerService/GetServerStatus', {}, this.signal));
+        }, this.signal);
+        this.rows.refreshTimes();
+        this.wake = new AbortController();
+        await pause(REFRESH, AbortSignal.any([this.signal, this.wake.signal]));
+      }
+    }
+  }
+
+  function showJobs(main, signal) {
+    document.title = 'Jobs – ballpiston';
+    return new JobList(main, signal).keepFresh();
+  }
+
+  Object.assign(ballpiston, {showJobs, stateElement, stateText, fractionOf, progressText, statusText});
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,365 @@
+// #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX: a job as it runs. A watch brings its state,
+// the points that are computed, and each finished point; histograms and curves of the point that is
+// shown are asked for when it is finished.
+(function (ballpiston) {
+  'use strict';
+
+  const {element, table, tableRow, call, stream, keepTrying, whileVisible, pause, TabHidden,
+    ResultView, GridChart, zElement, isNumber, withError, valueText, countText, words,
+    parametersText, shellWord} = ballpiston;
+
+  const MOST_STEPS = 300;   // of a point's convergence; then every second one is dropped
+  const ROWS = 200;         // of points, at a time
+  const STATUS_EVERY = 2000;  // ms, while the job waits
+  const SHARE_OF_DRAWING = 4; // draws again after this many times what drawing took
+  const ENDED = new Set(['SUCCEEDED', 'FAILED', 'CANCELLED']);
+
+  // ---- What is known of a job
+
+  // The estimates of a point after more and more samples.
+  class Convergence {
+    constructor() {
+      this.steps = [];  // points, in the order of samples
+    }
+
+    add(point) {
+      if (!(point.samples > (this.steps.at(-1)?.samples ?? 0))) return;
+      this.steps.push({samples: point.samples, estimates: point.estimates});
+      if (this.steps.length > MOST_STEPS) this.steps = this.steps.filter((_, i) => i % 2 === 1);
+    }
+
+    // Null if fewer than two steps were seen.
+    chart(name) {
+      const steps = this.steps.map(({samples, estimates}) =>
+        ({samples, ...estimates.find((estimate) => estimate.name === name)}))
+        .filter((step) => isNumber(step.value));
+      if (steps.length < 2) return null;
+      const x = steps.map((step) => step.samples);
+      const lines = [{label: 'value', kind: 'measured', colour: 0, x,
+        y: steps.map((step) => step.value), error: steps.map((step) => step.standard_error)}];
+      for (const [field, kind, label] of [['exact', 'exact', 'exact'], ['limit', 'limit', 'Markov limit']]) {
+        if (!isNumber(steps.at(-1)[field])) continue;
+        lines.push({label, kind, colour: 1, x, y: x.map(() => steps.at(-1)[field])});
+      }
+      return {title: `Convergence of ${words(name)}`, xLabel: 'samples', yLabel: 'value', lines,
+        logX: x.at(-1) > 30 * x[0]};
+    }
+  }
+
+  class JobRecord {
+    constructor() {
+      this.job = null;
+      this.points = new Map();  // index: point; the newest of each
+      this.finished = new Set();
+      this.convergence = new Map();
+      this.newest = null;  // index of the point that was computed last
+    }
+
+    takePoint(point, isFinished) {
+      const before = this.points.get(point.index);
+      if (!isFinished && this.finished.has(point.index)) return;
+      if (isFinished) this.finished.add(point.index);
+      this.points.set(point.index, before?.detailed && isFinished ? before : point);
+      if (!this.convergence.has(point.index)) this.convergence.set(point.index, new Convergence());
+      this.convergence.get(point.index).add(point);
+    }
+
+    takeUpdate(update) {
+      if (update.job) this.job = update.job;
+      if (!update.snapshot) return;
+      const {progress, points = [], finished_points: finished = []} = update.snapshot;
+      if (this.job && progress) this.job = {...this.job, progress};
+      finished.forEach((point) => this.takePoint(point, true));
+      points.forEach((point) => this.takePoint(point, false));
+      this.newest = points[0]?.index ?? finished.at(-1)?.index ?? this.newest;
+    }
+
+    sorted() {
+      return [...this.points.values()].sort((a, b) => a.index - b.index);
+    }
+  }
+
+  // ---- The job itself
+
+  function whyText(job, status) {
+    switch (job.state) {
+      case 'QUEUED':
+        return 'It waits until a worker is free. Each user gets an even share of the workers; of one ' +
+          `user’s jobs those of higher priority go first. ${status ? ballpiston.statusText(status) : ''}`;
+      case 'FAILED':
+        return `It failed: ${job.error?.message ?? 'no reason was given'}`;
+      case 'CANCELLED':
+        return 'It was cancelled. The points that were finished stay.';
+      default:
+        return status?.state === 'STORE_FAILING'
+          ? 'The server’s disk refuses writes; what is computed waits for it.' : '';
+    }
+  }
+
+  // A command that the reader can copy.
+  const command = (...words) => element('pre', {tabindex: '0', class: 'command'},
+    words.map(shellWord).join(' '));
+
+  function notes(job) {
+    const shown = [];
+    if (job.answered_from_store) {
+      shown.push(element('p', {class: 'panel'}, 'Answered from the store: this question was asked before.'));
+    }
+    if (job.results_expired) {
+      shown.push(element('div', {class: 'panel'},
+        element('p', {}, 'The results have expired. The same numbers are computed again by'),
+        command('ballpiston', 'run', '--again', job.name)));
+    }
+    return shown;
+  }
+
+  class JobHead {
+    constructor() {
+      this.title = element('h1', {tabindex: '-1'}, 'Job');
+      this.progress = element('progress', {max: 1, value: 0, 'aria-label': 'Progress of the job'});
+      this.progressText = element('span');
+      this.state = element('span', {role: 'status'});
+      this.why = element('p', {class: 'panel', hidden: true});
+      this.notes = element('div');
+      this.facts = element('div');
+      this.spec = element('div');
+      this.element = element('section', {'aria-label': 'The job'}, this.title,
+        element('p', {class: 'progress'}, this.state, this.progress, this.progressText), this.why, this.notes,
+        element('details', {class: 'about'}, element('summary', {}, 'Specification, times and work'),
+          this.spec, this.facts));
+    }
+
+    show(job, status) {
+      this.title.textContent = words(job.spec?.experiment);
+      document.title = `${words(job.spec?.experiment)}, ${ballpiston.stateText(job.state)} – ballpiston`;
+      if (this.state.dataset.state !== job.state) {
+        this.state.dataset.state = job.state;
+        this.state.replaceChildren(ballpiston.stateElement(job));
+        this.notes.replaceChildren(...notes(job));
+        this.spec.replaceChildren(ballpiston.specFacts(job.spec), ballpiston.specJson(job.spec));
+      }
+      const ended = ENDED.has(job.state);
+      this.progress.hidden = ended;
+      this.progress.value = ballpiston.fractionOf(job.progress);
+      this.progressText.textContent = ballpiston.progressText(job.progress);
+      const why = whyText(job, status);
+      this.why.hidden = why === '';
+      if (this.why.textContent !== why) this.why.textContent = why;
+      if (ended || !this.facts.firstChild) this.facts.replaceChildren(ballpiston.jobFacts(job));
+    }
+  }
+
+  // ---- The points
+
+  class PointTable {
+    constructor(onChoose) {
+      this.onChoose = onChoose;
+      this.count = ROWS;
+      this.rows = new Map();
+      this.columns = [{label: 'Point'}, {label: 'Parameters'}, {label: 'Model'},
+        {label: 'Value', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true}];
+      this.table = table('Points, with their first estimate', this.columns, [], {class: 'rows points'});
+      this.body = this.table.querySelector('tbody');
+      this.more = element('button', {type: 'button', hidden: true, onclick: () => {
+        this.count += ROWS;
+        this.show(this.points, this.finished, this.shown);
+      }}, 'More points');
+      this.element = element('div', {}, this.table, this.more);
+    }
+
+    // Points beyond the first `count` have no row.
+    show(points, finished, shown) {
+      Object.assign(this, {points, finished, shown});
+      let next = this.body.firstChild;
+      for (const point of points.slice(0, this.count)) {
+        const row = this.row(point, finished.has(point.index), next);
+        next = row.nextSibling;
+      }
+      this.more.hidden = points.length <= this.count;
+      this.more.textContent =
+        `More points (${countText(this.count)} of ${countText(points.length)} are shown)`;
+      this.mark(shown);
+    }
+
+    row(point, isFinished, next) {
+      const known = this.rows.get(point.index);
+      if (known?.samples === point.samples && known.isFinished === isFinished) return known.row;
+      const row = tableRow(this.columns, this.cells(point, isFinished));
+      const hadFocus = known?.row.contains(document.activeElement);
+      if (known) known.row.replaceWith(row);
+      else this.body.insertBefore(row, next);
+      if (hadFocus) row.querySelector('button').focus();
+      this.rows.set(point.index, {row, samples: point.samples, isFinished});
+      return row;
+    }
+
+    cells(point, isFinished) {
+      const first = point.estimates?.[0] ?? {};
+      const button = element('button', {type: 'button', class: 'link',
+        onclick: () => this.onChoose(point.index)}, `Point ${point.index}`);
+      return [element('span', {}, button, isFinished ? '' : ' (running)'),
+        parametersText(point.parameters), words(point.model),
+        withError(first.value, first.standard_error),
+        isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
+        zElement(first.z_score)];
+    }
+
+    mark(shown) {
+      this.marked?.removeAttribute('aria-current');
+      this.marked = this.rows.get(shown)?.row;
+      this.marked?.setAttribute('aria-current', 'true');
+    }
+  }
+
+  class PointPanel {
+    constructor(onFollow) {
+      this.title = element('h2', {tabindex: '-1'}, 'Point');
+      this.follow = element('button', {type: 'button', onclick: onFollow}, 'Follow the point that is computed');
+      this.convergenceNote = element('p', {class: 'soft', hidden: true});
+      this.view = new ResultView();
+      this.element = element('section', {'aria-label': 'One point', hidden: true}, this.title,
+        this.follow, this.view.element, this.convergenceNote);
+    }
+
+    show(point, record, isFollowing) {
+      this.element.hidden = false;
+      const isFinished = record.finished.has(point.index);
+      const active = !ENDED.has(record.job?.state);
+      this.title.textContent = `Point ${point.index}${isFinished ? '' : ', running'}`;
+      this.follow.hidden = isFollowing || !active;
+      const convergence = point.estimates?.length
+        ? record.convergence.get(point.index)?.chart(point.estimates[0].name) : null;
+      this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
+      this.convergenceNote.textContent = isFinished
+        ? 'This point was finished before the page saw it converge.' : '';
+      this.view.show(point, convergence ? [convergence] : []);
+    }
+  }
+
+  // ---- The view
+
+  class JobView {
+    constructor(main, name, index, signal) {
+      Object.assign(this, {name, signal, chosen: index, record: new JobRecord(), token: '',
+        withoutDetails: new Set()});
+      this.head = new JobHead();
+      this.grid = new GridChart();
+      this.panel = new PointPanel(() => this.choose(null));
+      this.points = new PointTable((chosen) => {
+        this.choose(chosen);
+        this.panel.title.scrollIntoView();
+        this.panel.title.focus();
+      });
+      this.gridSection = element('section', {'aria-label': 'All points', hidden: true},
+        element('h2', {}, 'All points'), this.grid.element, this.points.element);
+      main.append(this.head.element, this.panel.element, this.gridSection);
+    }
+
+    // `index` null: the point that is computed, or the first one.
+    choose(index) {
+      this.chosen = index;
+      const address = '#' + this.name.split('/').map(encodeURIComponent).join('/') +
+        (index === null ? '' : `/results/${index}`);
+      history.replaceState(null, '', address);
+      this.draw();
+    }
+
+    get shown() {
+      const {record} = this;
+      if (this.chosen !== null) return this.chosen;
+      const isActive = record.job && !ENDED.has(record.job.state);
+      if (isActive) return record.newest ?? 0;
+      return this.lastShown ?? 0;
+    }
+
+    draw() {
+      const {record} = this;
+      if (!record.job) return;
+      this.head.show(record.job, this.status);
+      const points = record.sorted();
+      this.gridSection.hidden = points.length < 2;
+      if (points.length > 1) {
+        this.grid.show(points);
+        this.points.show(points, record.finished, this.shown);
+      }
+      const point = record.points.get(this.shown);
+      if (!point) return;
+      this.lastShown = this.shown;
+      this.panel.show(point, record, this.chosen === null);
+      this.askForDetails(point);
+    }
+
+    // Draws soon; seldom, if drawing takes long.
+    drawSoon() {
+      if (this.drawing) return;
+      this.drawing = true;
+      setTimeout(() => requestAnimationFrame(() => {
+        const begin = performance.now();
+        if (!this.signal.aborted) this.draw();
+        this.took = performance.now() - begin;
+        this.drawing = false;
+      }), SHARE_OF_DRAWING * (this.took ?? 0));
+    }
+
+    // Histograms and curves, which a watch leaves out.
+    async askForDetails(point) {
+      const {record} = this;
+      if (!record.finished.has(point.index) || point.detailed || record.job.results_expired) return;
+      if (this.asked === point.index || this.withoutDetails.has(point.index)) return;
+      this.asked = point.index;
+      try {
+        const detailed = await keepTrying(() => call('EnsembleService/GetResult',
+          {name: `${this.name}/results/${point.index}`}, this.signal), this.signal);
+        record.points.set(point.index, {...detailed, detailed: true});
+        this.drawSoon();
+      } catch (error) {
+        this.withoutDetails.add(point.index);  // the banner says why, or another view is shown
+      } finally {
+        if (this.asked === point.index) this.asked = null;
+      }
+    }
+
+    // One watch, until the job ended. Goes on where the last one stopped.
+    async watch(progress) {
+      const controller = whileVisible(this.signal);
+      try {
+        const updates = stream('EnsembleService/WatchEnsembleJob',
+          {name: this.name, resume_token: this.token}, controller.signal);
+        for await (const update of updates) {
+          progress();
+          this.token = update.resume_token ?? this.token;
+          this.record.takeUpdate(update);
+          this.drawSoon();
+        }
+      } finally {
+        controller.abort(new TabHidden());
+      }
+    }
+
+    async watchStatus() {
+      while (!this.signal.aborted && !ENDED.has(this.record.job?.state)) {
+        if (!document.hidden) {
+          this.status = await call('ServerService/GetServerStatus', {}, this.signal).catch(() => this.status);
+          this.drawSoon();
+        }
+        await pause(STATUS_EVERY, this.signal);
+      }
+    }
+
+    // The job of a watch of an ended job comes last; so it is shown at once.
+    async run() {
+      this.record.job = await keepTrying(() =>
+        call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal), this.signal);
+      this.drawSoon();
+      this.watchStatus();
+      await keepTrying((progress) => this.watch(progress), this.signal);
+    }
+  }
+
+  function showJob(main, name, index, signal) {
+    document.title = 'Job – ballpiston';
+    return new JobView(main, name, index, signal).run();
+  }
+
+  Object.assign(ballpiston, {showJob});
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,165 @@
+// Cells, balls and pistons on a canvas. Colours say how much energy a body has, in the scale
+// cividis, which readers with the usual colour vision deficiencies read as others do.
+(function (ballpiston) {
+  'use strict';
+
+  const CIVIDIS = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102],
+    [254, 232, 56]];
+  const EDGE = 0.06;  // around the cells
+  const BALL = 0.025; // radius of the picture of a ball, which is a point
+  const TRAIL = 60;   // corners of the pair's trail
+
+  const styleOf = (name) => ballpiston.styleOf(name);
+
+  function mix(a, b, share) {
+    return a.map((value, i) => Math.round(value + share * (b[i] - value)));
+  }
+
+  // `share` of the most energy shown, from 0 to 1.
+  function colourOf(share) {
+    const at = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
+    const i = Math.min(Math.floor(at), CIVIDIS.length - 2);
+    return `rgb(${mix(CIVIDIS[i], CIVIDIS[i + 1], at - i).join(',')})`;
+  }
+
+  function shapeOf(cells) {
+    const [columns, rows] = String(cells ?? '1').split('x').map(Number);
+    return {columns, rows: rows || 1};
+  }
+
+  class OrbitPicture {
+    constructor(canvas, start) {
+      this.canvas = canvas;
+      this.start = start;
+      this.isPair = start.cells === undefined;
+      this.shape = shapeOf(start.cells);
+      // A ball of the pair has at most 1/2. In a gas one ball in seven has more than 2 T.
+      this.mostEnergy = this.isPair ? 0.5 : 2 * start.temperature;
+      this.trail = [];
+    }
+
+    // The part of the plane that is shown.
+    get bounds() {
+      const {columns, rows} = this.shape;
+      const way = 0.5 - this.start.tip + this.start.delta;  // of a piston, to either side of an edge
+      const right = columns - 0.5 + way;
+      if (this.isPair) return {left: -0.5 - EDGE, right: right + EDGE, bottom: -0.5 - EDGE, top: 0.5 + EDGE};
+      const up = rows > 1 ? way : 0;
+      return {left: -0.5 - way - EDGE, right: right + EDGE, bottom: -0.5 - up - EDGE,
+        top: rows - 0.5 + up + EDGE};
+    }
+
+    get aspect() {
+      const {left, right, bottom, top} = this.bounds;
+      return (right - left) / (top - bottom);
+    }
+
+    // Lengths of the plane from here on; y points up.
+    prepare() {
+      const {left, right, bottom, top} = this.bounds;
+      const {width, height} = this.canvas;
+      this.scale = Math.min(width / (right - left), height / (top - bottom));
+      const c = this.canvas.getContext('2d');
+      c.setTransform(1, 0, 0, 1, 0, 0);
+      c.fillStyle = styleOf('--free');
+      c.fillRect(0, 0, width, height);
+      c.setTransform(this.scale, 0, 0, -this.scale,
+        width / 2 - this.scale * (left + right) / 2, height / 2 + this.scale * (bottom + top) / 2);
+      return c;
+    }
+
+    get pixel() {
+      return 1 / this.scale;
+    }
+
+    remember(ball) {
+      this.trail.push({x: ball.x, y: ball.y});
+      if (this.trail.length > TRAIL) this.trail.shift();
+    }
+
+    draw(motion) {
+      const c = this.prepare();
+      this.drawDiscs(c);
+      if (this.isPair) this.drawTrail(c, motion.ballsNow()[0]);
+      motion.pistonsNow().forEach((piston) => this.drawPiston(c, piston));
+      motion.ballsNow().forEach((ball) => this.drawBall(c, ball));
+    }
+
+    // The discs are one shape, so that they hide where they overlap.
+    drawDiscs(c) {
+      const {columns, rows} = this.shape;
+      c.beginPath();
+      for (let i = -1; i <= columns + 1; ++i) {
+        for (let j = -1; j <= rows + 1; ++j) {
+          c.moveTo(i - 0.5 + this.start.rho, j - 0.5);
+          c.arc(i - 0.5, j - 0.5, this.start.rho, 0, 2 * Math.PI);
+        }
+      }
+      c.fillStyle = styleOf('--disc');
+      c.fill();
+    }
+
+    drawTrail(c, ball) {
+      c.strokeStyle = styleOf('--soft');
+      c.lineWidth = this.pixel;
+      const corners = [...this.trail, ball];
+      for (let i = 1; i < corners.length; ++i) {
+        c.globalAlpha = i / corners.length;
+        c.beginPath();
+        c.moveTo(corners[i - 1].x, corners[i - 1].y);
+        c.lineTo(corners[i].x, corners[i].y);
+        c.stroke();
+      }
+      c.globalAlpha = 1;
+    }
+
+    // A piston of a gas across its left or lower edge is also seen at the other edge.
+    drawPiston(c, piston) {
+      const {columns, rows} = this.shape;
+      this.drawSegment(c, piston, 0, 0);
+      if (this.isPair) return;
+      if (piston.vertical) this.drawSegment(c, piston, columns, 0);
+      else this.drawSegment(c, piston, 0, rows);
+    }
+
+    drawSegment(c, piston, dx, dy) {
+      const half = this.start.eta / 2;
+      const [alongX, alongY] = piston.vertical ? [0, half] : [half, 0];
+      const x = piston.x + dx, y = piston.y + dy;
+      for (const [style, width] of [[styleOf('--text'), 7], [colourOf(piston.energy / this.mostEnergy), 4]]) {
+        c.beginPath();
+        c.moveTo(x - alongX, y - alongY);
+        c.lineTo(x + alongX, y + alongY);
+        c.strokeStyle = style;
+        c.lineWidth = Math.max(width * this.pixel * (devicePixelRatio || 1) * this.thickness, 0);
+        c.stroke();
+      }
+    }
+
+    // Thinner where there are many cells.
+    get thickness() {
+      return Math.min(1, this.scale / 150);
+    }
+
+    drawBall(c, ball) {
+      c.beginPath();
+      c.arc(ball.x, ball.y, BALL, 0, 2 * Math.PI);
+      c.fillStyle = colourOf(ball.energy / this.mostEnergy);
+      c.fill();
+      c.strokeStyle = styleOf('--text');
+      c.lineWidth = 1.5 * this.pixel * (devicePixelRatio || 1) * this.thickness;
+      c.stroke();
+    }
+  }
+
+  // The scale of energies, as a strip.
+  function drawEnergyScale(canvas) {
+    const c = canvas.getContext('2d');
+    for (let x = 0; x < canvas.width; ++x) {
+      c.fillStyle = colourOf(x / (canvas.width - 1));
+      c.fillRect(x, 0, 1, canvas.height);
+    }
+  }
+
+  Object.assign(ballpiston, {OrbitPicture, drawEnergyScale});
+})(globalThis.ballpiston ??= {});

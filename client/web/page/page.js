@@ -1,0 +1,89 @@
+// Which view is shown, by the fragment of the address; and the theme.
+(function (ballpiston) {
+  'use strict';
+
+  const THEME = 'ballpiston-theme';
+  const THEMES = ['auto', 'light', 'dark'];
+
+  let leave = new AbortController();
+
+  const main = () => document.getElementById('main');
+
+  // Empty for a fragment that is not encoded properly.
+  function decoded(text) {
+    try {
+      return decodeURIComponent(text);
+    } catch {
+      return '';
+    }
+  }
+
+  // {name, index} of #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX; null for other addresses.
+  function jobOf(fragment) {
+    const match = /^(ensembleJobs\/[^/]+)(?:\/results\/(\d+))?$/.exec(fragment);
+    return match && {name: decoded(match[1]), index: match[2] === undefined ? null : Number(match[2])};
+  }
+
+  function showView(fragment, signal) {
+    const job = jobOf(fragment);
+    if (job) return ballpiston.showJob(main(), job.name, job.index, signal);
+    if (fragment === 'orbit') return ballpiston.showOrbit(main(), signal);
+    return ballpiston.showJobs(main(), signal);
+  }
+
+  function markLink(fragment) {
+    for (const link of document.querySelectorAll('nav a')) {
+      const isCurrent = link.hash === `#${fragment || 'jobs'}`;
+      if (isCurrent) link.setAttribute('aria-current', 'page');
+      else link.removeAttribute('aria-current');
+    }
+  }
+
+  // The banner says what a view could not do. Other errors are mistakes of this page.
+  function report(error) {
+    if (error instanceof ballpiston.CallError || error?.name === 'AbortError') return;
+    console.error(error);
+  }
+
+  async function route() {
+    ballpiston.takeToken();
+    const fragment = location.hash.slice(1);
+    leave.abort();
+    leave = new AbortController();
+    const {signal} = leave;
+    main().replaceChildren();
+    ballpiston.clearBanner();
+    markLink(fragment);
+    try {
+      const shown = showView(fragment, signal);
+      main().querySelector('h1')?.focus({preventScroll: true});
+      scrollTo(0, 0);
+      await shown;
+    } catch (error) {
+      if (!signal.aborted) report(error);
+    }
+  }
+
+  function applyTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    ballpiston.repaintCharts();
+  }
+
+  function setUpTheme() {
+    const stored = localStorage.getItem(THEME);
+    const theme = THEMES.includes(stored) ? stored : 'auto';
+    const chooser = ballpiston.choice('Theme', THEMES.map((name) => ({value: name, label: name})),
+      theme, (chosen) => {
+        localStorage.setItem(THEME, chosen);
+        applyTheme(chosen);
+      });
+    document.getElementById('theme').append(chooser);
+    applyTheme(theme);
+    matchMedia('(prefers-color-scheme: dark)')
+      .addEventListener('change', () => ballpiston.repaintCharts());
+  }
+
+  setUpTheme();
+  addEventListener('hashchange', route);
+  route();
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,101 @@
+// The page of `ballpiston report`: jobs with their points, from the JSON inside the page:
+//   {client_version, created, jobs: [{job, points, points_left_out}]}
+// with an EnsembleJob, PointResults, and the number of points that are not in the file.
+(function (ballpiston) {
+  'use strict';
+
+  const {element, facts, table, ResultView, GridChart, specFacts, specJson, jobFacts, zElement,
+    wholeTime, countText, isNumber, valueText, withError, words, parametersText} = ballpiston;
+
+  const MOST_PICTURED = 12;  // points of a job with tables and pictures of their own
+  const MOST_ROWS = 1000;    // of the table of all points
+
+  const OUTCOMES = {SUCCEEDED: null, FAILED: 'This job failed', CANCELLED: 'This job was cancelled'};
+
+  // Null if all is well.
+  function outcomeText(job) {
+    if (!(job.state in OUTCOMES)) return 'This job had not ended when the report was made.';
+    const text = OUTCOMES[job.state];
+    return text && `${text}${job.error?.message ? `: ${job.error.message}` : '.'}`;
+  }
+
+  function panels(entry, pictured) {
+    const {job, points, points_left_out: leftOut} = entry;
+    return [
+      outcomeText(job),
+      job.results_expired ? 'The results have expired; only the specification is kept.' : null,
+      leftOut > 0 ? `${countText(leftOut)} further points are not in this report.` : null,
+      points.length > pictured
+        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; all are in the table at the end.`
+        : null,
+    ].filter(Boolean).map((text) => element('p', {class: 'panel'}, text));
+  }
+
+  const POINT_COLUMNS = [{label: 'Point'}, {label: 'Parameters'}, {label: 'Model'},
+    {label: 'Value', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true}];
+
+  function pointRow(point) {
+    const first = point.estimates?.[0] ?? {};
+    return [String(point.index), parametersText(point.parameters), words(point.model),
+      withError(first.value, first.standard_error),
+      isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
+      zElement(first.z_score)];
+  }
+
+  function pointTable(points) {
+    const rows = points.slice(0, MOST_ROWS);
+    const caption = 'All points, with their first estimate' + (rows.length < points.length
+      ? `: the first ${countText(rows.length)} of ${countText(points.length)}` : '');
+    return table(caption, POINT_COLUMNS, rows.map(pointRow), {class: 'rows points'});
+  }
+
+  // Shown after it is in the page, because charts need their width.
+  function showPoint(section, point) {
+    const view = new ResultView();
+    section.append(element('h3', {}, `Point ${point.index}: ${parametersText(point.parameters)}`), view.element);
+    view.show(point);
+  }
+
+  function showGrid(section, points) {
+    const grid = new GridChart();
+    section.append(grid.element);
+    if (!grid.show(points)) grid.remove();
+  }
+
+  function showJob(main, entry) {
+    const {job} = entry;
+    const points = entry.points ?? [];
+    const section = element('section', {'aria-label': `${words(job.spec?.experiment)}, ${job.name}`},
+      element('h2', {}, words(job.spec?.experiment)), panels({...entry, points}, MOST_PICTURED),
+      specFacts(job.spec), specJson(job.spec), jobFacts(job));
+    main.append(section);
+    if (points.length > 1) showGrid(section, points);
+    points.slice(0, MOST_PICTURED).forEach((point) => showPoint(section, point));
+    if (points.length > 1) section.append(pointTable(points));
+  }
+
+  function showReport({client_version: version, created, jobs}) {
+    const main = document.getElementById('main');
+    main.append(element('h1', {}, jobs.length === 1 ? 'Report of a job' : `Report of ${jobs.length} jobs`),
+      facts([['Made', wholeTime(created)], ['By', `ballpiston ${version}`]]));
+    jobs.forEach((entry) => showJob(main, entry));
+  }
+
+  // Paper is light, and so are the charts on it.
+  function printLight() {
+    const root = document.documentElement;
+    addEventListener('beforeprint', () => {
+      root.dataset.theme = 'light';
+      ballpiston.repaintCharts();
+    });
+    addEventListener('afterprint', () => {
+      delete root.dataset.theme;
+      ballpiston.repaintCharts();
+    });
+  }
+
+  printLight();
+  matchMedia('(prefers-color-scheme: dark)')
+    .addEventListener('change', () => ballpiston.repaintCharts());
+  showReport(JSON.parse(document.getElementById('data').textContent));
+})(globalThis.ballpiston ??= {});

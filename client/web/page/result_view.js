@@ -1,0 +1,198 @@
+// One point of a job: its estimates, histograms over the exact law, curves, and remarks. Charts and
+// tables are kept while the numbers change.
+(function (ballpiston) {
+  'use strict';
+
+  const {element, table, facts, Chart, isNumber, valueText, errorText, withError, signedText,
+    countText, words, parametersText} = ballpiston;
+
+  const MOST_BINS = 60;  // shown; the result has more
+  const FAR = 4;         // standard errors
+
+  const CURVE_LABELS = {
+    energy_autocorrelation: 'Autocorrelation of the piston’s energy',
+    mean_energy: 'Mean energy of the piston',
+    temperature_profile: 'Temperature profile',
+  };
+
+  // ---- Estimates
+
+  const COLUMNS = [{label: 'Estimate'}, {label: 'Value', number: true},
+    {label: 'Error', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true},
+    {label: 'Model error', number: true}];
+
+  function modelErrorText(error) {
+    if (!isNumber(error)) return 'not known';
+    return error === 0 ? '0' : `${Number((100 * error).toPrecision(2))} %`;
+  }
+
+  // The closed form, or what the Markov limit gives, or the mean were two laws equal.
+  function yardstick(estimate) {
+    const {exact, limit, noise_floor: floor, standard_error: error} = estimate;
+    if (isNumber(exact)) return isNumber(error) && error > 0 ? valueText(exact, error / 10) : valueText(exact);
+    if (isNumber(limit)) return `limit ${valueText(limit, error)}`;
+    if (isNumber(floor)) return `floor ${valueText(floor, error)}`;
+    return '';
+  }
+
+  function zElement(z) {
+    if (!isNumber(z)) return '';
+    return element('span', {class: Math.abs(z) > FAR ? 'far' : null}, signedText(z));
+  }
+
+  function estimateTable(point, caption) {
+    const rows = (point.estimates ?? []).map((estimate) => [words(estimate.name),
+      valueText(estimate.value, estimate.standard_error), errorText(estimate.standard_error),
+      yardstick(estimate), zElement(estimate.z_score), modelErrorText(estimate.model_error)]);
+    return table(caption, COLUMNS, rows, {class: 'estimates'});
+  }
+
+  function entropyText(kl) {
+    if (!kl) return null;
+    const noise = isNumber(kl.noise_floor)
+      ? `; were the laws equal: ${withError(kl.noise_floor, kl.noise_error)}` : '';
+    return `${withError(kl.value, kl.standard_error)}${noise} (${countText(kl.cells)} cells)`;
+  }
+
+  function healthText(health) {
+    if (!health) return null;
+    const escapes = health.escapes > 0
+      ? `${countText(health.escapes)} orbits escaped: a defect` : 'no orbit escaped';
+    return `${escapes}; largest relative error of the energy ` +
+      `${Number((health.max_energy_error ?? 0).toPrecision(2))}`;
+  }
+
+  function pointFacts(point) {
+    return facts([
+      ['Model', words(point.model)],
+      ['Why this model', point.reason],
+      ['Samples', point.samples > 0 ? countText(point.samples) : null],
+      ['Relative entropy to h⁽¹⁾', entropyText(point.kl_divergence)],
+      ['Health', healthText(point.health)],
+    ]);
+  }
+
+  function remarks(point) {
+    if (!point.remarks?.length) return null;
+    return element('ul', {class: 'remarks'}, point.remarks.map((text) => element('li', {}, text)));
+  }
+
+  // ---- Histograms
+
+  const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+
+  // Sums of `size` neighbours.
+  function merged(numbers, size) {
+    const sums = [];
+    for (let i = 0; i < numbers.length; i += size) sums.push(sum(numbers.slice(i, i + size)));
+    return sums;
+  }
+
+  // So few bins that each is wide enough to see, and that their number divides the counts' number.
+  function mergedBins(bins) {
+    for (let size = 1; size <= bins; ++size) {
+      if (bins % size === 0 && bins / size <= MOST_BINS) return size;
+    }
+    return bins;
+  }
+
+  const NAMES = {alpha: 'Ingoing angle α', ball_speed: 'Speed of the balls',
+    piston_speed: 'Speed of the pistons'};
+  const X_LABELS = {alpha: 'α', ball_speed: 'speed', piston_speed: 'speed'};
+
+  const LAWS = {alpha: 'equilibrium law h⁽¹⁾, exact'};
+
+  function histogramTitle(histogram) {
+    const name = NAMES[histogram.name] ?? words(histogram.name);
+    const sign = histogram.sigma > 0 ? ', σ = +1' : histogram.sigma < 0 ? ', σ = −1' : '';
+    const time = isNumber(histogram.time) ? `, time ${valueText(histogram.time)}` : '';
+    return name + sign + time;
+  }
+
+  // Densities over `total`, the counts of this histogram and of that for the other sign.
+  function histogramChart(histogram, total) {
+    const size = mergedBins(histogram.counts.length);
+    const width = size * (histogram.upper - histogram.lower) / histogram.counts.length;
+    const counts = merged(histogram.counts, size);
+    const x = counts.map((_, i) => histogram.lower + i * width);
+    const density = (share) => share / width;
+    const edges = [...x, histogram.upper];
+    const held = (y) => [...y, y.at(-1)];  // to the upper edge
+    const measured = counts.map((count) => density(count / total));
+    const lines = [{label: 'measured', kind: 'steps', colour: 0, x: edges, y: held(measured)},
+      {label: 'measured, with error', kind: 'measured', colour: 0, x, y: measured, shift: width / 2,
+        error: counts.map((count) => density(Math.sqrt(count) / total))}];
+    if (histogram.expected_probabilities?.length) {
+      const law = merged(histogram.expected_probabilities, size).map(density);
+      lines.push({label: LAWS[histogram.name] ?? 'exact law', kind: 'exact', stepped: true, colour: 1, x: edges, y: held(law)});
+    }
+    return {title: histogramTitle(histogram), xLabel: X_LABELS[histogram.name] ?? histogram.name,
+      yLabel: 'probability density', fromZero: true, lines,
+      note: size > 1 ? `${histogram.counts.length} bins, shown ${size} together` : null};
+  }
+
+  function histogramCharts(point) {
+    const histograms = point.histograms ?? [];
+    const totals = new Map();
+    const keyOf = (histogram) => `${histogram.name} ${histogram.time}`;
+    for (const histogram of histograms) {
+      totals.set(keyOf(histogram), (totals.get(keyOf(histogram)) ?? 0) + sum(histogram.counts));
+    }
+    return histograms.filter((histogram) => totals.get(keyOf(histogram)) > 0)
+      .map((histogram) => histogramChart(histogram, totals.get(keyOf(histogram))));
+  }
+
+  // ---- Curves
+
+  function curveChart(curve) {
+    const isProfile = curve.points.some((at) => isNumber(at.position));
+    const x = curve.points.map((at) => (isProfile ? at.position : at.time) ?? 0);
+    const lines = [{label: 'measured', kind: 'measured', colour: 0, x,
+      y: curve.points.map((at) => at.value), error: curve.points.map((at) => at.standard_error)}];
+    if (curve.points.some((at) => isNumber(at.limit))) {
+      lines.push({label: 'Markov limit', kind: 'limit', colour: 1, x,
+        y: curve.points.map((at) => at.limit)});
+    }
+    return {title: CURVE_LABELS[curve.name] ?? words(curve.name),
+      xLabel: isProfile ? 'position (cells)' : 'time (cells over unit speed)', yLabel: 'value', lines};
+  }
+
+  const curveCharts = (point) => (point.curves ?? []).filter((curve) => curve.points.length)
+    .map(curveChart);
+
+  // ---- The whole point
+
+  class ResultView {
+    constructor() {
+      this.text = element('div');
+      this.pictures = element('div', {class: 'charts'});
+      this.element = element('div', {}, this.text, this.pictures);
+      this.charts = [];
+    }
+
+    // `further`: charts to show before the histograms, as Chart takes them.
+    show(point, further = []) {
+      this.text.replaceChildren(estimateTable(point, `Estimates at ${parametersText(point.parameters)}`),
+        remarks(point) ?? '', pointFacts(point));
+      this.showCharts([...further, ...histogramCharts(point), ...curveCharts(point)]);
+    }
+
+    showCharts(wanted) {
+      while (this.charts.length > wanted.length) this.charts.pop().remove();
+      wanted.forEach((chart, i) => {
+        if (!this.charts[i]) {
+          this.charts.push(new Chart());
+          this.pictures.append(this.charts[i].element);
+        }
+        this.charts[i].show(chart);
+      });
+    }
+
+    remove() {
+      this.showCharts([]);
+      this.element.remove();
+    }
+  }
+
+  Object.assign(ballpiston, {ResultView, zElement});
+})(globalThis.ballpiston ??= {});

@@ -1,0 +1,538 @@
+// The page of `ballpiston web` and the page of a report, in Chromium, with the real programs. Tests wait
+// for conditions, never for times.
+import assert from 'node:assert/strict';
+import {readFileSync, writeFileSync} from 'node:fs';
+import {createServer} from 'node:http';
+import {join} from 'node:path';
+import {after, before, beforeEach, afterEach, describe, it} from 'node:test';
+import axe from 'axe-core';
+import {chromium} from 'playwright-core';
+import {EVIL, answerInstead, fakeJob, listInstead, streamInstead} from './fake_gateway.mjs';
+import {Programs, pageFolder} from './programs.mjs';
+
+const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const ARGUMENTS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const PHONE = {width: 390, height: 800};
+const PATIENCE = 20000;  // ms, until a condition has to hold
+
+const PAIR = ['--rho', '0.5296', '--delta', '0.1'];
+const NEVER_ENDS = ['conditional-mean-free-time', ...PAIR, '--epsilon', '0.1,0.2', '--model', 'billiard',
+  '--tolerance', '2e-6'];
+
+let programs, web, browser, context, page, mistakes;
+let firstHit, gas;  // names of finished jobs
+
+before(async () => {
+  programs = new Programs();
+  web = await programs.web();
+  firstHit = programs.run('submit', 'first-hit', ...PAIR, '--epsilon', '0.125,0.3', '--exponent', '0,1',
+    '--samples', '2e4');
+  gas = programs.run('submit', 'gas-equilibrium', ...PAIR, '--cells', '8', '--temperature', '1', '--verify',
+    '--samples', '200');
+  programs.run('watch', firstHit, '--progress', 'none');
+  programs.run('watch', gas, '--progress', 'none');
+  browser = await chromium.launch({executablePath: CHROMIUM, args: ARGUMENTS});
+});
+
+after(async () => {
+  await browser?.close();
+  await web?.stop();
+  programs?.remove();
+});
+
+beforeEach(() => newPage());
+afterEach(async () => {
+  await context.close();
+  assert.deepEqual(mistakes, []);
+});
+
+// `mistakes` are errors of the page's own scripts and of its content security policy. A failed call
+// is none of them.
+async function newPage(options = {}) {
+  await context?.close();
+  context = await browser.newContext({viewport: {width: 1200, height: 900}, ...options});
+  page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  mistakes = [];
+  page.on('pageerror', (error) => mistakes.push(error.stack));
+  page.on('console', (message) => {
+    if (message.type() === 'error' && !message.text().startsWith('Failed to load resource')) {
+      mistakes.push(message.text());
+    }
+  });
+}
+
+// Opens the page as a user does, with the token; then the view.
+async function open(view = 'jobs', address = web.address) {
+  await page.goto(address);
+  await page.waitForURL((url) => !url.hash.includes('token'));
+  if (view !== 'jobs') await page.evaluate((hash) => { location.hash = hash; }, view);
+  await page.getByRole('heading', {level: 1}).waitFor();
+}
+
+const banner = () => page.locator('#connection');
+const jobLink = (job) => page.locator(`a[href="#${job}"]`);
+const charts = () => page.locator('.chart canvas:not(.key)');
+const pixelsOf = (locator) => locator.evaluate((canvas) => canvas.toDataURL());
+const cancel = (job) => programs.run('cancel', job);
+
+async function waitUntilChanged(read, before) {
+  await assertSoon(async () => assert.notEqual(await read(), before));
+}
+
+// Until `check` does not throw, once in each frame of the page.
+async function assertSoon(check) {
+  const end = Date.now() + PATIENCE;
+  for (;;) {
+    try {
+      return await check();
+    } catch (error) {
+      if (Date.now() > end) throw error;
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+    }
+  }
+}
+
+async function assertNoViolations(where) {
+  await page.evaluate(axe.source);
+  const {violations} = await page.evaluate(() => axe.run());
+  const found = violations.map(({id, nodes}) => `${id}: ${nodes.map((node) => node.html).join(' | ')}`);
+  assert.deepEqual(found, [], where);
+}
+
+async function assertFitsTheWidth(where) {
+  const {width, room} = await page.evaluate(() =>
+    ({width: document.documentElement.scrollWidth, room: innerWidth}));
+  assert.ok(width <= room, `${where}: ${width} pixels wide, room for ${room}`);
+}
+
+async function focusedText() {
+  return page.evaluate(() => document.activeElement.textContent);
+}
+
+// Presses Tab until the focus is on an element with this text.
+async function tabTo(text, key = 'Tab') {
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press(key);
+    if (await focusedText() === text) return;
+  }
+  assert.fail(`the focus never came to ${text}`);
+}
+
+describe('The page', () => {
+  it('takes the token out of the address and asks nothing of other hosts', async () => {
+    const hosts = new Set();
+    page.on('request', (request) => hosts.add(new URL(request.url()).host));
+    await open();
+    await jobLink(firstHit).waitFor();
+    assert.deepEqual([...hosts].filter(Boolean), [new URL(web.address).host]);
+    assert.equal(new URL(page.url()).hash, '#jobs');
+    await page.reload();
+    await jobLink(firstHit).waitFor();
+  });
+
+  it('says that the address with the token is needed', async () => {
+    await page.goto(web.address.split('#')[0]);
+    await banner().filter({hasText: 'Open the whole address'}).waitFor();
+    await page.goto(web.address.replace(/token=.*/, 'token=0123'));
+    await banner().filter({hasText: 'wrong token'}).waitFor();
+    await open();
+    await jobLink(firstHit).waitFor();
+    await banner().waitFor({state: 'hidden'});
+  });
+
+  it('gives nothing to the page of another origin', async () => {
+    const other = createServer((_, response) => response.end('<!doctype html>'));
+    await new Promise((done) => other.listen(0, '127.0.0.1', done));
+    try {
+      await page.goto(`http://127.0.0.1:${other.address().port}/`);
+      const [address, token] = web.address.split('/#token=');
+      const outcome = await page.evaluate(async ({address, token}) => {
+        const url = `${address}/ballpiston.v1.EnsembleService/ListEnsembleJobs`;
+        const headers = {'Content-Type': 'application/json', 'Authorization': `Bearer ${token}`};
+        return fetch(url, {method: 'POST', body: '{}', headers}).then(() => 'answered', () => 'refused');
+      }, {address, token});
+      assert.equal(outcome, 'refused');
+      mistakes = mistakes.filter((text) => !text.includes('CORS'));
+    } finally {
+      other.close();
+    }
+  });
+
+  it('shows a hostile name as text', async () => {
+    const job = fakeJob(1, {name: `ensembleJobs/${EVIL}`, principal: EVIL, state: 'FAILED',
+      error: {code: 9, message: EVIL}, spec: {experiment: EVIL, grid: {cells: [EVIL]}, seed: EVIL},
+      results_expired: true});
+    const point = {index: 0, parameters: {rho: 1, delta: 1, cells: EVIL}, model: EVIL, samples: 1,
+      reason: EVIL, remarks: [EVIL], estimates: [{name: EVIL, value: 1, standard_error: 1, exact: 1}]};
+    await listInstead(page, [job]);
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', job);
+    await streamInstead(page, 'EnsembleService/WatchEnsembleJob',
+      [{resume_token: '1', snapshot: {finished_points: [point, {...point, index: 1}]}}, {job}]);
+    await open();
+    await page.getByRole('cell', {name: EVIL, exact: true}).waitFor();
+    await page.getByRole('link', {name: EVIL.toLowerCase()}).click();
+    await page.getByRole('heading', {level: 1, name: EVIL.toLowerCase()}).waitFor();
+    await page.getByText(`It failed: ${EVIL}`).waitFor();
+    await page.getByRole('heading', {name: 'Point 0'}).waitFor();
+    assert.equal(await page.locator('img').count(), 0);
+    assert.equal(await page.evaluate(() => window.wasAttacked), undefined);
+  });
+});
+
+describe('Jobs', () => {
+  it('submitted from the command line appear, and their charts move, without a reload', async () => {
+    await open();
+    await jobLink(firstHit).waitFor();
+    await page.evaluate(() => { window.isTheSame = true; });
+    const job = programs.run('submit', ...NEVER_ENDS);
+    try {
+      await jobLink(job).click();
+      await page.getByText('Convergence of mean free time conditional').waitFor();
+      const chart = charts().first();
+      await chart.waitFor();
+      await waitUntilChanged(() => pixelsOf(chart), await pixelsOf(chart));
+      await page.getByText('Numbers').first().click();
+      const rows = page.locator('.chart').first().locator('tbody tr');
+      const count = await rows.count();
+      await assertSoon(async () => assert.ok(await rows.count() > count + 2));
+      assert.equal(await page.evaluate(() => window.isTheSame), true);
+    } finally {
+      cancel(job);
+    }
+    await page.getByText('It was cancelled').waitFor();
+  });
+
+  it('show histograms over the exact law', async () => {
+    await open(firstHit);
+    await page.getByText('Ingoing angle α, σ = −1').waitFor();
+    await page.getByText('equilibrium law h⁽¹⁾, exact').first().waitFor();
+    await page.getByText('Numbers').first().click();
+    const rows = await page.locator('.chart').first().locator('tbody tr').allInnerTexts();
+    assert.equal(rows.length, 51);  // 1000 bins, 20 together, and the upper edge
+  });
+
+  it('say why they failed', async () => {
+    const job = programs.run('submit', 'conditional-mean-free-time', ...PAIR, '--epsilon', '0.1',
+      '--model', 'billiard', '--tolerance', '1e-7', '--budget', '0.1');
+    await open(job);
+    await page.getByText(/It failed: .*budget/).waitFor();
+  });
+
+  it('say why they wait', async () => {
+    const first = programs.run('submit', ...NEVER_ENDS);
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {state: 'QUEUED'}));
+    await page.route(/WatchEnsembleJob/, () => {});
+    try {
+      await open('ensembleJobs/0000000000000001');
+      await page.getByText(/It waits until a worker is free.*1 of 1 workers are busy/).waitFor();
+    } finally {
+      cancel(first);
+    }
+  });
+
+  it('are listed by their state', async () => {
+    const job = programs.run('submit', ...NEVER_ENDS);
+    await open();
+    await jobLink(firstHit).waitFor();
+    await page.getByLabel('State').selectOption('active');
+    await jobLink(firstHit).waitFor({state: 'detached'});
+    await jobLink(job).waitFor();
+    cancel(job);
+    await jobLink(job).waitFor({state: 'detached'});
+    await page.getByLabel('State').selectOption('cancelled');
+    await jobLink(job).waitFor();
+  });
+
+  it('that do not exist are reported', async () => {
+    await open('ensembleJobs/nothing');
+    await banner().filter({hasText: 'no such job'}).waitFor();
+  });
+
+  it('are shown from the store', async () => {
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {answered_from_store: true}));
+    await open('ensembleJobs/0000000000000001');
+    await page.getByText('Answered from the store').waitFor();
+  });
+
+  it('whose results expired have the command that computes them again', async () => {
+    await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {results_expired: true}));
+    await open('ensembleJobs/0000000000000001');
+    await page.getByText('ballpiston run --again ensembleJobs/0000000000000001').waitFor();
+  });
+});
+
+describe('A server that goes away', () => {
+  it('and returns leaves the data on the page, and the watch goes on', async () => {
+    const job = programs.run('submit', ...NEVER_ENDS);
+    await open(job);
+    await page.getByText('Convergence of').waitFor();
+    programs.stopServer();
+    await banner().filter({hasText: 'No answer; trying again'}).waitFor();
+    const value = page.locator('.estimates td').nth(1);
+    assert.notEqual(await value.innerText(), '');
+    await page.getByText('Numbers').first().click();
+    const rows = page.locator('.chart').first().locator('tbody tr');
+    const known = await rows.count();
+    programs.startServer();
+    await banner().waitFor({state: 'hidden'});
+    await assertSoon(async () => assert.ok(await rows.count() > known));
+    cancel(job);
+    await page.getByText('It was cancelled').waitFor();
+  });
+
+  it('leaves the list of jobs on the page', async () => {
+    await open();
+    await jobLink(firstHit).waitFor();
+    programs.stopServer();
+    await banner().filter({hasText: 'No answer; trying again'}).waitFor();
+    assert.ok(await jobLink(firstHit).isVisible());
+    programs.startServer();
+    await banner().waitFor({state: 'hidden'});
+  });
+
+  it('with ballpiston web, and returns with another token, is reported', async () => {
+    const own = await programs.web();
+    await open('jobs', own.address);
+    await jobLink(firstHit).waitFor();
+    await own.stop();
+    await banner().filter({hasText: 'ballpiston web does not run'}).waitFor();
+    const next = await programs.web(new URL(own.address).port);
+    await banner().filter({hasText: 'Open the whole address'}).waitFor();
+    assert.ok(await jobLink(firstHit).isVisible());
+    await page.goto(next.address);
+    await banner().waitFor({state: 'hidden'});
+    await next.stop();
+  });
+});
+
+describe('Keyboard, colours and width', () => {
+  it('a job and its points are reached with the keyboard alone', async () => {
+    await open();
+    await jobLink(firstHit).waitFor();
+    await tabTo('Skip to the content');
+    await tabTo('first hit');
+    const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+    assert.equal(outline, 'solid');
+    await page.keyboard.press('Enter');
+    await page.getByRole('button', {name: 'Point 3'}).waitFor();
+    assert.equal(await focusedText(), 'first hit');  // the heading of the new view
+    await tabTo('Point 3');
+    await page.keyboard.press('Enter');
+    await page.getByRole('heading', {name: 'Point 3'}).waitFor();
+    assert.equal(await focusedText(), 'Point 3');
+    assert.equal(new URL(page.url()).hash, `#${firstHit}/results/3`);
+  });
+
+  it('an orbit is played and paused with the keyboard alone', async () => {
+    await open('orbit');
+    const clock = page.locator('.readout').first();
+    await clock.filter({hasText: 'events'}).waitFor();
+    await waitUntilChanged(() => clock.innerText(), await clock.innerText());
+    await tabTo('Trace');
+    await tabTo('');  // the picture
+    await page.keyboard.press(' ');
+    await page.getByRole('button', {name: 'Play'}).waitFor();
+    const paused = await clock.innerText();
+    await page.keyboard.press('n');
+    await waitUntilChanged(() => clock.innerText(), paused);
+    await page.locator('.events li').first().filter({hasText: 'ball piston'}).waitFor();
+  });
+
+  it('an orbit does not move by itself for readers who prefer reduced motion', async () => {
+    await newPage({reducedMotion: 'reduce'});
+    await open('orbit');
+    await page.locator('.readout').first().filter({hasText: 't = 0.00'}).waitFor();
+    await page.getByRole('button', {name: 'Play'}).waitFor();
+  });
+
+  it('a gas is traced, and a question out of range is reported', async () => {
+    await open('orbit');
+    await page.getByLabel('Cells').fill('3x2');
+    await page.getByLabel('δ').fill('0.15');
+    await page.getByRole('button', {name: 'Trace'}).click();
+    await page.getByRole('img', {name: 'Gas of 6 balls and 12 pistons'}).waitFor();
+    await page.getByLabel('δ').fill('0.9');
+    await page.getByRole('button', {name: 'Trace'}).click();
+    await banner().filter({hasText: 'delta is 0.9'}).waitFor();
+  });
+
+  it('dark is the system’s choice or the reader’s', async () => {
+    const isDark = () => page.evaluate(() => {
+      const [red] = getComputedStyle(document.body).backgroundColor.match(/\d+/);
+      return Number(red) < 64;
+    });
+    await newPage({colorScheme: 'dark'});
+    await open(firstHit);
+    await page.getByText('Ingoing angle α, σ = −1').waitFor();
+    assert.ok(await isDark());
+    const inDark = await pixelsOf(charts().first());
+    await page.getByLabel('Theme').selectOption('light');
+    assert.ok(!await isDark());
+    await waitUntilChanged(() => pixelsOf(charts().first()), inDark);
+    await page.reload();
+    await page.getByRole('heading', {level: 1}).waitFor();
+    assert.ok(!await isDark());
+  });
+
+  it('all views fit the width of a phone', async () => {
+    await newPage({viewport: PHONE});
+    await open();
+    await jobLink(firstHit).waitFor();
+    await assertFitsTheWidth('jobs');
+    for (const job of [firstHit, gas]) {
+      await open(job);
+      await page.getByText(/Ingoing angle|Speed of the balls/).first().waitFor();
+      await assertFitsTheWidth(job);
+    }
+    await open('orbit');
+    await page.getByRole('img', {name: 'Cell with one ball'}).waitFor();
+    await assertFitsTheWidth('orbit');
+  });
+});
+
+describe('Accessibility rules', () => {
+  for (const [name, options] of Object.entries({
+    light: {}, dark: {colorScheme: 'dark'}, phone: {viewport: PHONE}})) {
+    it(`have no violations, ${name}`, async () => {
+      await newPage(options);
+      await open();
+      await jobLink(firstHit).waitFor();
+      await assertNoViolations('jobs');
+      await open(firstHit);
+      await page.getByText('Ingoing angle α, σ = −1').waitFor();
+      await page.getByText('Specification, times and work').click();
+      await page.getByText('As JSON').click();
+      await page.getByText('Numbers').first().click();
+      await assertNoViolations('first hit');
+      await open(gas);
+      await page.getByText('Speed of the balls').waitFor();
+      await assertNoViolations('gas');
+      await open('orbit');
+      await page.getByRole('img', {name: 'Cell with one ball'}).waitFor();
+      await assertNoViolations('orbit');
+      await page.goto(web.address.replace(/token=.*/, 'token=0123'));
+      await banner().filter({hasText: 'wrong token'}).waitFor();
+      await assertNoViolations('an error');
+    });
+  }
+});
+
+// ---- Many jobs, many points
+
+// Longest task of the page's thread since observeTasks, in ms.
+const observeTasks = () => page.evaluate(() => {
+  window.longestTask = 0;
+  new PerformanceObserver((list) => {
+    for (const entry of list.getEntries()) window.longestTask = Math.max(window.longestTask, entry.duration);
+  }).observe({type: 'longtask'});
+});
+const longestTask = () => page.evaluate(() => window.longestTask);
+
+// The longest time between frames while the page scrolls from top to bottom, in ms.
+const longestFrame = () => page.evaluate(async () => {
+  const FRAMES = 120;
+  const frame = () => new Promise(requestAnimationFrame);
+  let last = await frame(), longest = 0;
+  for (let i = 0; i <= FRAMES; ++i) {
+    scrollTo(0, (document.body.scrollHeight - innerHeight) * i / FRAMES);
+    const now = await frame();
+    longest = Math.max(longest, now - last);
+    last = now;
+  }
+  return longest;
+});
+
+const heapMegabytes = async () => {
+  const session = await context.newCDPSession(page);
+  await session.send('HeapProfiler.collectGarbage');
+  return (await session.send('Runtime.getHeapUsage')).usedSize / 1e6;
+};
+
+// Bounds are several times what was measured on two cores (README.md).
+describe('Many', () => {
+  it('10,000 jobs stay smooth', async (test) => {
+    const COUNT = 10000;
+    await listInstead(page, Array.from({length: COUNT}, (_, i) => fakeJob(COUNT - i)));
+    const begin = Date.now();
+    await open();
+    await page.locator('.jobs tbody tr').first().waitFor();
+    const first = Date.now() - begin;
+    await observeTasks();
+    const more = page.getByRole('button', {name: 'More jobs'});
+    const rows = page.locator('.jobs tbody tr');
+    for (let shown = 200; shown <= COUNT; shown += 100) {
+      await more.click();
+      await page.waitForFunction((count) =>
+        document.querySelectorAll('.jobs tbody tr').length === count, shown);
+    }
+    await more.waitFor({state: 'hidden'});
+    assert.equal(await rows.count(), COUNT);
+    const task = await longestTask();
+    const frame = await longestFrame();
+    test.diagnostic(`first jobs after ${first} ms; of all ${COUNT}: longest task ${task} ms, longest ` +
+      `frame while scrolling ${frame.toFixed(0)} ms, heap ${(await heapMegabytes()).toFixed(0)} MB`);
+    assert.ok(first < 5000 && task < 1000 && frame < 1000);
+  });
+
+  it('10,000 points stay smooth', async (test) => {
+    const job = programs.run('submit', 'equilibrium', '--rho', '0.51:0.7:100', '--delta', '0.001:0.01:100');
+    programs.run('watch', job, '--progress', 'none');
+    await open();
+    await observeTasks();
+    const begin = Date.now();
+    await page.evaluate((name) => { location.hash = name; }, job);
+    await page.getByText('10,000 are shown').waitFor();
+    await page.getByText('6 of 100 lines, evenly spread').waitFor();
+    const shown = Date.now() - begin;
+    const frame = await longestFrame();
+    test.diagnostic(`all points after ${shown} ms, longest task ${await longestTask()} ms, longest frame ` +
+      `while scrolling ${frame.toFixed(0)} ms, heap ${(await heapMegabytes()).toFixed(0)} MB`);
+    assert.ok(shown < 15000 && await longestTask() < 2000 && frame < 1000);
+    await page.getByRole('button', {name: 'More points'}).click();
+    await page.getByText('(400 of 10,000 are shown)').waitFor();
+  });
+});
+
+// ---- The report
+
+// What `ballpiston report` does with report.html.
+function makeReport(jobs, file) {
+  const read = (name) => readFileSync(join(pageFolder, name), 'utf8');
+  const data = {client_version: 'test', created: new Date().toISOString(), jobs: jobs.map((job) =>
+    ({...JSON.parse(programs.run('result', job, '--format', 'json')), points_left_out: 0}))};
+  const json = JSON.stringify(data).replaceAll('<', '\\u003c');
+  writeFileSync(file, read('report.html')
+    .replace(/<link rel="stylesheet" href="([^"]+)">/g, (_, name) => `<style>${read(name)}</style>`)
+    .replace(/<script src="([^"]+)" defer><\/script>/g, (_, name) => `<script>${read(name)}</script>`)
+    .replace('<!-- data -->', () => `<script type="application/json" id="data">${json}</script>`));
+}
+
+describe('A report', () => {
+  let file;
+  before(() => {
+    file = join(programs.folder, 'report.html');
+    makeReport([firstHit, gas], file);
+  });
+
+  it('shows its jobs without a network', async () => {
+    const asked = [];
+    page.on('request', (request) => asked.push(request.url()));
+    await page.goto(`file://${file}`);
+    await page.getByRole('heading', {name: 'first hit'}).waitFor();
+    await page.getByRole('heading', {name: 'gas equilibrium'}).waitFor();
+    await page.getByText('Ingoing angle α, σ = −1').first().waitFor();
+    await page.getByText('Speed of the balls').waitFor();
+    await charts().first().waitFor();
+    assert.deepEqual(asked.filter((url) => !url.startsWith('data:')), [`file://${file}`]);
+  });
+
+  it('follows the accessibility rules, dark, on a phone', async () => {
+    await newPage({viewport: PHONE, colorScheme: 'dark'});
+    await page.goto(`file://${file}`);
+    await page.getByText('Speed of the balls').waitFor();
+    await assertNoViolations('report');
+    await assertFitsTheWidth('report');
+  });
+});

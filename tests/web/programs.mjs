@@ -1,0 +1,78 @@
+// The real programs, for tests of the page: a server with a store of its own, `ballpiston web`, and the
+// command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
+import {execFile, execFileSync, spawn} from 'node:child_process';
+import {mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join, resolve} from 'node:path';
+import {createInterface} from 'node:readline';
+import {promisify} from 'node:util';
+
+const bin = resolve(process.env.BALLPISTON_BIN ?? '../../build/release/bin');
+const program = join(bin, 'ballpiston');
+
+// Of the page as it is installed beside the programs.
+export const pageFolder = resolve(bin, '../share/ballpiston/web');
+
+export class Programs {
+  constructor() {
+    this.folder = mkdtempSync(join(tmpdir(), 'ballpiston-page-'));
+    this.environment = {
+      PATH: process.env.PATH,
+      HOME: this.folder,
+      BALLPISTON_SERVER: `unix:${join(this.folder, 'socket')}`,
+    };
+    this.startServer();
+  }
+
+  get dataFolder() {
+    return join(this.folder, 'data');
+  }
+
+  startServer() {
+    const {BALLPISTON_SERVER: address} = this.environment;
+    this.runAt(['server', 'start', '--data-dir', this.dataFolder, '--listen', address, '--workers', '1']);
+  }
+
+  stopServer() {
+    this.runAt(['server', 'stop', '--data-dir', this.dataFolder]);
+  }
+
+  // The standard output of `ballpiston ARGUMENTS`, without the last line end.
+  run(...words) {
+    return this.runAt(words);
+  }
+
+  runAt(words) {
+    const options = {env: this.environment, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'],
+      maxBuffer: 1 << 28};
+    return execFileSync(program, words, options).trimEnd();
+  }
+
+  async runSoon(...words) {
+    const {stdout} = await promisify(execFile)(program, words, {env: this.environment, maxBuffer: 1 << 28});
+    return stdout.trimEnd();
+  }
+
+  // {address, stop()} of a `ballpiston web`; the address has the token. `port` 0: any.
+  async web(port = 0) {
+    const child = spawn(program, ['web', '--port', String(port)],
+      {env: this.environment, stdio: ['ignore', 'pipe', 'ignore']});
+    const ended = new Promise((done) => child.once('exit', done));
+    for await (const address of createInterface({input: child.stdout})) {
+      const stop = () => {
+        child.kill('SIGTERM');
+        return ended;
+      };
+      return {address, stop};
+    }
+    throw new Error('ballpiston web printed no address');
+  }
+
+  remove() {
+    try {
+      this.stopServer();
+    } finally {
+      rmSync(this.folder, {recursive: true});
+    }
+  }
+}
