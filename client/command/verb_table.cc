@@ -302,6 +302,9 @@ const FlagGroup kVariables = {
       "computing time of the longest run of each method"},
      {"--seed", Variable("SEED", "seed"), "seed of the random numbers"}}};
 
+const FlagGroup kReport = {
+    "Report", {{"--out", File(To(&Options::out)), "the HTML file to write; required"}}};
+
 const FlagGroup kWeb = {
     "Page",
     {{"--port", Count(To(&Options::port)), "port on the loopback, by default one that is free"}}};
@@ -534,6 +537,14 @@ std::vector<Verb> AllVerbs() {
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
            {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
            &Figure},
+          {"report",
+           "write jobs with pictures, tables and how they were made to one HTML file",
+           "The file needs neither a server nor a network. It has the first 12 points of each job "
+           "in full, and the estimates of up to 10,000. Prints the path of the file.",
+           {kSomeJobs},
+           With({&kReport, &kServer}, {}),
+           {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
+           &ReportJobs},
           {"web",
            "show jobs and results on a page, and pass JSON calls on to the server",
            "Prints the address of the page, which has an access token, and serves the page on this "

@@ -27,6 +27,7 @@ VerbResult Pin(const Options& options, Terminal& terminal);
 VerbResult Delete(const Options& options, Terminal& terminal);
 VerbResult Trace(const Options& options, Terminal& terminal);
 VerbResult Figure(const Options& options, Terminal& terminal);
+VerbResult ReportJobs(const Options& options, Terminal& terminal);
 VerbResult Web(const Options& options, Terminal& terminal);
 VerbResult ServerStart(const Options& options, Terminal& terminal);
 VerbResult ServerStop(const Options& options, Terminal& terminal);

@@ -1,0 +1,101 @@
+// ballpiston report: jobs with pictures, tables and how they were made, in one HTML file.
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/clock.h"
+#include "client/command/connection.h"
+#include "client/command/hint.h"
+#include "client/output/json.h"
+#include "client/web/one_file_page.h"
+
+namespace ballpiston::client {
+namespace {
+
+constexpr size_t kMostPoints = 10'000;  // of a job; some 6 MB
+constexpr size_t kMostPictured = 12;    // points with histograms and curves; as in report.js
+
+struct Points {
+  std::vector<std::string> json;
+  bool is_complete = true;
+};
+
+absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string& name) {
+  Points points;
+  std::string token;
+  do {
+    const bool pictured = points.json.size() < kMostPictured;
+    const auto view = pictured ? v1::ListResultsRequest::FULL : v1::ListResultsRequest::BASIC;
+    const auto page =
+        connection.Ask([&] { return connection.client.ResultsPage(name, view, token); });
+    if (!page.ok()) return HintIfExpired(page.status(), connection, name);
+    for (const v1::PointResult& point : page->points()) points.json.push_back(Json(point));
+    token = page->next_page_token();
+  } while (!token.empty() && points.json.size() < kMostPoints);
+  points.is_complete = token.empty();
+  return points;
+}
+
+absl::StatusOr<std::string> JobJson(const Connection& connection, const std::string& name) {
+  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  if (!job.ok()) return job.status();
+  const absl::StatusOr<Points> points = PointsOf(connection, name);
+  if (!points.ok()) return points.status();
+  const int64_t left_out = points->is_complete ? 0
+                                               : job->progress().points_done() -
+                                                     static_cast<int64_t>(points->json.size());
+  return absl::StrCat("{\"job\":", Json(*job), ",\"points\":[", absl::StrJoin(points->json, ",\n"),
+                      "],\"points_left_out\":", left_out, "}");
+}
+
+absl::StatusOr<std::string> Data(const Connection& connection,
+                                 const std::vector<std::string>& names) {
+  std::vector<std::string> jobs;
+  for (const std::string& name : names) {
+    const auto job = JobJson(connection, name);
+    if (!job.ok()) return job.status();
+    jobs.push_back(*job);
+  }
+  return absl::StrCat("{\"client_version\":\"", BALLPISTON_VERSION, "\",\"created\":\"",
+                      absl::FormatTime(absl::RFC3339_sec, absl::Now(), absl::UTCTimeZone()),
+                      "\",\"jobs\":[", absl::StrJoin(jobs, ",\n"), "]}");
+}
+
+// A reader never sees half a file, and a failure keeps the file that was there.
+absl::Status Write(const std::string& path, const std::string& content) {
+  const std::string part = path + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out << content << std::flush;
+  const int problem = errno;
+  std::error_code error;
+  if (out) std::filesystem::rename(part, path, error);
+  if (out && !error) return absl::OkStatus();
+  const std::string reason = error ? error.message() : std::strerror(problem);
+  out.close();
+  std::filesystem::remove(part, error);
+  return absl::InvalidArgumentError(absl::StrCat("--out: cannot write ", path, ": ", reason));
+}
+
+}  // namespace
+
+VerbResult ReportJobs(const Options& options, Terminal& terminal) {
+  if (options.out.empty()) {
+    return absl::InvalidArgumentError("--out is missing: name the HTML file to write");
+  }
+  const auto files = ReadPageFiles();
+  if (!files.ok()) return files.status();
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    const auto data = Data(connection, options.jobs);
+    if (!data.ok()) return data.status();
+    const auto page = OneFilePage(*files, "report.html", *data);
+    if (!page.ok()) return page.status();
+    if (absl::Status status = Write(options.out, *page); !status.ok()) return status;
+    terminal.out << options.out << '\n';
+    return ExitCode::kDone;
+  });
+}
+
+}  // namespace ballpiston::client

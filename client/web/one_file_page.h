@@ -1,0 +1,23 @@
+// A page with its style sheets, scripts and data in one file, which needs neither a server nor a
+// network.
+#ifndef BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
+#define BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
+
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/web/page_files.h"
+
+namespace ballpiston::client {
+
+// In place of each <link rel="stylesheet" href="NAME"> and <script src="NAME" defer></script>
+// stands the file NAME, and in place of <!-- data --> the JSON, as <script type="application/json"
+// id="data">. FAILED_PRECONDITION if a file is not installed.
+absl::StatusOr<std::string> OneFilePage(const std::map<std::string, PageFile>& files,
+                                        const std::string& name, absl::string_view json);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
