@@ -64,19 +64,30 @@ absl::StatusOr<std::string> Data(const Connection& connection,
                       "\",\"jobs\":[", absl::StrJoin(jobs, ",\n"), "]}");
 }
 
-// A reader never sees half a file, and a failure keeps the file that was there.
-absl::Status Write(const std::string& path, const std::string& content) {
-  const std::string part = path + ".part";
-  std::ofstream out(part, std::ios::binary);
+absl::Status WriteTo(const std::string& path, const std::string& content) {
+  std::ofstream out(path, std::ios::binary);
   out << content << std::flush;
-  const int problem = errno;
+  if (out) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("--out: cannot write ", path, ": ", std::strerror(errno)));
+}
+
+// A reader never sees half a file, and a failure keeps the file that was there. A pipe or a device
+// is written to directly.
+absl::Status Write(const std::string& path, const std::string& content) {
+  namespace fs = std::filesystem;
   std::error_code error;
-  if (out) std::filesystem::rename(part, path, error);
-  if (out && !error) return absl::OkStatus();
-  const std::string reason = error ? error.message() : std::strerror(problem);
-  out.close();
-  std::filesystem::remove(part, error);
-  return absl::InvalidArgumentError(absl::StrCat("--out: cannot write ", path, ": ", reason));
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) return WriteTo(path, content);
+  const std::string part = path + ".part";
+  absl::Status status = WriteTo(part, content);
+  if (status.ok()) fs::rename(part, path, error);
+  if (status.ok() && !error) return status;
+  if (error) {
+    status = absl::InvalidArgumentError(
+        absl::StrCat("--out: cannot write ", path, ": ", error.message()));
+  }
+  fs::remove(part, error);
+  return status;
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ const std::vector<Rule>& Rules() {
       {"tests/",
        {"core/", "server/", "client/", "tests/", "ballpiston/v1/", "ballpiston/storage/", "google/",
         "absl/", "grpc/", "grpcpp/", "sqlite3.h", "openssl/", "prometheus/", "Eigen/", "gtest/",
-        "gmock/", "benchmark/"},
+        "gmock/", "benchmark/", "httplib.h"},
        true},
   };
   return *rules;

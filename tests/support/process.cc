@@ -121,10 +121,10 @@ std::string Process::Output() const {
   return out_.text + err_.text;
 }
 
-bool Process::WaitForErr(const std::string& text) {
+bool Process::WaitFor(const Stream& stream, const std::string& text) {
   std::unique_lock lock(mutex_);
-  const auto found = [&] { return err_.text.find(text) != std::string::npos; };
-  news_.wait(lock, [&] { return found() || err_.ended; });
+  const auto found = [&] { return stream.text.find(text) != std::string::npos; };
+  news_.wait(lock, [&] { return found() || stream.ended; });
   return found();
 }
 

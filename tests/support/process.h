@@ -50,7 +50,8 @@ class Process {
   std::string Output() const;  // standard output, then standard error, so far
 
   // Waits until standard error holds the text. False if the program ended without it.
-  bool WaitForErr(const std::string& text);
+  bool WaitForErr(const std::string& text) { return WaitFor(err_, text); }
+  bool WaitForOut(const std::string& text) { return WaitFor(out_, text); }  // standard output
   // Waits for a line of standard error for which `wanted` is true, and returns it; empty if the
   // program ended without one.
   template <typename Wanted>
@@ -69,6 +70,7 @@ class Process {
     std::thread reader;
   };
   void Read(Stream& stream);
+  bool WaitFor(const Stream& stream, const std::string& text);
 
   pid_t pid_ = 0;
   int exit_code_ = -1;

@@ -1,0 +1,252 @@
+// `ballpiston web` and `ballpiston report`: calls as curl and a browser make them, against a real
+// server.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr char kUnary[] = "application/json";
+constexpr char kStream[] = "application/connect+json";
+constexpr char kJobs[] = "/ballpiston.v1.EnsembleService/";
+
+std::string Envelope(const std::string& json) {
+  return std::string(3, '\0') + static_cast<char>(json.size() >> 8) +
+         static_cast<char>(json.size()) + json;
+}
+
+struct Message {
+  int flags;
+  std::string json;
+};
+
+// The messages of a stream.
+std::vector<Message> Opened(const std::string& body) {
+  std::vector<Message> messages;
+  for (size_t at = 0; at + 5 <= body.size();) {
+    size_t length = 0;
+    for (size_t i = 1; i < 5; ++i) length = length << 8 | static_cast<unsigned char>(body[at + i]);
+    messages.push_back({body[at], body.substr(at + 5, length)});
+    at += 5 + length;
+  }
+  return messages;
+}
+
+class WebTest : public ::testing::Test {
+ protected:
+  WebTest() {
+    web_ = server_.StartClient({"web"});
+    if (!web_->WaitForOut("\n")) throw std::runtime_error(web_->Output());
+    const std::string line = web_->Output();
+    const std::vector<std::string> address =
+        absl::StrSplit(line.substr(0, line.find('\n')), "/#token=");
+    http_.emplace(address[0]);
+    http_->set_read_timeout(60);
+    host_ = address[0];
+    token_ = address[1];
+  }
+
+  httplib::Result Post(const std::string& method, const std::string& body,
+                       const httplib::Headers& headers = {}, const char* type = kUnary) {
+    httplib::Headers all = headers;
+    if (!all.contains("Authorization")) all.emplace("Authorization", "Bearer " + token_);
+    return http_->Post(method, all, body, type);
+  }
+
+  TestServer server_;
+  std::unique_ptr<Process> web_;
+  std::optional<httplib::Client> http_;
+  std::string host_, token_;
+};
+
+TEST_F(WebTest, ServesThePageWithHeadersThatKeepOthersOut) {
+  const httplib::Result page = http_->Get("/");
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->status, 200);
+  EXPECT_THAT(page->body, HasSubstr("<title>"));
+  EXPECT_EQ(page->get_header_value("X-Content-Type-Options"), "nosniff");
+  EXPECT_THAT(page->get_header_value("Content-Security-Policy"),
+              AllOf(HasSubstr("default-src 'none'"), HasSubstr("frame-ancestors 'none'")));
+  EXPECT_EQ(http_->Get("/no-such-file")->status, 404);
+  EXPECT_EQ(http_->Get("/..%2f..%2fbin/ballpiston")->status, 404);
+}
+
+// A whole job: what the gateway answers is what `--format json` prints.
+TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
+  const httplib::Result created = Post(std::string(kJobs) + "CreateEnsembleJob", R"({"spec": {
+      "experiment": "FIRST_HIT", "seed": "7", "target": {"samples": "2000"},
+      "grid": {"rho": [0.53], "delta": [0.2, 0.1], "epsilon": [0.1], "exponent": [1]}}})");
+  ASSERT_EQ(created->status, 200) << created->body;
+  EXPECT_EQ(created->get_header_value("Content-Type"), kUnary);
+  const std::string name = At(ParseJson(created->body), "name").string_value();
+
+  const httplib::Result watched =
+      Post(std::string(kJobs) + "WatchEnsembleJob",
+           Envelope(absl::StrCat("{\"name\": \"", name, "\"}")), {}, kStream);
+  ASSERT_EQ(watched->status, 200);
+  EXPECT_EQ(watched->get_header_value("Content-Type"), kStream);
+  const std::vector<Message> messages = Opened(watched->body);
+  ASSERT_GE(messages.size(), 2u);
+  EXPECT_EQ(messages.back().flags, 2);
+  EXPECT_EQ(messages.back().json, "{}");
+  const auto last = ParseJson(messages[messages.size() - 2].json);
+  EXPECT_EQ(At(last, "job", "state").string_value(), "SUCCEEDED");
+
+  const httplib::Result results =
+      Post(std::string(kJobs) + "ListResults", absl::StrCat("{\"parent\": \"", name, "\"}"));
+  const ProcessResult lines = server_.Client({"result", name, "--format", "jsonl"});
+  const std::vector<std::string> points = absl::StrSplit(lines.out, '\n', absl::SkipEmpty());
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(results->body, absl::StrCat("{\"points\":[", points[0], ",", points[1],
+                                        "],\"next_page_token\":\"\"}"));
+}
+
+TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
+  const httplib::Result missing =
+      Post(std::string(kJobs) + "GetEnsembleJob", R"({"name": "ensembleJobs/none"})");
+  EXPECT_EQ(missing->status, 404);
+  EXPECT_THAT(missing->body, AllOf(HasSubstr(R"("code":"not_found")"), HasSubstr("JOB_NOT_FOUND")));
+  const httplib::Result invalid =
+      Post(std::string(kJobs) + "CreateEnsembleJob", R"({"spec": {"experiment": "EQUILIBRIUM"}})");
+  EXPECT_EQ(invalid->status, 400);
+  EXPECT_THAT(invalid->body, HasSubstr(R"("field":"spec.grid.rho")"));
+  for (const char* body : {"null", "[]", "{\"nme\": 1}", "{", "\xff"}) {
+    const httplib::Result bad = Post(std::string(kJobs) + "GetEnsembleJob", body);
+    EXPECT_EQ(bad->status, 400) << body;
+    EXPECT_THAT(bad->body, HasSubstr("not JSON of ballpiston.v1.GetEnsembleJobRequest"));
+  }
+  const httplib::Result stream = Post(std::string(kJobs) + "WatchEnsembleJob", "{}", {}, kStream);
+  EXPECT_EQ(stream->status, 200);
+  EXPECT_THAT(Opened(stream->body).back().json, HasSubstr("in an envelope"));
+  EXPECT_EQ(Post(std::string(kJobs) + "WatchEnsembleJob", "{}")->status, 415);
+  EXPECT_EQ(Post(std::string(kJobs) + "GetEnsembleJob", "{}", {}, "text/plain")->status, 415);
+  EXPECT_EQ(Post("/ballpiston.v1.EnsembleService/Nothing", "{}")->status, 404);
+  EXPECT_EQ(Post("/ballpiston.v1.EnsembleJob/spec", "{}")->status, 404);
+  EXPECT_EQ(
+      Post(std::string(kJobs) + "GetEnsembleJob", "{}", {{"Connect-Timeout-Ms", "-1"}})->status,
+      400);
+  EXPECT_EQ(Post(std::string(kJobs) + "GetEnsembleJob", std::string(5 << 20, ' '))->status, 413);
+}
+
+TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
+  const std::string method = std::string(kJobs) + "ListEnsembleJobs";
+  EXPECT_EQ(Post(method, "{}")->status, 200);
+  EXPECT_EQ(Post(method, "{}", {{"Origin", host_}})->status, 200);
+  EXPECT_EQ(Post(method, "{}", {{"Authorization", "Bearer wrong"}})->status, 401);
+  EXPECT_EQ(Post(method, "{}", {{"Authorization", ""}})->status, 401);
+  EXPECT_EQ(Post(method, "{}", {{"Origin", "http://evil.example"}})->status, 403);
+  EXPECT_EQ(Post(method, "{}", {{"Host", "evil.example"}})->status, 403);
+  EXPECT_EQ(http_->Get("/", {{"Host", "evil.example"}})->status, 403);
+}
+
+TEST_F(WebTest, AServerThatComesBackIsFoundAgain) {
+  const std::string method = std::string(kJobs) + "ListEnsembleJobs";
+  ASSERT_EQ(Post(method, "{}")->status, 200);
+  server_.KillHard();
+  const httplib::Result gone = Post(method, "{}");
+  EXPECT_EQ(gone->status, 503);
+  EXPECT_THAT(gone->body, HasSubstr("no answer from the server"));
+  server_.Start();
+  int status = 0;  // the channel pauses before it connects again
+  while (status != 200) status = Post(method, "{}")->status;
+}
+
+// A reader that leaves takes its call with it: the server has room for the next ones.
+TEST_F(WebTest, AStreamEndsWithItsReader) {
+  const std::string name = server_.Submit(kEndlessQuestion);
+  const std::string body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
+  for (int i = 0; i < 40; ++i) {  // more than the gateway has threads
+    httplib::Client reader(host_);
+    reader.set_read_timeout(60);
+    httplib::Request request;
+    request.method = "POST";
+    request.path = std::string(kJobs) + "WatchEnsembleJob";
+    request.headers = {{"Authorization", "Bearer " + token_}, {"Content-Type", kStream}};
+    request.body = body;
+    std::string received;
+    request.content_receiver = [&received](const char* data, size_t size, uint64_t, uint64_t) {
+      received.append(data, size);
+      return false;  // enough
+    };
+    reader.send(request);
+    EXPECT_THAT(received, HasSubstr(name)) << i;
+  }
+  EXPECT_THAT(server_.Client({"cancel", name}), ExitsWith(0));
+}
+
+TEST(WebFlags, APortInUseIsNamed) {
+  const TestServer server;
+  const ProcessResult high = server.Client({"web", "--port", "70000"});
+  EXPECT_THAT(high, ExitsWith(2));
+  EXPECT_THAT(high.err, HasSubstr("--port: 70000 is not from 0 to 65535"));
+  const auto web = server.StartClient({"web"});
+  ASSERT_TRUE(web->WaitForOut("\n"));
+  const std::string url = web->Output();
+  const std::string port = url.substr(17, url.find("/#") - 17);  // after http://127.0.0.1:
+  const ProcessResult taken = server.Client({"web", "--port", port});
+  EXPECT_THAT(taken, ExitsWith(4));
+  EXPECT_THAT(taken.err, HasSubstr(absl::StrCat("--port ", port, ": the port is in use")));
+  web->Signal(SIGINT);
+  EXPECT_THAT(web->Wait(), ExitsWith(130));
+}
+
+class ReportTest : public ::testing::Test {
+ protected:
+  const TestServer server_;
+  const std::string file_ = server_.folder().File("report.html");
+};
+
+TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
+  const std::string first = server_.Submit(kQuickQuestion);
+  EXPECT_THAT(server_.Client({"watch", first}), ExitsWith(0));
+  const std::string second = server_.Submit(Split("equilibrium --rho 0.53 --delta 0.1"));
+  EXPECT_THAT(server_.Client({"watch", second}), ExitsWith(0));
+  const ProcessResult result = server_.Client({"report", first, second, "--out", file_});
+  EXPECT_THAT(result, ExitsWith(0));
+  EXPECT_EQ(result.out, file_ + "\n");
+  const std::string page = Contents(file_);
+  EXPECT_THAT(page, StartsWith("<!doctype html>"));
+  EXPECT_THAT(page, Not(HasSubstr(" src=\"")));  // nothing is loaded
+  constexpr char kBegin[] = "id=\"data\">";
+  const size_t begin = page.find(kBegin) + sizeof kBegin - 1;
+  const auto data = ParseJson(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(At(data, "jobs", 0, "job", "name").string_value(), first);
+  EXPECT_EQ(Length(At(data, "jobs", 0, "points")), 2);
+  EXPECT_EQ(Length(At(data, "jobs", 0, "points", 0, "histograms", 0, "counts")), 1000);
+  EXPECT_EQ(At(data, "jobs", 1, "job", "name").string_value(), second);
+  EXPECT_EQ(At(data, "jobs", 0, "points_left_out").number_value(), 0);
+}
+
+TEST_F(ReportTest, AFailureKeepsTheFileThatWasThere) {
+  WriteFile(file_, "before");
+  EXPECT_THAT(server_.Client({"report", "none", "--out", file_}), ExitsWith(5));
+  EXPECT_EQ(Contents(file_), "before");
+  const std::string job = server_.Submit(Split("equilibrium --rho 0.53 --delta 0.1"));
+  EXPECT_THAT(server_.Client({"watch", job}), ExitsWith(0));
+  const ProcessResult nowhere = server_.Client({"report", job, "--out", "/no/such/folder/r.html"});
+  EXPECT_THAT(nowhere, ExitsWith(2));
+  EXPECT_THAT(nowhere.err, HasSubstr("--out: cannot write /no/such/folder/r.html.part: No such"));
+  const ProcessResult full = server_.Client({"report", job, "--out", "/dev/full"});
+  EXPECT_THAT(full, ExitsWith(2));
+  EXPECT_THAT(full.err, HasSubstr("--out: cannot write /dev/full: No space left on device"));
+  EXPECT_THAT(server_.Client({"report", job}), ExitsWith(2));
+}
+
+}  // namespace
+}  // namespace ballpiston
