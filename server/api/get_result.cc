@@ -11,6 +11,10 @@ absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& c
     return InvalidRequest(
         {{"name", "is not the name of a result: ensembleJobs/{id}/results/{index}"}});
   }
+  if (request.unfinished()) {
+    auto now = service.book.UnfinishedResult(call.caller, id->job, id->point);
+    if (!now.ok() || *now) return now.ok() ? absl::StatusOr<v1::PointResult>(**now) : now.status();
+  }
   return service.book.Result(call.caller, id->job, id->point);
 }
 

@@ -28,6 +28,9 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
+// Among so many unfinished points, the ones that changed last, a point is looked for.
+constexpr size_t kMostLivePoints = 1000;
+
 // How often processor time is stored. If the server is killed, the time since it was last stored
 // does not count for the quota.
 constexpr absl::Duration kBetweenWork = absl::Minutes(1);
@@ -574,6 +577,24 @@ absl::StatusOr<v1::PointResult> JobBook::Result(const Principal& caller, const s
     return ResultNotFound(ResultName(id, point));
   }
   return std::move(page->points.front());
+}
+
+absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const Principal& caller,
+                                                                         const std::string& id,
+                                                                         int64_t point) {
+  const absl::StatusOr<std::shared_ptr<Job>> job = FindActive(caller, id);
+  if (!job.ok()) return job.status();
+  if (*job == nullptr) return std::nullopt;
+  const auto number = static_cast<uint64_t>((*job)->Now().job.spec().experiment());
+  const ExperimentKind* const experiment = FindExperiment(number);
+  if (experiment == nullptr) return std::nullopt;  // a test's own
+  for (const LivePoint& live : scheduler_.ChangedSince((*job)->sequence(), 0, kMostLivePoints)) {
+    if (static_cast<int64_t>(live.index) != point) continue;
+    const PointSummary summary = live.experiment->Summarize(live.merged);
+    return PointResultMessage(ResultRecordOf(live.index, *live.experiment, summary),
+                              DetailsRecordOf(summary), *experiment);
+  }
+  return std::nullopt;
 }
 
 // The results may be removed while they are read. Then the job has expired or is gone when its

@@ -135,6 +135,10 @@ class JobBook {
                                       const ResultsQuery& query);
   absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
                                          int64_t point);
+  // Of a point that is computed now, with histograms and curves. Empty if it is not.
+  absl::StatusOr<std::optional<v1::PointResult>> UnfinishedResult(const Principal& caller,
+                                                                  const std::string& id,
+                                                                  int64_t point);
 
   // An active job, or one that was active a moment ago, with the time when its results expire.
   Job::View Now(const Job& job) const;

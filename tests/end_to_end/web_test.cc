@@ -117,6 +117,37 @@ TEST_F(WebTest, AJobIsSubmittedWatchedAndReadAsByTheClient) {
                                         "],\"next_page_token\":\"\"}"));
 }
 
+double CountsIn(const google::protobuf::Struct& point) {
+  double sum = 0;
+  for (const auto& count : At(point, "histograms", 0, "counts").list_value().values()) {
+    sum += count.number_value();
+  }
+  return sum;
+}
+
+TEST_F(WebTest, HistogramsOfARunningPointFillUp) {
+  const std::string job = server_.Submit(
+      Split("first-hit --rho 0.53 --delta 0.1 --epsilon 0.3 --exponent 1 --samples 1000000000000"));
+  const std::string name = absl::StrCat("{\"name\": \"", job, "/results/0\"");
+  const auto get = [&](const char* rest) {
+    return Post(std::string(kJobs) + "GetResult", name + rest);
+  };
+  EXPECT_EQ(get("}")->status, 404);
+  double before = 0;
+  for (int growths = 0; growths < 3;) {
+    const httplib::Result now = get(", \"unfinished\": true}");
+    if (now->status == 404) continue;  // no worker has begun
+    ASSERT_EQ(now->status, 200) << now->body;
+    const auto point = ParseJson(now->body);
+    EXPECT_EQ(CountsIn(point), At(point, "samples").number_value());
+    EXPECT_EQ(Length(At(point, "histograms", 0, "expected_probabilities")), 1000);
+    if (CountsIn(point) > before) ++growths;
+    before = CountsIn(point);
+  }
+  EXPECT_EQ(get("}")->status, 404);
+  EXPECT_THAT(server_.Client({"cancel", job}), ExitsWith(0));
+}
+
 TEST_F(WebTest, ErrorsHaveTheServersCodesReasonsAndViolations) {
   const httplib::Result missing =
       Post(std::string(kJobs) + "GetEnsembleJob", R"({"name": "ensembleJobs/none"})");
