@@ -48,7 +48,8 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
   return job;
 }
 
-// If the job of an id failed or was cancelled, the next id makes a new job.
+// If the job of an id failed or was cancelled, or its results have expired, the next id makes a new
+// job.
 absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
                                        CreateOptions options, const Terminal& terminal) {
   const auto status = connection.Ask([&] { return connection.client.Status(); });
@@ -60,7 +61,8 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::E
     auto job = CreateOnce(connection, spec, options, terminal);
     const bool is_lost = job.ok() && (job->state() == v1::EnsembleJob::FAILED ||
                                       job->state() == v1::EnsembleJob::CANCELLED ||
-                                      job->state() == v1::EnsembleJob::CANCELLING);
+                                      job->state() == v1::EnsembleJob::CANCELLING ||
+                                      job->results_expired());
     if (!is_lost) return job;
   }
 }

@@ -185,7 +185,7 @@ const FlagGroup kJob = {
       "compute the answer even if the server has stored one for the same question"},
      {"--resume", Switch(To(&Options::resume)),
       "derive the request id from the question: after an interruption, the same command returns "
-      "the job that it made before, unless that job failed or was cancelled"},
+      "the job that it made before, unless that job failed, was cancelled or has expired"},
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
