@@ -59,10 +59,10 @@ absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::E
   for (int attempt = 0;; ++attempt) {
     options.request_id = RequestIdFor(absl::StrCat(question, attempt));
     auto job = CreateOnce(connection, spec, options, terminal);
-    const bool is_lost = job.ok() && (job->state() == v1::EnsembleJob::FAILED ||
-                                      job->state() == v1::EnsembleJob::CANCELLED ||
-                                      job->state() == v1::EnsembleJob::CANCELLING ||
-                                      job->results_expired());
+    const bool is_lost =
+        job.ok() &&
+        (job->state() == v1::EnsembleJob::FAILED || job->state() == v1::EnsembleJob::CANCELLED ||
+         job->state() == v1::EnsembleJob::CANCELLING || job->results_expired());
     if (!is_lost) return job;
   }
 }

@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -27,6 +25,7 @@
 #include "client/command/suggestion.h"
 #include "client/command/verb_table.h"
 #include "client/library/child_process.h"
+#include "client/library/installed_files.h"
 #include "client/library/server_process.h"
 
 namespace ballpiston::client {
@@ -40,27 +39,19 @@ constexpr const char* kShared[] = {"figure.sh", "style.gnuplot"};
 
 fs::path ProgramFolder() { return fs::path(ProgramBeside("")).parent_path(); }
 
-fs::path InstalledFolder() {
-  return ProgramFolder().parent_path() / "share" / kProgram / "figures";
-}
-
-std::string Contents(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
+fs::path FiguresFolder() { return InstalledFolder("figures"); }
 
 absl::Status CheckInstalled() {
   if (!FigureNames().empty()) return absl::OkStatus();
   return absl::FailedPreconditionError(
-      absl::StrCat("no figures are installed in ", InstalledFolder().string()));
+      absl::StrCat("no figures are installed in ", FiguresFolder().string()));
 }
 
 // The first line is "# TITLE".
 VerbResult ListFigures(Terminal& terminal) {
   if (absl::Status missing = CheckInstalled(); !missing.ok()) return missing;
   for (const std::string& name : FigureNames()) {
-    const std::string script = Contents(InstalledFolder() / (name + kScript));
+    const std::string script = Contents(FiguresFolder() / (name + kScript));
     terminal.out << name << ": " << script.substr(2, script.find('\n') - 1);
   }
   return ExitCode::kDone;
@@ -81,7 +72,7 @@ absl::Status CheckName(const Options& options) {
 }
 
 absl::Status Provide(const fs::path& folder, const std::string& name, const Terminal& terminal) {
-  const fs::path installed = InstalledFolder() / name, here = folder / name;
+  const fs::path installed = FiguresFolder() / name, here = folder / name;
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && !fs::exists(here, error)) fs::copy_file(installed, here, error);
@@ -110,7 +101,7 @@ absl::Status ProvideScripts(const fs::path& folder, const std::string& figure,
 // The script in the folder, else the installed one.
 std::string ScriptFor(const fs::path& folder, const std::string& name) {
   std::error_code error;
-  return Contents((fs::exists(folder / name, error) ? folder : InstalledFolder()) / name);
+  return Contents((fs::exists(folder / name, error) ? folder : FiguresFolder()) / name);
 }
 
 // The names in ${NAME:=...}.
@@ -194,7 +185,7 @@ void PrintFiles(const fs::path& folder, const std::string& figure, const Termina
 std::vector<std::string> FigureNames() {
   std::set<std::string> names;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(InstalledFolder(), error)) {
+  for (const auto& entry : fs::directory_iterator(FiguresFolder(), error)) {
     if (entry.path().extension() == kPicture &&
         fs::exists(fs::path(entry).replace_extension(kScript))) {
       names.insert(entry.path().stem());

@@ -1,11 +1,9 @@
 #include "client/web/page_files.h"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "absl/strings/str_cat.h"
-#include "client/library/child_process.h"
+#include "client/library/installed_files.h"
 
 namespace ballpiston::client {
 namespace {
@@ -23,17 +21,10 @@ std::string TypeOf(const fs::path& file) {
   return type == types->end() ? "" : type->second;
 }
 
-std::string Contents(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles() {
-  const fs::path folder =
-      fs::path(ProgramBeside("")).parent_path().parent_path() / "share" / "ballpiston" / "web";
+  const fs::path folder = InstalledFolder("web");
   std::map<std::string, PageFile> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {

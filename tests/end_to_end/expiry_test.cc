@@ -26,8 +26,9 @@ ProcessResult RunWhenThereIsRoom(const TestServer& server, const Words& question
 // 40 points whose results take 120 kB.
 ProcessResult RunSweep(const TestServer& server, int seed) {
   return RunWhenThereIsRoom(
-      server, Joined({Split("--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1"),
-                      {"--samples", "500", "--seed", absl::StrCat(seed)}}));
+      server,
+      Joined({Split("--resume first-hit --rho 0.53 --delta 0.1:0.2:40 --epsilon 0.1 --exponent 1"),
+              {"--samples", "500", "--seed", absl::StrCat(seed)}}));
 }
 
 std::string NameOf(const ProcessResult& run) {
