@@ -1,7 +1,7 @@
 # Laws of the piston's energy at six times after a start at one energy, by the master equation too
 #
 # Run by `ballpiston figure master-equation --out DIR`, whose flags replace these values, or by
-# hand: sh master-equation.sh. Time on two cores: quick 1 s, default 20 s, full 3 min.
+# hand: sh master-equation.sh. Time on two cores: quick 1 s, default 10 s, full 2 min.
 set -eu
 . ./figure.sh
 : "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
