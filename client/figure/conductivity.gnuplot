@@ -38,7 +38,7 @@ set ylabel "conductivity / static value"
 set xrange [0:*]
 set offsets 0, 0.01, 0.005, 0.005
 set label 1 "billiard" at graph 0.06, graph 0.92 tc rgb measured_colour
-set label 2 "rare exchanges" at graph 0.40, graph 0.05 tc rgb exact_colour
+set label 2 "rare exchanges" at graph 0.06, graph 0.84 tc rgb exact_colour
 set arrow 1 from graph 0, first limit to graph 1, first limit nohead back lw 2 lc rgb exact_colour
 plot billiard using (column("delta")):(ratio(0)):(error(0)) \
        with yerrorbars pt 7 ps 0.7 lw 1.5 lc rgb measured_colour

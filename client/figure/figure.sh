@@ -19,12 +19,15 @@ by_effort() {
   esac
 }
 
-# Runs a command; if the command succeeds, keeps its output in a file: into FILE COMMAND.
+# Runs a command; if the command succeeds, keeps its output in a file: into FILE COMMAND. The output
+# first goes to a hidden file of this shell: the script of a client that was killed may still run in
+# the same folder.
 into() {
   file=$1
+  part=.$1.$$
   shift
-  "$@" >"$file.part"
-  mv "$file.part" "$file"
+  "$@" >"$part"
+  mv "$part" "$file"
 }
 
 # Draws the picture with NAME.gnuplot, if gnuplot is installed.

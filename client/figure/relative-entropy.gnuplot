@@ -13,6 +13,7 @@ set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "relative-entropy.svg"
 measured = "relative-entropy.csv"
 exponents = "0 1 5 10"  # one panel each
+aside = 1.025  # factor between the deltas at which points of successive energies stand
 
 # ---- The data ----
 set datafile missing NaN  # joins lines across rows of other energies
@@ -26,6 +27,8 @@ smallest = STATS_min
 largest = STATS_max
 energy(i) = real(word(energies, i))
 of(i, n, name) = is_of(name, n) && column("epsilon") == energy(i) ? column("value") : NaN
+error(_) = column("standard_error")
+beside(i) = column("delta")*aside**(i - (count + 1)/2.0)
 
 set multiplot layout 2,2 margins 0.11,0.98,0.09,0.97 spacing 0.09,0.07
 set logscale xy
@@ -42,8 +45,10 @@ do for [panel=1:words(exponents)] {
   if (panel == 2) { set key } else { unset key }
   plot for [i=1:count] measured using (column("delta")):(of(i, n, "kl_noise_floor")) \
          with lines lw 1 dt 2 lc rgb colour(i) notitle, \
-       for [i=1:count] measured using (column("delta")):(of(i, n, "kl_divergence")): \
-         (column("standard_error")) with yerrorbars pt 7 ps 0.6 lw 1.2 lc rgb colour(i) \
-         title "ε = ".word(energies, i)
+       for [i=1:count] measured using (beside(i)):(of(i, n, "kl_divergence") - error(0)): \
+         (0):(2*error(0)) with vectors nohead lw 1.2 lc rgb colour(i) notitle, \
+       for [i=1:count] measured using (beside(i)):(of(i, n, "kl_divergence")) \
+         with points pt 7 ps 0.45 lc rgb colour(i) notitle, \
+       for [i=1:count] NaN with points pt 7 ps 0.8 lc rgb colour(i) title "ε = ".word(energies, i)
 }
 unset multiplot

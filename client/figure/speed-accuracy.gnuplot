@@ -236,7 +236,7 @@ stepped(x) = step(int(column("curve"))) > 0 ? x : NaN
 exact(x) = step(int(column("curve"))) > 0 ? NaN : x
 set logscale x
 set xrange [0.2*cost_min:5*cost_max]
-set yrange [-0.3*horizon_max:1.2*horizon_max]
+set yrange [-0.36*horizon_max:1.2*horizon_max]
 set format y "%g"
 set ytics 20
 set mytics 1

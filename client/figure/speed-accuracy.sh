@@ -22,9 +22,7 @@ case ${BALLPISTON_PROGRESS:-auto} in
   *) progress= ;;  # a bar on a terminal
 esac
 
-method_comparison --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
-  --relaxation-delta="$relaxation_delta" --seconds "$seconds" --seed "$seed" $progress \
-  >speed-accuracy.csv.part
-mv speed-accuracy.csv.part speed-accuracy.csv
+into speed-accuracy.csv method_comparison --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
+  --relaxation-delta="$relaxation_delta" --seconds "$seconds" --seed "$seed" $progress
 
 draw speed-accuracy

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "core/closed_form/kernel_moments.h"
 #include "core/markov/gauss_nodes.h"
 
 namespace ballpiston {
@@ -31,22 +33,48 @@ double ThreeStages(double a, double b, double c, double t) {
   return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most - least);
 }
 
+std::vector<double> MiddleRates(size_t bins) {
+  std::vector<double> rates(bins);
+  for (size_t bin = 0; bin < bins; ++bin) {
+    rates[bin] =
+        PairCollisionRate((static_cast<double>(bin) + 0.5) / 2 / static_cast<double>(bins));
+  }
+  return rates;
+}
+
+// int K(w, v) dv over the part of (lower, upper) that a jump from w can reach: v = s sin(psi).
+double KernelMass(double w, double lower, double upper) {
+  const double s = std::sqrt(1 - w * w);
+  const auto angle = [s](double v) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; };
+  const double kink = angle(std::clamp(w, lower, upper));
+  return kJumpKernelPrefactor *
+         (w * (kink - angle(lower)) + s * (std::cos(kink) - std::cos(angle(upper))));
+}
+
 }  // namespace
 
 EnergyLaw::EnergyLaw(const Discretisation& discretisation, int bins)
-    : generator_(discretisation), bins_(static_cast<size_t>(bins)) {
+    : bins_(static_cast<size_t>(bins)),
+      middle_rates_(MiddleRates(bins_)),
+      all_(ModesOf(Generator(discretisation))),
+      losses_(ModesOf(Generator::OfLosses(discretisation))) {}
+
+EnergyLaw::Modes EnergyLaw::ModesOf(Generator generator) const {
+  std::vector<Node> nodes;
   for (size_t bin = 0; bin < bins_; ++bin) {
     const double lower = Edge(bin), upper = Edge(bin + 1);
     const double a = lower + kNode * (upper - lower), b = upper - kNode * (upper - lower);
-    nodes_.push_back(NodeBetween(bin, a, b));
-    nodes_.push_back(NodeBetween(bin, b, a));
+    nodes.push_back(NodeBetween(generator, bin, a, b));
+    nodes.push_back(NodeBetween(generator, bin, b, a));
   }
+  return {std::move(generator), std::move(nodes)};
 }
 
-EnergyLaw::Node EnergyLaw::NodeBetween(size_t bin, double u, double other_u) const {
-  Node node = {bin, JumpRate(u), Eigen::ArrayXd::Zero(generator_.size())};
+EnergyLaw::Node EnergyLaw::NodeBetween(const Generator& generator, size_t bin, double u,
+                                       double other_u) const {
+  Node node = {bin, JumpRate(u), Eigen::ArrayXd::Zero(generator.size())};
   ForEachGaussNode<kSetUpNodes>(Edge(bin), Edge(bin + 1), [&](double v, double weight) {
-    node.gains += weight * (v - other_u) / (u - other_u) * generator_.Gains(v).array();
+    node.gains += weight * (v - other_u) / (u - other_u) * generator.Gains(v).array();
   });
   return node;
 }
@@ -61,7 +89,9 @@ std::vector<double> EnergyLaw::Probabilities(double epsilon, double t) const {
   const auto start = static_cast<size_t>(2 * epsilon * static_cast<double>(bins_));
   law[std::min(start, bins_ - 1)] = std::exp(-JumpRate(u) * t);
   AddOneJump(u, t, law);
-  AddMoreJumps(u, t, law);
+  AddTwoJumps(u, t, law);
+  AddModes(all_, 1, u, t, law);
+  AddModes(losses_, -1, u, t, law);
   return law;
 }
 
@@ -80,13 +110,34 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   }
 }
 
-void EnergyLaw::AddMoreJumps(double u, double t, std::vector<double>& law) const {
+// Over the place w after the first jump, as above. The mass that comes from w to a bin has a root
+// at the w from which the bin's upper edge is the farthest that can be reached.
+void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const {
+  const double s = std::sqrt(1 - u * u), rate = JumpRate(u);
+  const auto add = [&](double phi, double weight) {
+    const double w = s * std::sin(phi), rate_there = JumpRate(w);
+    const double jumps = weight * kJumpKernelPrefactor * std::max(u, w);
+    for (size_t bin = 0; bin < bins_ && Edge(bin) < std::sqrt(1 - w * w); ++bin) {
+      law[bin] += jumps * KernelMass(w, Edge(bin), Edge(bin + 1)) *
+                  ThreeStages(rate, rate_there, middle_rates_[bin], t);
+    }
+  };
+  std::vector<double> ends = {0, std::min(u, s), s};
+  for (size_t bin = 1; bin < bins_; ++bin) ends.push_back(std::sqrt(1 - Edge(bin) * Edge(bin)));
+  std::sort(ends.begin(), ends.end());
+  for (size_t i = 1; i < ends.size() && ends[i] <= s; ++i) {
+    ForEachGaussNodeWithRoot<4>(std::asin(ends[i - 1] / s), std::asin(ends[i] / s), add);
+  }
+}
+
+void EnergyLaw::AddModes(const Modes& modes, double sign, double u, double t,
+                         std::vector<double>& law) const {
   const double rate = JumpRate(u);
-  const Eigen::ArrayXd gains = generator_.Gains(u);
-  for (const Node& node : nodes_) {
-    const Eigen::ArrayXd stages =
-        generator_.rates().unaryExpr([&](double k) { return ThreeStages(rate, k, node.rate, t); });
-    law[node.bin] += (gains * node.gains * stages).sum();
+  const Eigen::ArrayXd gains = modes.generator.Gains(u);
+  for (const Node& node : modes.nodes) {
+    const Eigen::ArrayXd stages = modes.generator.rates().unaryExpr(
+        [&](double k) { return ThreeStages(rate, k, node.rate, t); });
+    law[node.bin] += sign * (gains * node.gains * stages).sum();
   }
 }
 

@@ -20,6 +20,15 @@ void ForEachGaussNode(double lower, double upper, F f) {
   }
 }
 
+// The same for functions that are smooth in sqrt(upper - x).
+template <int nodes, typename F>
+void ForEachGaussNodeWithRoot(double lower, double upper, F f) {
+  if (!(upper > lower)) return;
+  ForEachGaussNode<nodes>(0, 1, [&](double t, double weight) {
+    f(upper - (upper - lower) * t * t, 2 * t * (upper - lower) * weight);
+  });
+}
+
 }  // namespace ballpiston
 
 #endif  // BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_

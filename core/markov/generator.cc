@@ -42,22 +42,25 @@ void ForEachNode(double lower, double upper, F f) {
   ForEachGaussNode<kNodes>(lower, upper, f);
 }
 
-// The same for functions that are smooth in sqrt(upper - theta).
 template <typename F>
 void ForEachNodeWithRoot(double lower, double upper, F f) {
-  ForEachNode(0, 1, [&](double t, double weight) {
-    f(upper - (upper - lower) * t * t, 2 * t * (upper - lower) * weight);
-  });
+  ForEachGaussNodeWithRoot<kNodes>(lower, upper, f);
 }
 
 }  // namespace
 
 double JumpRate(double u) { return PairCollisionRate(u * u / 2); }
 
-Generator::Generator(const Discretisation& discretisation)
+Generator::Generator(const Discretisation& discretisation) : Generator(discretisation, true) {}
+
+Generator Generator::OfLosses(const Discretisation& discretisation) {
+  return Generator(discretisation, false);
+}
+
+Generator::Generator(const Discretisation& discretisation, bool has_gains)
     : degree_(discretisation.degree), edges_(MeshEdges(discretisation.levels)) {
   OrthonormaliseBases();
-  const Eigen::MatrixXd computed = MinusL();
+  const Eigen::MatrixXd computed = MinusL(has_gains);
   const Eigen::MatrixXd symmetric = (computed + computed.transpose()) / 2;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   rates_ = solver.eigenvalues();
@@ -109,7 +112,7 @@ Eigen::VectorXd Generator::KernelRow(double theta, size_t elements) const {
   return row;
 }
 
-Eigen::MatrixXd Generator::MinusL() const {
+Eigen::MatrixXd Generator::MinusL(bool has_gains) const {
   // Of u' below 1/sqrt(2); the rest follows by symmetry.
   const size_t slow_elements = (edges_.size() - 1) / 2;
   const Eigen::Index n = First(edges_.size() - 1), slow = First(slow_elements);
@@ -118,7 +121,9 @@ Eigen::MatrixXd Generator::MinusL() const {
     const Eigen::Index first = First(e), count = degree_ + 1;
     ForEachNodeWithRoot(edges_[e], edges_[e + 1], [&](double theta, double weight) {
       const Eigen::VectorXd basis = weight * std::cos(theta) * Basis(e, theta);
-      matrix.block(first, 0, count, slow) -= basis * KernelRow(theta, slow_elements).transpose();
+      if (has_gains) {
+        matrix.block(first, 0, count, slow) -= basis * KernelRow(theta, slow_elements).transpose();
+      }
       matrix.block(first, first, count, count) +=
           JumpRate(std::sin(theta)) * basis * Basis(e, theta).transpose();
     });

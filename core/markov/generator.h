@@ -51,6 +51,8 @@ struct Discretisation {
 class Generator {
  public:
   explicit Generator(const Discretisation& discretisation);
+  // Only the losses: the multiplication by the jump rate, which conserves nothing.
+  static Generator OfLosses(const Discretisation& discretisation);
 
   Eigen::Index size() const { return rates_.size(); }
 
@@ -73,6 +75,8 @@ class Generator {
   double asymmetry() const { return asymmetry_; }
 
  private:
+  Generator(const Discretisation& discretisation, bool has_gains);
+
   Eigen::Index First(size_t element) const {
     return static_cast<Eigen::Index>(element) * (degree_ + 1);
   }
@@ -83,7 +87,7 @@ class Generator {
   void OrthonormaliseBases();
   // int K(u, u') basis(u') du' of the bases of the first elements.
   Eigen::VectorXd KernelRow(double theta, size_t elements) const;
-  Eigen::MatrixXd MinusL() const;
+  Eigen::MatrixXd MinusL(bool has_gains) const;
 
   int degree_;
   std::vector<double> edges_;                 // of the elements, in theta

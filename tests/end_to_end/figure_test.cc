@@ -32,8 +32,9 @@ class FigureTest : public ::testing::Test {
     return Contents(folder_ + "/" + name + ".svg");
   }
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
-  static size_t LineCount(const std::string& text) {
-    return Words(absl::StrSplit(text, '\n', absl::SkipEmpty())).size();
+  std::string Data(const std::string& name) const { return Contents(folder_ + "/" + name); }
+  size_t LineCount(const std::string& name) const {
+    return Words(absl::StrSplit(Data(name), '\n', absl::SkipEmpty())).size();
   }
   static bool HasGnuplot() {
     return RunProgram({.command = {"sh", "-c", "command -v gnuplot"}}).exit_code == 0;
@@ -110,105 +111,88 @@ TEST_F(FigureTest, AnInterruptionCancelsNothingAndTheSameCommandGoesOn) {
 
 TEST_F(FigureTest, TheGasIsDrawnFromATrace) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const auto draw = [this](const std::string& shape) {
-    const std::string folder = folder_ + shape;
-    const ProcessResult result =
-        server_.Client(Split("figure gas --temperature 3 --cells " + shape + " --out " + folder));
-    EXPECT_THAT(result, ExitsWith(0));
-    EXPECT_EQ(result.err, "");
-    EXPECT_THAT(Contents(folder + "/gas.svg"), HasSubstr("</svg>"));
-    return folder;
-  };
-  const std::string lattice = draw("3x2"), chain = draw("4");
-  EXPECT_EQ(LineCount(Contents(lattice + "/gas-balls.csv")), 1 + 6u);
-  EXPECT_EQ(LineCount(Contents(lattice + "/gas-pistons.csv")), 1 + 12u);
-  EXPECT_EQ(LineCount(Contents(chain + "/gas-pistons.csv")), 1 + 4u);
+  EXPECT_THAT(Svg("gas", "--temperature 3 --cells 3x2"), HasSubstr("</svg>"));
+  EXPECT_EQ(LineCount("gas-balls.csv"), 1 + 6u);
+  EXPECT_EQ(LineCount("gas-pistons.csv"), 1 + 12u);
+  EXPECT_THAT(Svg("gas", "--temperature 3 --cells 4"), HasSubstr("</svg>"));
+  EXPECT_EQ(LineCount("gas-pistons.csv"), 1 + 4u);
 }
 
 TEST_F(FigureTest, TemperatureProfilesHaveAllPlacesOfBothModels) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure temperature-profile --cells 2,3 --samples 60 --billiard-samples 10 --delta 0.2 "
-            "--hot 1.1 --out " +
-            folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  const std::string markov = Contents(folder_ + "/temperature-profile-markov.csv");
-  EXPECT_EQ(LineCount(markov), 1 + 5 + 7u);
-  EXPECT_THAT(markov, HasSubstr(",2,1.1,0.5,markov,60,temperature_profile,,1.5,"));
-  const std::string billiard = Contents(folder_ + "/temperature-profile-billiard.csv");
-  EXPECT_EQ(LineCount(billiard), 1 + 5 + 7u);
-  EXPECT_THAT(billiard, HasSubstr(",3,1.1,0.5,billiard,10,temperature_profile,,0,"));
-  EXPECT_THAT(Contents(folder_ + "/temperature-profile.svg"), HasSubstr("N = 3"));
+  EXPECT_THAT(Svg("temperature-profile",
+                  "--cells 2,3 --samples 60 --billiard-samples 10 --delta 0.2 --hot 1.1"),
+              HasSubstr("N = 3"));
+  EXPECT_EQ(LineCount("temperature-profile-markov.csv"), 1 + 5 + 7u);
+  EXPECT_THAT(Data("temperature-profile-markov.csv"),
+              HasSubstr(",2,1.1,0.5,markov,60,temperature_profile,,1.5,"));
+  EXPECT_EQ(LineCount("temperature-profile-billiard.csv"), 1 + 5 + 7u);
+  EXPECT_THAT(Data("temperature-profile-billiard.csv"),
+              HasSubstr(",3,1.1,0.5,billiard,10,temperature_profile,,0,"));
 }
 
 TEST_F(FigureTest, ConductivitiesStandBesideTheirLimit) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure conductivity --cells 2,3 --samples 100 --delta 0.15,0.2 --billiard-cells 2 "
-            "--billiard-samples 50 --out " +
-            folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  EXPECT_THAT(Contents(folder_ + "/conductivity-billiard.csv"),
+  EXPECT_THAT(Svg("conductivity",
+                  "--cells 2,3 --samples 100 --delta 0.15,0.2 --billiard-cells 2 "
+                  "--billiard-samples 50"),
+              HasSubstr("infinite: -1.8073"));
+  EXPECT_THAT(Data("conductivity-billiard.csv"),
               HasSubstr(",0.2,,,2,1,billiard,50,conductivity_ratio,"));
-  EXPECT_THAT(Contents(folder_ + "/conductivity-rings.csv"),
+  EXPECT_THAT(Data("conductivity-rings.csv"),
               HasSubstr(",0.15,,,3,1,markov,100,conductivity_ratio,"));
-  EXPECT_THAT(Contents(folder_ + "/conductivity.svg"), HasSubstr("infinite: -1.8073"));
 }
 
 TEST_F(FigureTest, RelativeEntropiesStandBesideTheirFloors) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure relative-entropy --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 100 --out " +
-            folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  const std::string data = Contents(folder_ + "/relative-entropy.csv");
-  EXPECT_THAT(data, HasSubstr(",0.3,0.375,10,billiard,100,kl_divergence,"));
-  EXPECT_THAT(data, HasSubstr(",0.2,0.125,0,billiard,100,kl_noise_floor,"));
-  EXPECT_THAT(Contents(folder_ + "/relative-entropy.svg"), HasSubstr("ε = 0.125"));
+  EXPECT_THAT(Svg("relative-entropy", "--delta 0.2,0.3 --epsilon 0.125,0.375 --samples 100"),
+              HasSubstr("ε = 0.125"));
+  EXPECT_THAT(Data("relative-entropy.csv"),
+              AllOf(HasSubstr(",0.3,0.375,10,billiard,100,kl_divergence,"),
+                    HasSubstr(",0.2,0.125,0,billiard,100,kl_noise_floor,")));
 }
 
 TEST_F(FigureTest, IngoingLawsStandOverTheirEquilibrium) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure ingoing-law --quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500 "
-            "--out " +
-            folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  const std::string data = Contents(folder_ + "/ingoing-law.csv");
-  EXPECT_EQ(LineCount(data), 1 + 2 * (2 + 1) * 25u);  // epsilon < 1/4 has two values of sigma
-  EXPECT_THAT(data, HasSubstr("\n0.3,0.125,0,1,"));
-  EXPECT_THAT(data, HasSubstr("\n0.2,0.375,0,-1,"));
-  EXPECT_THAT(Contents(folder_ + "/ingoing-law.svg"), HasSubstr("ε = 0.375"));
+  EXPECT_THAT(Svg("ingoing-law", "--quick --delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500"),
+              HasSubstr("ε = 0.375"));
+  // epsilon < 1/4 has two values of sigma.
+  EXPECT_EQ(LineCount("ingoing-law.csv"), 1 + 2 * (2 + 1) * 25u);
+  EXPECT_THAT(Data("ingoing-law.csv"),
+              AllOf(HasSubstr("\n0.3,0.125,0,1,"), HasSubstr("\n0.2,0.375,0,-1,")));
+}
+
+TEST_F(FigureTest, HittingTimesStandBesideTheExponentialLaw) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("hitting-time", "--delta 0.2,0.3 --epsilon 0.125,0.375 --samples 500"),
+              AllOf(HasSubstr("ε = 0.375"), HasSubstr("δ = 0.3")));
+  EXPECT_EQ(LineCount("hitting-time.csv"), 1 + 2 * 2 * 80u);
+  EXPECT_THAT(Data("hitting-time.csv"), HasSubstr(",0.3,0.375,1,billiard,500,survival,0,,1,0,1\n"));
+}
+
+TEST_F(FigureTest, TheMasterEquationStandsBesideBothModels) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_THAT(Svg("master-equation", "--delta 0.2,0.3 --epsilon 0.1,0.4 --samples 500"),
+              AllOf(HasSubstr("δ = 0.3"), HasSubstr("jump process")));
+  EXPECT_EQ(LineCount("master-equation.csv"), 1 + (2 + 1) * 2 * 6 * 61u);
+  EXPECT_THAT(Data("master-equation.csv"),
+              AllOf(HasSubstr("\nbilliard,0.3,0.4,8,"), HasSubstr("\nmarkov,0.2,0.1,0.25,")));
 }
 
 TEST_F(FigureTest, RelaxationStandsBesideItsLimit) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure relaxation --delta 0.2,0.3 --epsilon 0.1,0.4 --samples 300 --out " + folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  const std::string energies = Contents(folder_ + "/relaxation-energy.csv");
-  EXPECT_EQ(LineCount(energies), 1 + 2 * 2 * 33u);
-  EXPECT_THAT(energies, HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,"));
-  EXPECT_EQ(LineCount(Contents(folder_ + "/relaxation-autocorrelation.csv")), 1 + 2 * 33u);
-  EXPECT_THAT(Contents(folder_ + "/relaxation.svg"), HasSubstr("δ = 0.3"));
+  EXPECT_THAT(Svg("relaxation", "--delta 0.2,0.3 --epsilon 0.1,0.4 --samples 300"),
+              HasSubstr("δ = 0.3"));
+  EXPECT_EQ(LineCount("relaxation-energy.csv"), 1 + 2 * 2 * 33u);
+  EXPECT_THAT(Data("relaxation-energy.csv"), HasSubstr(",0.3,0.4,,billiard,300,mean_energy,0,,"));
+  EXPECT_EQ(LineCount("relaxation-autocorrelation.csv"), 1 + 2 * 33u);
 }
 
 TEST_F(FigureTest, RatesHaveAllLengthsOfAllKinds) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result =
-      server_.Client(Split("figure rates --quick --epsilon 0.1,0.4 --out " + folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  const std::string data = Contents(folder_ + "/rates.csv");
-  EXPECT_EQ(LineCount(data), 1 + (2 + 2) * 17u);
-  EXPECT_THAT(data, HasSubstr("\nall,,"));
-  EXPECT_THAT(data, HasSubstr("\nconditional,0.4,"));
-  EXPECT_THAT(Contents(folder_ + "/rates.svg"), HasSubstr("ε = 0.4"));
+  EXPECT_THAT(Svg("rates", "--quick --epsilon 0.1,0.4"), HasSubstr("ε = 0.4"));
+  EXPECT_EQ(LineCount("rates.csv"), 1 + (2 + 2) * 17u);
+  EXPECT_THAT(Data("rates.csv"), AllOf(HasSubstr("\nall,,"), HasSubstr("\nconditional,0.4,")));
 }
 
 TEST_F(FigureTest, RatesFailIfTheTraceFails) {
@@ -220,26 +204,21 @@ TEST_F(FigureTest, RatesFailIfTheTraceFails) {
 
 TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const ProcessResult result = server_.Client(
-      Split("figure markov-test --quick --delta 0.2:0.325:12:log --epsilon 0.125,0.46875 "
-            "--exponent 1,10 --samples 20000 --out " +
-            folder_));
-  EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_EQ(result.err, "");
-  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-excess.csv")), 1 + 12 * 2 * 2u);
+  EXPECT_THAT(Svg("markov-test",
+                  "--quick --delta 0.2:0.325:12:log --epsilon 0.125,0.46875 --exponent 1,10 "
+                  "--samples 20000"),
+              HasSubstr("n = 10"));
+  EXPECT_EQ(LineCount("markov-test-excess.csv"), 1 + 12 * 2 * 2u);
   // At epsilon = 0.125 fewer than ten points are above the noise, so there is no fit.
-  const std::string fit = Contents(folder_ + "/markov-test-fit.csv");
-  EXPECT_EQ(LineCount(fit), 1 + 4 + 4u);  // the last four are sums over the exponents
-  EXPECT_THAT(fit, HasSubstr("\n0.46875,10,11,0.2,"));
-  EXPECT_EQ(LineCount(Contents(folder_ + "/markov-test-decay.csv")), 1 + 2 * 2u);
-  EXPECT_THAT(Contents(folder_ + "/markov-test.svg"), HasSubstr("n = 10"));
+  EXPECT_EQ(LineCount("markov-test-fit.csv"), 1 + 4 + 4u);  // with the sums over the exponents
+  EXPECT_THAT(Data("markov-test-fit.csv"), HasSubstr("\n0.46875,10,11,0.2,"));
+  EXPECT_EQ(LineCount("markov-test-decay.csv"), 1 + 2 * 2u);
 }
 
 TEST_F(FigureTest, TheCellShowsItsParameters) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("cell", "--delta 0.1 --seed 3"), HasSubstr("δ = 0.1"));
-  EXPECT_THAT(Contents(folder_ + "/cell.csv"),
-              HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
+  EXPECT_THAT(Data("cell.csv"), HasSubstr("\n0.529561127988977,0.1,0.34891252930760"));
 }
 
 TEST_F(FigureTest, TheCellInThreeDimensionsShowsItsCollisionSurface) {
@@ -257,7 +236,7 @@ TEST_F(FigureTest, AnOrbitHasTheEventsOfBothBodies) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("orbit"), HasSubstr("piston, q₃"));
   for (const std::string body : {"ball", "piston"}) {
-    const std::string data = Contents(folder_ + "/orbit-" + body + ".csv");
+    const std::string data = Data("orbit-" + body + ".csv");
     EXPECT_THAT(data, StartsWith("time,event,x,y,energy\n0,start,"));
     EXPECT_THAT(data, HasSubstr("," + body + "_wall,"));
     EXPECT_THAT(data, HasSubstr(",ball_piston,"));
@@ -267,41 +246,29 @@ TEST_F(FigureTest, AnOrbitHasTheEventsOfBothBodies) {
 TEST_F(FigureTest, TheKernelStandsBesideCollisionsOfTheBilliard) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("kernel", "--quick --epsilon 0.1,0.3"), HasSubstr("ε = 0.3<"));
-  EXPECT_EQ(Words(absl::StrSplit(Contents(folder_ + "/kernel-exact.csv"), '\n', absl::SkipEmpty()))
-                .size(),
-            1 + 2 * 499u);
-  EXPECT_THAT(Contents(folder_ + "/kernel-measured.csv"), HasSubstr("\n0.1,"));
+  EXPECT_EQ(LineCount("kernel-exact.csv"), 1 + 2 * 499u);
+  EXPECT_THAT(Data("kernel-measured.csv"), HasSubstr("\n0.1,"));
 }
 
 TEST_F(FigureTest, TheSpectrumHasRatesAndAutocorrelations) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("spectrum", "--delta 0.2,0.1 --samples 1000"),
               AllOf(HasSubstr("0.1521"), HasSubstr("δ = 0.1<")));
-  EXPECT_THAT(Contents(folder_ + "/spectrum.csv"), HasSubstr(",spectral_gap,0.15208712661"));
-  EXPECT_THAT(Contents(folder_ + "/spectrum-billiard.csv"),
+  EXPECT_THAT(Data("spectrum.csv"), HasSubstr(",spectral_gap,0.15208712661"));
+  EXPECT_THAT(Data("spectrum-billiard.csv"),
               HasSubstr(",0.1,,,billiard,1000,energy_autocorrelation,"));
 }
 
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.out, HasSubstr("cell: "));
-  EXPECT_THAT(result.out, HasSubstr("cell-3d: "));
-  EXPECT_THAT(result.out, HasSubstr("collision-surface: "));
-  EXPECT_THAT(result.out, HasSubstr("orbit: "));
-  EXPECT_THAT(result.out, HasSubstr("kernel: "));
-  EXPECT_THAT(result.out, HasSubstr("spectrum: "));
-  EXPECT_THAT(result.out, HasSubstr("stability: "));
-  EXPECT_THAT(result.out, HasSubstr("mean-free-time: "));
-  EXPECT_THAT(result.out, HasSubstr("speed-accuracy: "));
-  EXPECT_THAT(result.out, HasSubstr("conductivity: "));
-  EXPECT_THAT(result.out, HasSubstr("relative-entropy: "));
-  EXPECT_THAT(result.out, HasSubstr("gas: "));
-  EXPECT_THAT(result.out, HasSubstr("temperature-profile: "));
-  EXPECT_THAT(result.out, HasSubstr("ingoing-law: "));
-  EXPECT_THAT(result.out, HasSubstr("relaxation: "));
-  EXPECT_THAT(result.out, HasSubstr("rates: "));
-  EXPECT_THAT(result.out, HasSubstr("markov-test: "));
+  for (const std::string name :
+       {"cell", "cell-3d", "collision-surface", "conductivity", "gas", "hitting-time",
+        "ingoing-law", "kernel", "markov-test", "master-equation", "mean-free-time", "orbit",
+        "rates", "relative-entropy", "relaxation", "spectrum", "speed-accuracy", "stability",
+        "temperature-profile"}) {
+    EXPECT_THAT("\n" + result.out, HasSubstr("\n" + name + ": "));
+  }
 }
 
 }  // namespace
