@@ -303,6 +303,8 @@
 
   // After a change of the theme.
   ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  // Of a view that is left.
+  ballpiston.removeCharts = () => charts.forEach((chart) => chart.remove());
   ballpiston.Chart = Chart;
   ballpiston.styleOf = styleOf;
 })(globalThis.ballpiston ??= {});

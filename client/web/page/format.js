@@ -43,9 +43,11 @@
     return isNumber(value) ? (value < 0 ? '-' : '+') + Math.abs(value).toFixed(places) : '';
   }
 
+  const COUNT_FORMAT = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
+
   // 1234567: 1,234,567
   function countText(count) {
-    return Number(count).toLocaleString('en', {maximumFractionDigits: 0});
+    return COUNT_FORMAT.format(Number(count));
   }
 
   function bytesText(bytes) {
@@ -63,18 +65,24 @@
     return `${Number((seconds / 86400).toPrecision(3))} days`;
   }
 
-  // A <time> that says how long ago, with the whole time as its title.
-  function timeElement(time, now = Date.now()) {
-    if (!time) return null;
-    const date = new Date(time);
+  // How long ago `date` was.
+  function ageText(date, now = Date.now()) {
     const age = (now - date) / 1000;
-    const text = Math.abs(age) < 2 ? 'now'
-      : age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
-    return ballpiston.element('time', {datetime: time, title: date.toLocaleString()}, text);
+    if (Math.abs(age) < 2) return 'now';
+    return age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
   }
 
-  const wholeTime = (time) => time ? new Date(time).toLocaleString('en-GB',
-    {dateStyle: 'medium', timeStyle: 'medium'}) : '';
+  // A <time> that says how long ago, with the whole time as its title.
+  function timeElement(time) {
+    if (!time) return null;
+    const date = new Date(time);
+    return ballpiston.element('time', {datetime: time, title: wholeTime(time)}, ageText(date));
+  }
+
+  // Made once: a new one for each time would take longer than all the rest of a long list.
+  const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'medium'});
+
+  const wholeTime = (time) => time ? TIME_FORMAT.format(new Date(time)) : '';
 
   // CONDITIONAL_MEAN_FREE_TIME or mean_free_time: in small letters, with spaces.
   const words = (name) => String(name ?? '').toLowerCase().replaceAll('_', ' ');
@@ -101,6 +109,6 @@
   }
 
   Object.assign(ballpiston, {isNumber, valueText, errorText, withError, signedText, countText,
-    bytesText, durationText, timeElement, wholeTime, words, symbolOf, parameterPairs,
+    bytesText, durationText, ageText, timeElement, wholeTime, words, symbolOf, parameterPairs,
     parameterText, parametersText, shellWord});
 })(globalThis.ballpiston ??= {});

@@ -25,7 +25,8 @@
     return element('span', {class: 'state', 'data-state': job.state}, stateText(job.state));
   }
 
-  const addressOf = (job) => '#' + String(job.name).split('/').map(encodeURIComponent).join('/');
+  // page.js reads it back; an id may have any characters.
+  const addressOf = (job) => `#ensembleJobs/${encodeURIComponent(ballpiston.idOf(job))}`;
 
   // Share of the work done, or of the points where the work is not known beforehand.
   function fractionOf(progress) {
@@ -107,9 +108,10 @@
     }
 
     refreshTimes() {
+      const now = Date.now();
       for (const {row, job} of this.rows.values()) {
         const time = row.querySelector('time');
-        const text = timeElement(job.create_time)?.textContent;
+        const text = ballpiston.ageText(new Date(job.create_time), now);
         if (time && time.textContent !== text) time.textContent = text;
       }
     }
@@ -217,5 +219,6 @@
     return new JobList(main, signal).keepFresh();
   }
 
-  Object.assign(ballpiston, {showJobs, stateElement, stateText, fractionOf, progressText, statusText});
+  Object.assign(ballpiston, {showJobs, stateElement, stateText, fractionOf, progressText, statusText,
+    addressOf});
 })(globalThis.ballpiston ??= {});

@@ -258,9 +258,8 @@
     // `index` null: the point that is computed, or the first one.
     choose(index) {
       this.chosen = index;
-      const address = '#' + this.name.split('/').map(encodeURIComponent).join('/') +
-        (index === null ? '' : `/results/${index}`);
-      history.replaceState(null, '', address);
+      const result = index === null ? '' : `/results/${index}`;
+      history.replaceState(null, '', ballpiston.addressOf({name: this.name}) + result);
       this.draw();
     }
 

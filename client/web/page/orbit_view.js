@@ -62,7 +62,9 @@
     stage() {
       this.canvas = element('canvas', {class: 'orbit', role: 'img', tabindex: '0',
         'aria-label': 'The orbit', onkeydown: (event) => this.onKey(event)});
-      new ResizeObserver(() => this.fit()).observe(document.getElementById('main'));
+      const resizing = new ResizeObserver(() => this.fit());
+      resizing.observe(document.getElementById('main'));
+      this.signal.addEventListener('abort', () => resizing.disconnect());
       return this.canvas;
     }
 

@@ -51,6 +51,7 @@
     leave.abort();
     leave = new AbortController();
     const {signal} = leave;
+    ballpiston.removeCharts();
     main().replaceChildren();
     ballpiston.clearBanner();
     markLink(fragment);
