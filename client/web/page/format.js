@@ -2,10 +2,18 @@
 (function (ballpiston) {
   'use strict';
 
-  const SYMBOLS = {rho: 'ρ', delta: 'δ', epsilon: 'ε', exponent: 'n', cells: 'cells',
-    temperature: 'T', hot: 'T hot', cold: 'T cold'};
+  const SYMBOLS = {
+    rho: 'ρ',
+    delta: 'δ',
+    epsilon: 'ε',
+    exponent: 'n',
+    cells: 'cells',
+    temperature: 'T',
+    hot: 'T hot',
+    cold: 'T cold',
+  };
   const ERROR_DIGITS = 2;
-  const DIGITS = 8;  // without an error
+  const DIGITS = 8; // without an error
 
   const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
@@ -82,25 +90,30 @@
   // Made once: a new one for each time would take longer than all the rest of a long list.
   const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'medium'});
 
-  const wholeTime = (time) => time ? TIME_FORMAT.format(new Date(time)) : '';
+  const wholeTime = (time) => (time ? TIME_FORMAT.format(new Date(time)) : '');
 
   // CONDITIONAL_MEAN_FREE_TIME or mean_free_time: in small letters, with spaces.
-  const words = (name) => String(name ?? '').toLowerCase().replaceAll('_', ' ');
+  const words = (name) =>
+    String(name ?? '')
+      .toLowerCase()
+      .replaceAll('_', ' ');
 
   const symbolOf = (parameter) => SYMBOLS[parameter] ?? parameter;
 
   // The parameters that are there, in the order of SYMBOLS.
   function parameterPairs(parameters) {
-    return Object.keys(SYMBOLS).filter((name) => parameters?.[name] !== undefined)
+    return Object.keys(SYMBOLS)
+      .filter((name) => parameters?.[name] !== undefined)
       .map((name) => [name, parameters[name]]);
   }
 
-  const parameterText = (value) => isNumber(value) ? String(Number(value.toPrecision(10)))
-    : String(value);
+  const parameterText = (value) =>
+    isNumber(value) ? String(Number(value.toPrecision(10))) : String(value);
 
   function parametersText(parameters) {
     return parameterPairs(parameters)
-      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`).join(', ');
+      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
+      .join(', ');
   }
 
   // For a command line in a POSIX shell.
@@ -108,7 +121,23 @@
     return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
   }
 
-  Object.assign(ballpiston, {isNumber, valueText, errorText, withError, signedText, countText,
-    bytesText, durationText, ageText, timeElement, wholeTime, words, symbolOf, parameterPairs,
-    parameterText, parametersText, shellWord});
-})(globalThis.ballpiston ??= {});
+  Object.assign(ballpiston, {
+    isNumber,
+    valueText,
+    errorText,
+    withError,
+    signedText,
+    countText,
+    bytesText,
+    durationText,
+    ageText,
+    timeElement,
+    wholeTime,
+    words,
+    symbolOf,
+    parameterPairs,
+    parameterText,
+    parametersText,
+    shellWord,
+  });
+})((globalThis.ballpiston ??= {}));
