@@ -2,7 +2,7 @@
 // reads the values under the pointer, and its numbers as a table.
 //
 // A chart is given by
-//   {title, xLabel, yLabel, logX, logY, fromZero, note, lines}
+//   {title, xLabel, yLabel, logX, fromZero, note, lines}
 // and a line by
 //   {label, kind, colour, x, y, error, shift}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
@@ -87,11 +87,11 @@
     let min = Infinity,
       max = -Infinity;
     const see = (y) => {
-      if (!isNumber(y) || (chart.logY && y <= 0)) return;
+      if (!isNumber(y)) return;
       min = Math.min(min, y);
       max = Math.max(max, y);
     };
-    if (chart.fromZero && !chart.logY) see(0);
+    if (chart.fromZero) see(0);
     for (const line of chart.lines) {
       for (let i = 0; i < line.x.length; ++i) {
         if (line.x[i] < left || line.x[i] > right) continue;
@@ -99,8 +99,8 @@
         see(line.y[i] + (line.error?.[i] ?? 0));
       }
     }
-    if (min > max) return chart.logY ? [1, 10] : [0, 1];
-    return chart.logY ? [min / 1.2, max * 1.2] : withRoom(min, max, chart.fromZero);
+    if (min > max) return [0, 1];
+    return withRoom(min, max, chart.fromZero);
   }
 
   function withRoom(min, max, fromZero) {
@@ -157,6 +157,16 @@
     return String(Number(tick.toPrecision(10)));
   }
 
+  // Of a logarithmic axis: 1, 2 and 5 of each decade, or 1 alone where there are many decades.
+  function logTicks(u, axis, min, max) {
+    const digits = max / min > 1e3 ? [1] : [1, 2, 5];
+    const ticks = [];
+    for (let decade = 10 ** Math.floor(Math.log10(min)); decade <= max; decade *= 10) {
+      ticks.push(...digits.map((digit) => digit * decade));
+    }
+    return ticks.filter((tick) => tick >= min && tick <= max);
+  }
+
   function widthOfTicks(u, texts) {
     const longest = Math.max(1, ...(texts ?? []).map((text) => text.length));
     return 14 + 7 * longest;
@@ -173,7 +183,6 @@
       chart.xLabel,
       chart.yLabel,
       chart.logX,
-      chart.logY,
       chart.lines.map((line) => [line.label, line.kind, line.colour]),
     ]);
 
@@ -309,10 +318,15 @@
               distr: chart.logX ? 3 : 1,
               range: (u, min, max) => (this.xRange = rangeOfX(this.chart, min, max)),
             },
-            y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
+            y: {range: () => rangeOfY(this.chart, this.xRange)},
           },
           axes: [
-            axis(chart.xLabel, {values: tickTexts, size: 28, space: narrow ? 55 : 70}),
+            axis(chart.xLabel, {
+              values: tickTexts,
+              size: 28,
+              space: narrow ? 55 : 70,
+              ...(chart.logX ? {splits: logTicks, filter: (u, ticks) => ticks} : {}),
+            }),
             axis(chart.yLabel, {values: tickTexts, size: widthOfTicks}),
           ],
           series: [{}, ...chart.lines.map(uplotSeries)],

@@ -24,6 +24,7 @@
   const CURVE_LABELS = {
     energy_autocorrelation: 'Autocorrelation of the piston’s energy',
     mean_energy: 'Mean energy of the piston',
+    survival: 'Survival: probability of no collision until a time',
     temperature_profile: 'Temperature profile',
   };
 
