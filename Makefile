@@ -9,11 +9,12 @@ STABILITY_OUT ?= stability.md
 TEST_PACKAGES := libgtest-dev libgmock-dev
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
+WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
 PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -55,6 +56,10 @@ test-slurm: ## Run jobs on a whole Slurm cluster that the tests start on this ma
 test-alerts: ## Test the alert rules for Prometheus, with promtool
 	@scripts/test-alerts.sh
 
+test-web: build ## Test the page of ballpiston web in headless Chromium, with npm's playwright-core and axe-core (2 minutes)
+	@scripts/setup.sh $(WEB_PACKAGES)
+	@scripts/web-test.sh build/release/bin
+
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
@@ -76,8 +81,8 @@ thread-safety: ## Check with Clang that the server holds the right mutexes, in t
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 
-nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, test-alerts, stability, and ten minutes of each fuzz target
-	@status=0; for task in tsan aarch64 tidy torture test-slurm test-alerts stability "fuzz FUZZ_SECONDS=600"; do \
+nightly: ## Run the checks that take hours: tsan, aarch64, tidy, torture, test-slurm, test-alerts, test-web, stability, and ten minutes of each fuzz target
+	@status=0; for task in tsan aarch64 tidy torture test-slurm test-alerts test-web stability "fuzz FUZZ_SECONDS=600"; do \
 	  printf '\n== make %s\n' "$$task"; $(MAKE) $$task || { status=1; failed+=" $${task%% *}"; }; \
 	done; echo "nightly: failed:$${failed:- none}"; exit $$status
 

@@ -1,14 +1,20 @@
 // Answers of a server that the real one would not give, or not soon: routes of a playwright page.
-export const EVIL = '<img src=x onerror="window.wasAttacked = true"><script>window.wasAttacked = true</script>';
+export const EVIL =
+  '<img src=x onerror="window.wasAttacked = true"><script>window.wasAttacked = true</script>';
 
 export function fakeJob(number, more = {}) {
   return {
     name: `ensembleJobs/${String(number).padStart(16, '0')}`,
-    spec: {experiment: 'FIRST_HIT', grid: {rho: [0.5296], delta: [0.1], epsilon: [0.125], exponent: [1]},
-      target: {samples: '1000'}, seed: '0'},
+    spec: {
+      experiment: 'FIRST_HIT',
+      grid: {rho: [0.5296], delta: [0.1], epsilon: [0.125], exponent: [1]},
+      target: {samples: '1000'},
+      seed: '0',
+    },
     state: 'SUCCEEDED',
     progress: {points: 1, points_done: 1, samples: 1000, fraction: 1},
-    principal: 'ada', create_time: new Date(1.7e12 + 1000 * number).toISOString(),
+    principal: 'ada',
+    create_time: new Date(1.7e12 + 1000 * number).toISOString(),
     ...more,
   };
 }
@@ -21,8 +27,9 @@ export async function listInstead(page, jobs) {
     const {page_size: size, page_token: token} = route.request().postDataJSON();
     const begin = Number(token || 0);
     const end = begin + size;
-    await route.fulfill({json: {jobs: jobs.slice(begin, end),
-      next_page_token: end < jobs.length ? String(end) : ''}});
+    await route.fulfill({
+      json: {jobs: jobs.slice(begin, end), next_page_token: end < jobs.length ? String(end) : ''},
+    });
   });
 }
 
@@ -42,5 +49,6 @@ function envelope(flags, message) {
 export async function streamInstead(page, name, messages) {
   const body = Buffer.concat([...messages.map((message) => envelope(0, message)), envelope(2, {})]);
   await page.route(method(name), (route) =>
-    route.fulfill({contentType: 'application/connect+json', body}));
+    route.fulfill({contentType: 'application/connect+json', body}),
+  );
 }

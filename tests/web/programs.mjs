@@ -1,5 +1,5 @@
-// The real programs, for tests of the page: a server with a store of its own, `ballpiston web`, and the
-// command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
+// The real programs, for tests of the page: a server with a store of its own, `ballpiston web`,
+// and the command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
 import {execFile, execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -30,7 +30,16 @@ export class Programs {
 
   startServer() {
     const {BALLPISTON_SERVER: address} = this.environment;
-    this.runAt(['server', 'start', '--data-dir', this.dataFolder, '--listen', address, '--workers', '1']);
+    this.runAt([
+      'server',
+      'start',
+      '--data-dir',
+      this.dataFolder,
+      '--listen',
+      address,
+      '--workers',
+      '1',
+    ]);
   }
 
   stopServer() {
@@ -43,20 +52,29 @@ export class Programs {
   }
 
   runAt(words) {
-    const options = {env: this.environment, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'],
-      maxBuffer: 1 << 28};
+    const options = {
+      env: this.environment,
+      encoding: 'utf8',
+      stdio: ['ignore', 'pipe', 'pipe'],
+      maxBuffer: 1 << 28,
+    };
     return execFileSync(program, words, options).trimEnd();
   }
 
   async runSoon(...words) {
-    const {stdout} = await promisify(execFile)(program, words, {env: this.environment, maxBuffer: 1 << 28});
+    const {stdout} = await promisify(execFile)(program, words, {
+      env: this.environment,
+      maxBuffer: 1 << 28,
+    });
     return stdout.trimEnd();
   }
 
   // {address, stop()} of a `ballpiston web`; the address has the token. `port` 0: any.
   async web(port = 0) {
-    const child = spawn(program, ['web', '--port', String(port)],
-      {env: this.environment, stdio: ['ignore', 'pipe', 'ignore']});
+    const child = spawn(program, ['web', '--port', String(port)], {
+      env: this.environment,
+      stdio: ['ignore', 'pipe', 'ignore'],
+    });
     const ended = new Promise((done) => child.once('exit', done));
     for await (const address of createInterface({input: child.stdout})) {
       const stop = () => {

@@ -2,7 +2,7 @@
 // reads the values under the pointer, and its numbers as a table.
 //
 // A chart is given by
-//   {title, xLabel, yLabel, logX, logY, fromZero, note, lines}
+//   {title, xLabel, yLabel, logX, fromZero, note, lines}
 // and a line by
 //   {label, kind, colour, x, y, error, shift}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
@@ -16,15 +16,16 @@
   const {element, isNumber, valueText, withError} = ballpiston;
 
   const HEIGHT = 260;
-  const COLOURS = 6;  // --line-0 to --line-5 in style.css
+  const COLOURS = 6; // --line-0 to --line-5 in style.css
   const SYMBOL_RADIUS = 3.5;
   const MOST_TABLE_ROWS = 200;
-  const ROOM = 0.06;  // of the range of y, above and below
+  const ROOM = 0.06; // of the range of y, above and below
 
   const charts = new Set();
 
   const pixels = () => devicePixelRatio || 1;
-  const styleOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const styleOf = (name) =>
+    getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const colourOf = (line) => styleOf(`--line-${line.colour % COLOURS}`);
 
   // Symbols tell the lines apart where colours do not.
@@ -39,7 +40,7 @@
 
   function polygon(c, x, y, r, corners) {
     for (let i = 0; i < corners; ++i) {
-      const angle = 2 * Math.PI * i / corners;
+      const angle = (2 * Math.PI * i) / corners;
       c.lineTo(x + r * Math.sin(angle), y - r * Math.cos(angle));
     }
     c.closePath();
@@ -83,13 +84,14 @@
 
   // Of all values and error bars whose x is in [left, right].
   function rangeOfY(chart, [left, right]) {
-    let min = Infinity, max = -Infinity;
+    let min = Infinity,
+      max = -Infinity;
     const see = (y) => {
-      if (!isNumber(y) || (chart.logY && y <= 0)) return;
+      if (!isNumber(y)) return;
       min = Math.min(min, y);
       max = Math.max(max, y);
     };
-    if (chart.fromZero && !chart.logY) see(0);
+    if (chart.fromZero) see(0);
     for (const line of chart.lines) {
       for (let i = 0; i < line.x.length; ++i) {
         if (line.x[i] < left || line.x[i] > right) continue;
@@ -97,8 +99,8 @@
         see(line.y[i] + (line.error?.[i] ?? 0));
       }
     }
-    if (min > max) return chart.logY ? [1, 10] : [0, 1];
-    return chart.logY ? [min / 1.2, max * 1.2] : withRoom(min, max, chart.fromZero);
+    if (min > max) return [0, 1];
+    return withRoom(min, max, chart.fromZero);
   }
 
   function withRoom(min, max, fromZero) {
@@ -118,29 +120,51 @@
     const common = {label: line.label, points: {show: false}, spanGaps: true};
     if (line.kind === 'measured') return {...common, stroke, paths: () => null};
     if (line.kind === 'steps') {
-      return {...common, stroke, width: 1, fill: () => styleOf('--fill'),
-        paths: uPlot.paths.stepped({align: 1})};
+      return {
+        ...common,
+        stroke,
+        width: 1,
+        fill: () => styleOf('--fill'),
+        paths: uPlot.paths.stepped({align: 1}),
+      };
     }
     if (line.stepped) return {...common, stroke, width: 2, paths: uPlot.paths.stepped({align: 1})};
     return {...common, stroke, width: 1.5, dash: line.kind === 'limit' ? [6, 5] : undefined};
   }
 
   function axis(label, more) {
-    return {label, labelSize: 20, labelGap: 2, labelFont: '13px system-ui, sans-serif',
-      font: '12px system-ui, sans-serif', stroke: () => styleOf('--soft'),
+    return {
+      label,
+      labelSize: 20,
+      labelGap: 2,
+      labelFont: '13px system-ui, sans-serif',
+      font: '12px system-ui, sans-serif',
+      stroke: () => styleOf('--soft'),
       grid: {stroke: () => styleOf('--grid'), width: 1},
-      ticks: {stroke: () => styleOf('--grid'), width: 1, size: 5}, ...more};
+      ticks: {stroke: () => styleOf('--grid'), width: 1, size: 5},
+      ...more,
+    };
   }
 
   // Tick labels with as many digits as it takes to tell them apart.
   function tickTexts(u, ticks) {
-    return ticks.map((tick) => tick === null ? '' : tickText(tick));
+    return ticks.map((tick) => (tick === null ? '' : tickText(tick)));
   }
 
   function tickText(tick) {
     const size = Math.abs(tick);
     if (size >= 1e5 || (size > 0 && size < 1e-4)) return tick.toExponential().replace('e+', 'e');
     return String(Number(tick.toPrecision(10)));
+  }
+
+  // Of a logarithmic axis: 1, 2 and 5 of each decade, or 1 alone where there are many decades.
+  function logTicks(u, axis, min, max) {
+    const digits = max / min > 1e3 ? [1] : [1, 2, 5];
+    const ticks = [];
+    for (let decade = 10 ** Math.floor(Math.log10(min)); decade <= max; decade *= 10) {
+      ticks.push(...digits.map((digit) => digit * decade));
+    }
+    return ticks.filter((tick) => tick >= min && tick <= max);
   }
 
   function widthOfTicks(u, texts) {
@@ -154,8 +178,13 @@
   }
 
   // Charts of the same shape keep their uPlot, and with it the zoom; else a new one is made.
-  const shapeOf = (chart) => JSON.stringify([chart.xLabel, chart.yLabel, chart.logX, chart.logY,
-    chart.lines.map((line) => [line.label, line.kind, line.colour])]);
+  const shapeOf = (chart) =>
+    JSON.stringify([
+      chart.xLabel,
+      chart.yLabel,
+      chart.logX,
+      chart.lines.map((line) => [line.label, line.kind, line.colour]),
+    ]);
 
   function symbolKey(line) {
     const canvas = element('canvas', {class: 'key', 'aria-hidden': 'true', width: 56, height: 28});
@@ -182,14 +211,20 @@
   }
 
   function tableOf(chart) {
-    const columns = [{label: chart.xLabel, number: true},
-      ...chart.lines.map((line) => ({label: line.label, number: true}))];
+    const columns = [
+      {label: chart.xLabel, number: true},
+      ...chart.lines.map((line) => ({label: line.label, number: true})),
+    ];
     const values = aligned(chart.lines);
     const errors = chart.lines.map((line) => new Map(line.x.map((x, i) => [x, line.error?.[i]])));
     const step = Math.max(1, Math.ceil(values[0].length / MOST_TABLE_ROWS));
-    const rows = values[0].map((_, i) => i).filter((i) => i % step === 0).map((i) => [
-      valueText(values[0][i]),
-      ...chart.lines.map((_, k) => withError(values[k + 1][i], errors[k].get(values[0][i])))]);
+    const rows = values[0]
+      .map((_, i) => i)
+      .filter((i) => i % step === 0)
+      .map((i) => [
+        valueText(values[0][i]),
+        ...chart.lines.map((_, k) => withError(values[k + 1][i], errors[k].get(values[0][i]))),
+      ]);
     const caption = step === 1 ? chart.title : `${chart.title}: each ${step}th of the rows`;
     return ballpiston.table(caption, columns, rows, {class: 'compact'});
   }
@@ -202,10 +237,22 @@
       this.readout = element('p', {class: 'readout', 'aria-hidden': 'true'});
       this.note = element('p', {class: 'note', hidden: true});
       this.numbers = element('div', {class: 'scroll', tabindex: '0', role: 'region'});
-      this.details = element('details', {ontoggle: () => this.showNumbers()},
-        element('summary', {}, 'Numbers'), this.numbers);
-      this.element = element('figure', {class: 'chart'}, this.title, this.legend, this.plot,
-        this.readout, this.note, this.details);
+      this.details = element(
+        'details',
+        {ontoggle: () => this.showNumbers()},
+        element('summary', {}, 'Numbers'),
+        this.numbers,
+      );
+      this.element = element(
+        'figure',
+        {class: 'chart'},
+        this.title,
+        this.legend,
+        this.plot,
+        this.readout,
+        this.note,
+        this.details,
+      );
       this.uplot = null;
       charts.add(this);
       this.resizing = new ResizeObserver(() => this.resize());
@@ -228,7 +275,8 @@
 
     description() {
       const {title, xLabel, yLabel, lines} = this.chart;
-      const last = lines.filter((line) => line.kind === 'measured' && line.y.length)
+      const last = lines
+        .filter((line) => line.kind === 'measured' && line.y.length)
         .map((line) => `${line.label}, last ${withError(line.y.at(-1), line.error?.at(-1))}`);
       return `Chart: ${title}. ${yLabel} against ${xLabel}. ${last.slice(0, 4).join('; ')}`;
     }
@@ -257,24 +305,42 @@
       const {chart} = this;
       this.shape = shapeOf(chart);
       const narrow = width < 420;
-      this.uplot = new uPlot({
-        width, height: HEIGHT, legend: {show: false}, padding: [10, 14, 0, 0],
-        cursor: {drag: {x: true, y: false}, points: {show: false}},
-        scales: {
-          x: {time: false, distr: chart.logX ? 3 : 1,
-            range: (u, min, max) => this.xRange = rangeOfX(this.chart, min, max)},
-          y: {distr: chart.logY ? 3 : 1, range: () => rangeOfY(this.chart, this.xRange)},
+      this.uplot = new uPlot(
+        {
+          width,
+          height: HEIGHT,
+          legend: {show: false},
+          padding: [10, 14, 0, 0],
+          cursor: {drag: {x: true, y: false}, points: {show: false}},
+          scales: {
+            x: {
+              time: false,
+              distr: chart.logX ? 3 : 1,
+              range: (u, min, max) => (this.xRange = rangeOfX(this.chart, min, max)),
+            },
+            y: {range: () => rangeOfY(this.chart, this.xRange)},
+          },
+          axes: [
+            axis(chart.xLabel, {
+              values: tickTexts,
+              size: 28,
+              space: narrow ? 55 : 70,
+              ...(chart.logX ? {splits: logTicks, filter: (u, ticks) => ticks} : {}),
+            }),
+            axis(chart.yLabel, {values: tickTexts, size: widthOfTicks}),
+          ],
+          series: [{}, ...chart.lines.map(uplotSeries)],
+          hooks: {
+            draw: [(u) => drawAllMeasured(u, this.chart.lines)],
+            setCursor: [(u) => this.read(u)],
+          },
         },
-        axes: [axis(chart.xLabel, {values: tickTexts, size: 28, space: narrow ? 55 : 70}),
-          axis(chart.yLabel, {values: tickTexts, size: widthOfTicks})],
-        series: [{}, ...chart.lines.map(uplotSeries)],
-        hooks: {
-          draw: [(u) => drawAllMeasured(u, this.chart.lines)],
-          setCursor: [(u) => this.read(u)],
-        },
-      }, aligned(chart.lines), this.plot);
-      this.legend.replaceChildren(...chart.lines.map((line) =>
-        element('li', {}, symbolKey(line), line.label)));
+        aligned(chart.lines),
+        this.plot,
+      );
+      this.legend.replaceChildren(
+        ...chart.lines.map((line) => element('li', {}, symbolKey(line), line.label)),
+      );
     }
 
     read(u) {
@@ -285,10 +351,13 @@
     valuesAt(data, i) {
       const parts = this.chart.lines.map((line, k) => {
         const at = line.x.indexOf(data[0][i]);
-        return at < 0 || !isNumber(line.y[at]) ? null
+        return at < 0 || !isNumber(line.y[at])
+          ? null
           : `${line.label}: ${withError(line.y[at], line.error?.[at])}`;
       });
-      return [`${this.chart.xLabel} = ${valueText(data[0][i])}`, ...parts.filter(Boolean)].join(' · ');
+      return [`${this.chart.xLabel} = ${valueText(data[0][i])}`, ...parts.filter(Boolean)].join(
+        ' · ',
+      );
     }
 
     showNumbers() {
@@ -303,6 +372,8 @@
 
   // After a change of the theme.
   ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
+  // Of a view that is left.
+  ballpiston.removeCharts = () => charts.forEach((chart) => chart.remove());
   ballpiston.Chart = Chart;
   ballpiston.styleOf = styleOf;
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

@@ -4,10 +4,18 @@
   'use strict';
 
   const PACKAGE = '/ballpiston.v1.';
-  const HEADER_BYTES = 5;  // of an envelope: flags, and the length as 4 bytes, big-endian
-  const LAST = 2;          // the flag of the last envelope: {} or {"error": {...}}
-  const FINAL = new Set(['unauthenticated', 'permission_denied', 'not_found', 'invalid_argument',
-    'failed_precondition', 'out_of_range', 'unimplemented', 'data_loss']);
+  const HEADER_BYTES = 5; // of an envelope: flags, and the length as 4 bytes, big-endian
+  const LAST = 2; // the flag of the last envelope: {} or {"error": {...}}
+  const FINAL = new Set([
+    'unauthenticated',
+    'permission_denied',
+    'not_found',
+    'invalid_argument',
+    'failed_precondition',
+    'out_of_range',
+    'unimplemented',
+    'data_loss',
+  ]);
 
   // `code` is one of the protocol's, such as not_found. `isFinal`: a retry gives the same error.
   class CallError extends Error {
@@ -21,15 +29,22 @@
   const errorOf = (json, code) => new CallError(json?.code ?? code, json?.message);
 
   function noAnswer() {
-    return new CallError('unavailable',
-      `no answer from ${location.host}: ballpiston web does not run there any more`);
+    return new CallError(
+      'unavailable',
+      `no answer from ${location.host}: ballpiston web does not run there any more`,
+    );
   }
 
   async function post(method, type, body, signal) {
     let response;
     try {
-      response = await fetch(PACKAGE + method, {method: 'POST', body, signal, cache: 'no-store',
-        headers: {'Content-Type': type, 'Authorization': `Bearer ${ballpiston.token()}`}});
+      response = await fetch(PACKAGE + method, {
+        method: 'POST',
+        body,
+        signal,
+        cache: 'no-store',
+        headers: {'Content-Type': type, Authorization: `Bearer ${ballpiston.token()}`},
+      });
     } catch (error) {
       if (signal?.aborted) throw error;
       throw noAnswer();
@@ -125,4 +140,4 @@
   }
 
   Object.assign(ballpiston, {CallError, call, stream});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

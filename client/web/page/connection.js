@@ -4,7 +4,7 @@
   'use strict';
 
   const TOKEN = 'ballpiston-token';
-  const FIRST_DELAY = 500;  // ms; doubles with each failure
+  const FIRST_DELAY = 500; // ms; doubles with each failure
   const LONGEST_DELAY = 8000;
 
   const token = () => sessionStorage.getItem(TOKEN) ?? '';
@@ -121,5 +121,13 @@
     return controller;
   }
 
-  Object.assign(ballpiston, {token, takeToken, clearBanner: answered, pause, keepTrying, TabHidden, whileVisible});
-})(globalThis.ballpiston ??= {});
+  Object.assign(ballpiston, {
+    token,
+    takeToken,
+    clearBanner: answered,
+    pause,
+    keepTrying,
+    TabHidden,
+    whileVisible,
+  });
+})((globalThis.ballpiston ??= {}));

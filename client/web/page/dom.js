@@ -23,19 +23,46 @@
   function table(caption, columns, rows, attributes = {}) {
     const body = element('tbody', {role: 'rowgroup'});
     body.append(...rows.map((cells) => tableRow(columns, cells)));
-    return element('table', {role: 'table', ...attributes},
+    return element(
+      'table',
+      {role: 'table', ...attributes},
       element('caption', {}, caption),
-      element('thead', {role: 'rowgroup'}, element('tr', {role: 'row'},
-        columns.map((column) => element('th', {role: 'columnheader', scope: 'col',
-          class: column.number ? 'number' : null}, column.label)))),
-      body);
+      element(
+        'thead',
+        {role: 'rowgroup'},
+        element(
+          'tr',
+          {role: 'row'},
+          columns.map((column) =>
+            element(
+              'th',
+              {role: 'columnheader', scope: 'col', class: column.number ? 'number' : null},
+              column.label,
+            ),
+          ),
+        ),
+      ),
+      body,
+    );
   }
 
   // On narrow screens a row is a card, and each cell shows its column's label.
   function tableRow(columns, cells) {
-    return element('tr', {role: 'row'}, cells.map((cell, i) => element('td', {
-      role: 'cell', 'data-label': columns[i].label, class: columns[i].number ? 'number' : null},
-    cell)));
+    return element(
+      'tr',
+      {role: 'row'},
+      cells.map((cell, i) =>
+        element(
+          'td',
+          {
+            role: 'cell',
+            'data-label': columns[i].label,
+            class: columns[i].number ? 'number' : null,
+          },
+          cell,
+        ),
+      ),
+    );
   }
 
   // [[term, text or node], ...]; a term whose text is empty or missing is left out.
@@ -50,11 +77,15 @@
 
   // A labelled choice. `options`: [{value, label}].
   function choice(label, options, chosen, onChoose) {
-    const select = element('select', {onchange: () => onChoose(select.value)},
-      options.map((option) => element('option',
-        {value: option.value, selected: option.value === chosen}, option.label)));
+    const select = element(
+      'select',
+      {onchange: () => onChoose(select.value)},
+      options.map((option) =>
+        element('option', {value: option.value, selected: option.value === chosen}, option.label),
+      ),
+    );
     return element('label', {class: 'choice'}, element('span', {}, label), select);
   }
 
   Object.assign(ballpiston, {element, table, tableRow, facts, choice});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

@@ -2,10 +2,18 @@
 (function (ballpiston) {
   'use strict';
 
-  const SYMBOLS = {rho: 'ρ', delta: 'δ', epsilon: 'ε', exponent: 'n', cells: 'cells',
-    temperature: 'T', hot: 'T hot', cold: 'T cold'};
+  const SYMBOLS = {
+    rho: 'ρ',
+    delta: 'δ',
+    epsilon: 'ε',
+    exponent: 'n',
+    cells: 'cells',
+    temperature: 'T',
+    hot: 'T hot',
+    cold: 'T cold',
+  };
   const ERROR_DIGITS = 2;
-  const DIGITS = 8;  // without an error
+  const DIGITS = 8; // without an error
 
   const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
@@ -43,9 +51,11 @@
     return isNumber(value) ? (value < 0 ? '-' : '+') + Math.abs(value).toFixed(places) : '';
   }
 
+  const COUNT_FORMAT = new Intl.NumberFormat('en', {maximumFractionDigits: 0});
+
   // 1234567: 1,234,567
   function countText(count) {
-    return Number(count).toLocaleString('en', {maximumFractionDigits: 0});
+    return COUNT_FORMAT.format(Number(count));
   }
 
   function bytesText(bytes) {
@@ -63,36 +73,47 @@
     return `${Number((seconds / 86400).toPrecision(3))} days`;
   }
 
-  // A <time> that says how long ago, with the whole time as its title.
-  function timeElement(time, now = Date.now()) {
-    if (!time) return null;
-    const date = new Date(time);
+  // How long ago `date` was.
+  function ageText(date, now = Date.now()) {
     const age = (now - date) / 1000;
-    const text = Math.abs(age) < 2 ? 'now'
-      : age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
-    return ballpiston.element('time', {datetime: time, title: date.toLocaleString()}, text);
+    if (Math.abs(age) < 2) return 'now';
+    return age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
   }
 
-  const wholeTime = (time) => time ? new Date(time).toLocaleString('en-GB',
-    {dateStyle: 'medium', timeStyle: 'medium'}) : '';
+  // A <time> that says how long ago, with the whole time as its title.
+  function timeElement(time) {
+    if (!time) return null;
+    const date = new Date(time);
+    return ballpiston.element('time', {datetime: time, title: wholeTime(time)}, ageText(date));
+  }
+
+  // Made once: a new one for each time would take longer than all the rest of a long list.
+  const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'medium'});
+
+  const wholeTime = (time) => (time ? TIME_FORMAT.format(new Date(time)) : '');
 
   // CONDITIONAL_MEAN_FREE_TIME or mean_free_time: in small letters, with spaces.
-  const words = (name) => String(name ?? '').toLowerCase().replaceAll('_', ' ');
+  const words = (name) =>
+    String(name ?? '')
+      .toLowerCase()
+      .replaceAll('_', ' ');
 
   const symbolOf = (parameter) => SYMBOLS[parameter] ?? parameter;
 
   // The parameters that are there, in the order of SYMBOLS.
   function parameterPairs(parameters) {
-    return Object.keys(SYMBOLS).filter((name) => parameters?.[name] !== undefined)
+    return Object.keys(SYMBOLS)
+      .filter((name) => parameters?.[name] !== undefined)
       .map((name) => [name, parameters[name]]);
   }
 
-  const parameterText = (value) => isNumber(value) ? String(Number(value.toPrecision(10)))
-    : String(value);
+  const parameterText = (value) =>
+    isNumber(value) ? String(Number(value.toPrecision(10))) : String(value);
 
   function parametersText(parameters) {
     return parameterPairs(parameters)
-      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`).join(', ');
+      .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
+      .join(', ');
   }
 
   // For a command line in a POSIX shell.
@@ -100,7 +121,23 @@
     return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
   }
 
-  Object.assign(ballpiston, {isNumber, valueText, errorText, withError, signedText, countText,
-    bytesText, durationText, timeElement, wholeTime, words, symbolOf, parameterPairs,
-    parameterText, parametersText, shellWord});
-})(globalThis.ballpiston ??= {});
+  Object.assign(ballpiston, {
+    isNumber,
+    valueText,
+    errorText,
+    withError,
+    signedText,
+    countText,
+    bytesText,
+    durationText,
+    ageText,
+    timeElement,
+    wholeTime,
+    words,
+    symbolOf,
+    parameterPairs,
+    parameterText,
+    parametersText,
+    shellWord,
+  });
+})((globalThis.ballpiston ??= {}));

@@ -3,13 +3,17 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, choice, Chart, isNumber, words, symbolOf, parameterPairs, parameterText} = ballpiston;
+  const {element, choice, Chart, isNumber, words, symbolOf, parameterPairs, parameterText} =
+    ballpiston;
 
-  const MOST_LINES = 6;  // with colours and symbols of their own
-  const MOST_WITHOUT_LOG = 30;  // ratio of the largest to the smallest x
+  const MOST_LINES = 6; // with colours and symbols of their own
+  const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest x
 
-  const SHOWN = [{value: 'value', label: 'value'}, {value: 'ratio', label: 'value / exact'},
-    {value: 'z', label: 'z, (value − exact)/error'}];
+  const SHOWN = [
+    {value: 'value', label: 'value'},
+    {value: 'ratio', label: 'value / exact'},
+    {value: 'z', label: 'z, (value − exact)/error'},
+  ];
 
   // {parameter: set of its values}, of those with more than one value.
   function varyingParameters(points) {
@@ -30,12 +34,14 @@
 
   function axesOf(points) {
     const varying = varyingParameters(points);
-    return Object.keys(varying).filter((name) => isAxis(varying[name]))
+    return Object.keys(varying)
+      .filter((name) => isAxis(varying[name]))
       .sort((a, b) => varying[b].size - varying[a].size);
   }
 
-  const estimatesOf = (points) =>
-    [...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name)))];
+  const estimatesOf = (points) => [
+    ...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name))),
+  ];
 
   // Points of the same parameters but for `axis`, by their label.
   function groups(points, axis) {
@@ -44,7 +50,8 @@
     for (const point of points) {
       const label = parameterPairs(point.parameters)
         .filter(([name]) => name !== axis && varying[name])
-        .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`).join(', ');
+        .map(([name, value]) => `${symbolOf(name)} = ${parameterText(value)}`)
+        .join(', ');
       if (!grouped.has(label)) grouped.set(label, []);
       grouped.get(label).push(point);
     }
@@ -55,30 +62,56 @@
   function spread(grouped) {
     const entries = [...grouped];
     const step = Math.max(1, (entries.length - 1) / (MOST_LINES - 1));
-    return entries.length <= MOST_LINES ? entries
+    return entries.length <= MOST_LINES
+      ? entries
       : Array.from({length: MOST_LINES}, (_, i) => entries[Math.round(i * step)]);
   }
 
   // {value, error, exact} in the form that `shown` names; value null if there is none.
   function inForm(estimate, shown) {
     const {value, standard_error: error, exact, limit, z_score: z} = estimate ?? {};
-    if (shown === 'z') return {value: z ?? null, error: isNumber(z) ? 1 : null, exact: isNumber(z) ? 0 : null};
+    if (shown === 'z')
+      return {value: z ?? null, error: isNumber(z) ? 1 : null, exact: isNumber(z) ? 0 : null};
     if (shown === 'value') return {value: value ?? null, error, exact, limit};
     if (!isNumber(exact) || exact === 0) return {value: null};
-    return {value: value / exact, error: isNumber(error) ? error / Math.abs(exact) : null, exact: 1};
+    return {
+      value: value / exact,
+      error: isNumber(error) ? error / Math.abs(exact) : null,
+      exact: 1,
+    };
   }
 
   function linesOf(label, points, axis, name, shown, colour) {
-    const sorted = points.map((point) => ({x: coordinate(point.parameters[axis]),
-      ...inForm(point.estimates.find((estimate) => estimate.name === name), shown)}))
-      .filter((at) => at.value !== null).sort((a, b) => a.x - b.x);
+    const sorted = points
+      .map((point) => ({
+        x: coordinate(point.parameters[axis]),
+        ...inForm(
+          point.estimates.find((estimate) => estimate.name === name),
+          shown,
+        ),
+      }))
+      .filter((at) => at.value !== null)
+      .sort((a, b) => a.x - b.x);
     const x = sorted.map((at) => at.x);
-    const lines = [{label: label || 'measured', kind: 'measured', colour, x,
-      y: sorted.map((at) => at.value), error: sorted.map((at) => at.error)}];
+    const lines = [
+      {
+        label: label || 'measured',
+        kind: 'measured',
+        colour,
+        x,
+        y: sorted.map((at) => at.value),
+        error: sorted.map((at) => at.error),
+      },
+    ];
     const further = (field, kind, text) => {
       if (!sorted.some((at) => isNumber(at[field]))) return;
-      lines.push({label: label ? `${label}, ${text}` : text, kind, colour: label ? colour : 1, x,
-        y: sorted.map((at) => at[field] ?? null)});
+      lines.push({
+        label: label ? `${label}, ${text}` : text,
+        kind,
+        colour: label ? colour : 1,
+        x,
+        y: sorted.map((at) => at[field] ?? null),
+      });
     };
     further('exact', 'exact', 'exact');
     further('limit', 'limit', 'Markov limit');
@@ -122,11 +155,20 @@
         this.draw();
       };
       this.choices.replaceChildren(
-        choice('Estimate', estimates.map((name) => ({value: name, label: words(name)})),
-          this.chosen.estimate, chooser('estimate')),
-        choice('Against', axes.map((name) => ({value: name, label: symbolOf(name)})),
-          this.chosen.axis, chooser('axis')),
-        choice('Show', SHOWN, this.chosen.shown, chooser('shown')));
+        choice(
+          'Estimate',
+          estimates.map((name) => ({value: name, label: words(name)})),
+          this.chosen.estimate,
+          chooser('estimate'),
+        ),
+        choice(
+          'Against',
+          axes.map((name) => ({value: name, label: symbolOf(name)})),
+          this.chosen.axis,
+          chooser('axis'),
+        ),
+        choice('Show', SHOWN, this.chosen.shown, chooser('shown')),
+      );
     }
 
     draw() {
@@ -134,14 +176,21 @@
       const grouped = groups(this.points, axis);
       const drawn = spread(grouped);
       const lines = drawn.flatMap(([label, points], i) =>
-        linesOf(label, points, axis, estimate, shown, i));
+        linesOf(label, points, axis, estimate, shown, i),
+      );
       const hasValues = lines.some((line) => line.y.length);
       this.chart.show({
-        title: `${words(estimate)} against ${symbolOf(axis)}`, xLabel: symbolOf(axis),
-        yLabel: SHOWN.find((form) => form.value === shown).label, lines,
+        title: `${words(estimate)} against ${symbolOf(axis)}`,
+        xLabel: symbolOf(axis),
+        yLabel: SHOWN.find((form) => form.value === shown).label,
+        lines,
         logX: isWide(lines.flatMap((line) => line.x)),
-        note: !hasValues ? 'There is no exact value to compare with.'
-          : drawn.length < grouped.size ? `${drawn.length} of ${grouped.size} lines, evenly spread` : null});
+        note: !hasValues
+          ? 'There is no exact value to compare with.'
+          : drawn.length < grouped.size
+            ? `${drawn.length} of ${grouped.size} lines, evenly spread`
+            : null,
+      });
     }
 
     remove() {
@@ -151,4 +200,4 @@
   }
 
   ballpiston.GridChart = GridChart;
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

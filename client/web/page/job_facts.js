@@ -2,30 +2,44 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, facts, countText, bytesText, durationText, wholeTime, words, symbolOf,
-    parameterText} = ballpiston;
+  const {
+    element,
+    facts,
+    countText,
+    bytesText,
+    durationText,
+    wholeTime,
+    words,
+    symbolOf,
+    parameterText,
+  } = ballpiston;
 
-  const MOST_VALUES = 12;  // of a parameter in the table of the specification
+  const MOST_VALUES = 12; // of a parameter in the table of the specification
 
   const idOf = (job) => String(job.name).split('/').slice(1).join('/');
 
   function gridText(values) {
     if (values.length <= MOST_VALUES) return values.map(parameterText).join(', ');
-    return `${values.slice(0, 3).map(parameterText).join(', ')}, … ${parameterText(values.at(-1))} ` +
-      `(${countText(values.length)} values)`;
+    return (
+      `${values.slice(0, 3).map(parameterText).join(', ')}, … ${parameterText(values.at(-1))} ` +
+      `(${countText(values.length)} values)`
+    );
   }
 
   function targetText(target) {
     const parts = [];
     if (target?.samples !== undefined) parts.push(`${countText(target.samples)} samples a point`);
-    if (target?.collisions !== undefined) parts.push(`${countText(target.collisions)} collisions a point`);
-    if (target?.tolerance !== undefined) parts.push(`relative error ${parameterText(target.tolerance)}`);
-    if (target?.budget) parts.push(`at most ${durationText(parseFloat(target.budget))} of computing`);
+    if (target?.collisions !== undefined)
+      parts.push(`${countText(target.collisions)} collisions a point`);
+    if (target?.tolerance !== undefined)
+      parts.push(`relative error ${parameterText(target.tolerance)}`);
+    if (target?.budget)
+      parts.push(`at most ${durationText(parseFloat(target.budget))} of computing`);
     if (target?.estimate) parts.push(`of ${words(target.estimate)}`);
     return parts.join(', ') || '10,000 samples or collisions a point';
   }
 
-  const chosen = (name) => /UNSPECIFIED$/.test(name ?? '') ? null : words(name);
+  const chosen = (name) => (/UNSPECIFIED$/.test(name ?? '') ? null : words(name));
 
   function specFacts(spec) {
     const grid = Object.entries(spec?.grid ?? {}).filter(([, values]) => values.length);
@@ -43,18 +57,31 @@
   function shortened(value) {
     if (Array.isArray(value)) return value;
     if (typeof value !== 'object' || value === null) return value;
-    const isDefault = (part) => part === '' || part === false || part === null ||
-      (Array.isArray(part) && part.length === 0) || /UNSPECIFIED$/.test(part);
-    return Object.fromEntries(Object.entries(value).filter(([, part]) => !isDefault(part))
-      .map(([name, part]) => [name, shortened(part)]));
+    const isDefault = (part) =>
+      part === '' ||
+      part === false ||
+      part === null ||
+      (Array.isArray(part) && part.length === 0) ||
+      /UNSPECIFIED$/.test(part);
+    return Object.fromEntries(
+      Object.entries(value)
+        .filter(([, part]) => !isDefault(part))
+        .map(([name, part]) => [name, shortened(part)]),
+    );
   }
 
   // To paste into a file for --spec.
   function specJson(spec) {
-    return element('details', {class: 'spec'},
+    return element(
+      'details',
+      {class: 'spec'},
       element('summary', {}, 'As JSON, for --spec'),
-      element('pre', {tabindex: '0'}, JSON.stringify(shortened(spec))
-        .replaceAll(/,"(?=\w+":)/g, ',\n "')));
+      element(
+        'pre',
+        {tabindex: '0'},
+        JSON.stringify(shortened(spec)).replaceAll(/,"(?=\w+":)/g, ',\n "'),
+      ),
+    );
   }
 
   function timeTaken(job) {
@@ -74,10 +101,12 @@
       ['Engine', job.engine_version],
       ['Priority', job.priority ? String(job.priority) : null],
       ['Stored', job.stored_bytes > 0 ? bytesText(job.stored_bytes) : null],
-      ['Results expire', job.results_expired ? 'expired'
-        : job.pinned ? 'never: pinned' : wholeTime(job.expire_time)],
+      [
+        'Results expire',
+        job.results_expired ? 'expired' : job.pinned ? 'never: pinned' : wholeTime(job.expire_time),
+      ],
     ]);
   }
 
   Object.assign(ballpiston, {idOf, specFacts, specJson, jobFacts});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

@@ -7,17 +7,33 @@
     ballpiston;
 
   const PAGE = 100;
-  const REFRESH = 2000;  // ms
+  const REFRESH = 2000; // ms
   const MOST_CALLS = 20; // for one page: with filters a call may give no job although more follow
 
-  const STATES = {QUEUED: 'waits', RUNNING: 'runs', CANCELLING: 'is being cancelled',
-    SUCCEEDED: 'succeeded', FAILED: 'failed', CANCELLED: 'cancelled'};
+  const STATES = {
+    QUEUED: 'waits',
+    RUNNING: 'runs',
+    CANCELLING: 'is being cancelled',
+    SUCCEEDED: 'succeeded',
+    FAILED: 'failed',
+    CANCELLED: 'cancelled',
+  };
 
-  const FILTERS = {all: [], active: ['QUEUED', 'RUNNING', 'CANCELLING'], succeeded: ['SUCCEEDED'],
-    failed: ['FAILED'], cancelled: ['CANCELLED']};
+  const FILTERS = {
+    all: [],
+    active: ['QUEUED', 'RUNNING', 'CANCELLING'],
+    succeeded: ['SUCCEEDED'],
+    failed: ['FAILED'],
+    cancelled: ['CANCELLED'],
+  };
 
-  const COLUMNS = [{label: 'Job'}, {label: 'State'}, {label: 'Progress'}, {label: 'Created'},
-    {label: 'Principal'}];
+  const COLUMNS = [
+    {label: 'Job'},
+    {label: 'State'},
+    {label: 'Progress'},
+    {label: 'Created'},
+    {label: 'Principal'},
+  ];
 
   const stateText = (state) => STATES[state] ?? words(state);
 
@@ -25,7 +41,8 @@
     return element('span', {class: 'state', 'data-state': job.state}, stateText(job.state));
   }
 
-  const addressOf = (job) => '#' + String(job.name).split('/').map(encodeURIComponent).join('/');
+  // page.js reads it back; an id may have any characters.
+  const addressOf = (job) => `#ensembleJobs/${encodeURIComponent(ballpiston.idOf(job))}`;
 
   // Share of the work done, or of the points where the work is not known beforehand.
   function fractionOf(progress) {
@@ -35,37 +52,61 @@
 
   function progressText(progress) {
     const {points = 0, points_done: done = 0, samples = 0} = progress ?? {};
-    const share = done < points && progress?.fraction > 0 ? `, ${Math.floor(100 * progress.fraction)} %` : '';
-    return `${countText(done)} of ${countText(points)} ${points === 1 ? 'point' : 'points'}${share}` +
-      (samples > 0 ? `, ${countText(samples)} samples` : '');
+    const share =
+      done < points && progress?.fraction > 0 ? `, ${Math.floor(100 * progress.fraction)} %` : '';
+    return (
+      `${countText(done)} of ${countText(points)} ${points === 1 ? 'point' : 'points'}${share}` +
+      (samples > 0 ? `, ${countText(samples)} samples` : '')
+    );
   }
 
   function progressCell(job) {
     if (job.state !== 'RUNNING') return progressText(job.progress);
-    return element('span', {class: 'progress'},
+    return element(
+      'span',
+      {class: 'progress'},
       element('progress', {max: 1, value: fractionOf(job.progress), 'aria-label': 'Progress'}),
-      progressText(job.progress));
+      progressText(job.progress),
+    );
   }
 
   function notes(job) {
-    return [job.pinned ? 'pinned' : null, job.results_expired ? 'results expired' : null,
-      job.answered_from_store ? 'answered from the store' : null].filter(Boolean).join(', ');
+    return [
+      job.pinned ? 'pinned' : null,
+      job.results_expired ? 'results expired' : null,
+      job.answered_from_store ? 'answered from the store' : null,
+    ]
+      .filter(Boolean)
+      .join(', ');
   }
 
   function cellsOf(job) {
     const note = notes(job);
     return [
-      element('span', {}, element('a', {href: addressOf(job)}, words(job.spec?.experiment)), ' ',
-        element('code', {class: 'soft'}, ballpiston.idOf(job))),
-      element('span', {}, stateElement(job), note ? element('span', {class: 'soft'}, ` ${note}`) : null),
-      progressCell(job), timeElement(job.create_time) ?? '', job.principal ?? ''];
+      element(
+        'span',
+        {},
+        element('a', {href: addressOf(job)}, words(job.spec?.experiment)),
+        ' ',
+        element('code', {class: 'soft'}, ballpiston.idOf(job)),
+      ),
+      element(
+        'span',
+        {},
+        stateElement(job),
+        note ? element('span', {class: 'soft'}, ` ${note}`) : null,
+      ),
+      progressCell(job),
+      timeElement(job.create_time) ?? '',
+      job.principal ?? '',
+    ];
   }
 
   // Rows by the name of their job, in the order of creation, newest first.
   class Rows {
     constructor(body) {
       this.body = body;
-      this.rows = new Map();  // name: {row, job, seen}
+      this.rows = new Map(); // name: {row, job, seen}
     }
 
     clear() {
@@ -78,9 +119,10 @@
       const known = this.rows.get(job.name);
       if (known?.seen === seen) return known.row;
       const row = tableRow(COLUMNS, cellsOf(job));
+      const hadFocus = known?.row.contains(document.activeElement);
       if (known) known.row.replaceWith(row);
       else this.body.insertBefore(row, before);
-      if (known?.row.contains(document.activeElement)) row.querySelector('a').focus();
+      if (hadFocus) row.querySelector('a').focus();
       this.rows.set(job.name, {row, job, seen});
       return row;
     }
@@ -107,9 +149,10 @@
     }
 
     refreshTimes() {
+      const now = Date.now();
       for (const {row, job} of this.rows.values()) {
         const time = row.querySelector('time');
-        const text = timeElement(job.create_time)?.textContent;
+        const text = ballpiston.ageText(new Date(job.create_time), now);
         if (time && time.textContent !== text) time.textContent = text;
       }
     }
@@ -117,12 +160,17 @@
 
   function statusText(status) {
     const jobs = (count) => `${countText(count)} ${count === 1 ? 'job' : 'jobs'}`;
-    const state = {DRAINING: ' The server is stopping: it accepts no jobs.',
-      STORE_FAILING: ' The server’s disk refuses writes.'}[status.state] ?? '';
+    const state =
+      {
+        DRAINING: ' The server is stopping: it accepts no jobs.',
+        STORE_FAILING: ' The server’s disk refuses writes.',
+      }[status.state] ?? '';
     const slurm = status.slurm?.problem ? ` Slurm: ${status.slurm.problem}.` : '';
-    return `${status.busy_workers} of ${status.workers} workers are busy; ` +
+    return (
+      `${status.busy_workers} of ${status.workers} workers are busy; ` +
       `${jobs(status.running_jobs)} running, ${jobs(status.queued_jobs)} waiting, ` +
-      `${jobs(status.stored_jobs)} stored.${state}${slurm}`;
+      `${jobs(status.stored_jobs)} stored.${state}${slurm}`
+    );
   }
 
   class JobList {
@@ -133,13 +181,28 @@
       const list = table('Jobs, newest first', COLUMNS, [], {class: 'rows jobs'});
       this.rows = new Rows(list.querySelector('tbody'));
       this.empty = element('p', {hidden: true});
-      this.more = element('button', {type: 'button', hidden: true, onclick: () => this.appendPage()},
-        'More jobs');
-      main.append(element('h1', {tabindex: '-1'}, 'Jobs'), this.status,
-        element('div', {class: 'choices'}, choice('State',
-          Object.keys(FILTERS).map((name) => ({value: name, label: name})), 'all',
-          (name) => this.setFilter(name))),
-        list, this.empty, this.more);
+      this.more = element(
+        'button',
+        {type: 'button', hidden: true, onclick: () => this.appendPage()},
+        'More jobs',
+      );
+      main.append(
+        element('h1', {tabindex: '-1'}, 'Jobs'),
+        this.status,
+        element(
+          'div',
+          {class: 'choices'},
+          choice(
+            'State',
+            Object.keys(FILTERS).map((name) => ({value: name, label: name})),
+            'all',
+            (name) => this.setFilter(name),
+          ),
+        ),
+        list,
+        this.empty,
+        this.more,
+      );
     }
 
     setFilter(name) {
@@ -153,8 +216,16 @@
     async page(token) {
       const jobs = [];
       for (let calls = 0; calls < MOST_CALLS; ++calls) {
-        const answer = await call('EnsembleService/ListEnsembleJobs', {page_size: PAGE - jobs.length,
-          page_token: token, view: 'BASIC', states: FILTERS[this.filter]}, this.signal);
+        const answer = await call(
+          'EnsembleService/ListEnsembleJobs',
+          {
+            page_size: PAGE - jobs.length,
+            page_token: token,
+            view: 'BASIC',
+            states: FILTERS[this.filter],
+          },
+          this.signal,
+        );
         jobs.push(...(answer.jobs ?? []));
         token = answer.next_page_token ?? '';
         if (token === '' || jobs.length >= PAGE) break;
@@ -192,18 +263,20 @@
       this.more.hidden = !this.token;
       this.more.textContent = `More jobs (${countText(count)} are shown)`;
       this.empty.hidden = count > 0;
-      this.empty.textContent = this.filter === 'all'
-        ? 'There are no jobs. Submit one: ballpiston submit conditional-mean-free-time ' +
-          '--rho 0.5296 --delta 0.1 --epsilon 0.1:0.4:4 --samples 1e6 --verify'
-        : 'No job is in this state.';
+      this.empty.textContent =
+        this.filter === 'all'
+          ? 'There are no jobs. Submit one: ballpiston submit conditional-mean-free-time ' +
+            '--rho 0.5296 --delta 0.1 --epsilon 0.1:0.4:4 --samples 1e6 --verify'
+          : 'No job is in this state.';
     }
 
     async keepFresh() {
       while (!this.signal.aborted) {
         await keepTrying(async () => {
           await this.refresh();
-          this.status.textContent =
-            statusText(await call('ServerService/GetServerStatus', {}, this.signal));
+          this.status.textContent = statusText(
+            await call('ServerService/GetServerStatus', {}, this.signal),
+          );
         }, this.signal);
         this.rows.refreshTimes();
         this.wake = new AbortController();
@@ -217,5 +290,13 @@
     return new JobList(main, signal).keepFresh();
   }
 
-  Object.assign(ballpiston, {showJobs, stateElement, stateText, fractionOf, progressText, statusText});
-})(globalThis.ballpiston ??= {});
+  Object.assign(ballpiston, {
+    showJobs,
+    stateElement,
+    stateText,
+    fractionOf,
+    progressText,
+    statusText,
+    addressOf,
+  });
+})((globalThis.ballpiston ??= {}));

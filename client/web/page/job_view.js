@@ -4,13 +4,31 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, table, tableRow, call, stream, keepTrying, whileVisible, pause, TabHidden,
-    ResultView, GridChart, zElement, isNumber, withError, valueText, countText, words,
-    parametersText, shellWord} = ballpiston;
+  const {
+    element,
+    table,
+    tableRow,
+    call,
+    stream,
+    keepTrying,
+    whileVisible,
+    pause,
+    TabHidden,
+    ResultView,
+    GridChart,
+    zElement,
+    isNumber,
+    withError,
+    valueText,
+    countText,
+    words,
+    parametersText,
+    shellWord,
+  } = ballpiston;
 
-  const MOST_STEPS = 300;   // of a point's convergence; then every second one is dropped
-  const ROWS = 200;         // of points, at a time
-  const STATUS_EVERY = 2000;  // ms, while the job waits
+  const MOST_STEPS = 300; // of a point's convergence; then every second one is dropped
+  const ROWS = 200; // of points, at a time
+  const STATUS_EVERY = 2000; // ms, while the job waits
   const SHARE_OF_DRAWING = 4; // draws again after this many times what drawing took
   const ENDED = new Set(['SUCCEEDED', 'FAILED', 'CANCELLED']);
 
@@ -19,7 +37,7 @@
   // The estimates of a point after more and more samples.
   class Convergence {
     constructor() {
-      this.steps = [];  // points, in the order of samples
+      this.steps = []; // points, in the order of samples
     }
 
     add(point) {
@@ -30,29 +48,48 @@
 
     // Null if fewer than two steps were seen.
     chart(name) {
-      const steps = this.steps.map(({samples, estimates}) =>
-        ({samples, ...estimates.find((estimate) => estimate.name === name)}))
+      const steps = this.steps
+        .map(({samples, estimates}) => ({
+          samples,
+          ...estimates.find((estimate) => estimate.name === name),
+        }))
         .filter((step) => isNumber(step.value));
       if (steps.length < 2) return null;
       const x = steps.map((step) => step.samples);
-      const lines = [{label: 'value', kind: 'measured', colour: 0, x,
-        y: steps.map((step) => step.value), error: steps.map((step) => step.standard_error)}];
-      for (const [field, kind, label] of [['exact', 'exact', 'exact'], ['limit', 'limit', 'Markov limit']]) {
+      const lines = [
+        {
+          label: 'value',
+          kind: 'measured',
+          colour: 0,
+          x,
+          y: steps.map((step) => step.value),
+          error: steps.map((step) => step.standard_error),
+        },
+      ];
+      for (const [field, kind, label] of [
+        ['exact', 'exact', 'exact'],
+        ['limit', 'limit', 'Markov limit'],
+      ]) {
         if (!isNumber(steps.at(-1)[field])) continue;
         lines.push({label, kind, colour: 1, x, y: x.map(() => steps.at(-1)[field])});
       }
-      return {title: `Convergence of ${words(name)}`, xLabel: 'samples', yLabel: 'value', lines,
-        logX: x.at(-1) > 30 * x[0]};
+      return {
+        title: `Convergence of ${words(name)}`,
+        xLabel: 'samples',
+        yLabel: 'value',
+        lines,
+        logX: x.at(-1) > 30 * x[0],
+      };
     }
   }
 
   class JobRecord {
     constructor() {
       this.job = null;
-      this.points = new Map();  // index: point; the newest of each
+      this.points = new Map(); // index: point; the newest of each
       this.finished = new Set();
       this.convergence = new Map();
-      this.newest = null;  // index of the point that was computed last
+      this.newest = null; // index of the point that was computed last
     }
 
     takePoint(point, isFinished) {
@@ -84,31 +121,42 @@
   function whyText(job, status) {
     switch (job.state) {
       case 'QUEUED':
-        return 'It waits until a worker is free. Each user gets an even share of the workers; of one ' +
-          `user’s jobs those of higher priority go first. ${status ? ballpiston.statusText(status) : ''}`;
+        return (
+          'It waits until a worker is free. Each user gets an even share of the workers. Of the ' +
+          'jobs of one user, those of higher priority go first. ' +
+          (status ? ballpiston.statusText(status) : '')
+        );
       case 'FAILED':
         return `It failed: ${job.error?.message ?? 'no reason was given'}`;
       case 'CANCELLED':
         return 'It was cancelled. The points that were finished stay.';
       default:
         return status?.state === 'STORE_FAILING'
-          ? 'The server’s disk refuses writes; what is computed waits for it.' : '';
+          ? 'The server’s disk refuses writes; what is computed waits for it.'
+          : '';
     }
   }
 
   // A command that the reader can copy.
-  const command = (...words) => element('pre', {tabindex: '0', class: 'command'},
-    words.map(shellWord).join(' '));
+  const command = (...words) =>
+    element('pre', {tabindex: '0', class: 'command'}, words.map(shellWord).join(' '));
 
   function notes(job) {
     const shown = [];
     if (job.answered_from_store) {
-      shown.push(element('p', {class: 'panel'}, 'Answered from the store: this question was asked before.'));
+      shown.push(
+        element('p', {class: 'panel'}, 'Answered from the store: this question was asked before.'),
+      );
     }
     if (job.results_expired) {
-      shown.push(element('div', {class: 'panel'},
-        element('p', {}, 'The results have expired. The same numbers are computed again by'),
-        command('ballpiston', 'run', '--again', job.name)));
+      shown.push(
+        element(
+          'div',
+          {class: 'panel'},
+          element('p', {}, 'The results have expired. The same numbers are computed again by'),
+          command('ballpiston', 'run', '--again', job.name),
+        ),
+      );
     }
     return shown;
   }
@@ -123,15 +171,27 @@
       this.notes = element('div');
       this.facts = element('div');
       this.spec = element('div');
-      this.element = element('section', {'aria-label': 'The job'}, this.title,
-        element('p', {class: 'progress'}, this.state, this.progress, this.progressText), this.why, this.notes,
-        element('details', {class: 'about'}, element('summary', {}, 'Specification, times and work'),
-          this.spec, this.facts));
+      this.element = element(
+        'section',
+        {'aria-label': 'The job'},
+        this.title,
+        element('p', {class: 'progress'}, this.state, this.progress, this.progressText),
+        this.why,
+        this.notes,
+        element(
+          'details',
+          {class: 'about'},
+          element('summary', {}, 'Specification, times and work'),
+          this.spec,
+          this.facts,
+        ),
+      );
     }
 
     show(job, status) {
       this.title.textContent = words(job.spec?.experiment);
-      document.title = `${words(job.spec?.experiment)}, ${ballpiston.stateText(job.state)} – ballpiston`;
+      const state = ballpiston.stateText(job.state);
+      document.title = `${words(job.spec?.experiment)}, ${state} – ballpiston`;
       if (this.state.dataset.state !== job.state) {
         this.state.dataset.state = job.state;
         this.state.replaceChildren(ballpiston.stateElement(job));
@@ -156,14 +216,30 @@
       this.onChoose = onChoose;
       this.count = ROWS;
       this.rows = new Map();
-      this.columns = [{label: 'Point'}, {label: 'Parameters'}, {label: 'Model'},
-        {label: 'Value', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true}];
-      this.table = table('Points, with their first estimate', this.columns, [], {class: 'rows points'});
+      this.columns = [
+        {label: 'Point'},
+        {label: 'Parameters'},
+        {label: 'Model'},
+        {label: 'Value', number: true},
+        {label: 'Exact', number: true},
+        {label: 'z', number: true},
+      ];
+      this.table = table('Points, with their first estimate', this.columns, [], {
+        class: 'rows points',
+      });
       this.body = this.table.querySelector('tbody');
-      this.more = element('button', {type: 'button', hidden: true, onclick: () => {
-        this.count += ROWS;
-        this.show(this.points, this.finished, this.shown);
-      }}, 'More points');
+      this.more = element(
+        'button',
+        {
+          type: 'button',
+          hidden: true,
+          onclick: () => {
+            this.count += ROWS;
+            this.show(this.points, this.finished, this.shown);
+          },
+        },
+        'More points',
+      );
       this.element = element('div', {}, this.table, this.more);
     }
 
@@ -176,8 +252,8 @@
         next = row.nextSibling;
       }
       this.more.hidden = points.length <= this.count;
-      this.more.textContent =
-        `More points (${countText(this.count)} of ${countText(points.length)} are shown)`;
+      const [shownCount, count] = [this.count, points.length].map(countText);
+      this.more.textContent = `More points (${shownCount} of ${count} are shown)`;
       this.mark(shown);
     }
 
@@ -195,13 +271,19 @@
 
     cells(point, isFinished) {
       const first = point.estimates?.[0] ?? {};
-      const button = element('button', {type: 'button', class: 'link',
-        onclick: () => this.onChoose(point.index)}, `Point ${point.index}`);
-      return [element('span', {}, button, isFinished ? '' : ' (running)'),
-        parametersText(point.parameters), words(point.model),
+      const button = element(
+        'button',
+        {type: 'button', class: 'link', onclick: () => this.onChoose(point.index)},
+        `Point ${point.index}`,
+      );
+      return [
+        element('span', {}, button, isFinished ? '' : ' (running)'),
+        parametersText(point.parameters),
+        words(point.model),
         withError(first.value, first.standard_error),
         isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
-        zElement(first.z_score)];
+        zElement(first.z_score),
+      ];
     }
 
     mark(shown) {
@@ -214,11 +296,21 @@
   class PointPanel {
     constructor(onFollow) {
       this.title = element('h2', {tabindex: '-1'}, 'Point');
-      this.follow = element('button', {type: 'button', onclick: onFollow}, 'Follow the point that is computed');
+      this.follow = element(
+        'button',
+        {type: 'button', onclick: onFollow},
+        'Follow the point that is computed',
+      );
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
       this.view = new ResultView();
-      this.element = element('section', {'aria-label': 'One point', hidden: true}, this.title,
-        this.follow, this.view.element, this.convergenceNote);
+      this.element = element(
+        'section',
+        {'aria-label': 'One point', hidden: true},
+        this.title,
+        this.follow,
+        this.view.element,
+        this.convergenceNote,
+      );
     }
 
     show(point, record, isFollowing) {
@@ -228,10 +320,12 @@
       this.title.textContent = `Point ${point.index}${isFinished ? '' : ', running'}`;
       this.follow.hidden = isFollowing || !active;
       const convergence = point.estimates?.length
-        ? record.convergence.get(point.index)?.chart(point.estimates[0].name) : null;
+        ? record.convergence.get(point.index)?.chart(point.estimates[0].name)
+        : null;
       this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
       this.convergenceNote.textContent = isFinished
-        ? 'This point was finished before the page saw it converge.' : '';
+        ? 'This point was finished before the page saw it converge.'
+        : '';
       this.view.show(point, convergence ? [convergence] : []);
     }
   }
@@ -240,8 +334,14 @@
 
   class JobView {
     constructor(main, name, index, signal) {
-      Object.assign(this, {name, signal, chosen: index, record: new JobRecord(), token: '',
-        withoutDetails: new Set()});
+      Object.assign(this, {
+        name,
+        signal,
+        chosen: index,
+        record: new JobRecord(),
+        token: '',
+        withoutDetails: new Set(),
+      });
       this.head = new JobHead();
       this.grid = new GridChart();
       this.panel = new PointPanel(() => this.choose(null));
@@ -250,17 +350,21 @@
         this.panel.title.scrollIntoView();
         this.panel.title.focus();
       });
-      this.gridSection = element('section', {'aria-label': 'All points', hidden: true},
-        element('h2', {}, 'All points'), this.grid.element, this.points.element);
+      this.gridSection = element(
+        'section',
+        {'aria-label': 'All points', hidden: true},
+        element('h2', {}, 'All points'),
+        this.grid.element,
+        this.points.element,
+      );
       main.append(this.head.element, this.panel.element, this.gridSection);
     }
 
     // `index` null: the point that is computed, or the first one.
     choose(index) {
       this.chosen = index;
-      const address = '#' + this.name.split('/').map(encodeURIComponent).join('/') +
-        (index === null ? '' : `/results/${index}`);
-      history.replaceState(null, '', address);
+      const result = index === null ? '' : `/results/${index}`;
+      history.replaceState(null, '', ballpiston.addressOf({name: this.name}) + result);
       this.draw();
     }
 
@@ -293,12 +397,16 @@
     drawSoon() {
       if (this.drawing) return;
       this.drawing = true;
-      setTimeout(() => requestAnimationFrame(() => {
-        const begin = performance.now();
-        if (!this.signal.aborted) this.draw();
-        this.took = performance.now() - begin;
-        this.drawing = false;
-      }), SHARE_OF_DRAWING * (this.took ?? 0));
+      setTimeout(
+        () =>
+          requestAnimationFrame(() => {
+            const begin = performance.now();
+            if (!this.signal.aborted) this.draw();
+            this.took = performance.now() - begin;
+            this.drawing = false;
+          }),
+        SHARE_OF_DRAWING * (this.took ?? 0),
+      );
     }
 
     // Histograms and curves, which a watch leaves out.
@@ -308,12 +416,19 @@
       if (this.asked === point.index || this.withoutDetails.has(point.index)) return;
       this.asked = point.index;
       try {
-        const detailed = await keepTrying(() => call('EnsembleService/GetResult',
-          {name: `${this.name}/results/${point.index}`}, this.signal), this.signal);
+        const detailed = await keepTrying(
+          () =>
+            call(
+              'EnsembleService/GetResult',
+              {name: `${this.name}/results/${point.index}`},
+              this.signal,
+            ),
+          this.signal,
+        );
         record.points.set(point.index, {...detailed, detailed: true});
         this.drawSoon();
       } catch (error) {
-        this.withoutDetails.add(point.index);  // the banner says why, or another view is shown
+        this.withoutDetails.add(point.index); // the banner says why, or another view is shown
       } finally {
         if (this.asked === point.index) this.asked = null;
       }
@@ -323,8 +438,11 @@
     async watch(progress) {
       const controller = whileVisible(this.signal);
       try {
-        const updates = stream('EnsembleService/WatchEnsembleJob',
-          {name: this.name, resume_token: this.token}, controller.signal);
+        const updates = stream(
+          'EnsembleService/WatchEnsembleJob',
+          {name: this.name, resume_token: this.token},
+          controller.signal,
+        );
         for await (const update of updates) {
           progress();
           this.token = update.resume_token ?? this.token;
@@ -339,7 +457,9 @@
     async watchStatus() {
       while (!this.signal.aborted && !ENDED.has(this.record.job?.state)) {
         if (!document.hidden) {
-          this.status = await call('ServerService/GetServerStatus', {}, this.signal).catch(() => this.status);
+          this.status = await call('ServerService/GetServerStatus', {}, this.signal).catch(
+            () => this.status,
+          );
           this.drawSoon();
         }
         await pause(STATUS_EVERY, this.signal);
@@ -348,8 +468,10 @@
 
     // The job of a watch of an ended job comes last; so it is shown at once.
     async run() {
-      this.record.job = await keepTrying(() =>
-        call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal), this.signal);
+      this.record.job = await keepTrying(
+        () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),
+        this.signal,
+      );
       this.drawSoon();
       this.watchStatus();
       await keepTrying((progress) => this.watch(progress), this.signal);
@@ -362,4 +484,4 @@
   }
 
   Object.assign(ballpiston, {showJob});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

@@ -3,8 +3,10 @@
 (function (ballpiston) {
   'use strict';
 
-  const place = (body, time) => ({x: body.x + (time - body.time) * body.vx,
-    y: body.y + (time - body.time) * body.vy});
+  const place = (body, time) => ({
+    x: body.x + (time - body.time) * body.vx,
+    y: body.y + (time - body.time) * body.vy,
+  });
 
   class OrbitMotion {
     // `start`: a TraceStart.
@@ -13,10 +15,10 @@
       this.start = start;
       this.balls = start.balls.map(atStart);
       this.pistons = start.pistons.map(atStart);
-      this.events = [];  // known and not yet reached, in the order of time
+      this.events = []; // known and not yet reached, in the order of time
       this.time = 0;
-      this.count = 0;    // events that were reached
-      this.hasEnded = false;  // no event follows the known ones
+      this.count = 0; // events that were reached
+      this.hasEnded = false; // no event follows the known ones
     }
 
     add(events) {
@@ -32,7 +34,7 @@
       }
       this.events.splice(0, reached.length);
       this.count += reached.length;
-      this.time = this.events.length ? time : reached.at(-1)?.time ?? this.time;
+      this.time = this.events.length ? time : (reached.at(-1)?.time ?? this.time);
       return reached;
     }
 
@@ -43,13 +45,26 @@
 
     apply(event) {
       if (event.ball !== undefined) {
-        this.balls[event.ball] = {x: event.ball_x, y: event.ball_y, vx: event.ball_vx,
-          vy: event.ball_vy, energy: event.ball_energy, time: event.time};
+        this.balls[event.ball] = {
+          x: event.ball_x,
+          y: event.ball_y,
+          vx: event.ball_vx,
+          vy: event.ball_vy,
+          energy: event.ball_energy,
+          time: event.time,
+        };
       }
       if (event.piston !== undefined) {
         const {vertical} = this.pistons[event.piston];
-        this.pistons[event.piston] = {x: event.piston_x, y: event.piston_y, vx: event.piston_vx,
-          vy: event.piston_vy, energy: event.piston_energy, time: event.time, vertical};
+        this.pistons[event.piston] = {
+          x: event.piston_x,
+          y: event.piston_y,
+          vx: event.piston_vx,
+          vy: event.piston_vy,
+          energy: event.piston_energy,
+          time: event.time,
+          vertical,
+        };
       }
     }
 
@@ -63,4 +78,4 @@
   }
 
   ballpiston.OrbitMotion = OrbitMotion;
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

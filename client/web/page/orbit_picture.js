@@ -3,11 +3,17 @@
 (function (ballpiston) {
   'use strict';
 
-  const CIVIDIS = [[0, 34, 78], [53, 69, 108], [102, 105, 112], [148, 142, 119], [200, 184, 102],
-    [254, 232, 56]];
-  const EDGE = 0.06;  // around the cells
+  const CIVIDIS = [
+    [0, 34, 78],
+    [53, 69, 108],
+    [102, 105, 112],
+    [148, 142, 119],
+    [200, 184, 102],
+    [254, 232, 56],
+  ];
+  const EDGE = 0.06; // around the cells
   const BALL = 0.025; // radius of the picture of a ball, which is a point
-  const TRAIL = 60;   // corners of the pair's trail
+  const TRAIL = 60; // corners of the pair's trail
 
   const styleOf = (name) => ballpiston.styleOf(name);
 
@@ -23,7 +29,9 @@
   }
 
   function shapeOf(cells) {
-    const [columns, rows] = String(cells ?? '1').split('x').map(Number);
+    const [columns, rows] = String(cells ?? '1')
+      .split('x')
+      .map(Number);
     return {columns, rows: rows || 1};
   }
 
@@ -41,12 +49,17 @@
     // The part of the plane that is shown.
     get bounds() {
       const {columns, rows} = this.shape;
-      const way = 0.5 - this.start.tip + this.start.delta;  // of a piston, to either side of an edge
+      const way = 0.5 - this.start.tip + this.start.delta; // of a piston, to either side of an edge
       const right = columns - 0.5 + way;
-      if (this.isPair) return {left: -0.5 - EDGE, right: right + EDGE, bottom: -0.5 - EDGE, top: 0.5 + EDGE};
+      if (this.isPair)
+        return {left: -0.5 - EDGE, right: right + EDGE, bottom: -0.5 - EDGE, top: 0.5 + EDGE};
       const up = rows > 1 ? way : 0;
-      return {left: -0.5 - way - EDGE, right: right + EDGE, bottom: -0.5 - up - EDGE,
-        top: rows - 0.5 + up + EDGE};
+      return {
+        left: -0.5 - way - EDGE,
+        right: right + EDGE,
+        bottom: -0.5 - up - EDGE,
+        top: rows - 0.5 + up + EDGE,
+      };
     }
 
     get aspect() {
@@ -63,8 +76,14 @@
       c.setTransform(1, 0, 0, 1, 0, 0);
       c.fillStyle = styleOf('--free');
       c.fillRect(0, 0, width, height);
-      c.setTransform(this.scale, 0, 0, -this.scale,
-        width / 2 - this.scale * (left + right) / 2, height / 2 + this.scale * (bottom + top) / 2);
+      c.setTransform(
+        this.scale,
+        0,
+        0,
+        -this.scale,
+        width / 2 - (this.scale * (left + right)) / 2,
+        height / 2 + (this.scale * (bottom + top)) / 2,
+      );
       return c;
     }
 
@@ -125,8 +144,12 @@
     drawSegment(c, piston, dx, dy) {
       const half = this.start.eta / 2;
       const [alongX, alongY] = piston.vertical ? [0, half] : [half, 0];
-      const x = piston.x + dx, y = piston.y + dy;
-      for (const [style, width] of [[styleOf('--text'), 7], [colourOf(piston.energy / this.mostEnergy), 4]]) {
+      const x = piston.x + dx,
+        y = piston.y + dy;
+      for (const [style, width] of [
+        [styleOf('--text'), 7],
+        [colourOf(piston.energy / this.mostEnergy), 4],
+      ]) {
         c.beginPath();
         c.moveTo(x - alongX, y - alongY);
         c.lineTo(x + alongX, y + alongY);
@@ -162,4 +185,4 @@
   }
 
   Object.assign(ballpiston, {OrbitPicture, drawEnergyScale});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

@@ -2,16 +2,25 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, stream, keepTrying, OrbitMotion, OrbitPicture, Chart, valueText, countText, words} =
-    ballpiston;
+  const {
+    element,
+    stream,
+    keepTrying,
+    OrbitMotion,
+    OrbitPicture,
+    Chart,
+    valueText,
+    countText,
+    words,
+  } = ballpiston;
 
-  const MOST_AHEAD = 3000;   // events that are read before they are played
+  const MOST_AHEAD = 3000; // events that are read before they are played
   const MOST_LISTED = 8;
-  const MOST_EXCHANGES = 200;  // in the chart of energies
-  const CHART_EVERY = 500;   // ms
+  const MOST_EXCHANGES = 200; // in the chart of energies
+  const CHART_EVERY = 500; // ms
   const LONGEST_FRAME = 0.1; // seconds: a tab that was hidden does not jump
-  const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20];  // units of time a second
-  const MOST_HEIGHT = 0.7;   // of the window
+  const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]; // units of time a second
+  const MOST_HEIGHT = 0.7; // of the window
 
   const FIELDS = [
     {name: 'rho', label: 'ρ, radius of the discs', value: '0.5296', step: 'any'},
@@ -23,22 +32,38 @@
   ];
 
   function fieldElement({name, label, value, step, text}) {
-    return element('label', {class: 'field'}, element('span', {}, label),
-      element('input', {name, value, type: text ? 'text' : 'number', step: text ? null : step,
-        required: name === 'rho' || name === 'delta' || name === 'events', autocomplete: 'off'}));
+    return element(
+      'label',
+      {class: 'field'},
+      element('span', {}, label),
+      element('input', {
+        name,
+        value,
+        type: text ? 'text' : 'number',
+        step: text ? null : step,
+        required: name === 'rho' || name === 'delta' || name === 'events',
+        autocomplete: 'off',
+      }),
+    );
   }
 
   function requestOf(form) {
     const given = Object.fromEntries(new FormData(form));
-    const request = {rho: Number(given.rho), delta: Number(given.delta), cells: given.cells.trim(),
-      seed: given.seed || '0', events: given.events};
+    const request = {
+      rho: Number(given.rho),
+      delta: Number(given.delta),
+      cells: given.cells.trim(),
+      seed: given.seed || '0',
+      events: given.events,
+    };
     if (request.cells !== '') request.temperature = Number(given.temperature || 1);
     return request;
   }
 
   function eventText(event) {
     const parts = [`t = ${event.time.toFixed(4)}`, words(event.event)];
-    if (event.ball !== undefined) parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
+    if (event.ball !== undefined)
+      parts.push(`ball ${event.ball}: energy ${valueText(event.ball_energy, 1e-3)}`);
     if (event.piston !== undefined) {
       parts.push(`piston ${event.piston}: energy ${valueText(event.piston_energy, 1e-3)}`);
     }
@@ -50,19 +75,43 @@
       this.signal = signal;
       this.speed = SPEEDS.indexOf(1);
       this.isPlaying = !matchMedia('(prefers-reduced-motion: reduce)').matches;
-      this.form = element('form', {class: 'fields', onsubmit: (event) => {
-        event.preventDefault();
-        this.trace();
-      }}, FIELDS.map(fieldElement), element('button', {type: 'submit'}, 'Trace'));
-      main.append(element('h1', {tabindex: '-1'}, 'Orbit'),
-        element('p', {class: 'soft'}, 'One orbit of the reference billiard, as ballpiston trace prints it.'),
-        this.form, this.stage(), this.controls(), this.below());
+      this.form = element(
+        'form',
+        {
+          class: 'fields',
+          onsubmit: (event) => {
+            event.preventDefault();
+            this.trace();
+          },
+        },
+        FIELDS.map(fieldElement),
+        element('button', {type: 'submit'}, 'Trace'),
+      );
+      main.append(
+        element('h1', {tabindex: '-1'}, 'Orbit'),
+        element(
+          'p',
+          {class: 'soft'},
+          'One orbit of the reference billiard, as ballpiston trace prints it.',
+        ),
+        this.form,
+        this.stage(),
+        this.controls(),
+        this.below(),
+      );
     }
 
     stage() {
-      this.canvas = element('canvas', {class: 'orbit', role: 'img', tabindex: '0',
-        'aria-label': 'The orbit', onkeydown: (event) => this.onKey(event)});
-      new ResizeObserver(() => this.fit()).observe(document.getElementById('main'));
+      this.canvas = element('canvas', {
+        class: 'orbit',
+        role: 'img',
+        tabindex: '0',
+        'aria-label': 'The orbit',
+        onkeydown: (event) => this.onKey(event),
+      });
+      const resizing = new ResizeObserver(() => this.fit());
+      resizing.observe(document.getElementById('main'));
+      this.signal.addEventListener('abort', () => resizing.disconnect());
       return this.canvas;
     }
 
@@ -71,14 +120,36 @@
       this.playButton = button('', () => this.play(!this.isPlaying));
       this.stepButton = button('Next exchange', () => this.toNextExchange());
       this.speedText = element('span');
-      this.speedInput = element('input', {type: 'range', min: 0, max: SPEEDS.length - 1, step: 1,
-        value: this.speed, oninput: () => this.setSpeed(Number(this.speedInput.value))});
-      const scale = element('canvas', {width: 160, height: 12, class: 'scale', 'aria-hidden': 'true'});
+      this.speedInput = element('input', {
+        type: 'range',
+        min: 0,
+        max: SPEEDS.length - 1,
+        step: 1,
+        value: this.speed,
+        oninput: () => this.setSpeed(Number(this.speedInput.value)),
+      });
+      const scale = element('canvas', {
+        width: 160,
+        height: 12,
+        class: 'scale',
+        'aria-hidden': 'true',
+      });
       ballpiston.drawEnergyScale(scale);
       this.scaleEnd = element('span', {}, '');
-      const controls = element('div', {class: 'choices'}, this.playButton, this.stepButton,
-        element('label', {class: 'choice'}, element('span', {}, 'Speed'), this.speedInput, this.speedText),
-        element('span', {class: 'choice'}, element('span', {}, 'Energy 0'), scale, this.scaleEnd));
+      const controls = element(
+        'div',
+        {class: 'choices'},
+        this.playButton,
+        this.stepButton,
+        element(
+          'label',
+          {class: 'choice'},
+          element('span', {}, 'Speed'),
+          this.speedInput,
+          this.speedText,
+        ),
+        element('span', {class: 'choice'}, element('span', {}, 'Energy 0'), scale, this.scaleEnd),
+      );
       this.setSpeed(this.speed);
       this.play(this.isPlaying);
       return controls;
@@ -89,15 +160,29 @@
       this.chart = null;
       this.chartPlace = element('div');
       this.list = element('ol', {class: 'events', 'aria-label': 'Last events, newest first'});
-      return element('div', {}, this.clock,
-        element('p', {class: 'soft'}, 'Keys, while the picture has the focus: space plays and pauses, ' +
-          'n goes to the next exchange of ball and piston, + and − change the speed.'),
-        this.chartPlace, element('h2', {}, 'Last events'), this.list);
+      return element(
+        'div',
+        {},
+        this.clock,
+        element(
+          'p',
+          {class: 'soft'},
+          'Keys, while the picture has the focus: space plays and pauses, ' +
+            'n goes to the next exchange of ball and piston, + and − change the speed.',
+        ),
+        this.chartPlace,
+        element('h2', {}, 'Last events'),
+        this.list,
+      );
     }
 
     onKey(event) {
-      const keys = {' ': () => this.play(!this.isPlaying), n: () => this.toNextExchange(),
-        '+': () => this.setSpeed(this.speed + 1), '-': () => this.setSpeed(this.speed - 1)};
+      const keys = {
+        ' ': () => this.play(!this.isPlaying),
+        n: () => this.toNextExchange(),
+        '+': () => this.setSpeed(this.speed + 1),
+        '-': () => this.setSpeed(this.speed - 1),
+      };
       if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       keys[event.key]();
@@ -126,13 +211,13 @@
     // Begins a new trace; the one before ends.
     async trace() {
       this.tracing?.abort();
-      const tracing = this.tracing = new AbortController();
+      const tracing = (this.tracing = new AbortController());
       const signal = AbortSignal.any([this.signal, tracing.signal]);
       const request = requestOf(this.form);
       try {
         await keepTrying((progress) => this.read(request, progress, signal), signal);
       } catch (error) {
-        if (signal.aborted || error instanceof ballpiston.CallError) return;  // the banner says it
+        if (signal.aborted || error instanceof ballpiston.CallError) return; // the banner says it
         throw error;
       }
     }
@@ -152,7 +237,10 @@
 
     async roomFor(signal) {
       while (this.motion.events.length > MOST_AHEAD && !signal.aborted) {
-        await new Promise((resolve) => { this.onRoom = resolve; signal.addEventListener('abort', resolve); });
+        await new Promise((resolve) => {
+          this.onRoom = resolve;
+          signal.addEventListener('abort', resolve);
+        });
       }
     }
 
@@ -165,7 +253,9 @@
       this.chart?.remove();
       this.chart = new Chart();
       this.chartPlace.append(this.chart.element);
-      this.scaleEnd.textContent = this.picture.isPair ? '1/2' : `${valueText(this.picture.mostEnergy)} and more`;
+      this.scaleEnd.textContent = this.picture.isPair
+        ? '1/2'
+        : `${valueText(this.picture.mostEnergy)} and more`;
       this.note(start.balls, start.pistons, 0);
       this.fit();
       this.drawChart();
@@ -193,10 +283,15 @@
         if (this.picture.isPair && event.ball !== undefined) {
           this.picture.remember({x: event.ball_x, y: event.ball_y});
         }
-        if (event.event === 'ball_piston') this.note(this.motion.balls, this.motion.pistons, event.time);
+        if (event.event === 'ball_piston')
+          this.note(this.motion.balls, this.motion.pistons, event.time);
       }
-      this.list.prepend(...reached.slice(-MOST_LISTED).reverse()
-        .map((event) => element('li', {}, eventText(event))));
+      this.list.prepend(
+        ...reached
+          .slice(-MOST_LISTED)
+          .reverse()
+          .map((event) => element('li', {}, eventText(event))),
+      );
       while (this.list.childElementCount > MOST_LISTED) this.list.lastChild.remove();
       this.onRoom?.();
     }
@@ -212,21 +307,39 @@
       const {isPair} = this.picture;
       const steps = [...this.exchanges, {...this.exchanges.at(-1), time: this.motion.time}];
       const x = steps.map((at) => at.time);
-      const line = (label, field, colour) => ({label, kind: 'exact', stepped: true, colour, x,
-        y: steps.map((at) => at[field])});
-      this.chart.show({title: isPair ? 'Energies of ball and piston' : 'Mean energies of balls and pistons',
-        xLabel: 'time', yLabel: 'energy', fromZero: true, lines: [
-          line(isPair ? 'ball' : 'balls', 'ball', 0), line(isPair ? 'piston' : 'pistons', 'piston', 1)]});
+      const line = (label, field, colour) => ({
+        label,
+        kind: 'exact',
+        stepped: true,
+        colour,
+        x,
+        y: steps.map((at) => at[field]),
+      });
+      this.chart.show({
+        title: isPair ? 'Energies of ball and piston' : 'Mean energies of balls and pistons',
+        xLabel: 'time',
+        yLabel: 'energy',
+        fromZero: true,
+        lines: [
+          line(isPair ? 'ball' : 'balls', 'ball', 0),
+          line(isPair ? 'piston' : 'pistons', 'piston', 1),
+        ],
+      });
     }
 
     draw() {
       if (!this.motion) return;
       this.picture.draw(this.motion);
       const {motion} = this;
-      this.clock.textContent = `t = ${motion.time.toFixed(2)}, ${countText(motion.count)} events` +
+      this.clock.textContent =
+        `t = ${motion.time.toFixed(2)}, ${countText(motion.count)} events` +
         (motion.hasEnded && motion.events.length === 0 ? '; the trace has ended' : '');
-      this.canvas.setAttribute('aria-label', this.picture.isPair
-        ? 'Cell with one ball and one piston' : `Gas of ${motion.balls.length} balls and ${motion.pistons.length} pistons`);
+      this.canvas.setAttribute(
+        'aria-label',
+        this.picture.isPair
+          ? 'Cell with one ball and one piston'
+          : `Gas of ${motion.balls.length} balls and ${motion.pistons.length} pistons`,
+      );
     }
 
     frame(now) {
@@ -253,4 +366,4 @@
   }
 
   Object.assign(ballpiston, {showOrbit});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

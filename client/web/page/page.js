@@ -21,7 +21,9 @@
   // {name, index} of #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX; null for other addresses.
   function jobOf(fragment) {
     const match = /^(ensembleJobs\/[^/]+)(?:\/results\/(\d+))?$/.exec(fragment);
-    return match && {name: decoded(match[1]), index: match[2] === undefined ? null : Number(match[2])};
+    return (
+      match && {name: decoded(match[1]), index: match[2] === undefined ? null : Number(match[2])}
+    );
   }
 
   function showView(fragment, signal) {
@@ -51,6 +53,7 @@
     leave.abort();
     leave = new AbortController();
     const {signal} = leave;
+    ballpiston.removeCharts();
     main().replaceChildren();
     ballpiston.clearBanner();
     markLink(fragment);
@@ -72,18 +75,23 @@
   function setUpTheme() {
     const stored = localStorage.getItem(THEME);
     const theme = THEMES.includes(stored) ? stored : 'auto';
-    const chooser = ballpiston.choice('Theme', THEMES.map((name) => ({value: name, label: name})),
-      theme, (chosen) => {
+    const chooser = ballpiston.choice(
+      'Theme',
+      THEMES.map((name) => ({value: name, label: name})),
+      theme,
+      (chosen) => {
         localStorage.setItem(THEME, chosen);
         applyTheme(chosen);
-      });
+      },
+    );
     document.getElementById('theme').append(chooser);
     applyTheme(theme);
-    matchMedia('(prefers-color-scheme: dark)')
-      .addEventListener('change', () => ballpiston.repaintCharts());
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
+      ballpiston.repaintCharts(),
+    );
   }
 
   setUpTheme();
   addEventListener('hashchange', route);
   route();
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

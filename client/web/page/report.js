@@ -4,13 +4,33 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, facts, table, ResultView, GridChart, specFacts, specJson, jobFacts, zElement,
-    wholeTime, countText, isNumber, valueText, withError, words, parametersText} = ballpiston;
+  const {
+    element,
+    facts,
+    table,
+    ResultView,
+    GridChart,
+    specFacts,
+    specJson,
+    jobFacts,
+    zElement,
+    wholeTime,
+    countText,
+    isNumber,
+    valueText,
+    withError,
+    words,
+    parametersText,
+  } = ballpiston;
 
-  const MOST_PICTURED = 12;  // points of a job with tables and pictures of their own
-  const MOST_ROWS = 1000;    // of the table of all points
+  const MOST_PICTURED = 12; // points of a job with tables and pictures of their own
+  const MOST_ROWS = 1000; // of the table of all points
 
-  const OUTCOMES = {SUCCEEDED: null, FAILED: 'This job failed', CANCELLED: 'This job was cancelled'};
+  const OUTCOMES = {
+    SUCCEEDED: null,
+    FAILED: 'This job failed',
+    CANCELLED: 'This job was cancelled',
+  };
 
   // Null if all is well.
   function outcomeText(job) {
@@ -26,33 +46,52 @@
       job.results_expired ? 'The results have expired; only the specification is kept.' : null,
       leftOut > 0 ? `${countText(leftOut)} further points are not in this report.` : null,
       points.length > pictured
-        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; all are in the table at the end.`
+        ? `The first ${pictured} of ${countText(points.length)} points have tables and pictures; all ` +
+          'are in the table at the end.'
         : null,
-    ].filter(Boolean).map((text) => element('p', {class: 'panel'}, text));
+    ]
+      .filter(Boolean)
+      .map((text) => element('p', {class: 'panel'}, text));
   }
 
-  const POINT_COLUMNS = [{label: 'Point'}, {label: 'Parameters'}, {label: 'Model'},
-    {label: 'Value', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true}];
+  const POINT_COLUMNS = [
+    {label: 'Point'},
+    {label: 'Parameters'},
+    {label: 'Model'},
+    {label: 'Value', number: true},
+    {label: 'Exact', number: true},
+    {label: 'z', number: true},
+  ];
 
   function pointRow(point) {
     const first = point.estimates?.[0] ?? {};
-    return [String(point.index), parametersText(point.parameters), words(point.model),
+    return [
+      String(point.index),
+      parametersText(point.parameters),
+      words(point.model),
       withError(first.value, first.standard_error),
       isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
-      zElement(first.z_score)];
+      zElement(first.z_score),
+    ];
   }
 
   function pointTable(points) {
     const rows = points.slice(0, MOST_ROWS);
-    const caption = 'All points, with their first estimate' + (rows.length < points.length
-      ? `: the first ${countText(rows.length)} of ${countText(points.length)}` : '');
+    const caption =
+      'All points, with their first estimate' +
+      (rows.length < points.length
+        ? `: the first ${countText(rows.length)} of ${countText(points.length)}`
+        : '');
     return table(caption, POINT_COLUMNS, rows.map(pointRow), {class: 'rows points'});
   }
 
   // Shown after it is in the page, because charts need their width.
   function showPoint(section, point) {
     const view = new ResultView();
-    section.append(element('h3', {}, `Point ${point.index}: ${parametersText(point.parameters)}`), view.element);
+    section.append(
+      element('h3', {}, `Point ${point.index}: ${parametersText(point.parameters)}`),
+      view.element,
+    );
     view.show(point);
   }
 
@@ -65,9 +104,15 @@
   function showJob(main, entry) {
     const {job} = entry;
     const points = entry.points ?? [];
-    const section = element('section', {'aria-label': `${words(job.spec?.experiment)}, ${job.name}`},
-      element('h2', {}, words(job.spec?.experiment)), panels({...entry, points}, MOST_PICTURED),
-      specFacts(job.spec), specJson(job.spec), jobFacts(job));
+    const section = element(
+      'section',
+      {'aria-label': `${words(job.spec?.experiment)}, ${job.name}`},
+      element('h2', {}, words(job.spec?.experiment)),
+      panels({...entry, points}, MOST_PICTURED),
+      specFacts(job.spec),
+      specJson(job.spec),
+      jobFacts(job),
+    );
     main.append(section);
     if (points.length > 1) showGrid(section, points);
     points.slice(0, MOST_PICTURED).forEach((point) => showPoint(section, point));
@@ -76,8 +121,13 @@
 
   function showReport({client_version: version, created, jobs}) {
     const main = document.getElementById('main');
-    main.append(element('h1', {}, jobs.length === 1 ? 'Report of a job' : `Report of ${jobs.length} jobs`),
-      facts([['Made', wholeTime(created)], ['By', `ballpiston ${version}`]]));
+    main.append(
+      element('h1', {}, jobs.length === 1 ? 'Report of a job' : `Report of ${jobs.length} jobs`),
+      facts([
+        ['Made', wholeTime(created)],
+        ['By', `ballpiston ${version}`],
+      ]),
+    );
     jobs.forEach((entry) => showJob(main, entry));
   }
 
@@ -95,7 +145,8 @@
   }
 
   printLight();
-  matchMedia('(prefers-color-scheme: dark)')
-    .addEventListener('change', () => ballpiston.repaintCharts());
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
+    ballpiston.repaintCharts(),
+  );
   showReport(JSON.parse(document.getElementById('data').textContent));
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));

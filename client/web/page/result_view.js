@@ -3,23 +3,41 @@
 (function (ballpiston) {
   'use strict';
 
-  const {element, table, facts, Chart, isNumber, valueText, errorText, withError, signedText,
-    countText, words, parametersText} = ballpiston;
+  const {
+    element,
+    table,
+    facts,
+    Chart,
+    isNumber,
+    valueText,
+    errorText,
+    withError,
+    signedText,
+    countText,
+    words,
+    parametersText,
+  } = ballpiston;
 
-  const MOST_BINS = 60;  // shown; the result has more
-  const FAR = 4;         // standard errors
+  const MOST_BINS = 60; // shown; the result has more
+  const FAR = 4; // standard errors
 
   const CURVE_LABELS = {
     energy_autocorrelation: 'Autocorrelation of the piston’s energy',
     mean_energy: 'Mean energy of the piston',
+    survival: 'Survival: probability of no collision until a time',
     temperature_profile: 'Temperature profile',
   };
 
   // ---- Estimates
 
-  const COLUMNS = [{label: 'Estimate'}, {label: 'Value', number: true},
-    {label: 'Error', number: true}, {label: 'Exact', number: true}, {label: 'z', number: true},
-    {label: 'Model error', number: true}];
+  const COLUMNS = [
+    {label: 'Estimate'},
+    {label: 'Value', number: true},
+    {label: 'Error', number: true},
+    {label: 'Exact', number: true},
+    {label: 'z', number: true},
+    {label: 'Model error', number: true},
+  ];
 
   function modelErrorText(error) {
     if (!isNumber(error)) return 'not known';
@@ -29,7 +47,8 @@
   // The closed form, or what the Markov limit gives, or the mean were two laws equal.
   function yardstick(estimate) {
     const {exact, limit, noise_floor: floor, standard_error: error} = estimate;
-    if (isNumber(exact)) return isNumber(error) && error > 0 ? valueText(exact, error / 10) : valueText(exact);
+    if (isNumber(exact))
+      return isNumber(error) && error > 0 ? valueText(exact, error / 10) : valueText(exact);
     if (isNumber(limit)) return `limit ${valueText(limit, error)}`;
     if (isNumber(floor)) return `floor ${valueText(floor, error)}`;
     return '';
@@ -41,25 +60,35 @@
   }
 
   function estimateTable(point, caption) {
-    const rows = (point.estimates ?? []).map((estimate) => [words(estimate.name),
-      valueText(estimate.value, estimate.standard_error), errorText(estimate.standard_error),
-      yardstick(estimate), zElement(estimate.z_score), modelErrorText(estimate.model_error)]);
+    const rows = (point.estimates ?? []).map((estimate) => [
+      words(estimate.name),
+      valueText(estimate.value, estimate.standard_error),
+      errorText(estimate.standard_error),
+      yardstick(estimate),
+      zElement(estimate.z_score),
+      modelErrorText(estimate.model_error),
+    ]);
     return table(caption, COLUMNS, rows, {class: 'estimates'});
   }
 
   function entropyText(kl) {
     if (!kl) return null;
     const noise = isNumber(kl.noise_floor)
-      ? `; were the laws equal: ${withError(kl.noise_floor, kl.noise_error)}` : '';
+      ? `; were the laws equal: ${withError(kl.noise_floor, kl.noise_error)}`
+      : '';
     return `${withError(kl.value, kl.standard_error)}${noise} (${countText(kl.cells)} cells)`;
   }
 
   function healthText(health) {
     if (!health) return null;
-    const escapes = health.escapes > 0
-      ? `${countText(health.escapes)} orbits escaped: a defect` : 'no orbit escaped';
-    return `${escapes}; largest relative error of the energy ` +
-      `${Number((health.max_energy_error ?? 0).toPrecision(2))}`;
+    const escapes =
+      health.escapes > 0
+        ? `${countText(health.escapes)} orbits escaped: a defect`
+        : 'no orbit escaped';
+    return (
+      `${escapes}; largest relative error of the energy ` +
+      `${Number((health.max_energy_error ?? 0).toPrecision(2))}`
+    );
   }
 
   function pointFacts(point) {
@@ -74,7 +103,11 @@
 
   function remarks(point) {
     if (!point.remarks?.length) return null;
-    return element('ul', {class: 'remarks'}, point.remarks.map((text) => element('li', {}, text)));
+    return element(
+      'ul',
+      {class: 'remarks'},
+      point.remarks.map((text) => element('li', {}, text)),
+    );
   }
 
   // ---- Histograms
@@ -96,8 +129,11 @@
     return bins;
   }
 
-  const NAMES = {alpha: 'Ingoing angle α', ball_speed: 'Speed of the balls',
-    piston_speed: 'Speed of the pistons'};
+  const NAMES = {
+    alpha: 'Ingoing angle α',
+    ball_speed: 'Speed of the balls',
+    piston_speed: 'Speed of the pistons',
+  };
   const X_LABELS = {alpha: 'α', ball_speed: 'speed', piston_speed: 'speed'};
 
   const LAWS = {alpha: 'equilibrium law h⁽¹⁾, exact'};
@@ -112,23 +148,44 @@
   // Densities over `total`, the counts of this histogram and of that for the other sign.
   function histogramChart(histogram, total) {
     const size = mergedBins(histogram.counts.length);
-    const width = size * (histogram.upper - histogram.lower) / histogram.counts.length;
+    const width = (size * (histogram.upper - histogram.lower)) / histogram.counts.length;
     const counts = merged(histogram.counts, size);
     const x = counts.map((_, i) => histogram.lower + i * width);
     const density = (share) => share / width;
     const edges = [...x, histogram.upper];
-    const held = (y) => [...y, y.at(-1)];  // to the upper edge
+    const held = (y) => [...y, y.at(-1)]; // to the upper edge
     const measured = counts.map((count) => density(count / total));
-    const lines = [{label: 'measured', kind: 'steps', colour: 0, x: edges, y: held(measured)},
-      {label: 'measured, with error', kind: 'measured', colour: 0, x, y: measured, shift: width / 2,
-        error: counts.map((count) => density(Math.sqrt(count) / total))}];
+    const lines = [
+      {label: 'measured', kind: 'steps', colour: 0, x: edges, y: held(measured)},
+      {
+        label: 'measured, with error',
+        kind: 'measured',
+        colour: 0,
+        x,
+        y: measured,
+        shift: width / 2,
+        error: counts.map((count) => density(Math.sqrt(count) / total)),
+      },
+    ];
     if (histogram.expected_probabilities?.length) {
       const law = merged(histogram.expected_probabilities, size).map(density);
-      lines.push({label: LAWS[histogram.name] ?? 'exact law', kind: 'exact', stepped: true, colour: 1, x: edges, y: held(law)});
+      lines.push({
+        label: LAWS[histogram.name] ?? 'exact law',
+        kind: 'exact',
+        stepped: true,
+        colour: 1,
+        x: edges,
+        y: held(law),
+      });
     }
-    return {title: histogramTitle(histogram), xLabel: X_LABELS[histogram.name] ?? histogram.name,
-      yLabel: 'probability density', fromZero: true, lines,
-      note: size > 1 ? `${histogram.counts.length} bins, shown ${size} together` : null};
+    return {
+      title: histogramTitle(histogram),
+      xLabel: X_LABELS[histogram.name] ?? histogram.name,
+      yLabel: 'probability density',
+      fromZero: true,
+      lines,
+      note: size > 1 ? `${histogram.counts.length} bins, shown ${size} together` : null,
+    };
   }
 
   function histogramCharts(point) {
@@ -138,7 +195,8 @@
     for (const histogram of histograms) {
       totals.set(keyOf(histogram), (totals.get(keyOf(histogram)) ?? 0) + sum(histogram.counts));
     }
-    return histograms.filter((histogram) => totals.get(keyOf(histogram)) > 0)
+    return histograms
+      .filter((histogram) => totals.get(keyOf(histogram)) > 0)
       .map((histogram) => histogramChart(histogram, totals.get(keyOf(histogram))));
   }
 
@@ -147,18 +205,35 @@
   function curveChart(curve) {
     const isProfile = curve.points.some((at) => isNumber(at.position));
     const x = curve.points.map((at) => (isProfile ? at.position : at.time) ?? 0);
-    const lines = [{label: 'measured', kind: 'measured', colour: 0, x,
-      y: curve.points.map((at) => at.value), error: curve.points.map((at) => at.standard_error)}];
+    const lines = [
+      {
+        label: 'measured',
+        kind: 'measured',
+        colour: 0,
+        x,
+        y: curve.points.map((at) => at.value),
+        error: curve.points.map((at) => at.standard_error),
+      },
+    ];
     if (curve.points.some((at) => isNumber(at.limit))) {
-      lines.push({label: 'Markov limit', kind: 'limit', colour: 1, x,
-        y: curve.points.map((at) => at.limit)});
+      lines.push({
+        label: 'Markov limit',
+        kind: 'limit',
+        colour: 1,
+        x,
+        y: curve.points.map((at) => at.limit),
+      });
     }
-    return {title: CURVE_LABELS[curve.name] ?? words(curve.name),
-      xLabel: isProfile ? 'position (cells)' : 'time (cells over unit speed)', yLabel: 'value', lines};
+    return {
+      title: CURVE_LABELS[curve.name] ?? words(curve.name),
+      xLabel: isProfile ? 'position (cells)' : 'time (cells over unit speed)',
+      yLabel: 'value',
+      lines,
+    };
   }
 
-  const curveCharts = (point) => (point.curves ?? []).filter((curve) => curve.points.length)
-    .map(curveChart);
+  const curveCharts = (point) =>
+    (point.curves ?? []).filter((curve) => curve.points.length).map(curveChart);
 
   // ---- The whole point
 
@@ -172,8 +247,11 @@
 
     // `further`: charts to show before the histograms, as Chart takes them.
     show(point, further = []) {
-      this.text.replaceChildren(estimateTable(point, `Estimates at ${parametersText(point.parameters)}`),
-        remarks(point) ?? '', pointFacts(point));
+      this.text.replaceChildren(
+        estimateTable(point, `Estimates at ${parametersText(point.parameters)}`),
+        remarks(point) ?? '',
+        pointFacts(point),
+      );
       this.showCharts([...further, ...histogramCharts(point), ...curveCharts(point)]);
     }
 
@@ -195,4 +273,4 @@
   }
 
   Object.assign(ballpiston, {ResultView, zElement});
-})(globalThis.ballpiston ??= {});
+})((globalThis.ballpiston ??= {}));
