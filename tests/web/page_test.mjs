@@ -1,14 +1,13 @@
 // The page of `ballpiston web` and the page of a report, in Chromium, with the real programs.
 // Tests wait for conditions, never for times.
 import assert from 'node:assert/strict';
-import {readFileSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {join} from 'node:path';
 import {after, before, beforeEach, afterEach, describe, it} from 'node:test';
 import axe from 'axe-core';
 import {chromium} from 'playwright-core';
 import {EVIL, answerInstead, fakeJob, listInstead, streamInstead} from './fake_gateway.mjs';
-import {Programs, pageFolder} from './programs.mjs';
+import {Programs} from './programs.mjs';
 
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const ARGUMENTS = [
@@ -275,6 +274,29 @@ describe('Jobs', () => {
     await page.getByText('Numbers').first().click();
     const rows = await page.locator('.chart').first().locator('tbody tr').allInnerTexts();
     assert.equal(rows.length, 51); // 1000 bins, 20 together, and the upper edge
+  });
+
+  it('fill their histograms while they run', async () => {
+    const job = programs.run(
+      'submit',
+      'energy-relaxation',
+      ...PAIR,
+      '--epsilon',
+      '0.3',
+      '--model',
+      'billiard',
+      '--samples',
+      '1e12',
+    );
+    try {
+      await open(job);
+      const chart = page.locator('.chart', {hasText: 'Energy of the piston'}).last();
+      await chart.waitFor();
+      const canvas = chart.locator('canvas:not(.key)');
+      await waitUntilChanged(() => pixelsOf(canvas), await pixelsOf(canvas));
+    } finally {
+      cancel(job);
+    }
   });
 
   it('say why they failed', async () => {
@@ -611,38 +633,11 @@ describe('Many', () => {
 
 // ---- The report
 
-// What `ballpiston report` does with report.html.
-function makeReport(jobs, file) {
-  const read = (name) => readFileSync(join(pageFolder, name), 'utf8');
-  const data = {
-    client_version: 'test',
-    created: new Date().toISOString(),
-    jobs: jobs.map((job) => ({
-      ...JSON.parse(programs.run('result', job, '--format', 'json')),
-      points_left_out: 0,
-    })),
-  };
-  const json = JSON.stringify(data).replaceAll('<', '\\u003c');
-  writeFileSync(
-    file,
-    read('report.html')
-      .replace(
-        /<link rel="stylesheet" href="([^"]+)">/g,
-        (_, name) => `<style>${read(name)}</style>`,
-      )
-      .replace(
-        /<script src="([^"]+)" defer><\/script>/g,
-        (_, name) => `<script>${read(name)}</script>`,
-      )
-      .replace('<!-- data -->', () => `<script type="application/json" id="data">${json}</script>`),
-  );
-}
-
 describe('A report', () => {
   let file;
   before(() => {
     file = join(programs.folder, 'report.html');
-    makeReport([firstHit, gas], file);
+    programs.run('report', firstHit, gas, '--out', file);
   });
 
   it('shows its jobs without a network', async () => {

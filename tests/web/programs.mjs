@@ -10,9 +10,6 @@ import {promisify} from 'node:util';
 const bin = resolve(process.env.BALLPISTON_BIN ?? '../../build/release/bin');
 const program = join(bin, 'ballpiston');
 
-// Of the page as it is installed beside the programs.
-export const pageFolder = resolve(bin, '../share/ballpiston/web');
-
 export class Programs {
   constructor() {
     this.folder = mkdtempSync(join(tmpdir(), 'ballpiston-page-'));

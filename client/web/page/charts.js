@@ -2,7 +2,7 @@
 // reads the values under the pointer, and its numbers as a table.
 //
 // A chart is given by
-//   {title, xLabel, yLabel, logX, fromZero, note, lines}
+//   {title, xLabel, yLabel, logX, fromZero, top, note, lines}; y above `top` is cut off
 // and a line by
 //   {label, kind, colour, x, y, error, shift}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
@@ -100,7 +100,7 @@
       }
     }
     if (min > max) return [0, 1];
-    return withRoom(min, max, chart.fromZero);
+    return withRoom(min, Math.min(max, chart.top ?? max), chart.fromZero);
   }
 
   function withRoom(min, max, fromZero) {

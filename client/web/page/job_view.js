@@ -1,6 +1,6 @@
 // #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX: a job as it runs. A watch brings its state,
 // the points that are computed, and each finished point; histograms and curves of the point that is
-// shown are asked for when it is finished.
+// shown are asked for, again and again until it is finished.
 (function (ballpiston) {
   'use strict';
 
@@ -29,6 +29,7 @@
   const MOST_STEPS = 300; // of a point's convergence; then every second one is dropped
   const ROWS = 200; // of points, at a time
   const STATUS_EVERY = 2000; // ms, while the job waits
+  const DETAILS_EVERY = 1000; // ms, of an unfinished point
   const SHARE_OF_DRAWING = 4; // draws again after this many times what drawing took
   const ENDED = new Set(['SUCCEEDED', 'FAILED', 'CANCELLED']);
 
@@ -96,7 +97,9 @@
       const before = this.points.get(point.index);
       if (!isFinished && this.finished.has(point.index)) return;
       if (isFinished) this.finished.add(point.index);
-      this.points.set(point.index, before?.detailed && isFinished ? before : point);
+      // A watch leaves histograms and curves out; those that are known stay until newer ones come.
+      const {histograms, curves} = before ?? point;
+      this.points.set(point.index, before?.detailed ? before : {...point, histograms, curves});
       if (!this.convergence.has(point.index)) this.convergence.set(point.index, new Convergence());
       this.convergence.get(point.index).add(point);
     }
@@ -409,22 +412,38 @@
       );
     }
 
+    getResult(index, request) {
+      const name = `${this.name}/results/${index}`;
+      return call('EnsembleService/GetResult', {name, ...request}, this.signal);
+    }
+
+    // Histograms and curves so far.
+    async askForUnfinished(point) {
+      if (this.asking || performance.now() < (this.nextDetails ?? 0)) return;
+      this.asking = true;
+      // The point may be finished, or not begun: then the next snapshot tells more.
+      const now = await this.getResult(point.index, {unfinished: true}).catch(() => null);
+      this.asking = false;
+      this.nextDetails = performance.now() + DETAILS_EVERY;
+      const known = this.record.points.get(point.index);
+      if (!now || known.detailed) return;
+      const {histograms, curves} = now;
+      this.record.points.set(point.index, {...known, histograms, curves});
+      this.drawSoon();
+    }
+
     // Histograms and curves, which a watch leaves out.
     async askForDetails(point) {
       const {record} = this;
-      if (!record.finished.has(point.index) || point.detailed || record.job.results_expired) return;
+      if (point.detailed || record.job.results_expired) return;
+      if (!record.finished.has(point.index)) {
+        if (!ENDED.has(record.job.state)) this.askForUnfinished(point);
+        return;
+      }
       if (this.asked === point.index || this.withoutDetails.has(point.index)) return;
       this.asked = point.index;
       try {
-        const detailed = await keepTrying(
-          () =>
-            call(
-              'EnsembleService/GetResult',
-              {name: `${this.name}/results/${point.index}`},
-              this.signal,
-            ),
-          this.signal,
-        );
+        const detailed = await keepTrying(() => this.getResult(point.index), this.signal);
         record.points.set(point.index, {...detailed, detailed: true});
         this.drawSoon();
       } catch (error) {

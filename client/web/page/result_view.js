@@ -123,6 +123,7 @@
 
   // So few bins that each is wide enough to see, and that their number divides the counts' number.
   function mergedBins(bins) {
+    if (bins < 2 * MOST_BINS) return 1;
     for (let size = 1; size <= bins; ++size) {
       if (bins % size === 0 && bins / size <= MOST_BINS) return size;
     }
@@ -132,11 +133,29 @@
   const NAMES = {
     alpha: 'Ingoing angle α',
     ball_speed: 'Speed of the balls',
+    piston_energy: 'Energy of the piston',
     piston_speed: 'Speed of the pistons',
   };
-  const X_LABELS = {alpha: 'α', ball_speed: 'speed', piston_speed: 'speed'};
+  const X_LABELS = {alpha: 'α', ball_speed: 'speed', piston_energy: 'ε', piston_speed: 'speed'};
 
-  const LAWS = {alpha: 'equilibrium law h⁽¹⁾, exact'};
+  const LAWS = {
+    alpha: 'equilibrium law h⁽¹⁾, exact',
+    piston_energy: 'master equation, the limit δ → 0',
+  };
+
+  // The bin of the start holds most orbits at first. It is cut off, so that the others can be seen.
+  const MOST_OVER_SECOND = 4;
+  function topOf(densities) {
+    const [most, second] = [...densities].sort((a, b) => b - a);
+    return most > MOST_OVER_SECOND * second ? 2 * second : undefined;
+  }
+
+  function histogramNote(histogram, size, densities, width) {
+    if (size > 1) return `${histogram.counts.length} bins, shown ${size} together`;
+    if (topOf(densities) === undefined) return null;
+    const share = Math.max(...densities) * width;
+    return `The highest bin is cut off: it holds ${(100 * share).toFixed(1)} %.`;
+  }
 
   function histogramTitle(histogram) {
     const name = NAMES[histogram.name] ?? words(histogram.name);
@@ -147,28 +166,33 @@
 
   // Densities over `total`, the counts of this histogram and of that for the other sign.
   function histogramChart(histogram, total) {
-    const size = mergedBins(histogram.counts.length);
-    const width = (size * (histogram.upper - histogram.lower)) / histogram.counts.length;
+    const expected = histogram.expected_probabilities ?? [];
+    const bins = Math.max(histogram.counts.length, expected.length);
+    const size = mergedBins(bins);
+    const width = (size * (histogram.upper - histogram.lower)) / bins;
     const counts = merged(histogram.counts, size);
-    const x = counts.map((_, i) => histogram.lower + i * width);
+    const x = Array.from({length: bins / size}, (_, i) => histogram.lower + i * width);
     const density = (share) => share / width;
     const edges = [...x, histogram.upper];
     const held = (y) => [...y, y.at(-1)]; // to the upper edge
     const measured = counts.map((count) => density(count / total));
-    const lines = [
-      {label: 'measured', kind: 'steps', colour: 0, x: edges, y: held(measured)},
-      {
-        label: 'measured, with error',
-        kind: 'measured',
-        colour: 0,
-        x,
-        y: measured,
-        shift: width / 2,
-        error: counts.map((count) => density(Math.sqrt(count) / total)),
-      },
-    ];
-    if (histogram.expected_probabilities?.length) {
-      const law = merged(histogram.expected_probabilities, size).map(density);
+    const law = merged(expected, size).map(density);
+    const lines = [];
+    if (total > 0) {
+      lines.push(
+        {label: 'measured', kind: 'steps', colour: 0, x: edges, y: held(measured)},
+        {
+          label: 'measured, with error',
+          kind: 'measured',
+          colour: 0,
+          x,
+          y: measured,
+          shift: width / 2,
+          error: counts.map((count) => density(Math.sqrt(count) / total)),
+        },
+      );
+    }
+    if (law.length) {
       lines.push({
         label: LAWS[histogram.name] ?? 'exact law',
         kind: 'exact',
@@ -183,8 +207,9 @@
       xLabel: X_LABELS[histogram.name] ?? histogram.name,
       yLabel: 'probability density',
       fromZero: true,
+      top: topOf(total > 0 ? measured : law),
       lines,
-      note: size > 1 ? `${histogram.counts.length} bins, shown ${size} together` : null,
+      note: histogramNote(histogram, size, total > 0 ? measured : law, width),
     };
   }
 
@@ -196,7 +221,10 @@
       totals.set(keyOf(histogram), (totals.get(keyOf(histogram)) ?? 0) + sum(histogram.counts));
     }
     return histograms
-      .filter((histogram) => totals.get(keyOf(histogram)) > 0)
+      .filter((histogram) => {
+        const isLawAlone = !histogram.counts.length && histogram.expected_probabilities.length;
+        return totals.get(keyOf(histogram)) > 0 || isLawAlone;
+      })
       .map((histogram) => histogramChart(histogram, totals.get(keyOf(histogram))));
   }
 
