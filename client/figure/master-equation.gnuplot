@@ -4,8 +4,7 @@
 # by the sampled jump process (points), and by the master equation (black steps). Below each: their
 # ratio to the master equation, with one standard error. Two rows of panels for each start.
 # The peak is the bin of the start. It has the orbits without an exchange yet; its share of all
-# orbits by the master equation is above the panel. The solution has an error of up to 1e-3 of all
-# orbits in a bin, seen in the bins beside the start, where the ratio of the jump process shows it.
+# orbits by the master equation is above the panel.
 # Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
 # master-equation.sh lists the commands that write the data.
 

@@ -223,5 +223,24 @@ TEST(EnergyRelaxation, EnginesAgree) {
   }
 }
 
+// The master equation's solution, at energies from where an expansion in eigenfunctions alone was
+// wrong by percents in some bins: relative entropies of 3 million walks within 4.5 errors, a false
+// alarm in 12,000 seeds.
+TEST(EnergyRelaxation, LawsOfManyWalksAreTheMasterEquations) {
+  for (const double epsilon : {0.1, 0.4}) {
+    const PointParameters point = PaperPoint(0.1, epsilon);
+    const PointSummary summary =
+        RunPoint(SpecOf(&kEnergyRelaxation, point, {.samples = 3'000'000}, Model::kMarkov));
+    const auto expected = kEnergyRelaxation.expected_probabilities(point);
+    for (size_t i = 0; i < expected.size(); ++i) {
+      const KlDivergence distance =
+          RelativeEntropy(summary.histograms[i].histogram.counts, expected[i]);
+      const double z = (distance.value - distance.noise_floor) / distance.noise_error;
+      std::cout << epsilon << " " << *summary.histograms[i].time << " z " << z << "\n";
+      EXPECT_LT(std::fabs(z), 4.5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ballpiston

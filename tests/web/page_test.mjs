@@ -347,14 +347,22 @@ describe('Jobs', () => {
     await banner().filter({hasText: 'no such job'}).waitFor();
   });
 
-  it('are shown from the store', async () => {
-    await answerInstead(
-      page,
-      'EnsembleService/GetEnsembleJob',
-      fakeJob(1, {answered_from_store: true}),
-    );
-    await open('ensembleJobs/0000000000000001');
+  it('answer the same question from the store', async () => {
+    await open(firstHit);
+    await page.getByRole('button', {name: 'Ask this again'}).click();
     await page.getByText('Answered from the store').waitFor();
+    assert.ok(page.url().includes(firstHit));
+  });
+
+  it('are asked again if they were cancelled', async () => {
+    const job = programs.run('submit', ...NEVER_ENDS);
+    cancel(job);
+    await open(job);
+    await page.getByRole('button', {name: 'Ask this again'}).click();
+    await page.waitForURL((url) => !url.href.includes(job));
+    await page.getByText('running').first().waitFor();
+    cancel(new URL(page.url()).hash.slice(1));
+    await page.getByText('It was cancelled').waitFor();
   });
 
   it('whose results expired have the command that computes them again', async () => {

@@ -84,6 +84,9 @@
     }
   }
 
+  // Jobs that answered a question of this page from the store. Only the answer to the question tells.
+  const fromStore = new Set();
+
   class JobRecord {
     constructor() {
       this.job = null;
@@ -91,6 +94,11 @@
       this.finished = new Set();
       this.convergence = new Map();
       this.newest = null; // index of the point that was computed last
+    }
+
+    takeJob(job) {
+      const known = {answered_from_store: job.answered_from_store || fromStore.has(job.name)};
+      this.job = {...job, ...known};
     }
 
     takePoint(point, isFinished) {
@@ -105,7 +113,7 @@
     }
 
     takeUpdate(update) {
-      if (update.job) this.job = update.job;
+      if (update.job) this.takeJob(update.job);
       if (!update.snapshot) return;
       const {progress, points = [], finished_points: finished = []} = update.snapshot;
       if (this.job && progress) this.job = {...this.job, progress};
@@ -165,13 +173,14 @@
   }
 
   class JobHead {
-    constructor() {
+    constructor(onAsk) {
       this.title = element('h1', {tabindex: '-1'}, 'Job');
       this.progress = element('progress', {max: 1, value: 0, 'aria-label': 'Progress of the job'});
       this.progressText = element('span');
       this.state = element('span', {role: 'status'});
       this.why = element('p', {class: 'panel', hidden: true});
       this.notes = element('div');
+      this.ask = element('button', {type: 'button', onclick: onAsk, hidden: true}, 'Ask this again');
       this.facts = element('div');
       this.spec = element('div');
       this.element = element(
@@ -181,6 +190,7 @@
         element('p', {class: 'progress'}, this.state, this.progress, this.progressText),
         this.why,
         this.notes,
+        this.ask,
         element(
           'details',
           {class: 'about'},
@@ -195,14 +205,16 @@
       this.title.textContent = words(job.spec?.experiment);
       const state = ballpiston.stateText(job.state);
       document.title = `${words(job.spec?.experiment)}, ${state} – ballpiston`;
-      if (this.state.dataset.state !== job.state) {
-        this.state.dataset.state = job.state;
+      const shown = `${job.state} ${job.answered_from_store}`;
+      if (this.state.dataset.shown !== shown) {
+        this.state.dataset.shown = shown;
         this.state.replaceChildren(ballpiston.stateElement(job));
         this.notes.replaceChildren(...notes(job));
         this.spec.replaceChildren(ballpiston.specFacts(job.spec), ballpiston.specJson(job.spec));
       }
       const ended = ENDED.has(job.state);
       this.progress.hidden = ended;
+      this.ask.hidden = !ended;
       this.progress.value = ballpiston.fractionOf(job.progress);
       this.progressText.textContent = ballpiston.progressText(job.progress);
       const why = whyText(job, status);
@@ -345,7 +357,7 @@
         token: '',
         withoutDetails: new Set(),
       });
-      this.head = new JobHead();
+      this.head = new JobHead(() => this.askAgain());
       this.grid = new GridChart();
       this.panel = new PointPanel(() => this.choose(null));
       this.points = new PointTable((chosen) => {
@@ -473,6 +485,19 @@
       }
     }
 
+    // The same question: the server answers from its store, or computes.
+    async askAgain() {
+      const request = {spec: this.record.job.spec, request_id: crypto.randomUUID()};
+      const job = await keepTrying(
+        () => call('EnsembleService/CreateEnsembleJob', request, this.signal),
+        this.signal,
+      );
+      if (job.answered_from_store) fromStore.add(job.name);
+      if (job.name !== this.name) location.hash = ballpiston.addressOf(job);
+      this.record.takeJob(this.record.job);
+      this.drawSoon();
+    }
+
     async watchStatus() {
       while (!this.signal.aborted && !ENDED.has(this.record.job?.state)) {
         if (!document.hidden) {
@@ -487,10 +512,11 @@
 
     // The job of a watch of an ended job comes last; so it is shown at once.
     async run() {
-      this.record.job = await keepTrying(
+      const job = await keepTrying(
         () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),
         this.signal,
       );
+      this.record.takeJob(job);
       this.drawSoon();
       this.watchStatus();
       await keepTrying((progress) => this.watch(progress), this.signal);

@@ -82,12 +82,12 @@ TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
 }
 
 TEST(EnergyLaw, DiffersBetweenDiscretisationsByLessThanItsBound) {
-  const EnergyLaw coarse({.degree = 8, .levels = 4}, kBins);
+  const EnergyLaw finer({.degree = 12, .levels = 6}, kBins);
   double largest = 0;
   for (const double epsilon : kEpsilons) {
     for (const double time : kTimes) {
       const std::vector<double> a = Fine().Probabilities(epsilon, time);
-      const std::vector<double> b = coarse.Probabilities(epsilon, time);
+      const std::vector<double> b = finer.Probabilities(epsilon, time);
       for (size_t bin = 0; bin < a.size(); ++bin) {
         largest = std::max(largest, std::fabs(a[bin] - b[bin]));
       }
