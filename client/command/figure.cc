@@ -67,6 +67,9 @@ absl::Status CheckName(const Options& options) {
   if (std::find(names.begin(), names.end(), options.figure) == names.end()) {
     return absl::InvalidArgumentError(absl::StrCat("figure ", NotOneOf(options.figure, names)));
   }
+  if (options.given.contains("--quick") && options.given.contains("--full")) {
+    return absl::InvalidArgumentError("--quick and --full: give one of them");
+  }
   if (!options.out.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError("--out is missing: name a folder for data, script and picture");
 }

@@ -34,6 +34,11 @@ into() {
 draw() {
   if command -v gnuplot >/dev/null; then
     gnuplot "$1.gnuplot"
+    # gnuplot does not say that a disk is full.
+    if [ -e "$1.svg" ] && ! tail -n 2 "$1.svg" | grep -q "</svg>"; then
+      echo "$1.svg is not complete: the disk may be full" >&2
+      exit 1
+    fi
   else
     echo "gnuplot is not installed; to draw the figure later: gnuplot $1.gnuplot" >&2
   fi

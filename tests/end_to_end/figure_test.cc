@@ -259,6 +259,21 @@ TEST_F(FigureTest, TheSpectrumHasRatesAndAutocorrelations) {
               HasSubstr(",0.1,,,billiard,1000,energy_autocorrelation,"));
 }
 
+TEST_F(FigureTest, QuickAndFullExcludeEachOther) {
+  const ProcessResult result = server_.Client(Split("figure cell --quick --full --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(2));
+  EXPECT_THAT(result.err, HasSubstr("--quick and --full: give one of them"));
+}
+
+TEST_F(FigureTest, APictureThatIsCutOffIsReported) {
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_THAT(server_.Client(Split("figure cell --edit --out " + folder_)), ExitsWith(0));
+  WriteFile(folder_ + "/cell.gnuplot", "set print 'cell.svg'\nprint '<svg>'\n");
+  const ProcessResult result = server_.Client(Split("figure cell --out " + folder_));
+  EXPECT_THAT(result, ExitsWith(4));
+  EXPECT_THAT(result.err, HasSubstr("cell.svg is not complete: the disk may be full"));
+}
+
 TEST_F(FigureTest, ListNamesThem) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
