@@ -83,7 +83,7 @@ absl::Status Connection::Revive() const {
   return absl::OkStatus();
 }
 
-// An error without a reason did not come from the server but from the way to it.
+// An error without a reason is an error of the connection; the server's own errors have one.
 absl::Status NameServer(const absl::Status& status, const Connection& connection) {
   const bool lost = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
   if (!lost || !ErrorReason(status).empty()) return status;

@@ -44,7 +44,8 @@ struct Connection {
   }
 };
 
-// Names the server in an error that is the connection's, not the server's answer.
+// Adds the server's address to an error of the connection. Errors that the server returned stay as
+// they are.
 absl::Status NameServer(const absl::Status& status, const Connection& connection);
 
 using VerbOfServer = std::function<VerbResult(const Connection&)>;

@@ -1,4 +1,4 @@
-// ballpiston report: jobs with pictures, tables and how they were made, in one HTML file.
+// ballpiston report: one HTML file with the pictures, tables and specifications of jobs.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -72,8 +72,8 @@ absl::Status WriteTo(const std::string& path, const std::string& content) {
       absl::StrCat("--out: cannot write ", path, ": ", std::strerror(errno)));
 }
 
-// A reader never sees half a file, and a failure keeps the file that was there. A pipe or a device
-// is written to directly.
+// Writes to a second file and then renames it: a reader never sees half a file, and after a failure
+// the previous file is still there. A pipe or a device is written to directly.
 absl::Status Write(const std::string& path, const std::string& content) {
   namespace fs = std::filesystem;
   std::error_code error;

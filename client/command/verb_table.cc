@@ -185,7 +185,8 @@ const FlagGroup kJob = {
       "compute the answer even if the server has stored one for the same question"},
      {"--resume", Switch(To(&Options::resume)),
       "derive the request id from the question: after an interruption, the same command returns "
-      "the job that it made before, unless that job failed, was cancelled or has expired"},
+      "the job that it made before, unless that job failed or was cancelled, or its results have "
+      "expired"},
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
      {"--priority", Count([](Options& o, int64_t n) { o.create.priority = Clamped(n); }),
@@ -307,7 +308,7 @@ const FlagGroup kReport = {
 
 const FlagGroup kWeb = {
     "Page",
-    {{"--port", Count(To(&Options::port)), "port on the loopback, by default one that is free"}}};
+    {{"--port", Count(To(&Options::port)), "port for local connections, by default a free one"}}};
 
 const FlagGroup kDataFolder = {
     "Which server",
@@ -538,16 +539,16 @@ std::vector<Verb> AllVerbs() {
            {"figure mean-free-time --out figures", "figure mean-free-time --edit --out figures"},
            &Figure},
           {"report",
-           "write jobs with pictures, tables and how they were made to one HTML file",
+           "write one HTML file with the pictures, tables and specifications of jobs",
            "The file needs neither a server nor a network. It has the first 12 points of each job "
-           "in full, and the estimates of up to 10,000. Prints the path of the file.",
+           "in full, and the estimates of up to 10,000 points. Prints the path of the file.",
            {kSomeJobs},
            With({&kReport, &kServer}, {}),
            {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
            &ReportJobs},
           {"web",
-           "show jobs and results on a page, and pass JSON calls on to the server",
-           "Prints the address of the page, which has an access token, and serves the page on this "
+           "show jobs and results in a browser, and forward JSON calls to the server",
+           "Prints the address of the page, with an access token, and serves the page on this "
            "machine until Ctrl-C. The same address answers calls of the API as JSON in the Connect "
            "protocol, for curl and notebooks: client/README.md has examples.",
            {},

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int64_t kMostPort = 65535;
 
-// A private server may have stopped, idle: it is started again, unless the call has begun to
-// answer.
+// A private server stops when it is idle. It is then started again and the call is repeated, unless
+// a part of the answer has already arrived.
 absl::Status CallThrough(const Connection& connection, const JsonCall& call,
                          const JsonReceiver& receive) {
   bool has_begun = false;
@@ -46,8 +46,8 @@ VerbResult Web(const Options& options, Terminal& terminal) {
     }
     terminal.out << server.Url() << std::endl;
     terminal.Note(
-        "The page is there until Ctrl-C; jobs go on without it. Keep the address to "
-        "yourself: whoever has it acts as you.");
+        "Ctrl-C stops the page; jobs go on without it. Keep the address secret: anyone who "
+        "has it can use the server as you.");
     server.Serve();
     return ExitCode::kDone;
   });

@@ -35,7 +35,7 @@ of(i, j) = strcol("name") eq "survival" && strcol("exponent") eq exponent && \
            strcol("delta") eq word(deltas, i) && strcol("epsilon") eq word(energies, j)
 t(i, j) = of(i, j) ? -log(column("limit")) : NaN
 excess(_) = column("value") - column("limit")
-# Where too few orbits have survived to measure the error, that of the exponential law.
+# If too few orbits have survived to measure the error, the error of the exponential law.
 error(_) = strcol("standard_error") eq "" ? \
            sqrt(column("limit")*(1 - column("limit"))/column("samples")) : column("standard_error")
 stats data using (excess(0) - error(0)) nooutput

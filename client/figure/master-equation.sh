@@ -1,4 +1,4 @@
-# Laws of the piston's energy at six times after a start at one energy, by the master equation too
+# Laws of the piston's energy at six times after a start at one energy, beside the master equation
 #
 # Run by `ballpiston figure master-equation --out DIR`, whose flags replace these values, or by
 # hand: sh master-equation.sh. Time on two cores: quick 1 s, default 10 s, full 2 min.

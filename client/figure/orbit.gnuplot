@@ -2,7 +2,7 @@
 #
 # One orbit of ball and piston. Above left, the ball's path in its cell, coloured by its energy;
 # the piston reaches the shaded part. Above right, the energies, which change only where ball and
-# piston collide (circles). Below, where both are along the piston's axis.
+# piston collide (circles). Below, the positions of both along the piston's axis.
 # orbit.sh lists the commands that write the data.
 
 # ---- Settings ----

@@ -2,7 +2,7 @@
 #
 # The probability P(t) of at least one event in a window of length t, over t and over the exact
 # rate, with one standard error, against t in units of the mean free time. As t tends to 0 the ratio
-# tends to 1. Dashed: a Poisson process of the same rate.
+# tends to 1. The dashed line is a Poisson process of the same rate.
 #   a  all events: ball-piston, ball-wall and piston-wall
 #   b  ball-piston events
 #   c  ball-piston events given the piston's energy

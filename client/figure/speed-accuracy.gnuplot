@@ -8,7 +8,7 @@
 #   e     relative error of the energy's relaxation time, by the billiard and by the limit
 #         delta -> 0, for the largest delta whose bias of the limit is resolved (at most two)
 #   f     relative error of the heat current of a gas of one cell between two reservoirs
-# A line is the error to be expected, the root of sigma^2 + bias^2. sigma is the statistical error
+# A line is the expected error, the root of sigma^2 + bias^2. sigma is the statistical error
 # of a run. bias is the deviation of the method's longest run if it exceeds three statistical
 # errors, else 0. An error bar is one standard error of the error. Single precision and the
 # reference with 64 bits are drawn in d alone: their other lines would almost coincide with those of

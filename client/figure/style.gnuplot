@@ -1,10 +1,10 @@
-# What all pictures share; each picture's script loads this file: load "style.gnuplot"
+# Settings that all pictures share; each picture's script loads this file: load "style.gnuplot"
 set encoding utf8
 set datafile separator comma
 set datafile columnheaders
 font = "Helvetica,Arial,sans-serif,18"
 
-# Dark enough on white, and told apart by colour-blind readers.
+# Colours that are dark enough on white and that colour-blind readers can tell apart.
 blue = "#3b4cc0"
 green = "#1b9e77"
 orange = "#d95f02"

@@ -76,7 +76,7 @@ std::string Envelope(char flags, absl::string_view message) {
 
 }  // namespace
 
-// As the protocol's table has it.
+// By the protocol's table of codes.
 int HttpStatus(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kOk:

@@ -33,11 +33,11 @@ absl::StatusOr<grpc::ByteBuffer> RequestBytes(const JsonCall& call) {
         absl::StrCat("the request is not JSON of ", type->full_name(), ": ", reason));
   };
   const std::string json = call.request.empty() ? "{}" : call.request;
-  // The parser takes `null` and a bare string for an empty message.
+  // The parser accepts `null` and a bare string as an empty message.
   if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) return bad("not an object");
   const std::unique_ptr<Message> request = New(type);
   const auto status = google::protobuf::util::JsonStringToMessage(json, request.get());
-  // The parser repeats a wrong value, however long it is.
+  // The parser's message contains the wrong value in full, even if it is very long.
   if (!status.ok()) return bad(Shortened(std::string(status.message()), kLongestMessage));
   const grpc::Slice slice(request->SerializeAsString());
   return grpc::ByteBuffer(&slice, 1);
@@ -89,7 +89,7 @@ class BlockingCall {
   void Cancel() { context_.TryCancel(); }
 
  private:
-  // Of the one operation in progress.
+  // Until the operation in progress ends.
   bool Wait() {
     void* tag = nullptr;
     bool done = false;
@@ -101,7 +101,7 @@ class BlockingCall {
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
 };
 
-// What ends the call before the server does: OK if the receiver wants no more.
+// Ends the call before the server does. `status` is OK if the receiver wants no more answers.
 absl::Status End(BlockingCall& call, const absl::Status& status) {
   call.Cancel();
   call.Finish();

@@ -1,5 +1,5 @@
-// Calls of any method of the server with JSON, found in the API's descriptors: a new method needs
-// no code here.
+// Calls any method of the server with JSON. Methods are found in the API's descriptors, so a new
+// method needs no code here.
 #ifndef BALLPISTON_CLIENT_WEB_JSON_CALL_H_
 #define BALLPISTON_CLIENT_WEB_JSON_CALL_H_
 

@@ -49,7 +49,7 @@ absl::StatusOr<std::string> OneFilePage(const std::map<std::string, PageFile>& f
     if (page.ok()) page = WithFilesInside(files, *page, reference);
   }
   if (!page.ok()) return page;
-  // No text inside may end the script.
+  // Without "<" the JSON cannot contain the tag that ends the script.
   const std::string safe = absl::StrReplaceAll(json, {{"<", "\\u003c"}});
   return absl::StrReplaceAll(
       *page, {{"<!-- data -->",

@@ -12,8 +12,8 @@
 
 namespace ballpiston::client {
 
-// In place of each <link rel="stylesheet" href="NAME"> and <script src="NAME" defer></script>
-// stands the file NAME, and in place of <!-- data --> the JSON, as <script type="application/json"
+// Replaces each <link rel="stylesheet" href="NAME"> and <script src="NAME" defer></script> by the
+// content of the file NAME, and <!-- data --> by the JSON, as <script type="application/json"
 // id="data">. FAILED_PRECONDITION if a file is not installed.
 absl::StatusOr<std::string> OneFilePage(const std::map<std::string, PageFile>& files,
                                         const std::string& name, absl::string_view json);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr char kScheme[] = "http://";
 
-// In a time that does not depend on where they differ.
+// Takes a time that does not depend on where the texts differ.
 bool AreEqual(absl::string_view a, absl::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;

@@ -1,9 +1,9 @@
-// Who may use the page: other programs of this machine reach the same port, and so do web pages
-// from elsewhere that the user's browser shows.
+// Access control of the page. Other programs of this machine can reach the same port, and so can
+// web pages of other sites in the user's browser.
 //
 //   Host           has to be this page's own address: a foreign name that resolves to this machine
 //                  (DNS rebinding) is rejected
-//   Origin         where a browser sends one, it has to be this page's
+//   Origin         if the browser sends one, it has to be this page's
 //   Authorization  Bearer TOKEN, on every call to the server; the page itself holds no secrets
 #ifndef BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
 #define BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
@@ -24,7 +24,7 @@ class PageAccess {
   // UNAUTHENTICATED.
   absl::Status CheckToken(absl::string_view authorization) const;
 
-  // The address with the token, which browsers keep to themselves: it is in the fragment.
+  // The address with the token. The token is in the fragment, which browsers do not send.
   std::string Url() const;
 
  private:

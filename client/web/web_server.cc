@@ -26,7 +26,7 @@ constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
 using httplib::Request;
 using httplib::Response;
 
-// Nothing from elsewhere is loaded or run, and no other page may show this one in a frame.
+// The page loads and runs nothing from other sites, and no other page may show it in a frame.
 const httplib::Headers& SafeHeaders() {
   static const auto* const headers = new httplib::Headers{
       {"Content-Security-Policy",
@@ -39,7 +39,7 @@ const httplib::Headers& SafeHeaders() {
   return *headers;
 }
 
-// With a provider, because the library would compress a plain body, and slowly.
+// Uses a content provider, because the library would compress a plain body, which is slow.
 void Respond(std::string content, const std::string& type, Response& response) {
   const auto body = std::make_shared<const std::string>(std::move(content));
   if (body->empty()) return response.set_content("", type);
@@ -105,7 +105,7 @@ class WebServer::Implementation {
   void Stop() { server_.stop(); }
 
  private:
-  // Only for requests from this page or from a program, to this page's own address.
+  // Rejects requests that other web pages send, and requests to another address.
   httplib::Server::Handler Checked(httplib::Server::Handler handler) {
     return [this, handler](const Request& request, Response& response) {
       const absl::Status checked = access_->CheckOrigin(request.get_header_value("Host"),
@@ -160,7 +160,7 @@ class WebServer::Implementation {
     Respond(std::move(answer), kUnaryType, response);
   }
 
-  // The answers go out as they come: the whole call is made while the response is written.
+  // Sends each answer as it arrives: the whole call is made while the response is written.
   void PassOnStream(JsonCall call, Response& response) const {
     const auto request = OpenEnvelope(call.request);
     response.set_chunked_content_provider(

@@ -1,10 +1,10 @@
-// The HTTP server of `ballpiston web`, on the loopback: the files of the page, and a gateway that
-// passes calls in the Connect protocol on to the server of the simulations.
+// The HTTP server of `ballpiston web`, for local connections: the files of the page, and a
+// gateway that forwards calls in the Connect protocol to ballpistond.
 //
 //   GET  /                                         the page
 //   POST /ballpiston.v1.EnsembleService/METHOD     a call, with the token (page_access.h)
 //
-// Each open stream takes one of kMostConnections threads. A reader that goes away ends its call.
+// Each open stream takes one of kMostConnections threads. If its reader disconnects, the call ends.
 #ifndef BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 #define BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 

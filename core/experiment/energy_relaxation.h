@@ -51,8 +51,8 @@ inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
 
 // The law of the energy is measured at 1/4, 1/2, 1, 2, 4 and 8 mean free times.
 inline constexpr std::array<size_t, 6> kLawLags = {1, 2, 4, 8, 16, 32};
-// Over [0, 1/2]. A prime, so that no decimal number between is an edge: there rounding would decide
-// in which bin an orbit counts that has not changed its energy.
+// Over [0, 1/2]. A prime, so that no decimal number inside is an edge of a bin. At an edge,
+// rounding would decide the bin of an orbit that has not changed its energy.
 inline constexpr size_t kEnergyBins = 61;
 
 class EnergyRelaxation {

@@ -2,8 +2,8 @@
 // is expected to become exponential with the rate of eq. fmftbpeprate.
 //
 // Counted in kHitTimeBins bins, each a tenth of the mean return time at this energy; later hits
-// count in the last bin. Told as the curve `survival`: the probability that ball and piston have
-// not met up to a time.
+// count in the last bin. The result has the law as the curve `survival`: the probability that
+// ball and piston have not met up to a time.
 #ifndef BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 #define BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 
@@ -15,7 +15,7 @@
 namespace ballpiston {
 
 inline constexpr size_t kHitTimeBins = 80;
-inline constexpr double kHitTimeMeans = 8;  // up to which the bins reach
+inline constexpr double kHitTimeMeans = 8;  // upper end of the bins, in mean return times
 
 // `mean`: the mean return time at this energy.
 Histogram EmptyHitTimes(double mean);

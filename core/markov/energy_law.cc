@@ -11,7 +11,7 @@
 namespace ballpiston {
 namespace {
 
-// Of the two nodes of a bin, from its ends; as a share of its width. Gauss's.
+// Distance of a bin's two Gauss nodes from its ends, as a share of its width.
 constexpr double kNode = 0.21132486540518713;
 constexpr int kSetUpNodes = 16;
 
@@ -110,8 +110,8 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   }
 }
 
-// Over the place w after the first jump, as above. The mass that comes from w to a bin has a root
-// at the w from which the bin's upper edge is the farthest that can be reached.
+// Integrates over the place w after the first jump, as above. The mass that comes from w to a bin
+// has a root at the w from which the bin's upper edge is the farthest that can be reached.
 void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const {
   const double s = std::sqrt(1 - u * u), rate = JumpRate(u);
   const auto add = [&](double phi, double weight) {

@@ -1,20 +1,21 @@
-// The law of the piston's energy at time t where ball and piston rarely meet, from a start at one
+// The law of the piston's energy at time t in the limit of rare collisions, from a start at one
 // energy: the solution of the master equation (eq. meq), integrated over bins.
 //
 // With u = sqrt(2 ep), r the jump rate and K the kernel of generator.h, the law at time t is the
-// sum of what has jumped never, once, twice, and more often:
+// sum over the number of jumps: none, one, two, and more:
 //   exp(-r(u) t) delta(u' - u) + K(u, u') E(r(u), r(u')) + int K(u, v) K(v, u') E(r(u), r(v),
 //   r(u')) dv
 //     + sum_k (K f_k)(u) (K f_k)(u') E(r(u), rate_k, r(u')) - the same sum of the multiplication by
 //     r
-// where E is the integral of exp(-rates * durations) over all durations that sum to t, up to a sign
-// a divided difference of exp(-x t), and f_k, rate_k are the eigenfunctions of the generator. The
-// mass at u and the kernel's singularities are in the first three terms, by quadrature. The last
-// two are each wrong by percents where u' is near u, because K(u, .) is singular and has no good
-// expansion in the f_k; their difference, which has a jump more between the two kernels, is not.
+// where E is the integral of exp(-rates * durations) over all durations that sum to t (up to its
+// sign a divided difference of exp(-x t)), and f_k are the generator's eigenfunctions, with the
+// decay rates rate_k. The first three terms contain the mass at u and the kernel's singularities;
+// they are computed by quadrature. Each of the last two terms alone is wrong by percents where u'
+// is near u, because K(u, .) is singular and has no good expansion in the f_k. Their difference is
+// accurate, because it has one more jump between the two kernels.
 //
 // Units: times |G|/|dG_bp|. Properties, each with a test of its name:
-//   1. SumsToOneAtAllTimes.  2. BecomesTheStationaryLaw.  3. MeanIsTheSpectrums.
+//   1. SumsToOneAtAllTimes.  2. BecomesTheStationaryLaw.  3. MeanAgreesWithTheSpectrum.
 //   4. FollowsTheKernelAtShortTimes.
 //   5. DiffersBetweenDiscretisationsByLessThanItsBound, kEnergyLawError.
 // Immutable; safe to share between threads.
@@ -28,19 +29,19 @@
 
 namespace ballpiston {
 
-inline constexpr double kEnergyLawError = 1e-4;  // of a probability; 5e-5 were seen
+inline constexpr double kEnergyLawError = 1e-4;  // of a probability; the largest seen is 5e-5
 
 class EnergyLaw {
  public:
   // Equal bins of the energy over [0, 1/2].
   EnergyLaw(const Discretisation& discretisation, int bins);
 
-  // Of each bin, for epsilon in [0, 1/2] and t >= 0.
+  // The probability of each bin, for epsilon in [0, 1/2] and t >= 0.
   std::vector<double> Probabilities(double epsilon, double t) const;
 
  private:
-  // Of an integral over a bin of gains times a function that is smooth there: the function is taken
-  // at the nodes, and interpolated linearly between them.
+  // A node of the integral over a bin of gains times a smooth function. The function is taken at
+  // the bin's nodes and interpolated linearly between them.
   struct Node {
     size_t bin;
     double rate;           // of jumps, at the node

@@ -51,7 +51,7 @@ struct Discretisation {
 class Generator {
  public:
   explicit Generator(const Discretisation& discretisation);
-  // Only the losses: the multiplication by the jump rate, which conserves nothing.
+  // Only the losses: the multiplication by the jump rate. Probability is not conserved.
   static Generator OfLosses(const Discretisation& discretisation);
 
   Eigen::Index size() const { return rates_.size(); }
@@ -66,7 +66,7 @@ class Generator {
   // Those of a unit mass at u in [0, 1]: <coefficients, At(u)> is the function's value there.
   Eigen::VectorXd At(double u) const;
 
-  // int K(u, u') function_k(u') du' by eigenfunction.
+  // int K(u, u') function_k(u') du' for each eigenfunction k.
   Eigen::VectorXd Gains(double u) const;
 
   // |L 1|, and the largest difference of the matrix from its transpose: what quadrature and

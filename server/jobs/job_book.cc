@@ -28,7 +28,7 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
-// Among so many unfinished points, the ones that changed last, a point is looked for.
+// UnfinishedResult searches at most this many unfinished points, those that changed last.
 constexpr size_t kMostLivePoints = 1000;
 
 // How often processor time is stored. If the server is killed, the time since it was last stored

@@ -135,7 +135,8 @@ class JobBook {
                                       const ResultsQuery& query);
   absl::StatusOr<v1::PointResult> Result(const Principal& caller, const std::string& id,
                                          int64_t point);
-  // Of a point that is computed now, with histograms and curves. Empty if it is not.
+  // The result up to now of a point that is being computed, with histograms and curves. Empty if
+  // the point is not being computed.
   absl::StatusOr<std::optional<v1::PointResult>> UnfinishedResult(const Principal& caller,
                                                                   const std::string& id,
                                                                   int64_t point);

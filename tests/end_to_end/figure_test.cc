@@ -202,7 +202,7 @@ TEST_F(FigureTest, RatesFailIfTheTraceFails) {
   EXPECT_FALSE(fs::exists(folder_ + "/rates.csv"));
 }
 
-TEST_F(FigureTest, MarkovTestFitsWhatIsAboveTheNoise) {
+TEST_F(FigureTest, MarkovTestFitsThePointsAboveTheNoise) {
   if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   EXPECT_THAT(Svg("markov-test",
                   "--quick --delta 0.2:0.325:12:log --epsilon 0.125,0.46875 --exponent 1,10 "

@@ -75,7 +75,7 @@ class WebTest : public ::testing::Test {
   std::string host_, token_;
 };
 
-TEST_F(WebTest, ServesThePageWithHeadersThatKeepOthersOut) {
+TEST_F(WebTest, ServesThePageWithSecurityHeaders) {
   const httplib::Result page = http_->Get("/");
   ASSERT_TRUE(page);
   EXPECT_EQ(page->status, 200);
@@ -186,7 +186,7 @@ TEST_F(WebTest, CallsNeedTheTokenAndThisPagesOriginAndHost) {
   EXPECT_EQ(http_->Get("/", {{"Host", "evil.example"}})->status, 403);
 }
 
-TEST_F(WebTest, AServerThatComesBackIsFoundAgain) {
+TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
   const std::string method = std::string(kJobs) + "ListEnsembleJobs";
   ASSERT_EQ(Post(method, "{}")->status, 200);
   server_.KillHard();
@@ -198,8 +198,8 @@ TEST_F(WebTest, AServerThatComesBackIsFoundAgain) {
   while (status != 200) status = Post(method, "{}")->status;
 }
 
-// A reader that leaves takes its call with it: the server has room for the next ones.
-TEST_F(WebTest, AStreamEndsWithItsReader) {
+// When a reader disconnects its call ends, so there is room for the next calls.
+TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
   const std::string name = server_.Submit(kEndlessQuestion);
   const std::string body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
   for (int i = 0; i < 40; ++i) {  // more than the gateway has threads
@@ -221,7 +221,7 @@ TEST_F(WebTest, AStreamEndsWithItsReader) {
   EXPECT_THAT(server_.Client({"cancel", name}), ExitsWith(0));
 }
 
-TEST(WebFlags, APortInUseIsNamed) {
+TEST(WebFlags, TheErrorNamesAPortInUse) {
   const TestServer server;
   const ProcessResult high = server.Client({"web", "--port", "70000"});
   EXPECT_THAT(high, ExitsWith(2));
@@ -264,7 +264,7 @@ TEST_F(ReportTest, HasJobsWithTheirResultsInOneFile) {
   EXPECT_EQ(At(data, "jobs", 0, "points_left_out").number_value(), 0);
 }
 
-TEST_F(ReportTest, AFailureKeepsTheFileThatWasThere) {
+TEST_F(ReportTest, AFailureKeepsThePreviousFile) {
   WriteFile(file_, "before");
   EXPECT_THAT(server_.Client({"report", "none", "--out", file_}), ExitsWith(5));
   EXPECT_EQ(Contents(file_), "before");

@@ -1,4 +1,4 @@
-// Answers of a server that the real one would not give, or not soon: routes of a playwright page.
+// Answers that a real server gives rarely or never: routes of a playwright page.
 export const EVIL =
   '<img src=x onerror="window.wasAttacked = true"><script>window.wasAttacked = true</script>';
 

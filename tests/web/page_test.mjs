@@ -81,8 +81,8 @@ afterEach(async () => {
   assert.deepEqual(mistakes, []);
 });
 
-// `mistakes` are errors of the page's own scripts and of its content security policy. A failed call
-// is none of them.
+// `mistakes` are errors of the page's own scripts and of its content security policy. A failed
+// call does not count.
 async function newPage(options = {}) {
   await context?.close();
   context = await browser.newContext({viewport: {width: 1200, height: 900}, ...options});
@@ -118,7 +118,7 @@ async function waitUntilChanged(read, before) {
   await assertSoon(async () => assert.notEqual(await read(), before));
 }
 
-// Until `check` does not throw, once in each frame of the page.
+// Repeats `check` in each frame of the page until it does not throw.
 async function assertSoon(check) {
   const end = Date.now() + PATIENCE;
   for (;;) {
@@ -235,7 +235,7 @@ describe('The page', () => {
     await page.getByRole('cell', {name: EVIL, exact: true}).waitFor();
     await page.getByRole('link', {name: EVIL.toLowerCase()}).click();
     await page.getByRole('heading', {level: 1, name: EVIL.toLowerCase()}).waitFor();
-    await page.getByText(`It failed: ${EVIL}`).waitFor();
+    await page.getByText(`The job failed: ${EVIL}`).waitFor();
     await page.getByRole('heading', {name: 'Point 0'}).waitFor();
     assert.equal(await page.locator('img').count(), 0);
     assert.equal(await page.evaluate(() => window.wasAttacked), undefined);
@@ -264,7 +264,7 @@ describe('Jobs', () => {
     } finally {
       cancel(job);
     }
-    await page.getByText('It was cancelled').waitFor();
+    await page.getByText('The job was cancelled').waitFor();
   });
 
   it('show histograms over the exact law', async () => {
@@ -314,7 +314,7 @@ describe('Jobs', () => {
       '0.1',
     );
     await open(job);
-    await page.getByText(/It failed: .*budget/).waitFor();
+    await page.getByText(/The job failed: .*budget/).waitFor();
   });
 
   it('say why they wait', async () => {
@@ -323,7 +323,7 @@ describe('Jobs', () => {
     await page.route(/WatchEnsembleJob/, () => {});
     try {
       await open('ensembleJobs/0000000000000001');
-      await page.getByText(/It waits until a worker is free.*1 of 1 workers are busy/).waitFor();
+      await page.getByText(/waits until a worker is free.*1 of 1 workers are busy/).waitFor();
     } finally {
       cancel(first);
     }
@@ -362,7 +362,7 @@ describe('Jobs', () => {
     await page.waitForURL((url) => !url.href.includes(job));
     await page.getByText('running').first().waitFor();
     cancel(new URL(page.url()).hash.slice(1));
-    await page.getByText('It was cancelled').waitFor();
+    await page.getByText('The job was cancelled').waitFor();
   });
 
   it('whose results expired have the command that computes them again', async () => {
@@ -376,8 +376,8 @@ describe('Jobs', () => {
   });
 });
 
-describe('A server that goes away', () => {
-  it('and returns leaves the data on the page, and the watch goes on', async () => {
+describe('When the server stops', () => {
+  it('the data stay on the page, and the watch goes on after a restart', async () => {
     const job = programs.run('submit', ...NEVER_ENDS);
     await open(job);
     await page.getByText('Convergence of').waitFor();
@@ -392,10 +392,10 @@ describe('A server that goes away', () => {
     await banner().waitFor({state: 'hidden'});
     await assertSoon(async () => assert.ok((await rows.count()) > known));
     cancel(job);
-    await page.getByText('It was cancelled').waitFor();
+    await page.getByText('The job was cancelled').waitFor();
   });
 
-  it('leaves the list of jobs on the page', async () => {
+  it('the list of jobs stays on the page', async () => {
     await open();
     await jobLink(firstHit).waitFor();
     programs.stopServer();
@@ -405,7 +405,7 @@ describe('A server that goes away', () => {
     await banner().waitFor({state: 'hidden'});
   });
 
-  it('with ballpiston web, and returns with another token, is reported', async () => {
+  it('and ballpiston web restarts with another token, the page says so', async () => {
     const own = await programs.web();
     await open('jobs', own.address);
     await jobLink(firstHit).waitFor();
@@ -473,7 +473,7 @@ describe('Keyboard, colours and width', () => {
     await banner().filter({hasText: 'delta is 0.9'}).waitFor();
   });
 
-  it('dark is the system’s choice or the reader’s', async () => {
+  it('the dark theme follows the system or the reader’s choice', async () => {
     const isDark = () =>
       page.evaluate(() => {
         const [red] = getComputedStyle(document.body).backgroundColor.match(/\d+/);

@@ -82,7 +82,7 @@
     c.restore();
   }
 
-  // Of all values and error bars whose x is in [left, right].
+  // The range of all values and error bars whose x is in [left, right].
   function rangeOfY(chart, [left, right]) {
     let min = Infinity,
       max = -Infinity;
@@ -157,7 +157,7 @@
     return String(Number(tick.toPrecision(10)));
   }
 
-  // Of a logarithmic axis: 1, 2 and 5 of each decade, or 1 alone where there are many decades.
+  // Ticks of a log axis: 1, 2 and 5 of each decade, or 1 alone where there are many decades.
   function logTicks(u, axis, min, max) {
     const digits = max / min > 1e3 ? [1] : [1, 2, 5];
     const ticks = [];
@@ -172,7 +172,7 @@
     return 14 + 7 * longest;
   }
 
-  // All lines over the union of their x; what a line lacks is undefined.
+  // All lines over the union of their x. Values that a line does not have are undefined.
   function aligned(lines) {
     return lines.length ? uPlot.join(lines.map((line) => [line.x, line.y])) : [[]];
   }
@@ -370,9 +370,9 @@
     }
   }
 
-  // After a change of the theme.
+  // Called after a change of the theme.
   ballpiston.repaintCharts = () => charts.forEach((chart) => chart.repaint());
-  // Of a view that is left.
+  // Called when the reader leaves a view.
   ballpiston.removeCharts = () => charts.forEach((chart) => chart.remove());
   ballpiston.Chart = Chart;
   ballpiston.styleOf = styleOf;

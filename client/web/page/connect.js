@@ -61,7 +61,7 @@
       return await response.json();
     } catch (error) {
       if (signal?.aborted) throw error;
-      throw new CallError('unavailable', 'the answer broke off');
+      throw new CallError('unavailable', 'the answer ended too early');
     }
   }
 
@@ -73,7 +73,7 @@
     return bytes;
   }
 
-  // The bytes of a stream, taken in the numbers that are asked for.
+  // Reads a requested number of bytes from a stream.
   class ByteReader {
     constructor(reader) {
       this.reader = reader;
@@ -84,7 +84,7 @@
     async take(count) {
       while (this.size < count) {
         const {value, done} = await this.reader.read();
-        if (done) throw new CallError('unavailable', 'the answer broke off');
+        if (done) throw new CallError('unavailable', 'the answer ended too early');
         this.chunks.push(value);
         this.size += value.length;
       }
@@ -133,7 +133,7 @@
       }
     } catch (error) {
       if (signal?.aborted || error instanceof CallError) throw error;
-      throw new CallError('unavailable', 'the answer broke off');
+      throw new CallError('unavailable', 'the answer ended too early');
     } finally {
       reader.cancel().catch(() => {});
     }

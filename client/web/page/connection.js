@@ -1,5 +1,5 @@
-// The token, retries, and the banner that says why there is no answer. What the page shows stays
-// while there is none.
+// The token, retries, and the banner that says why there is no answer. While the server does not
+// answer, the page keeps what it shows.
 (function (ballpiston) {
   'use strict';
 
@@ -9,7 +9,7 @@
 
   const token = () => sessionStorage.getItem(TOKEN) ?? '';
 
-  // Moves the token from the address #token=... into this tab's storage: so it is in no bookmark,
+  // Moves the token from the address #token=... into this tab's storage: then it is in no bookmark,
   // and a reload keeps it. True if there was one.
   function takeToken() {
     const match = /^#token=([\w-]+)$/.exec(location.hash);
@@ -28,7 +28,7 @@
 
   function adviceFor(error) {
     if (error.code === 'unauthenticated') {
-      return 'Open the whole address that “ballpiston web” printed: it has the token. ';
+      return 'Open the whole address that “ballpiston web” printed: it contains the token. ';
     }
     return '';
   }
@@ -36,7 +36,7 @@
   const answered = () => say('');
   const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`);
   const failedForNow = (error) =>
-    say(`No answer; trying again. What is shown is from before. Reason: ${error.message}`);
+    say(`No answer; trying again. The page may be out of date. Reason: ${error.message}`);
 
   // Until `ms` have passed, or the browser is online again, or the signal is aborted.
   function pause(ms, signal) {

@@ -1,5 +1,5 @@
 // One estimate of all points against a parameter of the grid, with the exact values as lines. The
-// reader chooses the estimate, the parameter, and what is shown of it.
+// reader chooses the estimate, the parameter, and whether to see values, ratios or z.
 (function (ballpiston) {
   'use strict';
 
@@ -27,7 +27,7 @@
     return values;
   }
 
-  // As a number; a lattice NxM is none.
+  // The parameter as a number; a lattice NxM is not a number.
   const coordinate = (value) => Number(value);
 
   const isAxis = (values) => [...values].every((value) => isNumber(coordinate(value)));
@@ -43,7 +43,7 @@
     ...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name))),
   ];
 
-  // Points of the same parameters but for `axis`, by their label.
+  // Groups of points whose parameters differ only in `axis`, by label.
   function groups(points, axis) {
     const varying = varyingParameters(points);
     const grouped = new Map();

@@ -1,4 +1,4 @@
-// What a job is, how it was asked for, and how it went.
+// A job's specification, times and work.
 (function (ballpiston) {
   'use strict';
 

@@ -44,7 +44,7 @@
   // page.js reads it back; an id may have any characters.
   const addressOf = (job) => `#ensembleJobs/${encodeURIComponent(ballpiston.idOf(job))}`;
 
-  // Share of the work done, or of the points where the work is not known beforehand.
+  // Share of the work done; share of the points if the work is not known beforehand.
   function fractionOf(progress) {
     if (!progress?.points) return 0;
     return progress.fraction ?? progress.points_done / progress.points;

@@ -1,6 +1,6 @@
 // #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX: a job as it runs. A watch brings its state,
-// the points that are computed, and each finished point; histograms and curves of the point that is
-// shown are asked for, again and again until it is finished.
+// the points that are computed, and each finished point; the page asks repeatedly for histograms
+// and curves of the point that it shows, until that point is finished.
 (function (ballpiston) {
   'use strict';
 
@@ -30,7 +30,7 @@
   const ROWS = 200; // of points, at a time
   const STATUS_EVERY = 2000; // ms, while the job waits
   const DETAILS_EVERY = 1000; // ms, of an unfinished point
-  const SHARE_OF_DRAWING = 4; // draws again after this many times what drawing took
+  const SHARE_OF_DRAWING = 4; // pause between drawings, in times of the last drawing
   const ENDED = new Set(['SUCCEEDED', 'FAILED', 'CANCELLED']);
 
   // ---- What is known of a job
@@ -84,7 +84,7 @@
     }
   }
 
-  // Jobs that answered a question of this page from the store. Only the answer to the question tells.
+  // Jobs that the server answered from its store. Only the answer of CreateEnsembleJob says this.
   const fromStore = new Set();
 
   class JobRecord {
@@ -133,17 +133,17 @@
     switch (job.state) {
       case 'QUEUED':
         return (
-          'It waits until a worker is free. Each user gets an even share of the workers. Of the ' +
-          'jobs of one user, those of higher priority go first. ' +
+          'The job waits until a worker is free. Each user gets an even share of the workers. ' +
+          'Of the jobs of one user, those of higher priority go first. ' +
           (status ? ballpiston.statusText(status) : '')
         );
       case 'FAILED':
-        return `It failed: ${job.error?.message ?? 'no reason was given'}`;
+        return `The job failed: ${job.error?.message ?? 'no reason was given'}`;
       case 'CANCELLED':
-        return 'It was cancelled. The points that were finished stay.';
+        return 'The job was cancelled. Finished points are kept.';
       default:
         return status?.state === 'STORE_FAILING'
-          ? 'The server’s disk refuses writes; what is computed waits for it.'
+          ? 'The server’s disk refuses writes. The job waits until results can be stored.'
           : '';
     }
   }
@@ -164,7 +164,7 @@
         element(
           'div',
           {class: 'panel'},
-          element('p', {}, 'The results have expired. The same numbers are computed again by'),
+          element('p', {}, 'The results have expired. To compute the same numbers again:'),
           command('ballpiston', 'run', '--again', job.name),
         ),
       );
@@ -314,7 +314,7 @@
       this.follow = element(
         'button',
         {type: 'button', onclick: onFollow},
-        'Follow the point that is computed',
+        'Follow the running point',
       );
       this.convergenceNote = element('p', {class: 'soft', hidden: true});
       this.view = new ResultView();
@@ -339,7 +339,7 @@
         : null;
       this.convergenceNote.hidden = convergence !== null || !(point.samples > 0);
       this.convergenceNote.textContent = isFinished
-        ? 'This point was finished before the page saw it converge.'
+        ? 'This point finished too early for a chart of its convergence.'
         : '';
       this.view.show(point, convergence ? [convergence] : []);
     }
@@ -408,7 +408,7 @@
       this.askForDetails(point);
     }
 
-    // Draws soon; seldom, if drawing takes long.
+    // Draws soon; later, if drawing takes long.
     drawSoon() {
       if (this.drawing) return;
       this.drawing = true;
@@ -510,7 +510,7 @@
       }
     }
 
-    // The job of a watch of an ended job comes last; so it is shown at once.
+    // A watch of an ended job sends the job last, so the page first asks for the job itself.
     async run() {
       const job = await keepTrying(
         () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),

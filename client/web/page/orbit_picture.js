@@ -1,5 +1,5 @@
-// Cells, balls and pistons on a canvas. Colours say how much energy a body has, in the scale
-// cividis, which readers with the usual colour vision deficiencies read as others do.
+// Cells, balls and pistons on a canvas. The colour of a body shows its energy. Readers with the
+// usual colour vision deficiencies can also read the colour scale, cividis.
 (function (ballpiston) {
   'use strict';
 

@@ -18,7 +18,7 @@
   const MOST_LISTED = 8;
   const MOST_EXCHANGES = 200; // in the chart of energies
   const CHART_EVERY = 500; // ms
-  const LONGEST_FRAME = 0.1; // seconds: a tab that was hidden does not jump
+  const LONGEST_FRAME = 0.1; // seconds, so that an orbit does not jump after its tab was hidden
   const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]; // units of time a second
   const MOST_HEIGHT = 0.7; // of the window
 
@@ -208,7 +208,7 @@
       this.draw();
     }
 
-    // Begins a new trace; the one before ends.
+    // Begins a new trace and ends the previous one.
     async trace() {
       this.tracing?.abort();
       const tracing = (this.tracing = new AbortController());

@@ -1,4 +1,4 @@
-// Which view is shown, by the fragment of the address; and the theme.
+// Chooses the view from the fragment of the address, and the theme.
 (function (ballpiston) {
   'use strict';
 
@@ -41,7 +41,7 @@
     }
   }
 
-  // The banner says what a view could not do. Other errors are mistakes of this page.
+  // The banner already shows these errors. Other errors are defects of this page.
   function report(error) {
     if (error instanceof ballpiston.CallError || error?.name === 'AbortError') return;
     console.error(error);

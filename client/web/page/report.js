@@ -124,8 +124,8 @@
     main.append(
       element('h1', {}, jobs.length === 1 ? 'Report of a job' : `Report of ${jobs.length} jobs`),
       facts([
-        ['Made', wholeTime(created)],
-        ['By', `ballpiston ${version}`],
+        ['Created', wholeTime(created)],
+        ['Program', `ballpiston ${version}`],
       ]),
     );
     jobs.forEach((entry) => showJob(main, entry));

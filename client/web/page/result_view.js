@@ -24,7 +24,7 @@
   const CURVE_LABELS = {
     energy_autocorrelation: 'Autocorrelation of the piston’s energy',
     mean_energy: 'Mean energy of the piston',
-    survival: 'Survival: probability of no collision until a time',
+    survival: 'Survival: probability of no collision up to a time',
     temperature_profile: 'Temperature profile',
   };
 
@@ -44,7 +44,7 @@
     return error === 0 ? '0' : `${Number((100 * error).toPrecision(2))} %`;
   }
 
-  // The closed form, or what the Markov limit gives, or the mean were two laws equal.
+  // The closed form; else the Markov limit; else the noise floor, the mean if two laws were equal.
   function yardstick(estimate) {
     const {exact, limit, noise_floor: floor, standard_error: error} = estimate;
     if (isNumber(exact))
@@ -74,7 +74,7 @@
   function entropyText(kl) {
     if (!kl) return null;
     const noise = isNumber(kl.noise_floor)
-      ? `; were the laws equal: ${withError(kl.noise_floor, kl.noise_error)}`
+      ? `; if the laws were equal: ${withError(kl.noise_floor, kl.noise_error)}`
       : '';
     return `${withError(kl.value, kl.standard_error)}${noise} (${countText(kl.cells)} cells)`;
   }
@@ -121,7 +121,7 @@
     return sums;
   }
 
-  // So few bins that each is wide enough to see, and that their number divides the counts' number.
+  // How many bins to show as one, so that each is wide enough to see. Divides the number of bins.
   function mergedBins(bins) {
     if (bins < 2 * MOST_BINS) return 1;
     for (let size = 1; size <= bins; ++size) {
@@ -151,7 +151,7 @@
   }
 
   function histogramNote(histogram, size, densities, width) {
-    if (size > 1) return `${histogram.counts.length} bins, shown ${size} together`;
+    if (size > 1) return `${histogram.counts.length} bins, shown in groups of ${size}`;
     if (topOf(densities) === undefined) return null;
     const share = Math.max(...densities) * width;
     return `The highest bin is cut off: it holds ${(100 * share).toFixed(1)} %.`;

@@ -252,7 +252,7 @@ TEST(ResultJsonl, HasALineForEachPoint) {
   EXPECT_THAT(text, HasSubstr("\n{\"index\":1,"));
 }
 
-TEST(ResultWriter, TablesAndCsvOfEstimatesNeedNoHistogramsAndCurves) {
+TEST(ResultWriter, OnlyJsonAndCsvOfHistogramsOrCurvesAskForTheFullView) {
   EXPECT_EQ(ViewFor(Format::kCsvHistograms), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kCsvCurves), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kJson), v1::ListResultsRequest::FULL);

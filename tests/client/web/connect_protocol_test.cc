@@ -65,7 +65,7 @@ TEST(ConnectProtocol, CodesHaveTheProtocolsNamesAndStatuses) {
   }
 }
 
-TEST(ConnectProtocol, DetailsAreThereInBase64AndAsJson) {
+TEST(ConnectProtocol, ErrorDetailsAreGivenInBase64AndAsJson) {
   google::rpc::ErrorInfo info;
   info.set_reason("QUEUE_FULL");
   google::rpc::Status attached;

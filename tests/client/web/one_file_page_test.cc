@@ -26,7 +26,7 @@ TEST(OneFilePage, HasItsFilesInTheirPlaces) {
             "<script>\nc();\n</script></body>");
 }
 
-TEST(OneFilePage, NoTextOfTheDataEndsTheScript) {
+TEST(OneFilePage, DataStaysInsideItsScript) {
   const std::string page = *OneFilePage(Files(), "page.html", R"({"x":"</script><!--<b>"})");
   EXPECT_THAT(page, HasSubstr(R"({"x":"\u003c/script>\u003c!--\u003cb>"})"));
 }

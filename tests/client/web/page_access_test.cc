@@ -47,7 +47,7 @@ TEST(PageAccess, RequiresItsToken) {
   }
 }
 
-TEST(PageAccess, TheAddressHasTheTokenWhereBrowsersDoNotSendIt) {
+TEST(PageAccess, TheTokenIsInTheFragmentOfTheAddress) {
   EXPECT_EQ(Access().Url(), "http://127.0.0.1:8080/#token=secret");
 }
 

@@ -204,7 +204,7 @@ TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
 // The law of eq. meq, solved by the spectrum, against walks of the jump process. A divergence has
 // a nearly normal law with 61 bins; of the 30 comparisons one is beyond 4.5 standard deviations by
 // chance once in 5,000 seeds.
-TEST(EnergyRelaxation, LawsOfTheJumpProcessAreTheMasterEquations) {
+TEST(EnergyRelaxation, LawsOfTheJumpProcessSolveTheMasterEquation) {
   for (const double epsilon : {0.01, 0.125, 0.25, 0.375, 0.49}) {
     const PointParameters point = PaperPoint(0.1, epsilon);
     const PointSummary summary = RunPoint(SpecOfOrbits(point, Model::kMarkov, 20'000));

@@ -26,8 +26,8 @@ TEST(HitTimeLaw, SurvivalIsTheShareOfLaterHits) {
   }
 }
 
-// The integral of the survival probability is the mean; by the trapezoidal rule, without the part
-// beyond the last bin. Both leave out less than 0.002 of it.
+// The integral of the survival probability is the mean. The test uses the trapezoidal rule and
+// leaves out the part beyond the last bin; both change the integral by less than 0.002 of it.
 TEST(HitTimeLaw, IntegralOfTheSurvivalIsTheMeanHitTime) {
   for (const double exponent : {0.0, 1.0, 10.0}) {
     const PointSummary summary = RunPoint(

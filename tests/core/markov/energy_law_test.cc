@@ -46,7 +46,7 @@ TEST(EnergyLaw, BecomesTheStationaryLaw) {
 }
 
 // The mass that has not jumped is at one place of its bin; the rest is spread over the bins.
-TEST(EnergyLaw, MeanIsTheSpectrums) {
+TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {
   const EnergyLaw narrow({.degree = 8, .levels = 4}, 256);
   for (const double epsilon : kEpsilons) {
     for (const double time : {0.5, 2.0, 8.0}) {
