@@ -1,4 +1,6 @@
 // ballpiston report: one HTML file with the pictures, tables and specifications of jobs.
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +16,8 @@
 
 namespace ballpiston::client {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr size_t kMostPoints = 10'000;  // of a job; some 6 MB
 constexpr size_t kMostPictured = 12;    // points with histograms and curves; as in report.js
@@ -32,7 +36,13 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
     const auto page =
         connection.Ask([&] { return connection.client.ResultsPage(name, view, token); });
     if (!page.ok()) return HintIfExpired(page.status(), connection, name);
-    for (const v1::PointResult& point : page->points()) points.json.push_back(Json(point));
+    for (v1::PointResult point : page->points()) {
+      if (points.json.size() >= kMostPictured) {
+        point.clear_histograms();
+        point.clear_curves();
+      }
+      points.json.push_back(Json(point));
+    }
     token = page->next_page_token();
   } while (!token.empty() && points.json.size() < kMostPoints);
   points.is_complete = token.empty();
@@ -40,10 +50,11 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
 }
 
 absl::StatusOr<std::string> JobJson(const Connection& connection, const std::string& name) {
-  const auto job = connection.Ask([&] { return connection.client.Get(name); });
-  if (!job.ok()) return job.status();
   const absl::StatusOr<Points> points = PointsOf(connection, name);
   if (!points.ok()) return points.status();
+  // After the points, so that it counts them all.
+  const auto job = connection.Ask([&] { return connection.client.Get(name); });
+  if (!job.ok()) return job.status();
   const int64_t left_out = points->is_complete ? 0
                                                : job->progress().points_done() -
                                                      static_cast<int64_t>(points->json.size());
@@ -64,28 +75,29 @@ absl::StatusOr<std::string> Data(const Connection& connection,
                       "\",\"jobs\":[", absl::StrJoin(jobs, ",\n"), "]}");
 }
 
-absl::Status WriteTo(const std::string& path, const std::string& content) {
-  std::ofstream out(path, std::ios::binary);
-  out << content << std::flush;
-  if (out) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat("--out: cannot write ", path, ": ", std::strerror(errno)));
+absl::Status CannotWrite(const std::string& path, const std::string& reason) {
+  return absl::InvalidArgumentError(absl::StrCat("--out: cannot write ", path, ": ", reason));
 }
 
-// Writes to a second file and then renames it: a reader never sees half a file, and after a failure
-// the previous file is still there. A pipe or a device is written to directly.
+bool WriteTo(const fs::path& file, const std::string& content) {
+  std::ofstream out(file, std::ios::binary);
+  return static_cast<bool>(out << content << std::flush);
+}
+
+// A reader never sees half a file, and a failure keeps the file that was there. A pipe or a device
+// is written to directly.
 absl::Status Write(const std::string& path, const std::string& content) {
-  namespace fs = std::filesystem;
   std::error_code error;
-  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) return WriteTo(path, content);
-  const std::string part = path + ".part";
-  absl::Status status = WriteTo(part, content);
-  if (status.ok()) fs::rename(part, path, error);
-  if (status.ok() && !error) return status;
-  if (error) {
-    status = absl::InvalidArgumentError(
-        absl::StrCat("--out: cannot write ", path, ": ", error.message()));
-  }
+  const bool exists = fs::exists(path, error);
+  const fs::path file = exists ? fs::canonical(path, error) : fs::path(path);
+  const bool is_special = exists && !fs::is_regular_file(file, error);
+  const std::string hidden = absl::StrCat(".", file.filename().string(), ".", getpid());
+  const fs::path part = is_special ? file : file.parent_path() / hidden;
+  absl::Status status;
+  if (!WriteTo(part, content)) status = CannotWrite(path, std::strerror(errno));
+  if (is_special) return status;
+  if (status.ok()) fs::rename(part, file, error);
+  if (status.ok() && error) status = CannotWrite(path, error.message());
   fs::remove(part, error);
   return status;
 }

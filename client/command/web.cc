@@ -10,8 +10,9 @@ constexpr int64_t kMostPort = 65535;
 
 // A private server stops when it is idle. It is then started again and the call is repeated, unless
 // a part of the answer has already arrived.
-absl::Status CallThrough(const Connection& connection, const JsonCall& call,
+absl::Status CallThrough(const Connection& connection, const JsonCall& once,
                          const JsonReceiver& receive) {
+  const JsonCall call = WithRequestId(once);
   bool has_begun = false;
   const auto attempt = [&] {
     return CallWithJson(connection.channel, call, [&](const std::string& answer) {

@@ -30,12 +30,14 @@ into() {
   mv "$part" "$file"
 }
 
+trap 'rm -f .*."$$"' EXIT
+
 # Draws the picture with NAME.gnuplot, if gnuplot is installed.
 draw() {
   if command -v gnuplot >/dev/null; then
     gnuplot "$1.gnuplot"
     # gnuplot does not say that a disk is full.
-    if [ -e "$1.svg" ] && ! tail -n 2 "$1.svg" | grep -q "</svg>"; then
+    if [ -s "$1.svg" ] && ! tail -n 2 "$1.svg" | grep -q "</svg>"; then
       echo "$1.svg is not complete: the disk may be full" >&2
       exit 1
     fi

@@ -20,10 +20,12 @@ kernels() {
   sed 's/.*"energies":\[//; s/{"epsilon"/\n&/g' kernel.jsonl |
     sed -n 's/^{"epsilon":\([^,]*\),.*"f":\([^,]*\),.*"kernel":\[\([^]]*\)\].*/\1,\2,\3/p'
 }
+into .kernels.$$ kernels
 # W is a density of rates; W/f is the density of the energy after a collision.
 exact() {
   echo "epsilon,outgoing,density"
-  kernels | awk -F, '{for (i = 3; i <= NF; ++i) printf "%s,%.3f,%.9g\n", $1, (i - 2)/1000, $i/$2}'
+  awk -F, '{for (i = 3; i <= NF; ++i) printf "%s,%.3f,%.9g\n", $1, (i - 2)/1000, $i/$2}' \
+    .kernels.$$
 }
 into kernel-exact.csv exact
 
@@ -32,13 +34,12 @@ collisions() {
   i=0
   while [ "$i" -lt "$orbits" ]; do
     ballpiston trace --rho "$rho" --delta "$delta" --events "$events" --seed "$((seed + i))" \
-      >kernel-orbit.jsonl
+      >".kernel-orbit.$$"
     sed -n '/"event":"ball_piston"/{
       s/.*"piston_energy_before":\([^,]*\),"piston_energy":\([^,}]*\).*/\1,\2/p
-    }' kernel-orbit.jsonl
+    }' ".kernel-orbit.$$"
     i=$((i + 1))
   done
-  rm -f kernel-orbit.jsonl
 }
 into kernel-collisions.csv collisions
 
@@ -46,7 +47,7 @@ into kernel-collisions.csv collisions
 # 0. The bins end a window before the largest outgoing energy, 1/2 - epsilon, where W diverges.
 histograms() {
   echo "epsilon,outgoing,density,standard_error,count,samples"
-  kernels | sed 's/,.*//' | awk -F, -v window="$window" -v bins="$bins" '
+  awk -F, -v window="$window" -v bins="$bins" '
     FNR == NR { epsilon[++n] = $1; end[n] = 1 - 2*($1 + window); next }
     {
       for (i = 1; i <= n; ++i) {
@@ -65,7 +66,7 @@ histograms() {
           print epsilon[i] "," u*u/2 "," m/scale "," sqrt(m)/scale "," m "," samples[i]
         }
       }
-    }' - kernel-collisions.csv
+    }' .kernels.$$ kernel-collisions.csv
 }
 into kernel-measured.csv histograms
 

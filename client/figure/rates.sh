@@ -20,11 +20,10 @@ lengths=17
 # Prints the interval of each epsilon: epsilon,lower,upper.
 intervals() {
   ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$epsilon" --format csv \
-    >rates-list.csv
+    >".rates-list.$$"
   awk -F, -v w="$half_width" '
     NR == 1 { for (i = 1; i <= NF; i++) if ($i == "epsilon") at = i; next }
-    { print $at "," ($at > w ? $at - w : 0) "," ($at + w < 0.5 ? $at + w : 0.5) }' rates-list.csv
-  rm rates-list.csv
+    { print $at "," ($at > w ? $at - w : 0) "," ($at + w < 0.5 ? $at + w : 0.5) }' ".rates-list.$$"
 }
 into rates-intervals.csv intervals
 

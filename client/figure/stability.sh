@@ -11,13 +11,12 @@ count() {
   quick=$(by_effort --quick --quick "")
   if [ -t 2 ]; then
     stability $quick
-  elif ! stability $quick 2>stability.log; then
-    cat stability.log >&2
+  elif ! stability $quick 2>".stability.$$"; then
+    cat ".stability.$$" >&2
     return 1
   fi
 }
 into stability.md count
-rm -f stability.log
 
 # The tables "All counts" of stability.md, separated by tabs because names have commas, with the sum
 # of all kinds of failures. A case stands only in the first row of its block.

@@ -13,6 +13,7 @@
 #include "absl/time/clock.h"
 #include "client/library/error_text.h"
 #include "client/library/quoted.h"
+#include "client/library/request_id.h"
 #include "client/output/json.h"
 
 namespace ballpiston::client {
@@ -113,7 +114,22 @@ absl::Status End(BlockingCall& call, const absl::Status& status) {
 const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path) {
   const auto* method = google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(
       absl::StrReplaceAll(path, {{"/", "."}}));
-  return method == nullptr || method->client_streaming() ? nullptr : method;
+  if (method == nullptr || method->client_streaming()) return nullptr;
+  const bool is_spelled_so =
+      path == absl::StrCat(method->service()->full_name(), "/", method->name());
+  return is_spelled_so && absl::StartsWith(path, "ballpiston.v1.") ? method : nullptr;
+}
+
+JsonCall WithRequestId(JsonCall call) {
+  const std::unique_ptr<Message> request = New(call.method->input_type());
+  const auto* const field = call.method->input_type()->FindFieldByName("request_id");
+  const auto status = google::protobuf::util::JsonStringToMessage(call.request, request.get());
+  if (field == nullptr || !status.ok()) return call;
+  const auto* const reflection = request->GetReflection();
+  if (!reflection->GetString(*request, field).empty()) return call;
+  reflection->SetString(request.get(), field, NewRequestId());
+  call.request = Json(*request);
+  return call;
 }
 
 absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& json_call,

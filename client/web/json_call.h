@@ -26,6 +26,9 @@ struct JsonCall {
 // API has no such method, or if its requests are a stream.
 const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path);
 
+// The same call with a request id, if its request can have one and has none: so it may be repeated.
+JsonCall WithRequestId(JsonCall call);
+
 // Receives each answer as JSON, in the form of `--format json`. False ends the call, whose status
 // is then OK.
 using JsonReceiver = std::function<bool(const std::string& answer)>;

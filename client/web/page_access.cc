@@ -20,11 +20,16 @@ bool AreEqual(absl::string_view a, absl::string_view b) {
   return difference == 0;
 }
 
+// Browsers leave the usual port out.
+std::string WithPort(const char* host, int port) {
+  return port == 80 ? host : absl::StrCat(host, ":", port);
+}
+
 }  // namespace
 
 PageAccess::PageAccess(int port, std::string token)
-    : address_(absl::StrCat("127.0.0.1:", port)),
-      localhost_(absl::StrCat("localhost:", port)),
+    : address_(WithPort("127.0.0.1", port)),
+      localhost_(WithPort("localhost", port)),
       token_(std::move(token)) {}
 
 absl::Status PageAccess::CheckOrigin(absl::string_view host, absl::string_view origin) const {

@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,6 +22,8 @@ namespace {
 
 constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
+// So long a reader of a stream may pause.
+constexpr std::chrono::hours kPatience{1};
 constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
 
 using httplib::Request;
@@ -78,6 +81,7 @@ class WebServer::Implementation {
       : files_(std::move(files)), call_(std::move(call)) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kMostConnections); };
     server_.set_payload_max_length(kMostRequestBytes);
+    server_.set_write_timeout(kPatience);
     server_.set_keep_alive_max_count(kMostCallsPerConnection);
     server_.set_default_headers(SafeHeaders());
     // By default two servers could share a port.
@@ -137,8 +141,9 @@ class WebServer::Implementation {
     }
     const std::string type = method->server_streaming() ? kStreamType : kUnaryType;
     if (!HasType(request, type)) {
+      RespondError(absl::InvalidArgumentError(absl::StrCat("Content-Type must be ", type)),
+                   response);
       response.status = 415;
-      response.set_header("Accept-Post", type);
       return;
     }
     const auto timeout = TimeoutOf(request);
@@ -165,15 +170,19 @@ class WebServer::Implementation {
     const auto request = OpenEnvelope(call.request);
     response.set_chunked_content_provider(
         kStreamType, [this, request, call](size_t, httplib::DataSink& sink) mutable {
-          const auto write = [&sink](const std::string& envelope) {
-            return sink.is_writable() && sink.write(envelope.data(), envelope.size());
+          bool is_whole = true;  // so far
+          const auto write = [&](const std::string& envelope) {
+            is_whole =
+                is_whole && sink.is_writable() && sink.write(envelope.data(), envelope.size());
+            return is_whole;
           };
           absl::Status status = request.status();
           if (status.ok()) {
             call.request = *request;
             status = call_(call, [&](const std::string& json) { return write(Envelope(json)); });
           }
-          write(EndOfStream(status));
+          // A stream that lacks a message must not look complete.
+          if (!write(EndOfStream(status))) return false;
           sink.done();
           return true;
         });

@@ -1,10 +1,11 @@
 // The HTTP server of `ballpiston web`, for local connections: the files of the page, and a
 // gateway that forwards calls in the Connect protocol to ballpistond.
 //
-//   GET  /                                         the page
-//   POST /ballpiston.v1.EnsembleService/METHOD     a call, with the token (page_access.h)
+//   GET  /                                 the page
+//   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token (page_access.h)
 //
-// Each open stream takes one of kMostConnections threads. If its reader disconnects, the call ends.
+// Each open stream takes one of kMostConnections threads. If its reader disconnects, the call ends
+// with the next message; a watch has a heartbeat at least.
 #ifndef BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 #define BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 

@@ -18,19 +18,33 @@ constexpr int kSetUpNodes = 16;
 // From u = 1 all jumps go to u' = 0; this u avoids the division by 0.
 constexpr double kFastest = 1 - 1e-12;
 
+// A rate, and what it leaves after the time t of the law: exp(-rate t).
+struct Decay {
+  Decay(double rate, double t) : rate(rate), left(std::exp(-rate * t)) {}
+  double rate, left;
+};
+
+// Below this difference of two rates times t a series is used, because differences cancel.
+constexpr double kClose = 1e-2;
+
 // int_0^t exp(-a s - b (t - s)) ds
-double TwoStages(double a, double b, double t) {
-  const double x = (a - b) * t;
-  return std::exp(-a * t) * (x == 0 ? t : t * std::expm1(x) / x);
+double TwoStages(const Decay& a, const Decay& b, double t) {
+  const double x = (a.rate - b.rate) * t;
+  if (std::fabs(x) < kClose) return t * std::sqrt(a.left * b.left) * (1 + x * x / 24);
+  return (b.left - a.left) / (a.rate - b.rate);
 }
 
-// The same over the durations of three stages.
-double ThreeStages(double a, double b, double c, double t) {
-  constexpr double kClose = 1e-3;  // the series leaves out (x t)^2/24 of itself
-  const double least = std::min({a, b, c}), most = std::max({a, b, c});
-  const double middle = a + b + c - least - most;
-  if ((most - least) * t < kClose) return t * t / 2 * std::exp(-(a + b + c) / 3 * t);
-  return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most - least);
+// The same over the durations of three stages. The series leaves out 4e-6 of itself.
+double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double t) {
+  const auto [least, most] =
+      std::minmax({a, b, c}, [](const Decay& x, const Decay& y) { return x.rate < y.rate; });
+  if ((most.rate - least.rate) * t < kClose) {
+    return t * t / 2 * std::cbrt(a.left * b.left * c.left);
+  }
+  const bool b_is_between = (b.rate - a.rate) * (c.rate - b.rate) >= 0;
+  const bool a_is_between = (a.rate - b.rate) * (c.rate - a.rate) >= 0;
+  const Decay& middle = b_is_between ? b : a_is_between ? a : c;
+  return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most.rate - least.rate);
 }
 
 std::vector<double> MiddleRates(size_t bins) {
@@ -87,23 +101,26 @@ std::vector<double> EnergyLaw::Probabilities(double epsilon, double t) const {
   const double u = std::min(std::sqrt(2 * epsilon), kFastest);
   std::vector<double> law(bins_);
   const auto start = static_cast<size_t>(2 * epsilon * static_cast<double>(bins_));
-  law[std::min(start, bins_ - 1)] = std::exp(-JumpRate(u) * t);
+  law[std::min(start, bins_ - 1)] = Decay(JumpRate(u), t).left;
   AddOneJump(u, t, law);
   AddTwoJumps(u, t, law);
   AddModes(all_, 1, u, t, law);
   AddModes(losses_, -1, u, t, law);
+  for (double& probability : law) probability = std::max(probability, 0.0);
   return law;
 }
 
 // With u' = s sin(phi), K du' = max(u, u') dphi but for its prefactor; its kink is at u' = u.
 void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
-  const double s = std::sqrt(1 - u * u), rate = JumpRate(u);
+  const double s = std::sqrt(1 - u * u);
+  const Decay start(JumpRate(u), t);
   const auto angle = [s](double v) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; };
   for (size_t bin = 0; bin < bins_ && Edge(bin) < s; ++bin) {
     const double lower = Edge(bin), upper = Edge(bin + 1), kink = std::clamp(u, lower, upper);
     const auto add = [&](double phi, double weight) {
       const double v = s * std::sin(phi);
-      law[bin] += weight * kJumpKernelPrefactor * std::max(u, v) * TwoStages(rate, JumpRate(v), t);
+      law[bin] += weight * kJumpKernelPrefactor * std::max(u, v) *
+                  TwoStages(start, Decay(JumpRate(v), t), t);
     };
     ForEachGaussNode<6>(angle(lower), angle(kink), add);
     ForEachGaussNode<6>(angle(kink), angle(upper), add);
@@ -113,13 +130,17 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
 // Integrates over the place w after the first jump, as above. The mass that comes from w to a bin
 // has a root at the w from which the bin's upper edge is the farthest that can be reached.
 void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const {
-  const double s = std::sqrt(1 - u * u), rate = JumpRate(u);
+  const double s = std::sqrt(1 - u * u);
+  const Decay start(JumpRate(u), t);
+  std::vector<Decay> ends_of_bins;
+  for (const double rate : middle_rates_) ends_of_bins.emplace_back(rate, t);
   const auto add = [&](double phi, double weight) {
-    const double w = s * std::sin(phi), rate_there = JumpRate(w);
+    const double w = s * std::sin(phi);
+    const Decay between(JumpRate(w), t);
     const double jumps = weight * kJumpKernelPrefactor * std::max(u, w);
     for (size_t bin = 0; bin < bins_ && Edge(bin) < std::sqrt(1 - w * w); ++bin) {
       law[bin] += jumps * KernelMass(w, Edge(bin), Edge(bin + 1)) *
-                  ThreeStages(rate, rate_there, middle_rates_[bin], t);
+                  ThreeStages(start, between, ends_of_bins[bin], t);
     }
   };
   std::vector<double> ends = {0, std::min(u, s), s};
@@ -132,12 +153,18 @@ void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const 
 
 void EnergyLaw::AddModes(const Modes& modes, double sign, double u, double t,
                          std::vector<double>& law) const {
-  const double rate = JumpRate(u);
+  const Decay start(JumpRate(u), t);
   const Eigen::ArrayXd gains = modes.generator.Gains(u);
+  std::vector<Decay> rates;
+  for (const double rate : modes.generator.rates()) rates.emplace_back(rate, t);
   for (const Node& node : modes.nodes) {
-    const Eigen::ArrayXd stages = modes.generator.rates().unaryExpr(
-        [&](double k) { return ThreeStages(rate, k, node.rate, t); });
-    law[node.bin] += sign * (gains * node.gains * stages).sum();
+    const Decay end(node.rate, t);
+    double sum = 0;
+    for (size_t k = 0; k < rates.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      sum += gains[i] * node.gains[i] * ThreeStages(start, rates[k], end, t);
+    }
+    law[node.bin] += sign * sum;
   }
 }
 

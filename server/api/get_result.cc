@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "server/api/methods.h"
 #include "server/api/request_check.h"
 #include "server/jobs/job_name.h"
@@ -13,7 +15,8 @@ absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& c
   }
   if (request.unfinished()) {
     auto now = service.book.UnfinishedResult(call.caller, id->job, id->point);
-    if (!now.ok() || *now) return now.ok() ? absl::StatusOr<v1::PointResult>(**now) : now.status();
+    if (!now.ok()) return now.status();
+    if (*now) return std::move(**now);
   }
   return service.book.Result(call.caller, id->job, id->point);
 }

@@ -28,9 +28,6 @@ namespace {
 // So much of finished points is read at once, and a last point more.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
-// UnfinishedResult searches at most this many unfinished points, those that changed last.
-constexpr size_t kMostLivePoints = 1000;
-
 // How often processor time is stored. If the server is killed, the time since it was last stored
 // does not count for the quota.
 constexpr absl::Duration kBetweenWork = absl::Minutes(1);
@@ -588,13 +585,11 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   const auto number = static_cast<uint64_t>((*job)->Now().job.spec().experiment());
   const ExperimentKind* const experiment = FindExperiment(number);
   if (experiment == nullptr) return std::nullopt;  // a test's own
-  for (const LivePoint& live : scheduler_.ChangedSince((*job)->sequence(), 0, kMostLivePoints)) {
-    if (static_cast<int64_t>(live.index) != point) continue;
-    const PointSummary summary = live.experiment->Summarize(live.merged);
-    return PointResultMessage(ResultRecordOf(live.index, *live.experiment, summary),
-                              DetailsRecordOf(summary), *experiment);
-  }
-  return std::nullopt;
+  const auto live = scheduler_.Unfinished((*job)->sequence(), static_cast<size_t>(point));
+  if (!live) return std::nullopt;
+  const PointSummary summary = live->experiment->Summarize(live->merged);
+  return PointResultMessage(ResultRecordOf(live->index, *live->experiment, summary),
+                            DetailsRecordOf(summary), *experiment);
 }
 
 // The results may be removed while they are read. Then the job has expired or is gone when its

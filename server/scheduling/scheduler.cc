@@ -524,6 +524,17 @@ std::vector<LivePoint> Scheduler::ChangedSince(int64_t key, uint64_t version, si
   return changed;
 }
 
+std::optional<LivePoint> Scheduler::Unfinished(int64_t key, size_t index) const {
+  MutexLock lock(mutex_);
+  const RunPointer run = FindRun(key);
+  if (run == nullptr) return std::nullopt;
+  const auto found = run->open_points().find(index);
+  if (found == run->open_points().end()) return std::nullopt;
+  const OpenPoint& point = *found->second;
+  if (!point.fold().HasBlocks()) return std::nullopt;
+  return LivePoint{index, point.version, point.experiment(), point.fold().Merged()};
+}
+
 WorkCounts Scheduler::Counts() const {
   return {.samples = samples_.load(std::memory_order_relaxed),
           .processor_seconds = processor_seconds_.load(std::memory_order_relaxed)};

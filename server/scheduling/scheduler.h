@@ -124,6 +124,9 @@ class Scheduler {
   // `limit`.
   std::vector<LivePoint> ChangedSince(int64_t run, uint64_t version, size_t limit) const;
 
+  // A copy of an unfinished point, if some of it is computed.
+  std::optional<LivePoint> Unfinished(int64_t run, size_t index) const;
+
   WorkCounts Counts() const;  // takes no lock
 
  private:

@@ -76,7 +76,7 @@ TEST_F(FigureTest, WithoutGnuplotLeavesDataAndScripts) {
   // A folder with all that the script needs but gnuplot.
   const std::string bin = server_.folder().File("bin");
   fs::create_directory(bin);
-  for (const char* program : {"sh", "sed", "mv"}) {
+  for (const char* program : {"sh", "sed", "mv", "rm"}) {
     fs::create_symlink(std::string("/bin/") + program, bin + "/" + program);
   }
   options.environment["PATH"] = bin;

@@ -272,7 +272,7 @@ TEST_F(ReportTest, AFailureKeepsThePreviousFile) {
   EXPECT_THAT(server_.Client({"watch", job}), ExitsWith(0));
   const ProcessResult nowhere = server_.Client({"report", job, "--out", "/no/such/folder/r.html"});
   EXPECT_THAT(nowhere, ExitsWith(2));
-  EXPECT_THAT(nowhere.err, HasSubstr("--out: cannot write /no/such/folder/r.html.part: No such"));
+  EXPECT_THAT(nowhere.err, HasSubstr("--out: cannot write /no/such/folder/r.html: No such"));
   const ProcessResult full = server_.Client({"report", job, "--out", "/dev/full"});
   EXPECT_THAT(full, ExitsWith(2));
   EXPECT_THAT(full.err, HasSubstr("--out: cannot write /dev/full: No space left on device"));

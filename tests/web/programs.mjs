@@ -1,11 +1,10 @@
 // The real programs, for tests of the page: a server with a store of its own, `ballpiston web`,
 // and the command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
-import {execFile, execFileSync, spawn} from 'node:child_process';
+import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {createInterface} from 'node:readline';
-import {promisify} from 'node:util';
 
 const bin = resolve(process.env.BALLPISTON_BIN ?? '../../build/release/bin');
 const program = join(bin, 'ballpiston');
@@ -56,14 +55,6 @@ export class Programs {
       maxBuffer: 1 << 28,
     };
     return execFileSync(program, words, options).trimEnd();
-  }
-
-  async runSoon(...words) {
-    const {stdout} = await promisify(execFile)(program, words, {
-      env: this.environment,
-      maxBuffer: 1 << 28,
-    });
-    return stdout.trimEnd();
   }
 
   // {address, stop()} of a `ballpiston web`; the address has the token. `port` 0: any.

@@ -205,7 +205,7 @@
       this.title.textContent = words(job.spec?.experiment);
       const state = ballpiston.stateText(job.state);
       document.title = `${words(job.spec?.experiment)}, ${state} – ballpiston`;
-      const shown = `${job.state} ${job.answered_from_store}`;
+      const shown = `${job.state} ${job.answered_from_store} ${job.results_expired}`;
       if (this.state.dataset.shown !== shown) {
         this.state.dataset.shown = shown;
         this.state.replaceChildren(ballpiston.stateElement(job));
@@ -487,6 +487,17 @@
 
     // The same question: the server answers from its store, or computes.
     async askAgain() {
+      this.head.ask.disabled = true;
+      try {
+        await this.create();
+      } catch {
+        // The banner says why, or another view is shown.
+      } finally {
+        this.head.ask.disabled = false;
+      }
+    }
+
+    async create() {
       const request = {spec: this.record.job.spec, request_id: crypto.randomUUID()};
       const job = await keepTrying(
         () => call('EnsembleService/CreateEnsembleJob', request, this.signal),
