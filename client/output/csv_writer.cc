@@ -88,7 +88,7 @@ class HistogramCsvWriter : public CsvWriter {
     return {"name", "sigma", "time", "lower", "upper", "count", "density", "exact_density"};
   }
 
-  // A density sums to 1 over the histograms of a name and a time.
+  // A density integrates to 1 over the histograms of a name and a time.
   using Key = std::pair<std::string, double>;
   static Key KeyOf(const v1::Histogram& histogram) { return {histogram.name(), histogram.time()}; }
 

@@ -167,8 +167,9 @@ std::vector<std::vector<double>> EnergyRelaxation::ProbabilitiesOfLimit() const 
       new EnergyLaw({.degree = 10, .levels = 5}, static_cast<int>(kEnergyBins));
   std::vector<std::vector<double>> probabilities;
   if (!epsilon_) return probabilities;
+  const EnergyLaw::Start start = law->From(*epsilon_);
   for (const size_t lag : kLawLags) {
-    probabilities.push_back(law->Probabilities(*epsilon_, Lag(lag) / unit_of_limit_));
+    probabilities.push_back(law->Probabilities(start, Lag(lag) / unit_of_limit_));
   }
   return probabilities;
 }

@@ -47,6 +47,9 @@ double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double t) {
   return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most.rate - least.rate);
 }
 
+// phi, of v = s sin(phi); what lies beyond s cannot be reached.
+double Angle(double v, double s) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; }
+
 std::vector<double> MiddleRates(size_t bins) {
   std::vector<double> rates(bins);
   for (size_t bin = 0; bin < bins; ++bin) {
@@ -59,10 +62,9 @@ std::vector<double> MiddleRates(size_t bins) {
 // int K(w, v) dv over the part of (lower, upper) that a jump from w can reach: v = s sin(psi).
 double KernelMass(double w, double lower, double upper) {
   const double s = std::sqrt(1 - w * w);
-  const auto angle = [s](double v) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; };
-  const double kink = angle(std::clamp(w, lower, upper));
+  const double kink = Angle(std::clamp(w, lower, upper), s);
   return kJumpKernelPrefactor *
-         (w * (kink - angle(lower)) + s * (std::cos(kink) - std::cos(angle(upper))));
+         (w * (kink - Angle(lower, s)) + s * (std::cos(kink) - std::cos(Angle(upper, s))));
 }
 
 }  // namespace
@@ -97,15 +99,20 @@ double EnergyLaw::Edge(size_t bin) const {
   return std::sqrt(static_cast<double>(bin) / static_cast<double>(bins_));
 }
 
-std::vector<double> EnergyLaw::Probabilities(double epsilon, double t) const {
+EnergyLaw::Start EnergyLaw::From(double epsilon) const {
   const double u = std::min(std::sqrt(2 * epsilon), kFastest);
+  const auto bin = static_cast<size_t>(2 * epsilon * static_cast<double>(bins_));
+  return {u, std::min(bin, bins_ - 1), all_.generator.Gains(u), losses_.generator.Gains(u)};
+}
+
+std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const {
+  const double u = start.u;
   std::vector<double> law(bins_);
-  const auto start = static_cast<size_t>(2 * epsilon * static_cast<double>(bins_));
-  law[std::min(start, bins_ - 1)] = Decay(JumpRate(u), t).left;
+  law[start.bin] = Decay(JumpRate(u), t).left;
   AddOneJump(u, t, law);
   AddTwoJumps(u, t, law);
-  AddModes(all_, 1, u, t, law);
-  AddModes(losses_, -1, u, t, law);
+  AddModes(all_, start.gains, u, t, law);
+  AddModes(losses_, -start.gains_of_losses, u, t, law);
   for (double& probability : law) probability = std::max(probability, 0.0);
   return law;
 }
@@ -114,7 +121,6 @@ std::vector<double> EnergyLaw::Probabilities(double epsilon, double t) const {
 void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   const double s = std::sqrt(1 - u * u);
   const Decay start(JumpRate(u), t);
-  const auto angle = [s](double v) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; };
   for (size_t bin = 0; bin < bins_ && Edge(bin) < s; ++bin) {
     const double lower = Edge(bin), upper = Edge(bin + 1), kink = std::clamp(u, lower, upper);
     const auto add = [&](double phi, double weight) {
@@ -122,8 +128,8 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
       law[bin] += weight * kJumpKernelPrefactor * std::max(u, v) *
                   TwoStages(start, Decay(JumpRate(v), t), t);
     };
-    ForEachGaussNode<6>(angle(lower), angle(kink), add);
-    ForEachGaussNode<6>(angle(kink), angle(upper), add);
+    ForEachGaussNode<6>(Angle(lower, s), Angle(kink, s), add);
+    ForEachGaussNode<6>(Angle(kink, s), Angle(upper, s), add);
   }
 }
 
@@ -151,10 +157,9 @@ void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const 
   }
 }
 
-void EnergyLaw::AddModes(const Modes& modes, double sign, double u, double t,
+void EnergyLaw::AddModes(const Modes& modes, const Eigen::ArrayXd& gains, double u, double t,
                          std::vector<double>& law) const {
   const Decay start(JumpRate(u), t);
-  const Eigen::ArrayXd gains = modes.generator.Gains(u);
   std::vector<Decay> rates;
   for (const double rate : modes.generator.rates()) rates.emplace_back(rate, t);
   for (const Node& node : modes.nodes) {
@@ -164,7 +169,7 @@ void EnergyLaw::AddModes(const Modes& modes, double sign, double u, double t,
       const auto i = static_cast<Eigen::Index>(k);
       sum += gains[i] * node.gains[i] * ThreeStages(start, rates[k], end, t);
     }
-    law[node.bin] += sign * sum;
+    law[node.bin] += sum;
   }
 }
 

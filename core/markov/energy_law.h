@@ -3,10 +3,11 @@
 //
 // With u = sqrt(2 ep), r the jump rate and K the kernel of generator.h, the law at time t is the
 // sum over the number of jumps: none, one, two, and more:
-//   exp(-r(u) t) delta(u' - u) + K(u, u') E(r(u), r(u')) + int K(u, v) K(v, u') E(r(u), r(v),
-//   r(u')) dv
-//     + sum_k (K f_k)(u) (K f_k)(u') E(r(u), rate_k, r(u')) - the same sum of the multiplication by
-//     r
+//   exp(-r(u) t) delta(u' - u)
+//   + K(u, u') E(r(u), r(u'))
+//   + int K(u, v) K(v, u') E(r(u), r(v), r(u')) dv
+//   + sum_k (K f_k)(u) (K f_k)(u') E(r(u), rate_k, r(u'))
+//   - the same sum over the eigenfunctions of the multiplication by r
 // where E is the integral of exp(-rates * durations) over all durations that sum to t (up to its
 // sign a divided difference of exp(-x t)), and f_k are the generator's eigenfunctions, with the
 // decay rates rate_k. The first three terms contain the mass at u and the kernel's singularities;
@@ -23,6 +24,7 @@
 #define BALLPISTON_CORE_MARKOV_ENERGY_LAW_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "core/markov/generator.h"
@@ -36,8 +38,16 @@ class EnergyLaw {
   // Equal bins of the energy over [0, 1/2].
   EnergyLaw(const Discretisation& discretisation, int bins);
 
-  // The probability of each bin, for epsilon in [0, 1/2] and t >= 0.
-  std::vector<double> Probabilities(double epsilon, double t) const;
+  // An energy from where to start, with what all times share.
+  struct Start {
+    double u;
+    size_t bin;
+    Eigen::ArrayXd gains, gains_of_losses;
+  };
+  Start From(double epsilon) const;  // in [0, 1/2]
+
+  // The probability of each bin, for t >= 0.
+  std::vector<double> Probabilities(const Start& start, double t) const;
 
  private:
   // A node of the integral over a bin of gains times a smooth function. The function is taken at
@@ -60,7 +70,7 @@ class EnergyLaw {
   void AddOneJump(double u, double t, std::vector<double>& law) const;
   void AddTwoJumps(double u, double t, std::vector<double>& law) const;
   // Two jumps or more by the generator; exactly two by its losses alone.
-  void AddModes(const Modes& modes, double sign, double u, double t,
+  void AddModes(const Modes& modes, const Eigen::ArrayXd& gains, double u, double t,
                 std::vector<double>& law) const;
 
   size_t bins_;

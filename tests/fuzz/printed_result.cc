@@ -1,4 +1,5 @@
 // The client's printing of results that a server sent, in every format.
+#include <iterator>
 #include <sstream>
 
 #include "ballpiston/v1/ensemble.pb.h"
@@ -26,7 +27,10 @@ void RequirePrinted(const v1::ListResultsResponse& page, client::Format format) 
 void CheckPrintedResult(const std::string& bytes) {
   v1::ListResultsResponse page;
   if (!page.ParseFromString(bytes)) return;
-  RequirePrinted(page, IsOneIn(2, bytes) ? client::Format::kTable : client::Format::kCsv);
+  constexpr client::Format kFormats[] = {client::Format::kTable, client::Format::kCsv,
+                                         client::Format::kCsvHistograms,
+                                         client::Format::kCsvCurves};
+  RequirePrinted(page, kFormats[bytes.size() % std::size(kFormats)]);
   if (!IsOneIn(128, bytes)) return;  // slow, and nearly all of it the library's
   RequirePrinted(page, bytes.size() % 2 == 0 ? client::Format::kJson : client::Format::kJsonl);
 }

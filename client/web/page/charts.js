@@ -4,11 +4,12 @@
 // A chart is given by
 //   {title, xLabel, yLabel, logX, fromZero, top, note, lines}; y above `top` is cut off
 // and a line by
-//   {label, kind, colour, x, y, error, shift}
+//   {label, kind, colour, x, y, error, shift, stepped}
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
 //           'steps' (filled from 0; y[i] holds from x[i] to x[i + 1])
 //   colour  0, 1, ...: index of colour and symbol
 //   error   one standard error for each y; may be missing, as a whole or in parts
+//   stepped of a line: y[i] holds from x[i] to x[i + 1]
 //   shift   of symbols and error bars along x, for the middles of steps
 (function (ballpiston) {
   'use strict';

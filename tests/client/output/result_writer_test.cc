@@ -174,7 +174,7 @@ TEST(ResultCsv, HasColumnsForTheParametersOfAGasAndNoRemarks) {
 )");
 }
 
-TEST(ResultCsv, HistogramsHaveARowForEachBinWithDensitiesThatSumToOne) {
+TEST(ResultCsv, HistogramsHaveARowForEachBinWithDensities) {
   std::vector<v1::PointResult> points = {TwoPoints()[0]};
   *points[0].mutable_histograms(0) = FromText<v1::Histogram>(R"(
     name: "alpha" sigma: 1 lower: 0 upper: 0.5 counts: [1, 2]

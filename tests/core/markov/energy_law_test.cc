@@ -28,7 +28,7 @@ const EnergyLaw& Fine() {
 TEST(EnergyLaw, SumsToOneAtAllTimes) {
   for (const double epsilon : kEpsilons) {
     for (const double time : kTimes) {
-      const std::vector<double> p = Fine().Probabilities(epsilon, time);
+      const std::vector<double> p = Fine().Probabilities(Fine().From(epsilon), time);
       const double sum = std::accumulate(p.begin(), p.end(), 0.0);
       EXPECT_NEAR(sum, 1, kEnergyLawError) << epsilon << " " << time;
       for (const double x : p) EXPECT_GE(x, -kEnergyLawError) << epsilon << " " << time;
@@ -38,7 +38,7 @@ TEST(EnergyLaw, SumsToOneAtAllTimes) {
 
 TEST(EnergyLaw, BecomesTheStationaryLaw) {
   // exp(-0.152 * 200) is 6e-14.
-  const std::vector<double> p = Fine().Probabilities(0.4, 200);
+  const std::vector<double> p = Fine().Probabilities(Fine().From(0.4), 200);
   for (int bin = 0; bin < kBins; ++bin) {
     const double exact = std::sqrt(2 * Edge(bin + 1)) - std::sqrt(2 * Edge(bin));
     EXPECT_NEAR(p[static_cast<size_t>(bin)], exact, 1e-5) << bin;
@@ -50,7 +50,7 @@ TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {
   const EnergyLaw narrow({.degree = 8, .levels = 4}, 256);
   for (const double epsilon : kEpsilons) {
     for (const double time : {0.5, 2.0, 8.0}) {
-      const std::vector<double> p = narrow.Probabilities(epsilon, time);
+      const std::vector<double> p = narrow.Probabilities(narrow.From(epsilon), time);
       const double start = std::min(std::floor(2 * epsilon * 256), 255.0) + 0.5;
       double mean = std::exp(-PairCollisionRate(epsilon) * time) * (epsilon - start / 512);
       for (size_t bin = 0; bin < p.size(); ++bin) {
@@ -68,7 +68,7 @@ TEST(EnergyLaw, FollowsTheKernelAtShortTimes) {
   for (const double epsilon : {0.03125, 0.125, 0.3, 0.4, 0.49}) {
     const KernelDistribution kernel = KernelDistribution::OfPair(epsilon);
     const double rate = PairCollisionRate(epsilon);
-    const std::vector<double> p = Fine().Probabilities(epsilon, kTime);
+    const std::vector<double> p = Fine().Probabilities(Fine().From(epsilon), kTime);
     const auto below = [&](double x) { return x < 0.5 - epsilon ? kernel.Below(x) : 1; };
     for (int bin = 0; bin < kBins; ++bin) {
       if (bin == static_cast<int>(2 * epsilon * kBins)) continue;
@@ -86,8 +86,8 @@ TEST(EnergyLaw, DiffersBetweenDiscretisationsByLessThanItsBound) {
   double largest = 0;
   for (const double epsilon : kEpsilons) {
     for (const double time : kTimes) {
-      const std::vector<double> a = Fine().Probabilities(epsilon, time);
-      const std::vector<double> b = finer.Probabilities(epsilon, time);
+      const std::vector<double> a = Fine().Probabilities(Fine().From(epsilon), time);
+      const std::vector<double> b = finer.Probabilities(finer.From(epsilon), time);
       for (size_t bin = 0; bin < a.size(); ++bin) {
         largest = std::max(largest, std::fabs(a[bin] - b[bin]));
       }

@@ -166,6 +166,23 @@ TEST_F(AccessTable, ListsHoldOwnJobsAndAnAdministratorsAll) {
   EXPECT_EQ(bob_.List().jobs_size(), 0);
 }
 
+TEST_F(AccessTable, UnfinishedResultsBelongToThePrincipalOfTheJob) {
+  const std::string job = alice_.Submit(Equilibrium(1, 1'000'000'000'000));
+  v1::GetResultRequest request;
+  request.set_name(job + "/results/0");
+  request.set_unfinished(true);
+  const auto get = [&request](TestClient& client) {
+    grpc::ClientContext context;
+    v1::PointResult now;
+    return client.ensemble().GetResult(&context, request, &now);
+  };
+  while (!get(alice_).ok()) {  // until a worker has computed a part
+    ASSERT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
+  }
+  EXPECT_EQ(ReasonOf(get(bob_)), "JOB_NOT_FOUND");
+  EXPECT_OK(get(ops_));
+}
+
 // ---- tokens and request ids of another principal ----
 
 class ForeignTokens : public AccessTable {
