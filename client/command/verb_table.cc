@@ -70,7 +70,7 @@ Choices<Format> Formats() {
           {"csv", Format::kCsv}};
 }
 
-// Of results, which have histograms and curves too.
+// The formats of results. Only results have histograms and curves.
 Choices<Format> ResultFormats() {
   Choices<Format> formats = Formats();
   formats.push_back({"csv-histograms", Format::kCsvHistograms});

@@ -22,7 +22,7 @@ namespace {
 
 constexpr char kLoopback[] = "127.0.0.1";
 constexpr size_t kMostCallsPerConnection = 1000;
-// So long a reader of a stream may pause.
+// The longest time that a reader of a stream may pause.
 constexpr std::chrono::hours kPatience{1};
 constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
 
@@ -52,9 +52,13 @@ void Respond(std::string content, const std::string& type, Response& response) {
                                 });
 }
 
-void RespondError(const absl::Status& status, Response& response) {
-  response.status = HttpStatus(status.code());
+void RespondError(const absl::Status& status, int http_status, Response& response) {
+  response.status = http_status;
   Respond(ErrorJson(status), kUnaryType, response);
+}
+
+void RespondError(const absl::Status& status, Response& response) {
+  RespondError(status, HttpStatus(status.code()), response);
 }
 
 bool HasType(const Request& request, const std::string& type) {
@@ -106,7 +110,6 @@ class WebServer::Implementation {
 
   std::string Url() const { return access_->Url(); }
   void Serve() { server_.listen_after_bind(); }
-  void Stop() { server_.stop(); }
 
  private:
   // Rejects requests that other web pages send, and requests to another address.
@@ -134,17 +137,15 @@ class WebServer::Implementation {
     if (!status.ok()) return RespondError(status, response);
     const auto* const method = FindMethod(request.matches[1].str());
     if (method == nullptr) {
-      response.status = 404;
-      return Respond(ErrorJson(absl::UnimplementedError(absl::StrCat(
-                         "no method ", Quoted(request.matches[1].str()), " in this API"))),
-                     kUnaryType, response);
+      const std::string path = Quoted(request.matches[1].str());
+      return RespondError(
+          absl::UnimplementedError(absl::StrCat("no method ", path, " in this API")), 404,
+          response);
     }
     const std::string type = method->server_streaming() ? kStreamType : kUnaryType;
     if (!HasType(request, type)) {
-      RespondError(absl::InvalidArgumentError(absl::StrCat("Content-Type must be ", type)),
-                   response);
-      response.status = 415;
-      return;
+      return RespondError(absl::InvalidArgumentError(absl::StrCat("Content-Type must be ", type)),
+                          415, response);
     }
     const auto timeout = TimeoutOf(request);
     if (!timeout.ok()) return RespondError(timeout.status(), response);
@@ -202,6 +203,5 @@ WebServer::~WebServer() = default;
 absl::Status WebServer::Bind(int port) { return implementation_->Bind(port); }
 std::string WebServer::Url() const { return implementation_->Url(); }
 void WebServer::Serve() { implementation_->Serve(); }
-void WebServer::Stop() { implementation_->Stop(); }
 
 }  // namespace ballpiston::client

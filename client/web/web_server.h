@@ -35,8 +35,7 @@ class WebServer {
   absl::Status Bind(int port);
   // The page's address with its token. After Bind.
   std::string Url() const;
-  void Serve();  // until Stop
-  void Stop();
+  void Serve();  // until the program ends
 
  private:
   class Implementation;

@@ -43,7 +43,8 @@ class CurrentSteps {
   double per_time_;
 };
 
-// What one replica at temperature 1 gives. The lists have a value for each lag, from 0 steps on.
+// The measurements of one replica at temperature 1. Each list has one value for each lag, which is
+// its index in steps.
 struct GreenKubo {
   std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
   std::vector<double> conductivity;     // with a window of so many steps

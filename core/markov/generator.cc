@@ -113,7 +113,7 @@ Eigen::VectorXd Generator::KernelRow(double theta, size_t elements) const {
 }
 
 Eigen::MatrixXd Generator::MinusL(bool has_gains) const {
-  // Of u' below 1/sqrt(2); the rest follows by symmetry.
+  // Only the gains from u' below 1/sqrt(2) are computed; the rest follows by symmetry.
   const size_t slow_elements = (edges_.size() - 1) / 2;
   const Eigen::Index n = First(edges_.size() - 1), slow = First(slow_elements);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);

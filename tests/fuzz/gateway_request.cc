@@ -14,7 +14,8 @@ void CheckGatewayRequest(const std::string& bytes) {
   const std::string path = bytes.substr(0, end);
   const std::string body = end == std::string::npos ? "" : bytes.substr(end + 1);
   const auto opened = client::OpenEnvelope(body);
-  Require(!opened.ok() || client::Envelope(*opened) == body, "an envelope is closed as it was");
+  Require(!opened.ok() || client::Envelope(*opened) == body,
+          "an opened envelope can be made again");
   const auto* const method = client::FindMethod(path);
   if (method == nullptr) return;
   Require(path.starts_with("ballpiston.v1."), "only this API's methods are found");

@@ -15,14 +15,12 @@
     pause,
     TabHidden,
     ResultView,
+    POINT_COLUMNS,
+    pointCells,
     GridChart,
-    zElement,
     isNumber,
-    withError,
-    valueText,
     countText,
     words,
-    parametersText,
     shellWord,
   } = ballpiston;
 
@@ -231,15 +229,7 @@
       this.onChoose = onChoose;
       this.count = ROWS;
       this.rows = new Map();
-      this.columns = [
-        {label: 'Point'},
-        {label: 'Parameters'},
-        {label: 'Model'},
-        {label: 'Value', number: true},
-        {label: 'Exact', number: true},
-        {label: 'z', number: true},
-      ];
-      this.table = table('Points, with their first estimate', this.columns, [], {
+      this.table = table('Points, with their first estimate', POINT_COLUMNS, [], {
         class: 'rows points',
       });
       this.body = this.table.querySelector('tbody');
@@ -275,7 +265,7 @@
     row(point, isFinished, next) {
       const known = this.rows.get(point.index);
       if (known?.samples === point.samples && known.isFinished === isFinished) return known.row;
-      const row = tableRow(this.columns, this.cells(point, isFinished));
+      const row = tableRow(POINT_COLUMNS, this.cells(point, isFinished));
       const hadFocus = known?.row.contains(document.activeElement);
       if (known) known.row.replaceWith(row);
       else this.body.insertBefore(row, next);
@@ -285,20 +275,12 @@
     }
 
     cells(point, isFinished) {
-      const first = point.estimates?.[0] ?? {};
       const button = element(
         'button',
         {type: 'button', class: 'link', onclick: () => this.onChoose(point.index)},
         `Point ${point.index}`,
       );
-      return [
-        element('span', {}, button, isFinished ? '' : ' (running)'),
-        parametersText(point.parameters),
-        words(point.model),
-        withError(first.value, first.standard_error),
-        isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
-        zElement(first.z_score),
-      ];
+      return pointCells(point, element('span', {}, button, isFinished ? '' : ' (running)'));
     }
 
     mark(shown) {

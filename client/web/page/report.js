@@ -9,16 +9,14 @@
     facts,
     table,
     ResultView,
+    POINT_COLUMNS,
+    pointCells,
     GridChart,
     specFacts,
     specJson,
     jobFacts,
-    zElement,
     wholeTime,
     countText,
-    isNumber,
-    valueText,
-    withError,
     words,
     parametersText,
   } = ballpiston;
@@ -54,27 +52,6 @@
       .map((text) => element('p', {class: 'panel'}, text));
   }
 
-  const POINT_COLUMNS = [
-    {label: 'Point'},
-    {label: 'Parameters'},
-    {label: 'Model'},
-    {label: 'Value', number: true},
-    {label: 'Exact', number: true},
-    {label: 'z', number: true},
-  ];
-
-  function pointRow(point) {
-    const first = point.estimates?.[0] ?? {};
-    return [
-      String(point.index),
-      parametersText(point.parameters),
-      words(point.model),
-      withError(first.value, first.standard_error),
-      isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
-      zElement(first.z_score),
-    ];
-  }
-
   function pointTable(points) {
     const rows = points.slice(0, MOST_ROWS);
     const caption =
@@ -82,7 +59,8 @@
       (rows.length < points.length
         ? `: the first ${countText(rows.length)} of ${countText(points.length)}`
         : '');
-    return table(caption, POINT_COLUMNS, rows.map(pointRow), {class: 'rows points'});
+    const cells = rows.map((point) => pointCells(point, String(point.index)));
+    return table(caption, POINT_COLUMNS, cells, {class: 'rows points'});
   }
 
   // Shown after it is in the page, because charts need their width.

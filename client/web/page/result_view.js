@@ -300,5 +300,29 @@
     }
   }
 
-  Object.assign(ballpiston, {ResultView, zElement});
+  // ---- Points as rows of a table
+
+  const POINT_COLUMNS = [
+    {label: 'Point'},
+    {label: 'Parameters'},
+    {label: 'Model'},
+    {label: 'Value', number: true},
+    {label: 'Exact', number: true},
+    {label: 'z', number: true},
+  ];
+
+  // The cells of a point with its first estimate; `name` is the first cell.
+  function pointCells(point, name) {
+    const first = point.estimates?.[0] ?? {};
+    return [
+      name,
+      parametersText(point.parameters),
+      words(point.model),
+      withError(first.value, first.standard_error),
+      isNumber(first.exact) ? valueText(first.exact, first.standard_error / 10) : '',
+      zElement(first.z_score),
+    ];
+  }
+
+  Object.assign(ballpiston, {ResultView, POINT_COLUMNS, pointCells});
 })((globalThis.ballpiston ??= {}));
