@@ -127,14 +127,17 @@ absl::Status CheckVariables(const Options& options, const std::set<std::string>&
   return absl::OkStatus();
 }
 
-// Sets the environment of the script: this program's folder in PATH, the flags of `figure`, and the
+// Sets the environment of the script: in PATH this program's folder and, as installed, the folder of
+// the programs that only figures use (tools/README.md); the flags of `figure`, and the
 // script's variables. The user's config file and variables of the same names have no effect.
 void SetEnvironment(const Options& options, const std::set<std::string>& names) {
   const auto set = [](const std::string& name, const std::string& value) {
     setenv(name.c_str(), value.c_str(), 1);
   };
   const std::string path = FromEnvironment("PATH");
-  set("PATH", absl::StrCat(ProgramFolder().string(), path.empty() ? "" : ":", path));
+  const fs::path libexec = ProgramFolder().parent_path() / "libexec" / "ballpiston";
+  set("PATH", absl::StrCat(ProgramFolder().string(), ":", libexec.string(),
+                           path.empty() ? "" : ":", path));
   set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
   for (const auto& [name, value] : options.inherited) set(name, value);
   set("BALLPISTON_CONFIG", "/dev/null");

@@ -114,6 +114,13 @@ VerbResult ServerStop(const Options& options, Terminal&) {
   return ExitCode::kDone;
 }
 
+VerbResult ServerAddress(const Options& options, Terminal& terminal) {
+  return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
+    terminal.out << connection.address << '\n';
+    return ExitCode::kDone;
+  });
+}
+
 VerbResult ServerStatus(const Options& options, Terminal& terminal) {
   return WithRunningServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     const auto status = connection.client.Status();

@@ -452,6 +452,14 @@ std::vector<Verb> ServerVerbs() {
        With({&kDataFolder}, {}),
        {"server stop", "server stop --data-dir data"},
        &ServerStop},
+      {"server address",
+       "print the address of the server that commands use",
+       "Starts the private server if the address is its address and it does not run. Programs in "
+       "other languages can connect there.",
+       {},
+       With({&kServer}, {}),
+       {"server address"},
+       &ServerAddress},
       {"server status",
        "show what the server is doing and what it permits",
        "Starts no server.",
@@ -485,7 +493,8 @@ std::vector<Verb> ServerVerbs() {
        With({&kDataFolder}, {}),
        {"server check", "server check --data-dir data"},
        &ServerCheck}};
-  Verb status = verbs[2];
+  Verb status = *std::find_if(verbs.begin(), verbs.end(),
+                              [](const Verb& verb) { return verb.name == "server status"; });
   status.name = "status";
   status.summary = "the same as server status";
   verbs.push_back(std::move(status));

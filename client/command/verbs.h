@@ -31,6 +31,7 @@ VerbResult ReportJobs(const Options& options, Terminal& terminal);
 VerbResult Web(const Options& options, Terminal& terminal);
 VerbResult ServerStart(const Options& options, Terminal& terminal);
 VerbResult ServerStop(const Options& options, Terminal& terminal);
+VerbResult ServerAddress(const Options& options, Terminal& terminal);
 VerbResult ServerStatus(const Options& options, Terminal& terminal);
 VerbResult ServerToken(const Options& options, Terminal& terminal);
 VerbResult ServerBackup(const Options& options, Terminal& terminal);

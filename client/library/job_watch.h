@@ -24,18 +24,18 @@ namespace ballpiston::client {
 
 // Called on the thread that watches, one at a time; any of them may be empty.
 struct WatchCallbacks {
-  std::function<void(const v1::EnsembleJob&)> on_job;  // at first, and on each change of state
-  std::function<void(const v1::StatisticsSnapshot&)> on_snapshot;
-  std::function<void()> on_heartbeat;
+  std::function<void(const v1::EnsembleJob&)> on_job = {};  // at first, and on each change of state
+  std::function<void(const v1::StatisticsSnapshot&)> on_snapshot = {};
+  std::function<void()> on_heartbeat = {};
   // The stream broke; the next attempt follows after `pause`.
-  std::function<void(const absl::Status& why, absl::Duration pause)> on_disconnect;
+  std::function<void(const absl::Status& why, absl::Duration pause)> on_disconnect = {};
 };
 
 struct WatchOptions {
   absl::Duration initial_backoff = absl::Milliseconds(100);
   absl::Duration max_backoff = absl::Seconds(5);
   absl::Duration give_up_after = absl::Minutes(2);
-  std::function<void()> before_reattach;  // e.g. starts a private server again
+  std::function<void()> before_reattach = {};  // e.g. starts a private server again
 };
 
 // SUCCEEDED, FAILED or CANCELLED.

@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/ensemble/block_digest.h"
+
 namespace ballpiston {
 
 PointFold::PointFold(const PointExperiment& experiment)
@@ -25,6 +27,7 @@ uint64_t PointFold::Add(ChunkResult chunk) {
 uint64_t PointFold::MergeNext(BlockResult chunk) {
   const uint64_t known = std::exchange(state_.partial, {}).samples;
   state_.complete.Merge(chunk);
+  state_.chunk_digests.push_back(DigestOf(chunk));
   state_.blocks = 0;
   ++state_.chunk;
   if (state_.chunk == chunks_ || experiment_.ReachesTolerance(state_.complete)) Finish();

@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "core/ensemble/block_result.h"
 #include "core/ensemble/chunk_fold.h"
@@ -27,6 +28,7 @@ struct FoldState {
   uint64_t blocks = 0;        // the number of merged blocks of that chunk
   BlockResult complete = {};  // the merged result of all complete chunks
   BlockResult partial = {};   // the merged blocks of that chunk
+  std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (block_digest.h)
 };
 
 class PointFold {

@@ -97,6 +97,7 @@ bool IsPossible(const PointExperiment& experiment, const BlockResult& result, ui
 bool IsPossible(const PointExperiment& experiment, const FoldState& state) {
   const ChunkPlan& plan = experiment.plan();
   const uint64_t chunks = plan.chunks();
+  if (state.chunk_digests.size() != state.chunk) return false;
   if (state.chunk == 0 && state.blocks == 0)
     return false;  // none is written before the first block
   const bool is_in_the_plan = state.chunk < chunks && state.blocks < plan.BlocksIn(state.chunk);
@@ -116,6 +117,7 @@ std::string FoldRecordBytes(const FoldState& state) {
   record.set_blocks(state.blocks);
   FillAccumulators(state.complete, *record.mutable_complete());
   FillAccumulators(state.partial, *record.mutable_partial());
+  record.mutable_chunk_digests()->Assign(state.chunk_digests.begin(), state.chunk_digests.end());
   return DeterministicBytes(record);
 }
 
@@ -127,7 +129,8 @@ absl::StatusOr<FoldState> FoldStateFromBytes(const std::string& bytes) {
   return FoldState{.chunk = record.chunk(),
                    .blocks = record.blocks(),
                    .complete = ResultOfAccumulators(record.complete()),
-                   .partial = ResultOfAccumulators(record.partial())};
+                   .partial = ResultOfAccumulators(record.partial()),
+                   .chunk_digests = {record.chunk_digests().begin(), record.chunk_digests().end()}};
 }
 
 std::string ChunkRecordBytes(const ChunkResult& chunk) {

@@ -102,6 +102,7 @@ v1::PointResult PointResultMessage(const storage::Result& record, const storage:
   v1::PointResult message = PointResultMessage(record);
   for (const auto& curve : details.curves()) Fill(curve, *message.add_curves());
   for (const auto& histogram : details.histograms()) Fill(histogram, *message.add_histograms());
+  *message.mutable_chunk_digests() = details.chunk_digests();
   if (details.histograms().empty() || experiment.expected_probabilities == nullptr) return message;
   const PointParameters point = PointOf(record);
   const auto is_missing = [&](const ParameterUse& use) {

@@ -117,10 +117,12 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
   return result;
 }
 
-storage::Details DetailsRecordOf(const PointSummary& summary) {
+storage::Details DetailsRecordOf(const PointSummary& summary,
+                                 const std::vector<uint64_t>& chunk_digests) {
   storage::Details details;
   for (const NamedHistogram& histogram : summary.histograms) AddHistogram(histogram, details);
   for (const Curve& curve : summary.curves) AddCurve(curve, details);
+  details.mutable_chunk_digests()->Assign(chunk_digests.begin(), chunk_digests.end());
   return details;
 }
 

@@ -4,7 +4,9 @@
 #define BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "ballpiston/storage/records.pb.h"
@@ -17,8 +19,9 @@ namespace ballpiston::server {
 storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
                                const PointSummary& summary);
 
-// Histograms and curves.
-storage::Details DetailsRecordOf(const PointSummary& summary);
+// Histograms and curves, and the digests of the chunks that they are made of.
+storage::Details DetailsRecordOf(const PointSummary& summary,
+                                 const std::vector<uint64_t>& chunk_digests = {});
 
 // Value and standard error of the first estimate; of a result without one, 0 and none.
 Estimate FirstEstimateOf(const storage::Result& result);

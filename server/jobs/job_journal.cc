@@ -113,7 +113,8 @@ uint64_t JobJournal::Merged(const MergedSamples& merged) {
 void JobJournal::Checkpoint(size_t point, const FoldState& state) {
   // Shared, because the store's closures are copyable; made into bytes only if it is written.
   auto copy = std::make_shared<const FoldState>(state);
-  const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial);
+  const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial) +
+                       copy->chunk_digests.size() * sizeof(uint64_t);
   store_.RecordCheckpoint(
       job_->sequence(), static_cast<int64_t>(point), state.chunk,
       [copy = std::move(copy)] { return FoldRecordBytes(*copy); }, bytes);
@@ -130,12 +131,13 @@ void JobJournal::Worked(double seconds) {
 }
 
 void JobJournal::PointFinished(size_t point, const PointExperiment& experiment,
-                               const BlockResult& merged) {
+                               const BlockResult& merged,
+                               const std::vector<uint64_t>& chunk_digests) {
   if (experiment.plan().samples() == 0) job_->AddSamples(0, 1);  // computed without one
   const PointSummary summary = experiment.Summarize(merged);
   PointRow row = {static_cast<int64_t>(point), static_cast<double>(summary.samples),
                   RecordBytes(ResultRecordOf(point, experiment, summary)),
-                  RecordBytes(DetailsRecordOf(summary))};
+                  RecordBytes(DetailsRecordOf(summary, chunk_digests))};
   row.has_checkpoint = resumed_ || experiment.plan().samples() > 0;
   auto told = std::make_shared<const std::string>(row.result);
   const auto bytes = static_cast<int64_t>(row.result.size() + row.details.size());

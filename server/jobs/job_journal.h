@@ -31,7 +31,8 @@ class JobJournal : public RunJournal {
   void ChunkIsEarly(size_t point, const ChunkResult& chunk) override;
   void Worked(double seconds) override;
   void PointFinished(size_t point, const PointExperiment& experiment,
-                     const BlockResult& merged) override;
+                     const BlockResult& merged,
+                     const std::vector<uint64_t>& chunk_digests) override;
   void Ended(const absl::Status& outcome) override;
   void AwaitRoom() override;
 

@@ -56,9 +56,10 @@ class RunJournal {
   // Seconds of processor time that an executor has just spent on the run.
   virtual void Worked(double seconds) = 0;
 
-  // May be slow.
+  // May be slow. The digests are those of the point's complete chunks.
   virtual void PointFinished(size_t point, const PointExperiment& experiment,
-                             const BlockResult& merged) = 0;
+                             const BlockResult& merged,
+                             const std::vector<uint64_t>& chunk_digests) = 0;
 
   // OK: every point is finished. CANCELLED: the run was stopped. Otherwise the reason of failure.
   virtual void Ended(const absl::Status& outcome) = 0;

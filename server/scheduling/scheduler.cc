@@ -321,7 +321,8 @@ absl::Status Scheduler::OpenOne(Run& run, size_t index) {
     if (!resumed.ok()) return resumed;
   }
   if (open->fold().finished()) {
-    run.journal().PointFinished(index, *open->experiment(), open->fold().Merged());
+    run.journal().PointFinished(index, *open->experiment(), open->fold().Merged(),
+                                open->fold().state().chunk_digests);
     DropAdopted(run, index);
     return absl::OkStatus();
   }
@@ -487,7 +488,8 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
     if (lease.pilot) {
       opener_.KeepPilot(*lease.pilot, PilotOf(*open->experiment(), merged));
     } else {
-      run->journal().PointFinished(lease.point, *open->experiment(), merged);
+      run->journal().PointFinished(lease.point, *open->experiment(), merged,
+                                   open->fold().state().chunk_digests);
     }
     return absl::OkStatus();
   });

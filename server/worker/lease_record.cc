@@ -149,6 +149,7 @@ absl::Status CheckChunks(const storage::Lease& record, const ChunkPlan& plan) {
 absl::Status CheckPartial(const PointExperiment& experiment, const PartialChunk& start) {
   FoldState state = {.chunk = start.chunk, .blocks = start.blocks, .partial = start.merged};
   if (start.chunk > 0) state.complete = experiment.EmptyResult();
+  state.chunk_digests.resize(start.chunk);
   const bool is_possible =
       start.blocks == 0 ? start.merged == BlockResult() : CheckFoldState(experiment, state).ok();
   if (is_possible) return absl::OkStatus();

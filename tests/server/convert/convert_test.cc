@@ -42,12 +42,17 @@ BlockResult SomeBlock() {
 }
 
 TEST(FoldRecord, ComesBackExactly) {
-  const FoldState state = {.chunk = 7, .blocks = 3, .complete = SomeBlock(), .partial = {}};
+  const FoldState state = {.chunk = 2,
+                           .blocks = 3,
+                           .complete = SomeBlock(),
+                           .partial = {},
+                           .chunk_digests = {7, std::numeric_limits<uint64_t>::max()}};
   ASSERT_OK_AND_ASSIGN(const auto back, FoldStateFromBytes(FoldRecordBytes(state)));
-  EXPECT_EQ(back.chunk, 7u);
+  EXPECT_EQ(back.chunk, 2u);
   EXPECT_EQ(back.blocks, 3u);
   EXPECT_TRUE(back.complete == SomeBlock());
   EXPECT_TRUE(back.partial == BlockResult());
+  EXPECT_EQ(back.chunk_digests, state.chunk_digests);
   EXPECT_TRUE(std::signbit(back.complete.batch_means[0].mean_denominator));
 }
 
@@ -64,6 +69,7 @@ class StoredFold : public testing::Test {
                                             0)) {}
 
   absl::Status Checked(const FoldState& state) const { return CheckFoldState(*experiment_, state); }
+  std::vector<uint64_t> Digests(uint64_t chunks) const { return std::vector<uint64_t>(chunks); }
   BlockResult Empty() const { return experiment_->EmptyResult(); }
   const ChunkPlan& plan() const { return experiment_->plan(); }
 
@@ -73,9 +79,15 @@ class StoredFold : public testing::Test {
 
 TEST_F(StoredFold, ThatLiesWithinThePlanIsAccepted) {
   EXPECT_OK(Checked({.blocks = 1, .partial = Empty()}));
-  EXPECT_OK(Checked({.chunk = 1, .complete = Empty()}));
-  EXPECT_OK(Checked({.chunk = 1, .blocks = 1, .complete = Empty(), .partial = Empty()}));
-  EXPECT_OK(Checked({.chunk = plan().chunks(), .complete = Empty()}));
+  EXPECT_OK(Checked({.chunk = 1, .complete = Empty(), .chunk_digests = Digests(1)}));
+  EXPECT_OK(Checked({.chunk = 1,
+                     .blocks = 1,
+                     .complete = Empty(),
+                     .partial = Empty(),
+                     .chunk_digests = Digests(1)}));
+  EXPECT_OK(Checked({.chunk = plan().chunks(),
+                     .complete = Empty(),
+                     .chunk_digests = Digests(plan().chunks())}));
 }
 
 TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
@@ -84,8 +96,15 @@ TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
   no_error.health.max_energy_error = kNan;
   for (const FoldState& state :
        {FoldState{},  // nothing merged yet
-        FoldState{.chunk = plan().chunks() + 1, .complete = Empty()},
-        FoldState{.chunk = plan().chunks(), .blocks = 1, .complete = Empty(), .partial = Empty()},
+        FoldState{.chunk = 1, .complete = Empty()},  // a digest is missing
+        FoldState{.chunk = plan().chunks() + 1,
+                  .complete = Empty(),
+                  .chunk_digests = Digests(plan().chunks() + 1)},
+        FoldState{.chunk = plan().chunks(),
+                  .blocks = 1,
+                  .complete = Empty(),
+                  .partial = Empty(),
+                  .chunk_digests = Digests(plan().chunks())},
         FoldState{.blocks = plan().BlocksIn(0), .partial = Empty()},
         FoldState{.blocks = 1},                       // nothing merged
         FoldState{.complete = Empty()},               // something before the first chunk

@@ -47,7 +47,8 @@ class RecordingJournal : public RunJournal {
     work += seconds;
   }
 
-  void PointFinished(size_t point, const PointExperiment&, const BlockResult& result) override {
+  void PointFinished(size_t point, const PointExperiment&, const BlockResult& result,
+                     const std::vector<uint64_t>&) override {
     std::lock_guard lock(mutex);
     finished.emplace(point, result);
   }
