@@ -177,9 +177,8 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalS
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectIfRunning(const LocalServer& server) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(server.Address());
   if (!channel.ok() || Answers(**channel)) return channel;
-  return absl::UnavailableError(
-      absl::StrCat("no private server is running (a command that needs it starts it in ",
-                   server.folder, ")"));
+  return absl::UnavailableError(absl::StrCat(
+      "no private server is running (a command that needs it starts it in ", server.folder, ")"));
 }
 
 }  // namespace ballpiston::client

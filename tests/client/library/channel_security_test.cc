@@ -27,8 +27,9 @@ constexpr char kKeyPem[] = "-----BEGIN PRIVATE KEY-----\n";
 
 TEST(ChannelSecurity, ATokenIsNotSentWithoutTls) {
   for (const char* address : {"localhost:1", "127.0.0.1:1", "example.org:1"}) {
-    EXPECT_THAT(CheckSecurity({.token = kSecret}, address),
-                StatusIs(kInvalid, AllOf(HasSubstr("unencrypted connection"), Not(HasSubstr(kSecret)))));
+    EXPECT_THAT(
+        CheckSecurity({.token = kSecret}, address),
+        StatusIs(kInvalid, AllOf(HasSubstr("unencrypted connection"), Not(HasSubstr(kSecret)))));
     EXPECT_THAT(CheckSecurity({.token_file = "f"}, address), StatusIs(kInvalid));
     EXPECT_OK(CheckSecurity({.tls = true, .token = kSecret}, address));
     EXPECT_OK(CheckSecurity({.ca = "f", .token_file = "f"}, address));
