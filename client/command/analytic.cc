@@ -1,4 +1,4 @@
-// ballpiston analytic: the closed forms at every pair of (rho, delta).
+// ballpiston analytic: evaluates the closed forms for every pair of rho and delta.
 #include "client/command/connection.h"
 #include "client/output/analytic_output.h"
 

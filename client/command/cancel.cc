@@ -11,7 +11,7 @@ VerbResult Cancel(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     absl::Status first_error;
     for (const std::string& name : options.jobs) {
-      const std::string id = NewRequestId();  // one for both attempts
+      const std::string id = NewRequestId();  // the same for a retry
       const auto job = connection.Ask([&] { return connection.client.Cancel(name, id); });
       first_error.Update(job.status());
       if (!job.ok()) continue;

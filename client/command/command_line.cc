@@ -28,7 +28,7 @@ absl::Status Named(const std::string& name, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(name, ": ", status.message()));
 }
 
-// A verb as CLI11 parses it.
+// A verb and the CLI11 parser of its words.
 struct ParsedVerb {
   CLI::App* app = nullptr;
   std::vector<CLI::Option*> arguments;
@@ -104,7 +104,7 @@ class WordParser {
     return nullptr;
   }
 
-  // After --flag or --flag= CLI11 would read the next word, even a flag, as the value.
+  // If the value is missing, CLI11 would take the next word as the value, even if it is a flag.
   static absl::Status CheckValuesAreThere(const std::vector<std::string>& words) {
     std::map<std::string, bool> takes_value;
     for (const Verb& verb : Verbs()) {
@@ -126,7 +126,7 @@ class WordParser {
     return absl::OkStatus();
   }
 
-  // Only flags on the command line, not those from variables or the config file.
+  // Finds the flags on the command line, not those from variables or the config file.
   void FindGiven(const std::vector<std::string>& words, const Verb& verb,
                  std::set<std::string>& given) const {
     const auto end = std::find(words.begin(), words.end(), "--");
@@ -140,8 +140,8 @@ class WordParser {
     }
   }
 
-  // The config file sets flags that the command line and the environment leave open. A target on
-  // the command line replaces all targets of the config file.
+  // Reads from the config file the flags that neither the command line nor the environment sets. A
+  // target on the command line replaces all targets of the config file.
   absl::Status AddConfig(const Verb& verb, const std::set<std::string>& given) {
     const ParsedVerb& parsed = parsed_.at(&verb);
     const CLI::Option* const named = parsed.app->get_option("--config");
@@ -177,7 +177,7 @@ class WordParser {
     const auto& parsed = parsed_.at(&verb).flags;
     for (const Flag* flag : FlagsOf(verb)) {
       const auto option = parsed.find(flag);
-      const bool is_variable = option == parsed.end();  // CLI11 has none without a flag
+      const bool is_variable = option == parsed.end();  // CLI11 has no option for it
       if (!is_variable && option->second->empty()) continue;
       const std::string text =
           is_variable ? FromEnvironment(flag->variable) : option->second->results().front();
@@ -203,7 +203,7 @@ class WordParser {
                  flag.value.read(text, options));
   }
 
-  // For a program that runs in another folder.
+  // An absolute path, for a program that runs in another folder.
   static std::string Absolute(const Value& value, const std::string& text) {
     std::error_code error;
     absl::string_view path = text;
@@ -213,7 +213,7 @@ class WordParser {
     return value.offer == Offer::kFile ? std::filesystem::absolute(text, error).string() : text;
   }
 
-  // Quoted so that a shell reads it back as one word.
+  // The text, quoted if needed, so that a shell reads it as one word.
   static std::string ShellWord(const std::string& text) {
     constexpr char kPlain[] =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=@%+,-[]";
@@ -229,7 +229,7 @@ class WordParser {
     return names;
   }
 
-  // CLI11's parser of the verb before the mistake, or of the program if no verb was named.
+  // CLI11's parser of the verb in which the error is, or of the program if there is no verb.
   const CLI::App& Innermost() const {
     const CLI::App* app = &program_;
     while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
@@ -245,7 +245,7 @@ class WordParser {
         absl::StrCat(" (", kProgram, " help", verb == nullptr ? "" : absl::StrCat(" ", verb->name),
                      " shows its usage)");
     if (verb == nullptr && left.empty()) {
-      return absl::StrCat("name a verb: ", absl::StrJoin(Names(app), ", "), more);
+      return absl::StrCat("no verb is given; verbs are ", absl::StrJoin(Names(app), ", "), more);
     }
     if (!left.empty()) return absl::StrCat(Unexpected(app, verb, left.front()), more);
     return absl::StrCat(Missing(verb, error), more);

@@ -1,4 +1,4 @@
-// The whole program: parses the command line, acts, says what went wrong, returns the exit code.
+// The whole program: parses the command line, runs the verb, prints errors, returns the exit code.
 #ifndef BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
 #define BALLPISTON_CLIENT_COMMAND_COMMAND_LINE_H_
 
@@ -20,11 +20,11 @@ struct CommandLine {
 };
 
 // Parses the words after the program's name. A flag that is not given takes its value from the
-// environment, else from the config file. INVALID_ARGUMENT names the first mistake: the flag, its
-// text and what is permitted.
+// environment, else from the config file. INVALID_ARGUMENT describes the first error: the flag, its
+// text and the permitted values.
 absl::StatusOr<CommandLine> ParseCommandLine(const std::vector<std::string>& words);
 
-// Silences Protocol Buffers' own log for the rest of the process.
+// Turns off the log of Protocol Buffers for the rest of the process.
 ExitCode RunCommandLine(const std::vector<std::string>& words, Terminal& terminal);
 
 }  // namespace ballpiston::client

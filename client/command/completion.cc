@@ -1,5 +1,5 @@
-// ballpiston completion: scripts for three shells, which ask this program for the words that fit
-// (`completion words -- WORD...`), and those words, made from the table of verbs.
+// ballpiston completion: scripts for three shells. A script runs `completion words -- WORD...` to
+// get the possible words, which come from the table of verbs.
 #include <algorithm>
 #include <set>
 #include <string>
@@ -18,8 +18,8 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-// Each passes the words so far; the last one is the word to complete. FILES stands for the names of
-// files. bash splits --flag=value into three words.
+// Each script passes the words so far; the last word is the word to complete. The answer FILES
+// means that the shell completes names of files. bash splits --flag=value into three words.
 constexpr char kBash[] = R"bash(# bash completion for ballpiston
 _ballpiston() {
   local words=("${COMP_WORDS[@]:1:COMP_CWORD}") word=${COMP_WORDS[COMP_CWORD]} offers
@@ -60,7 +60,7 @@ end
 complete -c ballpiston -f -a '(__ballpiston_offers)'
 )fish";
 
-// The verb that the words begin with, and how many of them name it.
+// The verb at the start of the words, and the number of words in its name.
 const Verb* FindVerb(const Strings& words, size_t& length) {
   for (const Verb& verb : Verbs()) {
     const Strings names = absl::StrSplit(verb.name, ' ');
@@ -71,7 +71,7 @@ const Verb* FindVerb(const Strings& words, size_t& length) {
   return nullptr;
 }
 
-// The flag if the word is one that takes a value.
+// The flag that `word` names, if that flag takes a value; else null.
 const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
   for (const Flag* flag : FlagsOf(verb)) {
     if (!flag->name.empty() && !flag->value.IsSwitch() && LongName(*flag) == word) return flag;
@@ -79,7 +79,7 @@ const Flag* FlagWithValue(const Verb& verb, const std::string& word) {
   return nullptr;
 }
 
-// The argument that the last word is; null if the verb has no further one.
+// The argument at the position of the last word; null if the verb has no further argument.
 const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin) {
   size_t before = 0;
   for (size_t i = begin; i + 1 < words.size(); ++i) {
@@ -94,7 +94,7 @@ const Argument* ArgumentAt(const Verb& verb, const Strings& words, size_t begin)
   return many ? &last : nullptr;
 }
 
-// The next words of verbs that begin with the words so far.
+// The possible next words of the verbs that begin with the words so far.
 Strings VerbOffers(Strings so_far) {
   so_far.pop_back();
   std::set<std::string> offers;
@@ -150,8 +150,8 @@ Strings FlagOffers(const Verb& verb) {
   return offers;
 }
 
-// Makes two words of --flag=value, which bash passes as three words, and zsh and fish as one. There
-// the offers have to begin with --flag= likewise: returns this, else "".
+// Splits --flag=value into two words. bash passes it as three words, zsh and fish as one word. zsh
+// and fish need offers that begin with --flag= too: returns this prefix for them, else "".
 std::string SplitValue(Strings& words) {
   if (words.back() == "=") words.back() = "";
   std::erase(words, "=");
@@ -163,7 +163,7 @@ std::string SplitValue(Strings& words) {
   return last.substr(0, equals + 1);
 }
 
-// The last word is the one to complete.
+// Completes the last word.
 Strings Offers(Strings words, const Options& options, const Terminal& terminal) {
   if (words.empty()) words = {""};
   const std::string prefix = SplitValue(words);

@@ -21,7 +21,7 @@ const Flag* FindFlag(const Verb& verb, const std::string& key) {
   return nullptr;
 }
 
-// The keys of one verb; of all verbs if the name is empty.
+// The keys of the verb, or of all verbs if the name is empty.
 std::vector<std::string> Keys(const std::string& verb_name) {
   std::set<std::string> keys;
   for (const Verb& verb : Verbs()) {

@@ -42,7 +42,7 @@ absl::StatusOr<Connection> ConnectTo(const std::string& address, const Options& 
                     .security = security};
 }
 
-// How to come to a private server.
+// Connects to a private server: starts it, or only finds it.
 using PrivateWay = absl::StatusOr<std::shared_ptr<grpc::Channel>> (*)(const LocalServer&);
 
 absl::StatusOr<Connection> ConnectPrivately(PrivateWay connect) {
@@ -62,7 +62,7 @@ absl::StatusOr<Connection> Connect(const Options& options, PrivateWay connect) {
   if (!options.server.empty()) return ConnectTo(options.server, options);
   if (!HasSecurityFlags(options)) return ConnectPrivately(connect);
   return absl::InvalidArgumentError(
-      "the private server needs no TLS and no token; name another one with --server");
+      "the private server uses neither TLS nor a token; name another server with --server");
 }
 
 VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal& terminal,
@@ -78,12 +78,12 @@ VerbResult RunOver(const absl::StatusOr<Connection>& connection, const Terminal&
 absl::Status Connection::Revive() const {
   if (!local) return absl::OkStatus();
   if (absl::Status started = ConnectToLocalServer(*local).status(); !started.ok()) return started;
-  // This channel may still be pausing after its last attempt; a call would fail at once.
+  // After a failed attempt this channel pauses. A call during the pause would fail at once.
   channel->WaitForConnected(absl::ToChronoTime(absl::Now() + kReviveTimeout));
   return absl::OkStatus();
 }
 
-// An error without a reason is an error of the connection; the server's own errors have one.
+// An error without a reason is an error of the connection; the server's errors have a reason.
 absl::Status NameServer(const absl::Status& status, const Connection& connection) {
   const bool lost = absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
   if (!lost || !ErrorReason(status).empty()) return status;

@@ -1,8 +1,8 @@
-// The server that a verb talks to: --server, else BALLPISTON_SERVER or the config file, else the
-// private one (library/local_server.h).
+// The server that a verb uses: --server, else BALLPISTON_SERVER or the config file, else the
+// private server (library/local_server.h).
 //
-// A Unix socket, such as the private server's, uses no TLS and no tokens: settings from the
-// environment and the config file are ignored, and such flags are an error.
+// A Unix socket, such as the private server's, uses neither TLS nor tokens. Flags of TLS and tokens
+// are then an error; the same settings in the environment and the config file are ignored.
 #ifndef BALLPISTON_CLIENT_COMMAND_CONNECTION_H_
 #define BALLPISTON_CLIENT_COMMAND_CONNECTION_H_
 
@@ -25,16 +25,15 @@ struct Connection {
   std::string address;
   std::shared_ptr<grpc::Channel> channel;
   Client client;                     // over the channel
-  std::optional<LocalServer> local;  // set if it is the private server
-  std::string flags;                 // " --server ADDRESS ..." if they were given: for hints
-  ChannelSecurity security;          // what the channel was made with
+  std::optional<LocalServer> local;  // set for the private server
+  std::string flags;                 // for hints: " --server ADDRESS ..." if given
+  ChannelSecurity security;          // of the channel
 
-  // Starts the private server again if it is gone; with a named server nothing to do.
+  // Restarts the private server if it has stopped. Does nothing for a named server.
   absl::Status Revive() const;
 
-  // What `call` answers. A private server may be leaving, idle, just as the client arrives, or be
-  // killed: then it is started again and asked once more. So `call` has to be one that may be
-  // repeated.
+  // Returns the result of `call`. If the private server has just stopped because it was idle, or
+  // was killed, restarts the server and retries once: therefore `call` must be safe to repeat.
   template <typename Call>
   auto Ask(const Call& call) const -> decltype(call()) {
     auto answer = call();
@@ -44,17 +43,16 @@ struct Connection {
   }
 };
 
-// Adds the server's address to an error of the connection. Errors that the server returned stay as
-// they are.
+// Adds the server's address to an error of the connection. Does not change the server's own errors.
 absl::Status NameServer(const absl::Status& status, const Connection& connection);
 
 using VerbOfServer = std::function<VerbResult(const Connection&)>;
 
-// Connects, runs `verb`, and names the server in the error if it did not answer.
+// Connects and runs `verb`. If the server does not answer, the error names the server.
 VerbResult WithServer(const Options& options, const Terminal& terminal, const VerbOfServer& verb);
 
-// The same for a verb that only looks: a private server is not started for it. `verb` does without
-// Connection::Ask, which would.
+// The same, but does not start a private server, for a verb that only shows the state of a server.
+// `verb` must not call Connection::Ask, which can start the server.
 VerbResult WithRunningServer(const Options& options, const Terminal& terminal,
                              const VerbOfServer& verb);
 

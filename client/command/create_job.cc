@@ -14,14 +14,14 @@
 namespace ballpiston::client {
 namespace {
 
-// What the user can do about a limit, by the server's reason; null where its message says it all.
+// Advice for an exceeded limit, by the server's reason; null if the server's message is enough.
 const char* HintOf(const std::string& reason) {
   if (reason == "TOO_MANY_POINTS") return "Split the grid between several jobs.";
-  if (reason == "TOO_MANY_SAMPLES") return "Ask for fewer a point, or split the grid.";
-  if (reason == "QUEUE_FULL") return "Try again when some of them have ended.";
+  if (reason == "TOO_MANY_SAMPLES") return "Ask for fewer samples per point, or split the grid.";
+  if (reason == "QUEUE_FULL") return "Retry when some of the jobs have ended.";
   if (reason == "TOO_MANY_JOBS" || reason == "TOO_MANY_ACTIVE_POINTS") {
-    return "Wait until some of them have ended, or cancel some: ballpiston list, ballpiston cancel "
-           "JOB";
+    return "Wait until some of your jobs have ended, or cancel some: ballpiston list, ballpiston "
+           "cancel JOB";
   }
   if (reason == "TOO_MANY_STORED_BYTES" || reason == "STORE_FULL") {
     return "Delete jobs that are no longer needed: ballpiston list, ballpiston delete JOB";
@@ -48,8 +48,8 @@ absl::StatusOr<v1::EnsembleJob> CreateOnce(const Connection& connection,
   return job;
 }
 
-// If the job of an id failed or was cancelled, or its results have expired, the next id makes a new
-// job.
+// Tries ids in order. If the job of an id failed or was cancelled, or its results have expired, the
+// next id creates a new job.
 absl::StatusOr<v1::EnsembleJob> Resume(const Connection& connection, const v1::EnsembleSpec& spec,
                                        CreateOptions options, const Terminal& terminal) {
   const auto status = connection.Ask([&] { return connection.client.Status(); });
@@ -84,7 +84,7 @@ std::string FromStoreText(const v1::EnsembleJob& job) {
   const absl::Time end = absl::FromUnixSeconds(job.end_time().seconds());
   return absl::StrCat("answered from the store: ", job.name(), ", computed ",
                       absl::FormatTime("%Y-%m-%d %H:%M UTC", end, absl::UTCTimeZone()),
-                      " (--fresh computes anew)");
+                      " (--fresh computes it again)");
 }
 
 }  // namespace ballpiston::client

@@ -1,10 +1,10 @@
-// ballpiston delete: deletes ended jobs with their results. Prints the name of each.
+// ballpiston delete: deletes ended jobs with their results. Prints the name of each deleted job.
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 
 namespace ballpiston::client {
 
-// A delete is not retried: if the answer to the first was lost, a second finds no such job.
+// A delete is not retried: if its answer was lost, a second attempt would find no such job.
 VerbResult Delete(const Options& options, Terminal& terminal) {
   return WithServer(options, terminal, [&](const Connection& connection) -> VerbResult {
     absl::Status first_error;

@@ -7,7 +7,7 @@
 namespace ballpiston::client {
 namespace {
 
-// gRPC's own limits, as on a message's size, come without a reason.
+// Errors from gRPC's own limits, such as the size of a message, have no reason.
 ExitCode OfLimit(const std::string& reason) {
   if (reason.empty()) return ExitCode::kFailed;
   const bool of_one_job = reason == "TOO_MANY_POINTS" || reason == "TOO_MANY_SAMPLES";

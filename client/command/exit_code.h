@@ -8,19 +8,19 @@ namespace ballpiston::client {
 
 enum class ExitCode {
   kDone = 0,
-  kUsage = 2,        // usage, or an argument that is not valid, or a job too large for the server
+  kUsage = 2,        // wrong usage or an invalid argument, or a job too large for the server
   kUnreachable = 3,  // no server answers, or the server is busy: retry later
-  kFailed = 4,       // the job failed or was cancelled, or its state forbids what was asked
+  kFailed = 4,       // the job failed or was cancelled, or its state does not permit the call
   kNotFound = 5,     // no such job, or no result of that point
   kNotPermitted = 6,
   kInterrupted = 130  // Ctrl-C
 };
 
-// Of a call that failed. What has no code of its own counts as kFailed. Of the server's limits
-// those on a single job are kUsage, and those on what it has to do at once kUnreachable.
+// The exit code for a failed call. An error without its own exit code is kFailed. A server's limit
+// on a single job is kUsage; a limit on the server's total work is kUnreachable.
 ExitCode ExitCodeOf(const absl::Status& status);
 
-// Converts the exit status of a child program: the same code if it is one of these, else kFailed.
+// Converts the exit status of a child program: the same number if it is an ExitCode, else kFailed.
 ExitCode ExitCodeOf(int exit_status);
 
 }  // namespace ballpiston::client

@@ -1,11 +1,11 @@
-// ballpiston figure NAME --out DIR: runs the figure's script in the folder DIR. The script gets the
-// data with further ballpiston commands, writes CSV and draws with gnuplot. Prints the files'
-// paths.
+// ballpiston figure NAME --out DIR: runs the figure's script in the folder DIR. The script runs
+// ballpiston commands to get the data, writes CSV files and draws with gnuplot. Prints the paths of
+// the files.
 //
-// The figures are files: the scripts NAME.sh and NAME.gnuplot in share/ballpiston/figures beside
-// the folder of this program, and figure.sh and style.gnuplot, which they share. They are copied to
-// the --out folder unless they exist there: the user may have edited them. A script takes its
-// variables from the environment: ${rho:=...}.
+// A figure consists of the scripts NAME.sh and NAME.gnuplot in share/ballpiston/figures beside this
+// program's folder. All figures share figure.sh and style.gnuplot. These four files are copied to
+// the --out folder. A file that exists there is kept: the user may have edited it. A script takes
+// its variables from the environment: ${rho:=...}.
 #include <signal.h>
 #include <unistd.h>
 
@@ -68,7 +68,7 @@ absl::Status CheckName(const Options& options) {
     return absl::InvalidArgumentError(absl::StrCat("figure ", NotOneOf(options.figure, names)));
   }
   if (options.given.contains("--quick") && options.given.contains("--full")) {
-    return absl::InvalidArgumentError("--quick and --full: give one of them");
+    return absl::InvalidArgumentError("--quick and --full exclude each other: give one of them");
   }
   if (!options.out.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError("--out is missing: name a folder for data, script and picture");
@@ -86,7 +86,7 @@ absl::Status Provide(const fs::path& folder, const std::string& name, const Term
   if (Contents(here) != Contents(installed)) {
     terminal.Note(absl::StrCat(
         "ballpiston: using ", here.string(),
-        ", which differs from the installed file; delete it to use the installed one"));
+        ", which differs from the installed file; delete it to use the installed file"));
   }
   return absl::OkStatus();
 }
@@ -101,7 +101,7 @@ absl::Status ProvideScripts(const fs::path& folder, const std::string& figure,
   return absl::OkStatus();
 }
 
-// The script in the folder, else the installed one.
+// The script in the folder, else the installed script.
 std::string ScriptFor(const fs::path& folder, const std::string& name) {
   std::error_code error;
   return Contents((fs::exists(folder / name, error) ? folder : FiguresFolder()) / name);
@@ -127,17 +127,17 @@ absl::Status CheckVariables(const Options& options, const std::set<std::string>&
   return absl::OkStatus();
 }
 
-// Sets the environment of the script: in PATH this program's folder and, as installed, the folder of
-// the programs that only figures use (tools/README.md); the flags of `figure`, and the
-// script's variables. The user's config file and variables of the same names have no effect.
+// Sets the environment of the script: in PATH this program's folder and, as installed, the folder
+// of the programs that only figures use (tools/README.md); the flags of `figure`, and the script's
+// variables. The user's config file and variables of the same names have no effect.
 void SetEnvironment(const Options& options, const std::set<std::string>& names) {
   const auto set = [](const std::string& name, const std::string& value) {
     setenv(name.c_str(), value.c_str(), 1);
   };
   const std::string path = FromEnvironment("PATH");
   const fs::path libexec = ProgramFolder().parent_path() / "libexec" / "ballpiston";
-  set("PATH", absl::StrCat(ProgramFolder().string(), ":", libexec.string(),
-                           path.empty() ? "" : ":", path));
+  set("PATH",
+      absl::StrCat(ProgramFolder().string(), ":", libexec.string(), path.empty() ? "" : ":", path));
   set("BALLPISTON_SERVER_PROGRAM", UsualServerProgram());
   for (const auto& [name, value] : options.inherited) set(name, value);
   set("BALLPISTON_CONFIG", "/dev/null");
@@ -147,8 +147,8 @@ void SetEnvironment(const Options& options, const std::set<std::string>& names) 
   for (const auto& [name, value] : options.variables) set(name, value);
 }
 
-// An interruption ends the script and every program that it has started; its jobs continue. With
-// the trap the shell waits until the running command has printed how to watch its job.
+// An interruption ends the script and every program that it has started; its jobs continue. The
+// trap makes the shell wait until the running command has printed how to watch its job.
 absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) {
   const std::string commands =
       absl::StrCat("trap 'exit 130' INT TERM HUP; . ./", options.figure, kScript);
@@ -164,8 +164,8 @@ absl::StatusOr<int> RunScript(const Options& options, const Terminal& terminal) 
   return WaitForChild(*pid);
 }
 
-// NAME.csv and NAME-data.csv are files of the figure NAME, unless NAME-data begins with the longer
-// name of another figure.
+// NAME.csv and NAME-data.csv are files of the figure NAME, unless another figure has a longer name
+// with which the file's name begins.
 bool IsFileOf(const std::string& file, const std::string& figure) {
   const auto begins_with = [&file](const std::string& name) {
     return absl::StartsWith(file, name + ".") || absl::StartsWith(file, name + "-");

@@ -8,7 +8,7 @@ namespace ballpiston::client {
 namespace {
 
 std::string Farewell(const Connection& connection, const std::string& name) {
-  return absl::StrCat("The job goes on.\n  watch it again:  ballpiston watch ", name,
+  return absl::StrCat("The job continues.\n  watch it again:  ballpiston watch ", name,
                       connection.flags, "\n  cancel it:       ballpiston cancel ", name,
                       connection.flags);
 }
@@ -34,7 +34,7 @@ absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const st
   const std::string farewell = Farewell(connection, name);
   const Interrupts::Scope scope(terminal.interrupts, [&] { reporter.Farewell(farewell); });
   WatchOptions options;
-  // The watch reports what goes wrong.
+  // If the restart fails, the watch reports the error.
   options.before_reattach = [&connection] { connection.Revive().IgnoreError(); };
   absl::StatusOr<v1::EnsembleJob> job = connection.client.Watch(name, Report(reporter), options);
   reporter.OnEnd();

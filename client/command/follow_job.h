@@ -1,4 +1,4 @@
-// Watching a job to its end from the terminal, with progress on standard error.
+// Watches a job to its end from the terminal, with progress on standard error.
 //
 // An interruption (interrupts.h) ends the watch, but not the job. The message says how to watch the
 // job again and how to cancel it.
@@ -19,11 +19,12 @@ namespace ballpiston::client {
 // The style of --progress. With --quiet and without --progress: none.
 ProgressStyle StyleOf(const Options& options);
 
-// The job as it ended. UNAVAILABLE if the server stayed away for too long.
+// Returns the ended job. UNAVAILABLE if the server did not answer for too long.
 absl::StatusOr<v1::EnsembleJob> FollowJob(const Connection& connection, const std::string& name,
                                           ProgressStyle style, const Terminal& terminal);
 
-// kDone for a job that succeeded, else kFailed, with the reason on standard error.
+// Returns kDone for a job that succeeded. Else prints the reason on standard error and returns
+// kFailed.
 ExitCode ReportEnd(const v1::EnsembleJob& job, const Terminal& terminal);
 
 }  // namespace ballpiston::client

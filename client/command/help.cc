@@ -1,4 +1,4 @@
-// ballpiston help: pages of verbs, on standard output or as files.
+// ballpiston help: prints the pages of verbs, or writes them to files.
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Null for no words: the program's page.
+// The verb that the words name; null, for the program's page, if there are no words.
 absl::StatusOr<const Verb*> VerbNamed(const std::vector<std::string>& words) {
   const std::string name = absl::StrJoin(words, " ");
   if (name.empty()) return nullptr;

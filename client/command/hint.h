@@ -1,4 +1,4 @@
-// What a user can do about an error: a second line of its message.
+// Hints: a second line of an error message tells the user what to do.
 #ifndef BALLPISTON_CLIENT_COMMAND_HINT_H_
 #define BALLPISTON_CLIENT_COMMAND_HINT_H_
 
@@ -10,11 +10,11 @@
 
 namespace ballpiston::client {
 
-// The same error, details included, with the hint on a line of its own.
+// The same error with the same details, and the hint on a separate line.
 absl::Status WithHint(const absl::Status& status, absl::string_view hint);
 
-// If the results of the job have expired, the hint is the command that computes them again. Any
-// other status stays as it is.
+// If the results of the job have expired, adds the command that computes them again. Returns any
+// other status unchanged.
 absl::Status HintIfExpired(const absl::Status& status, const Connection& connection,
                            const std::string& job);
 

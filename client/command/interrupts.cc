@@ -27,7 +27,7 @@ sigset_t SignalsNotIgnored() {
   return signals;
 }
 
-// No destructors: other threads may be anywhere.
+// Runs no destructors, because other threads may still use the objects.
 [[noreturn]] void EndProgram() { std::_Exit(static_cast<int>(ExitCode::kInterrupted)); }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Ctrl-C, SIGTERM and a closed terminal (SIGHUP): each ends the program at once with exit code 130.
 //
-// Construct it before any other thread is started. The signals are blocked in every thread, and a
-// thread of this class receives them. So the last message is printed by an ordinary thread, never
-// in a signal handler. A signal that was ignored before (nohup) stays ignored.
+// Construct it before any other thread starts. The signals are blocked in every thread, and a
+// thread of this class receives them. Therefore an ordinary thread prints the last message, not a
+// signal handler. A signal that was ignored before (nohup) stays ignored.
 #ifndef BALLPISTON_CLIENT_COMMAND_INTERRUPTS_H_
 #define BALLPISTON_CLIENT_COMMAND_INTERRUPTS_H_
 

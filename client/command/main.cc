@@ -21,11 +21,11 @@ bool HasColour() {
 
 }  // namespace
 
-// A closed pipe shows as a failed write (standard_output.h), not as a signal.
+// A closed pipe makes a write fail (standard_output.h); it raises no signal.
 int main(int argc, char** argv) {
   using ballpiston::client::ExitCode;
   std::signal(SIGPIPE, SIG_IGN);
-  setenv("GRPC_VERBOSITY", "NONE", 0);  // what went wrong is told here, in the project's words
+  setenv("GRPC_VERBOSITY", "NONE", 0);  // this program prints the errors itself
   ballpiston::client::Interrupts interrupts;
   ballpiston::client::StandardOutput out;
   ballpiston::client::Terminal terminal{.out = out, .err = std::cerr, .interrupts = &interrupts};

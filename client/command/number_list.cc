@@ -20,8 +20,8 @@ absl::Status Bad(absl::string_view text, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat(Quoted(text), " ", reason));
 }
 
-// std::from_chars takes no blanks, no plus sign and no hexadecimal, but it takes nan and inf:
-// those have letters other than e.
+// std::from_chars rejects blanks, a plus sign and hexadecimal numbers, but accepts nan and inf.
+// Therefore no letters other than e are permitted here.
 std::optional<double> ToNumber(absl::string_view text) {
   if (text.find_first_not_of("0123456789+-.eE") != absl::string_view::npos) return std::nullopt;
   double value = 0;
@@ -48,7 +48,7 @@ struct Range {
   int64_t count = 1;
   bool logarithmic = false;
 
-  // Rounded to 15 digits, so that 0.01:0.49:49 has the doubles nearest to its decimal fractions.
+  // Rounds to 15 digits, so that 0.01:0.49:49 gives the doubles nearest to its decimal fractions.
   double At(int64_t i) const {
     const auto steps = static_cast<double>(count - 1);
     const auto step = static_cast<double>(i);
@@ -76,16 +76,16 @@ absl::StatusOr<Range> ParseRange(absl::string_view text) {
   }
   const bool logarithmic = parts.size() == 4;
   if (logarithmic && (*from <= 0 || *to <= 0)) {
-    return Bad(text, "is logarithmic, so both ends have to be above 0");
+    return Bad(text, "is logarithmic: both ends must be above 0");
   }
-  // Multiplied by the count, and as a ratio, the ends have to stay finite.
+  // The ends times the count, and the ratio of the ends, must stay finite.
   if (std::abs(*from) > kLargest || std::abs(*to) > kLargest) {
     return Bad(text, "has an end beyond 1e100");
   }
   return Range{*from, *to, *count, logarithmic};
 }
 
-// A number is a range of one.
+// A single number is a range with COUNT 1.
 absl::StatusOr<Range> ParseItem(absl::string_view item) {
   if (item.find(':') != absl::string_view::npos) return ParseRange(item);
   const absl::StatusOr<double> number = ParseNumber(item);

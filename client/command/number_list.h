@@ -1,12 +1,12 @@
 // Numbers and lists of numbers as users write them on the command line.
 //
 //   NUMBER  plain decimal or scientific: 0.1, -2, 1e-5. No nan, inf, hexadecimal or blanks.
-//   COUNT   a whole number; 1e6 is one
+//   COUNT   a whole number; 1e6 is permitted
 //   LIST    items separated by commas, each a NUMBER or a range; at most 100,000 numbers
 //   range   FROM:TO:COUNT, evenly spaced, both ends included; with :log evenly in the logarithm
 //           (both ends above 0). A range with COUNT 1 is FROM alone.
 //
-// Every error is INVALID_ARGUMENT; it quotes the text and says what is permitted.
+// Every error is INVALID_ARGUMENT; it quotes the text and states the permitted form.
 #ifndef BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 #define BALLPISTON_CLIENT_COMMAND_NUMBER_LIST_H_
 

@@ -26,7 +26,7 @@ enum class Completion { kBash, kZsh, kFish, kWords };
 struct Options {
   v1::EnsembleSpec spec;
   std::string spec_file;
-  std::string again;  // the job whose question is asked again
+  std::string again;  // the job whose specification is used again
   v1::EvaluatePairsRequest closed_forms;
   v1::TraceOrbitRequest trace;
 
@@ -57,7 +57,7 @@ struct Options {
   PageFormat page = PageFormat::kText;
   Completion completion = Completion::kBash;
 
-  std::set<std::string> given;  // the flags on the command line, such as --rho
+  std::set<std::string> given;  // names of the flags on the command line: --rho
   std::string connection;       // flags that choose the server: " --server ..."
   std::map<std::string, std::string>
       inherited;  // environment of a figure: variable, value of its flag

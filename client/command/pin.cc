@@ -1,5 +1,5 @@
-// ballpiston pin: keeps the results of jobs, or lets them expire again. Prints each job's name and
-// whether it is pinned.
+// ballpiston pin: pins jobs, so that their results do not expire, or unpins them. Prints each job's
+// name and whether it is pinned.
 #include "client/command/connection.h"
 #include "client/command/hint.h"
 

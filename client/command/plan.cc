@@ -1,5 +1,5 @@
-// ballpiston plan: what each model of the ladder would cost for a question, how well it would
-// answer, and which one would be taken. Runs nothing.
+// ballpiston plan: prints the cost and the accuracy of each model for a specification, and the
+// model that --model auto would choose. Runs nothing.
 #include "client/command/connection.h"
 #include "client/command/question.h"
 #include "client/output/plan_output.h"

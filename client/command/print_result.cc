@@ -12,12 +12,12 @@
 namespace ballpiston::client {
 namespace {
 
-// An orbit that left its cell is a defect of the engine: never to be read past.
+// An orbit that left its cell is a defect of the engine, and the warning must not be missed.
 void WarnOfEscapes(const v1::PointResult& point, std::ostream& err) {
   if (point.health().escapes() == 0) return;
   err << "ballpiston: warning: point " << point.index() << ": "
       << ExactText(point.health().escapes())
-      << " orbits left the cell; this is a defect, do not trust the point\n";
+      << " orbits left the cell; this is a defect: do not use the point\n";
 }
 
 void NoteUnfinished(const v1::EnsembleJob& job, const Terminal& terminal) {
@@ -31,8 +31,8 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
   WarnOfEscapes(point, err);
 }
 
-// If the server restarts, only the page in progress is requested again: the pages before it have
-// been printed. Calls writer.Begin when the first page has arrived.
+// If the server restarts, requests only the current page again: the earlier pages have been
+// printed. Calls writer.Begin when the first page has arrived.
 absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job, Format format,
                          ResultWriter& writer, std::ostream& err) {
   std::string token;

@@ -13,7 +13,7 @@ namespace ballpiston::client {
 
 // kFailed for a job that failed or was cancelled; its finished points are printed too.
 // FAILED_PRECONDITION, with a hint, if the results have expired; then nothing is printed.
-// `answered_from_store`: from the answer of Create, because the server does not store it.
+// `answered_from_store` is the value that Create returned: the server does not store it.
 VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
                        Terminal& terminal, bool answered_from_store = false);
 

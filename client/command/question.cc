@@ -23,11 +23,11 @@ absl::Status CheckOneTarget(const std::set<std::string>& flags) {
   return absl::InvalidArgumentError(
       absl::StrCat(absl::StrJoin(given, " and "),
                    " exclude each other: give at most one of --samples, --collisions, --tolerance, "
-                   "--budget; only --tolerance and --budget may stand together"));
+                   "--budget; only --tolerance and --budget can be combined"));
 }
 
-// Looks at flags on the command line only: with --spec or --again, those of the config file are
-// ignored.
+// Checks only the flags on the command line: with --spec or --again, the flags of the config file
+// are ignored.
 bool HasQuestionFlagsBut(const std::string& whole, const Options& options) {
   for (const FlagGroup* group : QuestionFlags()) {
     for (const Flag& flag : group->flags) {
@@ -37,7 +37,7 @@ bool HasQuestionFlagsBut(const std::string& whole, const Options& options) {
   return options.spec.experiment() != v1::EnsembleSpec::EXPERIMENT_UNSPECIFIED;
 }
 
-// `whole` is --spec or --again, `other` the other one.
+// `whole` is --spec or --again; `other` is the other of the two.
 absl::Status CheckAlone(const std::string& whole, const std::string& other,
                         const Options& options) {
   if (!HasQuestionFlagsBut(whole, options)) return absl::OkStatus();

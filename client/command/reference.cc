@@ -106,7 +106,7 @@ Page PageOf(const Verb* verb) { return verb == nullptr ? ProgramPage() : PageOf(
 
 // ---- text ----
 
-// The text in lines of at most kWidth characters, all but the first one indented.
+// Breaks the text into lines of at most kWidth characters. All lines but the first are indented.
 std::string Wrapped(absl::string_view text, size_t column, size_t indent) {
   std::string out;
   for (const absl::string_view word : absl::StrSplit(text, ' ')) {
@@ -121,7 +121,7 @@ std::string Wrapped(absl::string_view text, size_t column, size_t indent) {
   return out;
 }
 
-// The text beside the term, or below a long one.
+// The text beside its term, or below the term if the term is long.
 std::string TextEntry(const Remark& entry) {
   constexpr size_t kColumn = 26;
   std::string line = absl::StrCat("  ", entry.name);
@@ -202,9 +202,9 @@ std::string ManPage(const Verb* verb) {
 
 std::string MarkdownReference() {
   std::string out =
-      "# The command line\n\nWritten by `ballpiston help --format markdown`; a test compares the "
-      "two. Most verbs have the\ngroups Server and General flags; only the first such verb shows "
-      "them.\n";
+      "# The command line\n\n`ballpiston help --format markdown` writes this file; a test checks "
+      "that it is up to date. Most\nverbs have the groups Server and General flags; only the first "
+      "such verb shows them.\n";
   std::set<std::string> shown;
   const auto add = [&](const Verb* verb) {
     Page page = PageOf(verb);

@@ -1,4 +1,4 @@
-// Help, man pages and the reference in Markdown, made from the table of verbs.
+// Makes help, man pages and the reference in Markdown from the table of verbs.
 #ifndef BALLPISTON_CLIENT_COMMAND_REFERENCE_H_
 #define BALLPISTON_CLIENT_COMMAND_REFERENCE_H_
 
@@ -8,16 +8,16 @@
 
 namespace ballpiston::client {
 
-// The page of a verb; of the program for null.
+// The page of a verb; null gives the program's page.
 std::string TextPage(const Verb* verb);
-// The verbs that begin with this word, as server; empty if there are none.
+// The page of the verbs that begin with this word, such as server; empty if no verb does.
 std::string GroupPage(const std::string& word);
 std::string ManPage(const Verb* verb);
 
 // All pages as one document.
 std::string MarkdownReference();
 
-// ballpiston-server-start for the verb server start; ballpiston for null.
+// ballpiston-server-start for the verb `server start`; null gives ballpiston.
 std::string PageName(const Verb* verb);
 
 }  // namespace ballpiston::client

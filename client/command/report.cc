@@ -52,7 +52,7 @@ absl::StatusOr<Points> PointsOf(const Connection& connection, const std::string&
 absl::StatusOr<std::string> JobJson(const Connection& connection, const std::string& name) {
   const absl::StatusOr<Points> points = PointsOf(connection, name);
   if (!points.ok()) return points.status();
-  // After the points, so that it counts them all.
+  // Fetched after the points, so that its count includes all of them.
   const auto job = connection.Ask([&] { return connection.client.Get(name); });
   if (!job.ok()) return job.status();
   const int64_t left_out = points->is_complete ? 0
@@ -84,8 +84,8 @@ bool WriteTo(const fs::path& file, const std::string& content) {
   return static_cast<bool>(out << content << std::flush);
 }
 
-// A reader never sees half a file, and a failure keeps the file that was there. A pipe or a device
-// is written to directly.
+// Writes a hidden file and renames it: a reader never sees a partial file, and after a failure the
+// old file remains. Writes directly to a pipe or a device.
 absl::Status Write(const std::string& path, const std::string& content) {
   std::error_code error;
   const bool exists = fs::exists(path, error);

@@ -1,4 +1,4 @@
-// ballpiston run: submit, watch, and print the result.
+// ballpiston run: submits a job, watches it and prints its result.
 #include "client/command/connection.h"
 #include "client/command/create_job.h"
 #include "client/command/follow_job.h"

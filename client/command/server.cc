@@ -1,5 +1,5 @@
-// ballpiston server: starts, stops, checks and backs up servers of this machine, makes tokens, and
-// shows what any server is doing.
+// ballpiston server: starts, stops, checks and backs up servers on this machine, makes tokens, and
+// shows the status of any server.
 #include <signal.h>
 
 #include <cstdlib>
@@ -19,7 +19,7 @@
 namespace ballpiston::client {
 namespace {
 
-// A server of this machine: its data folder and how to start it.
+// A server on this machine: its data folder and the command that starts it.
 absl::StatusOr<ServerProgram> ProgramOf(const Options& options) {
   if (options.data_dir.empty()) {
     if (std::getenv("BALLPISTON_SERVER") != nullptr) {
@@ -43,21 +43,21 @@ absl::Status CheckStart(const Options& options) {
       "give it its own folder with --data-dir");
 }
 
-// FAILED_PRECONDITION if flags were given: they have no effect on a server that runs.
+// FAILED_PRECONDITION if flags were given: they have no effect on a running server.
 VerbResult ReportRunning(const std::string& folder, const RunningServer& running,
                          const Options& options, const Terminal& terminal) {
   if (!options.server_flags.empty()) {
     return absl::FailedPreconditionError(absl::StrCat(
-        "a server runs in ", folder,
-        " already, so these flags have no effect: stop it first (ballpiston server stop)"));
+        "a server already runs in ", folder,
+        ": these flags have no effect; stop that server first (ballpiston server stop)"));
   }
   terminal.Note(
-      "a server runs there already; if a client started that server, it stops when it is idle");
+      "a server already runs there; if a client started that server, it stops when it is idle");
   terminal.out << running.address << '\n';
   return ExitCode::kDone;
 }
 
-// For the log, before the server runs.
+// Makes the data folder for the log, before the server starts.
 absl::Status MakeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -14,7 +14,8 @@
 namespace ballpiston::client {
 namespace {
 
-// The numbers of a logarithmic range are rounded: a number is whole if it is as near as this.
+// The numbers of a logarithmic range have rounding errors. A number counts as whole if its relative
+// distance from a whole number is at most this.
 constexpr double kRelativeRounding = 1e-12;
 constexpr double kWholeUpTo = 0x1p53;
 constexpr char kShapeForm[] = "is not a shape: write N, a chain of N cells, or NxM, a lattice";

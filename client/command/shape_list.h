@@ -16,8 +16,8 @@
 
 namespace ballpiston::client {
 
-// Each shape in its only spelling: 1e3x04 is 1000x4. Every error is INVALID_ARGUMENT; it quotes the
-// text and says what is permitted.
+// Returns each shape in its canonical form: 1e3x04 becomes 1000x4. Every error is INVALID_ARGUMENT;
+// it quotes the text and states the permitted form.
 absl::StatusOr<std::vector<std::string>> ParseShapeList(absl::string_view text);
 
 absl::StatusOr<std::string> ParseShape(absl::string_view text);  // a single SHAPE

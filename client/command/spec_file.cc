@@ -19,7 +19,7 @@
 namespace ballpiston::client {
 namespace {
 
-// Without exceptions, which stream iterators would let through when a read fails.
+// Throws no exception if a read fails; stream iterators could.
 std::string ReadAll(std::istream& in) {
   std::ostringstream text;
   text << in.rdbuf();
@@ -30,8 +30,8 @@ absl::Status BadFile(absl::string_view name, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat("--spec ", name, ": ", reason));
 }
 
-// The parser takes -0 for an integer, which has no sign, but keeps that of -0.0: a specification
-// that is printed and read again is to be the same.
+// The parser reads -0 as the integer 0, without a sign, but keeps the sign of -0.0. Without the
+// sign a specification stays the same when it is printed and read again.
 void DropSignsOfZeros(v1::EnsembleSpec& spec) {
   if (spec.target().has_tolerance()) {
     spec.mutable_target()->set_tolerance(spec.target().tolerance() + 0.0);
@@ -56,7 +56,7 @@ absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path) {
 }
 
 absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::string& json) {
-  // The parser takes `null` and a bare string for an empty message.
+  // The parser would accept `null` or a bare string as an empty message.
   if (!absl::StartsWith(absl::StripLeadingAsciiWhitespace(json), "{")) {
     return BadFile(name, "not a JSON object");
   }
@@ -66,7 +66,7 @@ absl::StatusOr<v1::EnsembleSpec> ParseSpec(absl::string_view name, const std::st
     DropSignsOfZeros(spec);
     return spec;
   }
-  // The parser repeats a wrong value, however long it is.
+  // The parser's message contains the whole wrong value, which may be long.
   return BadFile(name, Shortened(std::string(status.message()), kLongestMessage));
 }
 

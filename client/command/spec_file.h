@@ -10,8 +10,8 @@
 
 namespace ballpiston::client {
 
-// `-` is standard input. INVALID_ARGUMENT, with the file's name and the parser's words, if it
-// cannot be read, is not JSON, or has a field that the specification does not have.
+// `-` is standard input. INVALID_ARGUMENT, with the file's name and the parser's message, if the
+// file cannot be read, is not JSON, or has a field that a specification does not have.
 absl::StatusOr<v1::EnsembleSpec> ReadSpecFile(const std::string& path);
 
 // `name` stands for the file in errors.

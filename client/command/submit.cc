@@ -1,5 +1,5 @@
-// ballpiston submit: hands a job to the server and prints its name, alone, on standard output; on
-// standard error, if the answer was there already.
+// ballpiston submit: submits a job. Standard output contains only the job's name; a note on
+// standard error says if the results were already stored.
 #include "client/command/connection.h"
 #include "client/command/create_job.h"
 #include "client/command/question.h"

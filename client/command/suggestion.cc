@@ -24,13 +24,13 @@ size_t EditDistance(absl::string_view a, absl::string_view b) {
 }
 
 std::string DidYouMean(absl::string_view text, const std::vector<std::string>& names) {
-  constexpr size_t kLongest = 64;  // no name is longer; the time grows with the square
+  constexpr size_t kLongest = 64;  // every name is shorter; the time grows as the length squared
   if (text.size() > kLongest || names.empty()) return "";
   const auto nearer = [text](const std::string& a, const std::string& b) {
     return EditDistance(text, a) < EditDistance(text, b);
   };
   const std::string& nearest = *std::min_element(names.begin(), names.end(), nearer);
-  // A third of the letters may be wrong; beyond that the suggestion would be a guess.
+  // At most a third of the letters may be wrong; otherwise the suggestion would be a guess.
   const bool is_near = 3 * EditDistance(text, nearest) <= std::max(text.size(), nearest.size());
   return is_near ? absl::StrCat("; did you mean ", nearest, "?") : "";
 }

@@ -1,4 +1,4 @@
-// Where a verb writes: results to standard output, everything else to standard error.
+// The output of a verb: results go to standard output, everything else to standard error.
 #ifndef BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
 #define BALLPISTON_CLIENT_COMMAND_TERMINAL_H_
 

@@ -1,11 +1,11 @@
-// ballpiston trace: the events of one orbit, as JSON lines.
+// ballpiston trace: prints the events of one orbit as JSON lines.
 #include "client/command/connection.h"
 #include "client/output/json.h"
 
 namespace ballpiston::client {
 namespace {
 
-// False if the reader of the output has gone.
+// False if the output cannot be written, e.g. because its reader has closed the pipe.
 bool Print(const v1::TraceOrbitResponse& message, std::ostream& out) {
   if (message.has_start()) out << Json(message.start()) << '\n';
   PrintJsonLines(message.events(), out);

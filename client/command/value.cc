@@ -14,7 +14,7 @@
 namespace ballpiston::client {
 namespace {
 
-// Parses the text with `parse` and stores the result.
+// A value that `parse` reads from the text and `store` stores.
 template <typename T, typename Parse>
 Value Parsed(std::string name, Parse parse, Store<T> store, Offer offer = Offer::kNothing) {
   return {.name = std::move(name),

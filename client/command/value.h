@@ -1,6 +1,6 @@
-// Kinds of values that flags and arguments have: each reads a text and stores what it means.
+// The kinds of values of flags and arguments. Each kind reads a text and stores its value.
 //
-// An error is INVALID_ARGUMENT and says what the text is and what is permitted:
+// An error is INVALID_ARGUMENT; it quotes the text and states the permitted form:
 // 'x' is not a decimal number such as 0.1 or 1e-3. The server checks whether a number is
 // physical.
 #ifndef BALLPISTON_CLIENT_COMMAND_VALUE_H_
@@ -60,7 +60,7 @@ Value Passed(std::string name, std::string flag);        // to ballpistond, with
 template <typename T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-// Every value of a proto's enumeration except the unspecified one.
+// All values of a proto enumeration except UNSPECIFIED.
 template <typename Enum>
 Choices<Enum> EnumChoices() {
   Choices<Enum> choices;

@@ -21,7 +21,7 @@ Store<std::string> Security(std::string ChannelSecurity::*member) {
       [member](Options& options, std::string text) { options.security.*member = std::move(text); };
 }
 
-// Appends to a list of a message of the options: Grid(&v1::Grid::mutable_rho).
+// Appends numbers to a list in a message of the options, as in Grid(&v1::Grid::mutable_rho).
 using Numbers = google::protobuf::RepeatedField<double>;
 
 Value Grid(Numbers* (v1::Grid::*list)()) {
@@ -42,8 +42,8 @@ Value Asked(Numbers* (v1::EvaluatePairsRequest::*list)()) {
   });
 }
 
-// Both parts of a duration have the number's sign. A duration holds 10,000 years; the server
-// permits less.
+// The seconds and the nanoseconds of a duration have the sign of the number. A duration can hold
+// 10,000 years; the server's limit is smaller.
 void SetBudget(Options& options, double seconds) {
   constexpr double kMost = 315576000000;
   seconds = std::clamp(seconds, -kMost, kMost);
@@ -52,8 +52,8 @@ void SetBudget(Options& options, double seconds) {
   budget.set_nanos(static_cast<int32_t>((seconds - std::trunc(seconds)) * 1e9));
 }
 
-// Shell completion offers the names of the one experiment that has a choice. The server checks the
-// name.
+// Shell completion offers the names for gas-equilibrium, the only experiment with a choice. The
+// server checks the name.
 Value NameOfEstimate() {
   Value value = Text(
       "NAME",
@@ -127,12 +127,11 @@ const FlagGroup kGrid = {
      {"--delta", Grid(&v1::Grid::mutable_delta),
       "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
      {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
-      "the piston's energies, 0 to 1/2; energy-relaxation needs none"},
+      "the piston's energies, 0 to 1/2; not used by energy-relaxation"},
      {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
      {"--cells", GridCells(),
       "shapes of the gas: N, a chain of N cells, or NxM, a lattice of N columns and M rows; at "
-      "most "
-      "1e6 cells"},
+      "most 1e6 cells"},
      {"--temperature", Grid(&v1::Grid::mutable_temperature),
       "temperatures of a gas in equilibrium, 1e-120 to 1e120 (the Boltzmann constant is 1)"},
      {"--hot", Grid(&v1::Grid::mutable_hot), "temperatures of the hot reservoir, 1e-120 to 1e120"},
@@ -148,7 +147,8 @@ const FlagGroup kTarget = {
       "ball-piston collisions per point"},
      {"--tolerance",
       Number("REL", [](Options& o, double x) { o.spec.mutable_target()->set_tolerance(x); }),
-      "relative standard error of the first estimate; a point ends when it reaches this error"},
+      "relative standard error of the first estimate; a point is finished when it reaches this "
+      "error"},
      {"--budget", Number("SECONDS", &SetBudget),
       "time of all workers, divided evenly between the points; with --tolerance, the job fails if "
       "this time is too short"}}};
@@ -160,32 +160,32 @@ const FlagGroup kMethod = {
      {"--model",
       OneOf<Spec::Model>("MODEL", EnumChoices<Spec::Model>(),
                          [](Options& o, Spec::Model model) { o.spec.set_model(model); }),
-      "by default auto, which chooses the cheapest model that can answer"},
+      "by default auto, which chooses the cheapest model that gives the estimate"},
      {"--estimate", NameOfEstimate(),
-      "name of the estimate that --tolerance and --model auto refer to; it is the first estimate "
-      "of the answer; only gas-equilibrium has a choice"},
+      "name of the estimate that --tolerance and --model auto refer to; the result prints it "
+      "first; only gas-equilibrium has a choice"},
      {"--precision",
       OneOf<Spec::Precision>(
           "PRECISION", EnumChoices<Spec::Precision>(),
           [](Options& o, Spec::Precision precision) { o.spec.set_precision(precision); }),
       "floating-point precision of the billiard, by default double"},
      {"--verify", Switch([](Options& o, bool verify) { o.spec.set_verify(verify); }),
-      "with --model auto: also simulate the points that a closed form answers, and print the "
-      "exact values beside the simulated ones"},
+      "with --model auto: also simulate the points that have a closed form, and print the exact "
+      "values beside the simulated values"},
      {"--spec", File(To(&Options::spec_file)),
-      "JSON file with the whole question (- for standard input); it replaces EXPERIMENT and all "
-      "flags of grid, target and method"},
+      "JSON file with the whole specification (- for standard input); it replaces EXPERIMENT and "
+      "all flags of grid, target and method"},
      {"--again", Job(To(&Options::again)),
-      "job whose question is asked again, for instance because its results have expired; it "
+      "use the specification of this job, for instance because its results have expired; it "
       "replaces EXPERIMENT and all flags of grid, target and method"}}};
 
 const FlagGroup kJob = {
     "Job",
     {{"--fresh", Switch([](Options& o, bool fresh) { o.create.fresh = fresh; }),
-      "compute the answer even if the server has stored one for the same question"},
+      "compute the results even if the server has stored results for the same specification"},
      {"--resume", Switch(To(&Options::resume)),
-      "derive the request id from the question: after an interruption, the same command returns "
-      "the job that it made before, unless that job failed or was cancelled, or its results have "
+      "derive the request id from the specification: after an interruption, the same command "
+      "returns the original job, unless that job failed or was cancelled, or its results have "
       "expired"},
      {"--request-id", RequestId(),
       "idempotency key: a retry with the same UUID returns the original job"},
@@ -234,11 +234,10 @@ const FlagGroup kTrace = {
     {{"--rho", Number("X", [](Options& o, double x) { o.trace.set_rho(x); }),
       "disc radius, 1/2 < rho < 1/sqrt(2); required"},
      {"--delta", Number("X", [](Options& o, double x) { o.trace.set_delta(x); }),
-      "the pistons' penetration, above 0, up to (1 - lambda)/2 of a pair and rho/sqrt(2) - "
-      "lambda/2 "
-      "of a gas; required"},
+      "the pistons' penetration, above 0, up to (1 - lambda)/2 for a pair and rho/sqrt(2) - "
+      "lambda/2 for a gas; required"},
      {"--cells", Shape([](Options& o, std::string cells) { o.trace.set_cells(std::move(cells)); }),
-      "a periodic gas of this shape in place of the pair: N, a chain of N cells, or NxM, a lattice "
+      "a periodic gas of this shape instead of a pair: N, a chain of N cells, or NxM, a lattice "
       "of N columns and M rows; at most 1,000 cells"},
      {"--temperature", Number("X", [](Options& o, double x) { o.trace.set_temperature(x); }),
       "temperature of the gas, 1e-120 to 1e120, by default 1; a pair has the energy 1/2"},
@@ -277,7 +276,7 @@ const FlagGroup kFigure = {
     "Figure",
     {{"--out", File(To(&Options::out)), "folder for data, scripts and picture"},
      {"--list", Switch(To(&Options::list)), "print the figures' names; draw nothing"},
-     {"--quick", Effort("quick"), "few samples: the figure takes seconds in place of minutes"},
+     {"--quick", Effort("quick"), "few samples: the figure takes seconds instead of minutes"},
      {"--full", Effort("full"), "the paper's number of samples or more: minutes to hours"},
      {"--edit", Switch(To(&Options::edit)),
       "copy the figure's scripts to the --out folder, so that you can edit them; draw nothing"}}};
@@ -346,11 +345,11 @@ const Store<std::string> kJobs = [](Options& options, std::string name) {
   options.jobs.push_back(std::move(name));
 };
 
-// Optional, because --spec or --again stands in its place.
+// Optional, because --spec or --again can replace it.
 const Argument kExperiment = {
     OneOf<Spec::Experiment>("EXPERIMENT", EnumChoices<Spec::Experiment>(),
                             [](Options& o, Spec::Experiment x) { o.spec.set_experiment(x); }),
-    "what to measure", Argument::kOptional};
+    "the experiment to run", Argument::kOptional};
 const Argument kOneJob = {Job(kJobs), "ensembleJobs/ID, or the ID alone"};
 const Argument kSomeJobs = {Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kSeveral};
 
@@ -370,7 +369,7 @@ std::vector<Verb> JobVerbs() {
       {"run",
        "submit a job, watch it, print its result",
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
-       "the server has answered the same question before, it returns the stored answer.",
+       "the server has stored results for the same specification, it returns them.",
        {kExperiment},
        With(kQuestion, {&kJob, &kResultFormat, &kProgress, &kServer}),
        {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
@@ -379,7 +378,8 @@ std::vector<Verb> JobVerbs() {
        &Run},
       {"submit",
        "submit a job, print its name",
-       "Standard output contains only the name. By then the job is on the server's disk.",
+       "Standard output contains only the name. When it is printed, the job is on the server's "
+       "disk.",
        {kExperiment},
        With(kQuestion, {&kJob, &kServer}),
        {"submit equilibrium --rho 0.51:0.7:20 --delta 0.01 --model billiard --collisions 1e6",
@@ -401,7 +401,7 @@ std::vector<Verb> JobVerbs() {
        &Result},
       {"list",
        "list the jobs, the newest first",
-       "The column results says which jobs are pinned, and whose results have expired or will "
+       "The column 'results' shows which jobs are pinned, and which results have expired or will "
        "expire within a week.",
        {},
        With({&kListFilter, &kFormat, &kServer}, {}),
@@ -461,7 +461,7 @@ std::vector<Verb> ServerVerbs() {
        {"server address"},
        &ServerAddress},
       {"server status",
-       "show what the server is doing and what it permits",
+       "show the server's load and its limits",
        "Starts no server.",
        {},
        With({&kFormat, &kServer}, {}),
@@ -505,14 +505,14 @@ std::vector<Verb> AllVerbs() {
   std::vector<Verb> verbs = {
       {"analytic",
        "evaluate the closed forms",
-       "For every pair of rho and delta.",
+       "Prints one set of values for every pair of rho and delta.",
        {},
        With({&kClosedForms, &kFormat, &kServer}, {}),
        {"analytic --rho 0.5296 --delta 0.2 --epsilon 0.1,0.2",
         "analytic --rho 0.5296 --delta 0.1:0.3:5 --temperature 1:2:3 --format csv"},
        &Analytic},
       {"plan",
-       "show what each model would cost and how well it would answer",
+       "show the cost and the accuracy of each model",
        "Runs nothing.",
        {kExperiment},
        With(kQuestion, {&kFormat, &kServer}),
@@ -527,11 +527,11 @@ std::vector<Verb> AllVerbs() {
   append(
       {{"trace",
         "print one orbit, event by event, as JSON lines",
-        "The first line is the start: the geometry, and positions and velocities of all bodies. "
-        "Every other line is an event (ball_piston, ball_wall or piston_wall) with its time, the "
-        "time since the last event of the same kind with the same bodies (free_time), and of each "
-        "body that takes part its position, velocity and energies. The same command prints the "
-        "same lines. proto/ballpiston/v1/trace.proto describes the fields.",
+        "The first line is the start: the geometry, and the positions and velocities of all "
+        "bodies. Every other line is an event (ball_piston, ball_wall or piston_wall): its time, "
+        "the time since the last event of the same kind with the same bodies (free_time), and the "
+        "position, velocity and energies of each body that takes part. The same command always "
+        "prints the same lines. proto/ballpiston/v1/trace.proto describes the fields.",
         {},
         With({&kTrace, &kServer}, {}),
         {"trace --rho 0.5296 --delta 0.2 --events 1000 >orbit.jsonl",
@@ -541,7 +541,7 @@ std::vector<Verb> AllVerbs() {
   append({{"figure",
            "draw a figure: data, gnuplot script and SVG",
            "After an interruption, the same command resumes the jobs of the figure. If the --out "
-           "folder already contains scripts of the figure, these are used unchanged.",
+           "folder already contains scripts of the figure, the command uses them unchanged.",
            {{Text("NAME", To(&Options::figure), Offer::kFigure),
              "one of the names that --list prints", Argument::kOptional}},
            With({&kFigure, &kVariables, &kProgress, &kServer}, {}),
@@ -549,8 +549,8 @@ std::vector<Verb> AllVerbs() {
            &Figure},
           {"report",
            "write one HTML file with the pictures, tables and specifications of jobs",
-           "The file needs neither a server nor a network. It has the first 12 points of each job "
-           "in full, and the estimates of up to 10,000 points. Prints the path of the file.",
+           "The file needs neither a server nor a network. It contains the first 12 points of each "
+           "job in full, and the estimates of up to 10,000 points. Prints the path of the file.",
            {kSomeJobs},
            With({&kReport, &kServer}, {}),
            {"report ensembleJobs/ID --out report.html", "report ID1 ID2 --out sweep.html"},
@@ -581,8 +581,8 @@ std::vector<Verb> AllVerbs() {
                                        {"fish", Completion::kFish},
                                        {"words", Completion::kWords}},
                    To(&Options::completion)),
-             "the shell; the scripts themselves use words"},
-            {Words("WORD", kWords), "after --: the words so far; the last one is completed",
+             "the shell; only the scripts use 'words'"},
+            {Words("WORD", kWords), "after --: the words so far; the last word is completed",
              Argument::kAny}},
            With({&kServer}, {}),
            {"completion bash >~/.local/share/bash-completion/completions/ballpiston",
@@ -604,7 +604,7 @@ const std::vector<const FlagGroup*>& QuestionFlags() { return kQuestion; }
 
 const std::vector<Remark>& ExitCodes() {
   static const auto* const codes = new std::vector<Remark>{
-      {"0", "done"},
+      {"0", "success"},
       {"2", "wrong usage or an invalid argument, or a job too large for the server"},
       {"3", "no server answers, or the server is busy: retry later"},
       {"4", "the job failed or was cancelled, or its state does not permit the call"},
@@ -617,9 +617,9 @@ const std::vector<Remark>& ExitCodes() {
 const std::vector<Remark>& Files() {
   static const auto* const files = new std::vector<Remark>{
       {"~/.config/ballpiston/config.toml",
-       "values for flags that are not given. A line such as format = \"csv\" holds for every verb "
-       "that has the flag; below [run] it holds for this verb alone. Environment variables "
-       "override the file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
+       "values for flags that are not given. A line such as format = \"csv\" applies to every verb "
+       "that has the flag; below [run] it applies only to run. Environment variables override the "
+       "file, and flags override both. XDG_CONFIG_HOME replaces ~/.config"},
       {"~/.local/state/ballpiston",
        "jobs, log and socket of the private server. XDG_STATE_HOME replaces ~/.local/state. "
        "BALLPISTON_SERVER_PROGRAM is the ballpistond to start"}};

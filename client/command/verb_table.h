@@ -16,7 +16,7 @@ namespace ballpiston::client {
 inline constexpr char kProgram[] = "ballpiston";
 
 struct Flag {
-  std::string name;  // --rho; -q,--quiet; empty: there is only the variable
+  std::string name;  // --rho; -q,--quiet; empty: only the variable sets the value
   Value value;
   std::string text;
   std::string variable = "";  // environment variable, used if the flag is not given
@@ -46,7 +46,7 @@ struct Verb {
 // In the order in which help shows them.
 const std::vector<Verb>& Verbs();
 
-// The flags that choose the server, and the flags that say how much is computed.
+// The flags that choose the server, and the flags of the target.
 const FlagGroup& ServerFlags();
 const FlagGroup& TargetFlags();
 // The groups that make a specification.

@@ -1,5 +1,5 @@
-// The functions of the verbs. Each verb is in the file of its name; the verbs of `server` are in
-// server.cc. The parser has already checked the command line.
+// The functions of the verbs. Each function is in the file with the verb's name; the verbs of
+// `server` are in server.cc. The parser has already checked the command line.
 #ifndef BALLPISTON_CLIENT_COMMAND_VERBS_H_
 #define BALLPISTON_CLIENT_COMMAND_VERBS_H_
 

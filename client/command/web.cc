@@ -1,4 +1,4 @@
-// ballpiston web: a page on this machine, and a gateway from JSON to the server.
+// ballpiston web: serves the page on this machine, and forwards JSON calls to the server.
 #include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/web/web_server.h"
@@ -8,8 +8,8 @@ namespace {
 
 constexpr int64_t kMostPort = 65535;
 
-// A private server stops when it is idle. It is then started again and the call is repeated, unless
-// a part of the answer has already arrived.
+// A private server stops when it is idle. Then restarts the server and retries the call, unless a
+// part of the answer has already arrived.
 absl::Status CallThrough(const Connection& connection, const JsonCall& once,
                          const JsonReceiver& receive) {
   const JsonCall call = WithRequestId(once);
@@ -47,8 +47,8 @@ VerbResult Web(const Options& options, Terminal& terminal) {
     }
     terminal.out << server.Url() << std::endl;
     terminal.Note(
-        "Ctrl-C stops the page; jobs go on without it. Keep the address secret: anyone who "
-        "has it can use the server as you.");
+        "Ctrl-C stops the page, but not the jobs. Keep the address secret: anyone who has it can "
+        "use the server in your name.");
     server.Serve();
     return ExitCode::kDone;
   });

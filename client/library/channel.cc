@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kKeepaliveMilliseconds = 30'000;
 
-// The second entry has no retry policy, and a method's own entry wins over the default.
+// The first entry is the default: retry. The second entry names the methods that must not be
+// retried: it has no retry policy, and gRPC prefers it to the default.
 constexpr char kServiceConfig[] = R"({"methodConfig": [
   {"name": [{}],
    "retryPolicy": {"maxAttempts": 4, "initialBackoff": "0.1s", "maxBackoff": "1s",
@@ -24,15 +25,16 @@ grpc::ChannelArguments Arguments() {
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMilliseconds);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
-  // A watch only listens: without this the pings end after two, and a dead connection goes unseen.
+  // A watch only receives. By default gRPC stops sending pings after two of them without data, and
+  // would not notice a dead connection.
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-  // gRPC's own pauses between attempts to connect grow to two minutes: too long for a watch that
-  // waits for a server to come back.
+  // By default the pauses between attempts to connect grow to two minutes. That is too long for a
+  // watch that waits for a server to restart.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
-  // A server on this machine or in this laboratory is not behind the web proxy.
+  // The web proxy does not lead to a server on this machine or in this laboratory.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  arguments.SetMaxReceiveMessageSize(-1);  // the server decides how large its answers are
+  arguments.SetMaxReceiveMessageSize(-1);  // the server limits the size of its answers
   arguments.SetServiceConfigJSON(kServiceConfig);
   return arguments;
 }

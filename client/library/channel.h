@@ -1,7 +1,8 @@
-// Channels to a server, set up the way a long watch needs them.
+// Channels to a server, with settings that suit a long watch.
 //
-// Calls that are safe to repeat (all but Delete; Create and Cancel carry a request id) are retried
-// for about a second while the server is unreachable. Watches are not: JobWatch does it itself.
+// While the server is unreachable, the channel retries calls for about a second if they are safe to
+// repeat: all calls but Delete (Create and Cancel carry a request id). The channel does not retry a
+// watch: JobWatch does.
 #ifndef BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
 #define BALLPISTON_CLIENT_LIBRARY_CHANNEL_H_
 
@@ -15,8 +16,8 @@
 
 namespace ballpiston::client {
 
-// Does not connect yet. INVALID_ARGUMENT for what is not an address (server_address.h), and errors
-// as CheckSecurity's and CredentialsOf's (channel_security.h).
+// Does not connect yet. INVALID_ARGUMENT if `address` is not an address (server_address.h); also
+// the errors of CheckSecurity and CredentialsOf (channel_security.h).
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(absl::string_view address,
                                                            const ChannelSecurity& security = {});
 

@@ -32,12 +32,12 @@ absl::Status CheckOwnersOnly(const std::string& what, const std::string& path, i
   constexpr mode_t kForOthers = S_IRWXG | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
   return absl::PermissionDeniedError(absl::StrFormat(
-      "the %s %s is open to others (mode %04o): chmod 600 it, and if others may have "
-      "read it ask for a new one",
+      "the %s %s is open to other users (mode %04o): chmod 600 it; if another user may "
+      "have read it, ask for a new one",
       what, path, status.st_mode & 07777));
 }
 
-// Of any file that can be read to its end, a pipe too. `what` it is, for messages.
+// Reads a regular file or a pipe to its end. `what` names the file in messages.
 absl::StatusOr<std::string> ReadFile(const std::string& what, const std::string& path,
                                      Secret secret) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -62,13 +62,14 @@ absl::StatusOr<std::string> ReadFile(const std::string& what, const std::string&
   return CannotUse(what, path, absl::StrCat("is longer than ", kMaxFileBytes, " bytes"));
 }
 
-// PEM, at least by its looks; gRPC would say no more than that no connection came about.
+// Checks that the file looks like PEM. Without this check gRPC would only report that the
+// connection failed.
 absl::StatusOr<std::string> ReadPem(const std::string& what, const std::string& path,
                                     absl::string_view kind, Secret secret) {
   if (path.empty()) return std::string();
   absl::StatusOr<std::string> text = ReadFile(what, path, secret);
   if (!text.ok() || absl::StrContains(*text, kind)) return text;
-  return CannotUse(what, path, absl::StrCat("holds no \"", kind, "\" (PEM is wanted)"));
+  return CannotUse(what, path, absl::StrCat("holds no \"", kind, "\" (a PEM file is needed)"));
 }
 
 bool IsToken(absl::string_view text) {
@@ -87,13 +88,13 @@ absl::StatusOr<std::string> Token(const ChannelSecurity& security) {
   if (IsToken(token)) return token;
   return absl::InvalidArgumentError(absl::StrCat(
       security.token_file.empty() ? "the token" : "the token file " + security.token_file,
-      " has to be one word of 1 to ", kLongestToken, " printable characters"));
+      " must be one word of 1 to ", kLongestToken, " printable characters"));
 }
 
 absl::StatusOr<grpc::SslCredentialsOptions> ReadTlsFiles(const ChannelSecurity& security) {
   constexpr char kCertificate[] = "-----BEGIN CERTIFICATE-----";
   constexpr char kKey[] = "PRIVATE KEY-----";
-  auto ca = ReadPem("authorities' file", security.ca, kCertificate, Secret::kNo);
+  auto ca = ReadPem("authority file", security.ca, kCertificate, Secret::kNo);
   auto chain = ReadPem("certificate file", security.certificate, kCertificate, Secret::kNo);
   auto key = ReadPem("key file", security.key, kKey, Secret::kYes);
   for (const absl::Status& status : {ca.status(), chain.status(), key.status()}) {
@@ -112,15 +113,15 @@ absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view ad
   const bool is_socket = absl::StartsWith(address, "unix:");
   if (is_socket && (security.HasTls() || security.HasToken())) {
     return absl::InvalidArgumentError(
-        "a Unix socket has no TLS and asks for no token: who you are is told by the system");
+        "a Unix socket uses neither TLS nor a token: the system tells the server who you are");
   }
   if (security.certificate.empty() != security.key.empty()) {
-    return absl::InvalidArgumentError("a certificate and its key are wanted together");
+    return absl::InvalidArgumentError("a certificate and its key are needed together");
   }
   if (security.HasToken() && !security.HasTls()) {
     return absl::InvalidArgumentError(
-        "a token is not sent over a connection that others can read: ask for TLS (with the "
-        "authority's file, or the system's authorities)");
+        "a token is not sent over an unencrypted connection: use TLS (with the file of the "
+        "authority, or with the authorities of this system)");
   }
   return absl::OkStatus();
 }

@@ -1,10 +1,10 @@
-// How a channel proves who the server is, and who calls.
+// How the client and the server authenticate each other.
 //
-//   nothing set      no encryption: a Unix socket, a server on this machine, or a tunnel to one
-//   tls              TLS; the authorities of this system vouch for the server
-//   ca               TLS; the authorities in this file do
-//   certificate/key  TLS, and the client shows a certificate of its own
-//   token            sent with every call; over TLS only
+//   nothing set      no encryption: a Unix socket, a server on this machine, or a tunnel
+//   tls              TLS; the system's certificate authorities verify the server
+//   ca               TLS; the certificate authorities in this file verify the server
+//   certificate/key  TLS; the client also shows its own certificate
+//   token            sent with every call; needs TLS
 #ifndef BALLPISTON_CLIENT_LIBRARY_CHANNEL_SECURITY_H_
 #define BALLPISTON_CLIENT_LIBRARY_CHANNEL_SECURITY_H_
 
@@ -22,21 +22,21 @@ namespace ballpiston::client {
 struct ChannelSecurity {
   bool tls = false;
   std::string ca = {};           // PEM file
-  std::string certificate = {};  // PEM file, with
-  std::string key = {};          // PEM file, which only its owner may read
-  std::string token_file = {};   // likewise; what it holds, without the end of the line
-  std::string token = {};        // in place of a file
+  std::string certificate = {};  // PEM file; needs `key`
+  std::string key = {};          // PEM file; only its owner may read it
+  std::string token_file = {};   // only its owner may read it; white space around the token is cut
+  std::string token = {};        // instead of a token file
 
   bool HasTls() const { return tls || !ca.empty() || !certificate.empty() || !key.empty(); }
   bool HasToken() const { return !token_file.empty() || !token.empty(); }
 };
 
-// Whether these go together, and with the address; reads no file. INVALID_ARGUMENT names what is
-// wrong, as a token that would travel readable for others.
+// Checks that the settings fit each other and the address. Reads no file. INVALID_ARGUMENT names
+// the fault, e.g. a token for a connection without encryption.
 absl::Status CheckSecurity(const ChannelSecurity& security, absl::string_view address);
 
-// Reads the files. INVALID_ARGUMENT names the one that cannot be used, PERMISSION_DENIED one that
-// others may read; neither shows what it holds.
+// Reads the files. INVALID_ARGUMENT names a file that cannot be used, PERMISSION_DENIED a secret
+// file that other users can read. The messages never show the contents of a file.
 absl::StatusOr<std::shared_ptr<grpc::ChannelCredentials>> CredentialsOf(
     const ChannelSecurity& security);
 

@@ -1,7 +1,7 @@
-// Starting other programs: servers, the scripts of figures.
+// Starts other programs: servers and the scripts of figures.
 //
-// A child starts with no signal blocked or ignored and with no file open but the standard three,
-// whatever this program has set up for itself.
+// A child process does not inherit this program's signal settings or open files: it starts with no
+// signal blocked or ignored, and with only the three standard files open.
 #ifndef BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
 #define BALLPISTON_CLIENT_LIBRARY_CHILD_PROCESS_H_
 
@@ -16,26 +16,27 @@
 namespace ballpiston::client {
 
 struct ChildProcess {
-  std::vector<std::string> command;  // the program's path or name (then sought in PATH), arguments
-  std::string folder;                // to run in; empty: this program's
-  std::string output;      // file that standard output and error are appended to; empty: inherited
-  bool detached = false;   // in its own session, so that Ctrl-C here does not reach it
-  bool own_group = false;  // in its own group, so that a signal also reaches its children
+  std::vector<std::string> command;  // the program's path, or its name in PATH; then the arguments
+  std::string folder;                // the working folder; empty: this program's
+  std::string output;      // standard output and error are appended to this file; empty: inherited
+  bool detached = false;   // runs in its own session, so that Ctrl-C here does not reach it
+  bool own_group = false;  // runs in its own group, so that a signal also reaches its children
 };
 
-// The path of a program in the folder of this one, whether it is there or not.
+// The path that a program has if it is in this program's folder. The file need not exist.
 std::string ProgramBeside(const std::string& name);
 
-// NOT_FOUND if there is no such program.
+// NOT_FOUND if the program does not exist.
 absl::StatusOr<pid_t> StartChild(const ChildProcess& child);
 
-// Empty while it runs; afterwards, once, its exit status (128 + signal if one killed it).
+// Empty while the child runs. After its end the first call returns its exit status, or 128 + the
+// number of the signal that killed it; later calls return nothing.
 std::optional<int> ExitStatus(pid_t pid);
 
-// Waits for its end; its exit status likewise.
+// Waits for the child's end. Returns its exit status, as ExitStatus does.
 absl::StatusOr<int> WaitForChild(pid_t pid);
 
-// Starts it and waits.
+// Starts the child and waits for its end.
 absl::StatusOr<int> RunChild(const ChildProcess& child);
 
 }  // namespace ballpiston::client

@@ -15,7 +15,7 @@ using Stub = v1::EnsembleService::StubInterface;
 
 constexpr int kPageSize = 1000;
 
-// gRPC checks only every 5 s whether a channel is connected again, unless a caller waits for it.
+// gRPC checks only every 5 s whether a channel has reconnected, unless a caller waits for it.
 constexpr absl::Duration kLongestConnecting = absl::Seconds(1);
 constexpr absl::Duration kLookForStop = absl::Milliseconds(50);
 

@@ -7,8 +7,8 @@
 //   job = client.Watch(job->name(), {});
 //   absl::StatusOr<std::vector<v1::PointResult>> points = client.Results(job->name());
 //
-// Errors are the server's, as error_text.h renders them, with its code; UNAVAILABLE or
-// DEADLINE_EXCEEDED if it cannot be reached. Safe to share between threads.
+// An error has the server's code and the text that error_text.h makes from its details. UNAVAILABLE
+// or DEADLINE_EXCEEDED if the server cannot be reached. Thread-safe.
 #ifndef BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
 #define BALLPISTON_CLIENT_LIBRARY_CLIENT_H_
 
@@ -33,50 +33,50 @@
 
 namespace ballpiston::client {
 
-// How a job is asked for, besides its specification.
+// Options of Create besides the specification.
 struct CreateOptions {
-  // A UUID (request_id.h), for a caller that may ask again: asked twice with one id, the server
-  // answers with the job made first. Empty: one of its own for each call of Create; the channel's
-  // retries carry it, so that a job is not made twice either way.
+  // Idempotency key, a UUID (request_id.h): a retry with the same key returns the original job.
+  // Empty: each call of Create makes its own key. The channel's retries of that call carry the key,
+  // so that they never create a second job.
   std::string request_id = {};
-  bool fresh = false;    // computes, even if the server has the answer in its store
-  int32_t priority = 0;  // among one's own jobs the higher goes first; -100 to 100
+  bool fresh = false;    // computes the job even if the server has the answer in its store
+  int32_t priority = 0;  // -100 to 100; of one user's jobs the job with the highest runs first
 };
 
 class Client {
  public:
-  // `timeout` bounds each single call, not a watch or a trace.
+  // `timeout` limits each single call, but not a watch or a trace.
   explicit Client(const std::shared_ptr<grpc::ChannelInterface>& channel,
                   absl::Duration timeout = absl::Seconds(60));
 
-  // The job, or one that answered the same question before: then answered_from_store is set, here
-  // and nowhere else.
+  // Returns the new job, or an earlier job with the same specification. In the second case
+  // answered_from_store is set; no other call sets it.
   absl::StatusOr<v1::EnsembleJob> Create(const v1::EnsembleSpec& spec,
                                          const CreateOptions& options = {}) const;
 
-  // What each model would cost and how well it would answer. Runs nothing.
+  // The cost and the accuracy of each model. Runs nothing.
   absl::StatusOr<v1::PlanEnsembleJobResponse> Plan(const v1::EnsembleSpec& spec) const;
 
   absl::StatusOr<v1::EnsembleJob> Get(const std::string& name) const;
-  // The newest first. Fetches as many pages as needed; the request's page fields are ignored.
+  // Newest job first. Fetches as many pages as needed and ignores the request's page fields.
   static constexpr int64_t kAllJobs = std::numeric_limits<int64_t>::max();
   absl::StatusOr<std::vector<v1::EnsembleJob>> List(v1::ListEnsembleJobsRequest request = {},
                                                     int64_t most = kAllJobs) const;
-  // `request_id` as in CreateOptions: asked again with it, a job that this has cancelled is none
-  // that had ended.
+  // `request_id` is an idempotency key, as in CreateOptions: a retry with the same key succeeds,
+  // although the job has ended by then.
   absl::StatusOr<v1::EnsembleJob> Cancel(const std::string& name,
                                          const std::string& request_id = {}) const;
   // The results of a pinned job do not expire. With `pinned` false they may expire again.
   //   FAILED_PRECONDITION  RESULTS_EXPIRED
   absl::StatusOr<v1::EnsembleJob> Pin(const std::string& name, bool pinned) const;
-  // Do not retry: if the first attempt succeeded, the second finds no such job.
+  // Do not retry: if the first attempt deleted the job, the second reports that it does not exist.
   absl::Status Delete(const std::string& name) const;
 
-  // FAILED_PRECONDITION (RESULTS_EXPIRED) if the server keeps only the specification: Create with
-  // this specification computes the same results again.
-  //
   // The finished points in grid order, page by page, so that a large result need not fit into
   // memory. `page_token`: empty for the first page, else next_page_token of the page before.
+  //
+  // FAILED_PRECONDITION (RESULTS_EXPIRED) if the server keeps only the specification. Create with
+  // this specification then computes the same results again.
   absl::StatusOr<v1::ListResultsResponse> ResultsPage(const std::string& name,
                                                       v1::ListResultsRequest::View view,
                                                       const std::string& page_token) const;
@@ -85,18 +85,18 @@ class Client {
       const std::string& name,
       v1::ListResultsRequest::View view = v1::ListResultsRequest::FULL) const;
   // One point, with histograms and curves. `index`: its position in the grid, from 0.
-  //   NOT_FOUND  RESULT_NOT_FOUND: not finished yet, or beyond the grid
+  //   NOT_FOUND  RESULT_NOT_FOUND: the point is not finished yet, or not in the grid
   absl::StatusOr<v1::PointResult> Point(const std::string& name, int64_t index) const;
 
   absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(
       const v1::EvaluatePairsRequest& request) const;
 
-  // The start and the events of one orbit, message by message, until their end or until
-  // `on_message` returns false. Then the status is OK too.
+  // Calls `on_message` with the start and the events of one orbit, message by message, until the
+  // trace ends or `on_message` returns false. Returns OK in both cases.
   using TraceCallback = std::function<bool(const v1::TraceOrbitResponse&)>;
   absl::Status Trace(const v1::TraceOrbitRequest& request, const TraceCallback& on_message) const;
 
-  // The first call to a server takes most of a second, because the server measures its speed.
+  // The first call takes nearly a second, because the server measures its speed.
   absl::StatusOr<v1::ServerStatus> Status() const;
 
   // See job_watch.h.

@@ -11,21 +11,21 @@ std::string HintWithTls(const ChannelSecurity& security, absl::string_view messa
     return absl::StrCat(
         "the server's certificate is not valid now, or was not signed by an authority ",
         security.ca.empty() ? "that this system knows" : "in " + security.ca,
-        ": name the right one with --ca FILE");
+        ": name the right authority with --ca FILE");
   }
   if (absl::StrContains(message, "is not in peer certificate")) {
-    return "the server's certificate is for another host: write the host as it stands there";
+    return "the server's certificate is for another host: write the host as in the certificate";
   }
   if (absl::StrContains(message, "wrong version number") ||
       absl::StrContains(message, "packet length too long")) {
-    return "that server does not speak TLS: leave out --ca, --tls, --cert and --key";
+    return "the server does not use TLS: leave out --ca, --tls, --cert and --key";
   }
   if (security.certificate.empty() && (absl::StrContains(message, "Socket closed") ||
                                        absl::StrContains(message, "certificate required"))) {
-    return "if that server wants a certificate of yours: --cert FILE --key FILE";
+    return "if the server asks for a client certificate: --cert FILE --key FILE";
   }
   if (absl::StrContains(message, "Socket closed") || absl::StrContains(message, "alert")) {
-    return absl::StrCat("the server may not take the certificate in ", security.certificate,
+    return absl::StrCat("the server may reject the certificate in ", security.certificate,
                         ": it has expired, or another authority signed it");
   }
   return "";
@@ -38,7 +38,7 @@ bool WasClosed(absl::string_view message) {
 
 std::string HintWithoutTls(absl::string_view message) {
   if (!WasClosed(message)) return "";
-  return "if that server wants TLS: --ca FILE, or --tls if this system knows its authority";
+  return "if the server uses TLS: --ca FILE, or --tls if this system knows its authority";
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ std::string ConnectionHint(const ChannelSecurity& security, absl::string_view me
 
 std::string SocketHint(absl::string_view message) {
   if (!WasClosed(message) && !absl::StrContains(message, "Permission denied")) return "";
-  return "\n  perhaps that server does not accept your user: its operator can open the socket to "
+  return "\n  perhaps the server does not accept your user: its operator can open the socket to "
          "other users with --socket-mode";
 }
 

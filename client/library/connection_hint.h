@@ -1,5 +1,5 @@
-// What to try when no connection comes about. gRPC's texts tell the network's and OpenSSL's side of
-// it, and say nothing that a user could do.
+// Advice for a failed connection. The messages of gRPC and OpenSSL describe the failure, but do not
+// say what the user can do.
 #ifndef BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_
 #define BALLPISTON_CLIENT_LIBRARY_CONNECTION_HINT_H_
 
@@ -10,8 +10,8 @@
 
 namespace ballpiston::client {
 
-// A line of its own, "\n  ...", for an error with this text of gRPC 1.51's (OpenSSL 3's in it);
-// empty if nothing is known. Pure.
+// A separate line of advice, "\n  ...", for an error with this text of gRPC 1.51 and OpenSSL 3;
+// empty if the text is unknown. Pure.
 std::string ConnectionHint(const ChannelSecurity& security, absl::string_view message);
 
 // The same for a Unix socket.

@@ -66,11 +66,11 @@ std::string Text(const std::string& message, const google::rpc::Status& status) 
                       left_out > 0 ? absl::StrCat("\n  and ", left_out, " more") : "");
 }
 
-// gRPC 1.51 says "Received message larger than max (SIZE vs. MOST)", or "Sent ..."; and nothing at
-// all of a method that the server lacks.
+// gRPC 1.51 writes "Received message larger than max (SIZE vs. MOST)", or "Sent ...". If the server
+// lacks the method, gRPC's text is empty.
 std::string PlainText(absl::StatusCode code, absl::string_view text) {
   if (code == absl::StatusCode::kUnimplemented && text.empty()) {
-    return "the server is of an earlier version, which does not offer this";
+    return "the server has an earlier version, which does not offer this call";
   }
   const size_t begin = text.find("message larger than max (");
   if (code != absl::StatusCode::kResourceExhausted || begin == absl::string_view::npos) {

@@ -1,17 +1,18 @@
-// What a server's error says, for people and for programs.
+// A server's error as text for users and as a payload for programs.
 //
-// The server attaches a google.rpc.Status with an ErrorInfo (why, as one word) and, where the
-// request is wrong, a BadRequest with every violation. The text is
+// The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
+// request is invalid, a BadRequest with every violation. The text is
 //
-//   MESSAGE (REASON)                              no violation, or one
+//   MESSAGE (REASON)                              no violation
+//   FIELD: DESCRIPTION (REASON)                   one violation
 //   not valid, N violations (REASON):             several, one line each
 //     FIELD: DESCRIPTION
 //     and M more                                  if the server left some out
 //
-// and the google.rpc.Status itself travels on as the absl::Status's payload.
+// The google.rpc.Status itself becomes the payload of the absl::Status.
 //
-// A message that is too large for the transport is told in plain words, with both sizes, and so is
-// a method that the server lacks.
+// Two errors of gRPC get a plain text: a message that is too large for the transport (with both
+// sizes), and a method that the server lacks.
 #ifndef BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
 #define BALLPISTON_CLIENT_LIBRARY_ERROR_TEXT_H_
 
@@ -26,11 +27,11 @@ namespace ballpiston::client {
 // Type URL of the payload: a serialized google.rpc.Status.
 inline constexpr char kStatusPayload[] = "type.googleapis.com/google.rpc.Status";
 
-// Same code, the text above as message.
+// The same code, with the text above as its message.
 absl::Status FromGrpc(const grpc::Status& status);
 
-// The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave none, as when it was
-// never reached.
+// The ErrorInfo's reason, e.g. "JOB_NOT_FOUND"; empty if the server gave no reason or was not
+// reached.
 std::string ErrorReason(const absl::Status& status);
 
 }  // namespace ballpiston::client

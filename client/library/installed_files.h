@@ -11,7 +11,7 @@
 
 namespace ballpiston::client {
 
-// share/ballpiston/NAME, beside the folder of this program.
+// share/ballpiston/NAME beside this program's folder.
 inline std::filesystem::path InstalledFolder(const std::string& name) {
   const std::filesystem::path folder = std::filesystem::path(ProgramBeside("")).parent_path();
   return folder.parent_path() / "share" / "ballpiston" / name;

@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// False if `stop` cut it short.
+// Sleeps for `length`. Returns false if `stop` ended the pause early.
 bool Pause(absl::Duration length, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any woken;
@@ -24,7 +24,8 @@ bool Pause(absl::Duration length, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
-// gRPC ends a stream that reaches a server just as it stops with CANCELLED, and gives no reason.
+// If a stream reaches a server that is just stopping, gRPC ends the stream with CANCELLED and no
+// reason.
 bool IsBrokenStream(const absl::Status& end) {
   return absl::IsUnavailable(end) || (absl::IsCancelled(end) && ErrorReason(end).empty());
 }
@@ -49,7 +50,7 @@ class Watch {
  private:
   static absl::Status Stopped() { return absl::CancelledError("the watch was stopped"); }
 
-  // One attachment, to its end.
+  // Reads one stream to its end.
   absl::Status ReadStream() {
     grpc::ClientContext context;
     std::stop_callback cancel(stop_, [&context] { context.TryCancel(); });
@@ -62,7 +63,7 @@ class Watch {
   }
 
   void Handle(const v1::WatchEnsembleJobResponse& message) {
-    if (ended_) return;  // the terminal state was the last word
+    if (ended_) return;  // nothing after the terminal state is shown
     pace_.Heard(Clock::now());
     if (!message.resume_token().empty()) request_.set_resume_token(message.resume_token());
     if (message.has_job()) HandleJob(message.job());
@@ -81,7 +82,7 @@ class Watch {
     if (!pause) {
       return absl::UnavailableError(absl::StrCat("gave up watching after ",
                                                  absl::FormatDuration(options_.give_up_after),
-                                                 " without the server: ", why.message()));
+                                                 " without a connection: ", why.message()));
     }
     if (callbacks_.on_disconnect) callbacks_.on_disconnect(why, *pause);
     if (!Pause(*pause, stop_)) return Stopped();

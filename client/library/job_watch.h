@@ -1,9 +1,9 @@
-// Following a job to its end, through restarts of the server and cut connections.
+// Follows a job to its end, even if the server restarts or the connection breaks.
 //
-// When the stream breaks (UNAVAILABLE, CANCELLED without a reason, as by a server that stops, or an
-// end without a terminal state), the watch attaches
-// again with the last resume token it saw, after pauses that double from `initial_backoff` to
-// `max_backoff`, until nothing was heard for `give_up_after`. Every other error ends it.
+// A stream is broken if it ends with UNAVAILABLE, with CANCELLED and no reason (a server that stops
+// does this), or without a terminal state. The watch then pauses and reconnects with the last
+// resume token that it received. The pauses double from `initial_backoff` to `max_backoff`. After
+// `give_up_after` without a message the watch gives up. Every other error ends the watch.
 //
 // Properties, each with a test of its name:
 //   1. PassesTheLastResumeTokenOn.     2. ShowsTheTerminalStateOnce.
@@ -22,9 +22,10 @@
 
 namespace ballpiston::client {
 
-// Called on the thread that watches, one at a time; any of them may be empty.
+// The watching thread calls these, one at a time. Any of them may be empty.
 struct WatchCallbacks {
-  std::function<void(const v1::EnsembleJob&)> on_job = {};  // at first, and on each change of state
+  std::function<void(const v1::EnsembleJob&)> on_job =
+      {};  // at the start and on each change of state
   std::function<void(const v1::StatisticsSnapshot&)> on_snapshot = {};
   std::function<void()> on_heartbeat = {};
   // The stream broke; the next attempt follows after `pause`.
@@ -41,8 +42,8 @@ struct WatchOptions {
 // SUCCEEDED, FAILED or CANCELLED.
 bool HasEnded(v1::EnsembleJob::State state);
 
-// Blocks until the job has ended and returns it as it then is. CANCELLED if `stop` was requested
-// (the job goes on), UNAVAILABLE if the watch gave up, else the server's error.
+// Blocks until the job has ended, and returns the ended job. CANCELLED if `stop` was requested (the
+// job continues), UNAVAILABLE if the watch gave up, else the server's error.
 absl::StatusOr<v1::EnsembleJob> WatchJob(v1::EnsembleService::StubInterface& stub,
                                          const std::string& name, const WatchCallbacks& callbacks,
                                          const WatchOptions& options = {},

@@ -28,15 +28,15 @@ constexpr char kIdleSeconds[] = "60";
 constexpr absl::Duration kAnswerTimeout = absl::Seconds(10);
 constexpr absl::Duration kPoll = absl::Milliseconds(20);
 
-// While another client's server holds the folder and does not answer yet. To look takes the lock
-// for a moment if nobody has it: not too often.
+// How often to check a server that another client started and that does not answer yet. A check
+// holds the folder's lock for a moment if the lock is free, and must therefore be rare.
 constexpr absl::Duration kOthersPoll = absl::Milliseconds(200);
 
-// The program exits if another server holds the folder. One that is going idle does not answer any
-// more, but leaves the folder.
+// The started server exits if another server holds the folder. The other server may be stopping
+// because it was idle: it no longer answers, and soon releases the folder. Then a retry succeeds.
 constexpr int kAttempts = 3;
 
-// An absolute path from the environment, else empty.
+// The environment variable's value if it is an absolute path, else empty.
 std::string PathVariable(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr && value[0] == '/' ? value : "";
@@ -55,13 +55,13 @@ std::string StateFolder() {
   return HomeFolder() + "/.local/state/ballpiston";
 }
 
-// Anybody may have made a folder of that name below /tmp: use it only if it is the user's own.
+// Another user may have made a folder of this name in /tmp: accept only the user's own folder.
 absl::Status CheckPrivate(const std::string& folder) {
   struct stat status;
   if (lstat(folder.c_str(), &status) != 0) return absl::ErrnoToStatus(errno, folder);
   if (!S_ISDIR(status.st_mode) || status.st_uid != getuid() || (status.st_mode & 077) != 0) {
     return absl::PermissionDeniedError(
-        absl::StrCat(folder, " is not a folder that only this user can enter"));
+        absl::StrCat(folder, " must be a folder that only this user can enter"));
   }
   return absl::OkStatus();
 }
@@ -77,7 +77,7 @@ absl::Status MakeFolder(const std::string& folder) {
   }
   if (!error) return absl::OkStatus();
   return absl::PermissionDeniedError(
-      absl::StrCat("no private server without the folder ", folder, ": ", error.message(),
+      absl::StrCat("the private server needs the folder ", folder, ": ", error.message(),
                    " (name a server with --server, or another folder with XDG_STATE_HOME)"));
 }
 
@@ -93,7 +93,7 @@ absl::StatusOr<std::string> SocketIn(const std::string& folder) {
   return absl::StrCat(root, name, kSocket);
 }
 
-// Whether somebody answers; false as soon as a connection is refused.
+// Whether a server answers. Returns false as soon as a connection is refused.
 bool Answers(grpc::Channel& channel) {
   const auto deadline = absl::ToChronoTime(absl::Now() + kAnswerTimeout);
   while (true) {
@@ -130,7 +130,7 @@ class Starter {
   }
 
  private:
-  // Until it answers, or exits, or time is up.
+  // Waits until the server answers (true), or has ended, or the time is over (false).
   bool AnswersWhileAlive(StartedServer& started) {
     const absl::Time deadline = absl::Now() + server_.start_time;
     while (absl::Now() < deadline && !started.HasEnded()) {
@@ -140,7 +140,7 @@ class Starter {
   }
 
   // Waits for a server that another client has started, as long as that server holds the folder.
-  // False if the server in the folder has another address: that is not the private server.
+  // False if that server has another address: then it is not the private server.
   bool OtherAnswersWhileAlive() {
     while (absl::Now() < others_deadline_) {
       const auto other = FindServer(server_.folder);
@@ -177,9 +177,8 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectToLocalServer(const LocalS
 absl::StatusOr<std::shared_ptr<grpc::Channel>> ConnectIfRunning(const LocalServer& server) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(server.Address());
   if (!channel.ok() || Answers(**channel)) return channel;
-  return absl::UnavailableError(
-      absl::StrCat("no private server is running (one is started when it is needed, and lives in ",
-                   server.folder, ")"));
+  return absl::UnavailableError(absl::StrCat(
+      "no private server is running (a command that needs it starts it in ", server.folder, ")"));
 }
 
 }  // namespace ballpiston::client

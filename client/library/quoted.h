@@ -1,5 +1,5 @@
-// Wrong values in messages: whole where they are short, so that they are recognised, and never more
-// than a line or two. What is no plain text is escaped: it would spoil the terminal.
+// Wrong values in error messages. Short values are shown whole, long values are shortened to a line
+// or two. Control characters are escaped, so that they do not change the terminal.
 #ifndef BALLPISTON_CLIENT_LIBRARY_QUOTED_H_
 #define BALLPISTON_CLIENT_LIBRARY_QUOTED_H_
 
@@ -13,10 +13,9 @@
 namespace ballpiston::client {
 
 inline constexpr size_t kLongestQuoted = 100;    // bytes
-inline constexpr size_t kLongestMessage = 1000;  // bytes, of somebody else's words
+inline constexpr size_t kLongestMessage = 1000;  // bytes, of another program's message
 
-// The text's begin and end where it has more than `longest` bytes: "begin ... end". It is cut
-// between characters of UTF-8.
+// A text of more than `longest` bytes becomes "begin ... end". It is cut between UTF-8 characters.
 inline std::string Shortened(absl::string_view text, size_t longest) {
   if (text.size() <= longest) return std::string(text);
   const auto is_inside = [text](size_t i) {

@@ -1,8 +1,9 @@
-// When a watch that lost its server attaches again, and when it gives up: after pauses that double
-// from `initial_backoff` to `max_backoff`, each up to a quarter longer, so that the watchers of a
-// server that died do not return as one; until nothing was heard for `give_up_after`.
+// When a watch that lost its server retries, and when it gives up. The pauses double from
+// `initial_backoff` to `max_backoff`; each is up to a quarter longer at random, so that the
+// watchers of a restarted server do not all reconnect at the same moment. The watch gives up when
+// it has received nothing for `give_up_after`.
 //
-// The times are the caller's, so that this can be tested without waiting. Not thread-safe.
+// The caller passes the times, so that tests need not wait. Not thread-safe.
 #ifndef BALLPISTON_CLIENT_LIBRARY_REATTACH_PACE_H_
 #define BALLPISTON_CLIENT_LIBRARY_REATTACH_PACE_H_
 
@@ -19,13 +20,13 @@ class ReattachPace {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Reads the three times of `options`, which outlive this. `now`: when the watch begins.
+  // Reads the three times of `options`, which must outlive this object. `now`: the watch's start.
   ReattachPace(const WatchOptions& options, Time now);
 
-  // The server said something: both the pauses and the time to give up start again.
+  // The watch received a message: the pauses and the time until it gives up start again.
   void Heard(Time now);
 
-  // Before the next attempt; empty if that would come after the time to give up.
+  // The pause before the next attempt; empty if it would end after the time to give up.
   std::optional<absl::Duration> NextPause(Time now);
 
  private:

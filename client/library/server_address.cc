@@ -44,9 +44,9 @@ absl::StatusOr<std::string> GrpcTarget(absl::string_view address) {
   if (absl::ConsumePrefix(&path, "unix:")) return UnixTarget(address, path);
   const size_t colon = address.rfind(':');
   if (colon == absl::string_view::npos) return BadAddress(address, "the port is missing");
-  if (!IsHost(address.substr(0, colon))) return BadAddress(address, "that is no host");
+  if (!IsHost(address.substr(0, colon))) return BadAddress(address, "the host is not valid");
   if (!IsPort(address.substr(colon + 1))) {
-    return BadAddress(address, "the port has to be a number from 1 to 65535");
+    return BadAddress(address, "the port must be a number from 1 to 65535");
   }
   return absl::StrCat("dns:///", address);
 }

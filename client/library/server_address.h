@@ -3,7 +3,7 @@
 //   host:port    TCP; an IPv6 host in brackets, [::1]:50051
 //   unix:PATH    a Unix domain socket
 //
-// What a connection to host:port is protected by is told by channel_security.h.
+// channel_security.h protects connections to host:port.
 #ifndef BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
 #define BALLPISTON_CLIENT_LIBRARY_SERVER_ADDRESS_H_
 
@@ -17,7 +17,8 @@ namespace ballpiston::client {
 // The longest path a Unix socket may have, in bytes (sun_path holds 108 on Linux).
 inline constexpr size_t kMaxSocketPath = 100;
 
-// The target string gRPC wants; INVALID_ARGUMENT tells what an address looks like.
+// The target string that gRPC needs. INVALID_ARGUMENT, with the form of an address, if `address` is
+// not an address.
 absl::StatusOr<std::string> GrpcTarget(absl::string_view address);
 
 }  // namespace ballpiston::client

@@ -72,7 +72,7 @@ std::string UsualServerProgram() {
   const char* chosen = std::getenv("BALLPISTON_SERVER_PROGRAM");
   std::error_code error;
   if (chosen != nullptr && chosen[0] != '\0') {
-    // The server starts in another folder: a relative path has to be made absolute here.
+    // The server runs in another folder; therefore a relative path is made absolute here.
     const bool is_path = absl::string_view(chosen).find('/') != absl::string_view::npos;
     return is_path ? fs::absolute(chosen, error).string() : chosen;
   }

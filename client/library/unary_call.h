@@ -1,4 +1,4 @@
-// One call with one answer, with a deadline, and with the server's error made readable.
+// One call with one answer and a deadline. The server's error becomes readable text (error_text.h).
 #ifndef BALLPISTON_CLIENT_LIBRARY_UNARY_CALL_H_
 #define BALLPISTON_CLIENT_LIBRARY_UNARY_CALL_H_
 

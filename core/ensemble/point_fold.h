@@ -24,10 +24,10 @@ namespace ballpiston {
 
 // The merged result, from which a point can be resumed.
 struct FoldState {
-  uint64_t chunk = 0;         // the first chunk that is not complete
-  uint64_t blocks = 0;        // the number of merged blocks of that chunk
-  BlockResult complete = {};  // the merged result of all complete chunks
-  BlockResult partial = {};   // the merged blocks of that chunk
+  uint64_t chunk = 0;                        // the first chunk that is not complete
+  uint64_t blocks = 0;                       // the number of merged blocks of that chunk
+  BlockResult complete = {};                 // the merged result of all complete chunks
+  BlockResult partial = {};                  // the merged blocks of that chunk
   std::vector<uint64_t> chunk_digests = {};  // of the complete chunks, in order (block_digest.h)
 };
 

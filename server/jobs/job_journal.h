@@ -30,8 +30,7 @@ class JobJournal : public RunJournal {
   void Checkpoint(size_t point, const FoldState& state) override;
   void ChunkIsEarly(size_t point, const ChunkResult& chunk) override;
   void Worked(double seconds) override;
-  void PointFinished(size_t point, const PointExperiment& experiment,
-                     const BlockResult& merged,
+  void PointFinished(size_t point, const PointExperiment& experiment, const BlockResult& merged,
                      const std::vector<uint64_t>& chunk_digests) override;
   void Ended(const absl::Status& outcome) override;
   void AwaitRoom() override;

@@ -30,9 +30,10 @@ TEST(AnsweredAgain, RunPrintsTheStoredAnswerAndNamesItsJob) {
   for (int restarted = 0; restarted < 2; ++restarted) {
     const ProcessResult again = server.Client(Asking("run", {"--format", "json"}));
     EXPECT_THAT(again, ExitsWith(0));
-    EXPECT_THAT(again.err, MatchesRegex("answered from the store: " + name +
-                                        ", computed 2[0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9] "
-                                        "[0-9][0-9]:[0-9][0-9] UTC \\(--fresh computes anew\\)\n"));
+    EXPECT_THAT(again.err,
+                MatchesRegex("answered from the store: " + name +
+                             ", computed 2[0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9] "
+                             "[0-9][0-9]:[0-9][0-9] UTC \\(--fresh computes it again\\)\n"));
     EXPECT_EQ(At(ParseJson(again.out), "job", "name").string_value(), name);
     EXPECT_TRUE(At(ParseJson(again.out), "job", "answered_from_store").bool_value());
     EXPECT_EQ(PointsOf(again.out), PointsOf(first.out));

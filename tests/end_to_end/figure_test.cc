@@ -262,7 +262,7 @@ TEST_F(FigureTest, TheSpectrumHasRatesAndAutocorrelations) {
 TEST_F(FigureTest, QuickAndFullExcludeEachOther) {
   const ProcessResult result = server_.Client(Split("figure cell --quick --full --out " + folder_));
   EXPECT_THAT(result, ExitsWith(2));
-  EXPECT_THAT(result.err, HasSubstr("--quick and --full: give one of them"));
+  EXPECT_THAT(result.err, HasSubstr("--quick and --full exclude each other"));
 }
 
 TEST_F(FigureTest, APictureThatIsCutOffIsReported) {

@@ -60,7 +60,7 @@ TEST_F(InterruptTest, OnATerminalTheMessageReplacesTheBar) {
     run.Type(presses);
     const TerminalProcess::Outcome outcome = run.Wait();
     EXPECT_EQ(outcome.exit_code, 130);
-    const size_t message = outcome.output.find("\r\x1b[KThe job goes on.\r\n");
+    const size_t message = outcome.output.find("\r\x1b[KThe job continues.\r\n");
     ASSERT_NE(message, std::string::npos) << outcome.output;
     EXPECT_EQ(outcome.output.find("points", message), std::string::npos) << outcome.output;
     EXPECT_THAT(outcome.output, EndsWith("--server " + server_.address() + "\r\n"));

@@ -123,12 +123,12 @@ TEST_F(Security, ErrorsSayWhatToTry) {
     EXPECT_THAT(result, ExitsWith(code));
     EXPECT_THAT(result.err, HasSubstr(text));
   };
-  expect({}, 3, "if that server wants TLS: --ca FILE");
-  expect({"--ca", home_.File("other.pem")}, 3, "name the right one with --ca FILE");
+  expect({}, 3, "if the server uses TLS: --ca FILE");
+  expect({"--ca", home_.File("other.pem")}, 3, "name the right authority with --ca FILE");
   expect({"--tls"}, 3, "that this system knows");
   expect({"--ca", home_.File("ca.pem")}, 6, "CREDENTIALS_MISSING");
   expect(Known("wrong"), 6, "CREDENTIALS_INVALID");
-  expect({"--token-file", home_.File("token_alice")}, 2, "others can read");
+  expect({"--token-file", home_.File("token_alice")}, 2, "unencrypted connection");
   expect({"--cert", home_.File("server.pem")}, 2, "together");
   chmod(home_.File("token_alice").c_str(), 0644);
   expect(Known("alice"), 6, "chmod 600");
@@ -141,7 +141,7 @@ TEST_F(Security, ErrorOfTlsToAPlainServerSaysSo) {
   Start({});
   const ProcessResult result = List({"--ca", home_.File("ca.pem")});
   EXPECT_THAT(result, ExitsWith(3));
-  EXPECT_THAT(result.err, HasSubstr("does not speak TLS"));
+  EXPECT_THAT(result.err, HasSubstr("does not use TLS"));
   EXPECT_THAT(List({}), ExitsWith(0));
 }
 

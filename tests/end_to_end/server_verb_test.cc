@@ -44,7 +44,7 @@ TEST_F(ServerVerbTest, StartsAndStopsTheOneThatClientsUse) {
   EXPECT_THAT(started.out, StartsWith("unix:"));
   const ProcessResult again = Server("start", private_);
   EXPECT_EQ(again.out, started.out);
-  EXPECT_THAT(again.err, HasSubstr("runs there already"));
+  EXPECT_THAT(again.err, HasSubstr("already runs there"));
   EXPECT_THAT(Start(private_), ExitsWith(4));  // flags that would have no effect
   EXPECT_THAT(Client("server status"), ExitsWith(0));
   EXPECT_THAT(Server("stop", private_), ExitsWith(0));

@@ -65,7 +65,7 @@ TEST_F(ConnectionTest, FlagsOfTlsAreRejectedOverAUnixSocket) {
     words.insert(words.end(), flags.begin(), flags.end());
     const Outcome of_private = Ballpiston(words);
     EXPECT_EQ(of_private.code, 2);
-    EXPECT_THAT(of_private.err, HasSubstr("the private server needs no TLS and no token"));
+    EXPECT_THAT(of_private.err, HasSubstr("the private server uses neither TLS nor a token"));
     const Outcome named = WithServer(words);
     EXPECT_EQ(named.code, 2);
     EXPECT_THAT(named.err, StartsWith("ballpiston: --server: "));

@@ -96,7 +96,7 @@ TEST_F(CreateJobTest, AnAnswerFromTheStoreIsNoted) {
   server_.ensemble.answers_from_store = true;
   server_.Start();
   const std::string note = "answered from the store: " + job().name() +
-                           ", computed 2023-11-14 22:13 UTC (--fresh computes anew)";
+                           ", computed 2023-11-14 22:13 UTC (--fresh computes it again)";
   const Outcome submitted = WithServer({"submit", "equilibrium"});
   EXPECT_EQ(submitted.out, job().name() + "\n");
   EXPECT_EQ(submitted.err, note + "\n");
@@ -128,7 +128,7 @@ TEST_F(CreateJobTest, AFullQueueExitsWithThreeAndAHint) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err,
               "ballpiston: 10 jobs are active already (QUEUE_FULL)\n"
-              "Try again when some of them have ended.\n");
+              "Retry when some of the jobs have ended.\n");
   }
 }
 

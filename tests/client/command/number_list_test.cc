@@ -81,8 +81,8 @@ TEST(NumberList, RejectsWhatIsNotAListAndSaysWhy) {
       {"0:1:100001", "a whole number from 1 to 100000"},
       {"0:1:1e300", "a whole number from 1 to 100000"},
       {"0:1:99999999999999999999", "a whole number from 1 to 100000"},
-      {"0:1:3:log", "both ends have to be above 0"},
-      {"-1:1:3:log", "both ends have to be above 0"},
+      {"0:1:3:log", "both ends must be above 0"},
+      {"-1:1:3:log", "both ends must be above 0"},
       {"1e-300:1e300:3:log", "beyond 1e100"},
       {"0:1:100000,5", "'0:1:100000,5' has more than 100000 numbers"}};
   for (const auto& [text, reason] : cases) {

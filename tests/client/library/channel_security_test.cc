@@ -27,8 +27,9 @@ constexpr char kKeyPem[] = "-----BEGIN PRIVATE KEY-----\n";
 
 TEST(ChannelSecurity, ATokenIsNotSentWithoutTls) {
   for (const char* address : {"localhost:1", "127.0.0.1:1", "example.org:1"}) {
-    EXPECT_THAT(CheckSecurity({.token = kSecret}, address),
-                StatusIs(kInvalid, AllOf(HasSubstr("others can read"), Not(HasSubstr(kSecret)))));
+    EXPECT_THAT(
+        CheckSecurity({.token = kSecret}, address),
+        StatusIs(kInvalid, AllOf(HasSubstr("unencrypted connection"), Not(HasSubstr(kSecret)))));
     EXPECT_THAT(CheckSecurity({.token_file = "f"}, address), StatusIs(kInvalid));
     EXPECT_OK(CheckSecurity({.tls = true, .token = kSecret}, address));
     EXPECT_OK(CheckSecurity({.ca = "f", .token_file = "f"}, address));
@@ -121,9 +122,9 @@ TEST(ConnectionHint, SaysWhatToTry) {
       {with_ca, "SSL routines::certificate verify failed", "in ca.pem"},
       {with_tls, "SSL routines::certificate verify failed", "that this system knows"},
       {with_ca, "Peer name x is not in peer certificate", "another host"},
-      {with_ca, "SSL routines::wrong version number", "does not speak TLS"},
+      {with_ca, "SSL routines::wrong version number", "does not use TLS"},
       {with_ca, "Socket closed", "--cert FILE --key FILE"},
-      {with_certificate, "Socket closed", "may not take the certificate in c.pem"}};
+      {with_certificate, "Socket closed", "may reject the certificate in c.pem"}};
   for (const auto& [security, message, hint] : cases) {
     EXPECT_THAT(ConnectionHint(security, message), HasSubstr(hint)) << message;
   }

@@ -82,9 +82,9 @@ TEST(ErrorText, OtherExhaustionKeepsItsMessage) {
 }
 
 TEST(ErrorText, AMissingMethodIsReportedInPlainWords) {
-  EXPECT_EQ(
-      FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "")),
-      absl::UnimplementedError("the server is of an earlier version, which does not offer this"));
+  EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "")),
+            absl::UnimplementedError(
+                "the server has an earlier version, which does not offer this call"));
   EXPECT_EQ(FromGrpc(grpc::Status(grpc::StatusCode::UNIMPLEMENTED, "not by Slurm")).message(),
             "not by Slurm");
 }

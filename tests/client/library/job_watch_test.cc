@@ -144,7 +144,7 @@ TEST_F(JobWatch, GivesUpAfterTheConfiguredTime) {
   options_.give_up_after = absl::Milliseconds(50);
   EXPECT_THAT(Watch(),
               StatusIs(absl::StatusCode::kUnavailable,
-                       HasSubstr("gave up watching after 50ms without the server: connection "
+                       HasSubstr("gave up watching after 50ms without a connection: connection "
                                  "reset")));
 }
 

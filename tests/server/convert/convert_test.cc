@@ -85,9 +85,8 @@ TEST_F(StoredFold, ThatLiesWithinThePlanIsAccepted) {
                      .complete = Empty(),
                      .partial = Empty(),
                      .chunk_digests = Digests(1)}));
-  EXPECT_OK(Checked({.chunk = plan().chunks(),
-                     .complete = Empty(),
-                     .chunk_digests = Digests(plan().chunks())}));
+  EXPECT_OK(Checked(
+      {.chunk = plan().chunks(), .complete = Empty(), .chunk_digests = Digests(plan().chunks())}));
 }
 
 TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
@@ -95,16 +94,16 @@ TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
   too_many.samples = plan().BlockAt(0, 0).samples + 1;
   no_error.health.max_energy_error = kNan;
   for (const FoldState& state :
-       {FoldState{},  // nothing merged yet
+       {FoldState{},                                 // nothing merged yet
         FoldState{.chunk = 1, .complete = Empty()},  // a digest is missing
         FoldState{.chunk = plan().chunks() + 1,
-                  .complete = Empty(),
-                  .chunk_digests = Digests(plan().chunks() + 1)},
+        .complete = Empty(),
+        .chunk_digests = Digests(plan().chunks() + 1)},
         FoldState{.chunk = plan().chunks(),
-                  .blocks = 1,
-                  .complete = Empty(),
-                  .partial = Empty(),
-                  .chunk_digests = Digests(plan().chunks())},
+        .blocks = 1,
+        .complete = Empty(),
+        .partial = Empty(),
+        .chunk_digests = Digests(plan().chunks())},
         FoldState{.blocks = plan().BlocksIn(0), .partial = Empty()},
         FoldState{.blocks = 1},                       // nothing merged
         FoldState{.complete = Empty()},               // something before the first chunk
