@@ -23,6 +23,7 @@ readonly PACKAGES=(
   prometheus-cpp-dev                                           # metrics
   libcli11-dev                                                 # the flags of both programs
   libcpp-httplib-dev pkgconf                                   # the client's page
+  libzip-dev                                                   # results as NumPy's archives
   gnuplot-nox)                                                 # the client's figures
 
 # The version of the installed CMake or, without one, of the package; empty if neither is known.

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "absl/random/random.h"
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
@@ -21,6 +22,7 @@
 #include "server/store/backup.h"
 #include "server/store/check_store.h"
 #include "server/store/data_directory.h"
+#include "server/verification/verify_result.h"
 #include "server/version.h"
 
 namespace ballpiston::server {
@@ -28,6 +30,7 @@ namespace {
 
 constexpr int kExitTryAgain = 1;
 constexpr int kExitUsage = 2;
+constexpr int kExitDiffers = 4;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
 // What stopping the workers and closing the store may take beyond the time to drain.
@@ -125,6 +128,15 @@ int Report(const absl::StatusOr<StoreSummary>& summary) {
   return summary->sound() ? printed : kExitUsage;
 }
 
+// Prints what was compared; returns the exit code.
+int Verify(const std::string& file) {
+  absl::BitGen random;
+  const auto verified = VerifyResult(file, random);
+  if (verified.ok()) return Print(*verified + "\n");
+  LogError(verified.status().message());
+  return absl::IsInvalidArgument(verified.status()) ? kExitUsage : kExitDiffers;
+}
+
 std::string StoreIn(const CommandLine& line) {
   return absl::StrCat(line.server.data_dir, "/", kStoreFile);
 }
@@ -137,6 +149,7 @@ int Main(int argc, char** argv) {
   if (!line.ok()) return Fail(line.status());
   if (!line->page.empty()) return Print(line->page);
   if (line->new_token) return PrintNewToken(*line);
+  if (!line->verify.empty()) return Verify(line->verify);
   if (line->check) return Report(CheckStore(StoreIn(*line)));
   if (!line->backup.empty()) return Report(BackupStore(StoreIn(*line), line->backup));
   SetLogOptions(line->log);

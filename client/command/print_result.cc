@@ -1,11 +1,14 @@
 #include "client/command/print_result.h"
 
 #include <memory>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "client/command/follow_job.h"
 #include "client/command/hint.h"
+#include "client/output/new_file.h"
 #include "client/output/number_text.h"
+#include "client/output/result_file.h"
 #include "client/output/result_writer.h"
 #include "client/output/spelling.h"
 
@@ -31,25 +34,65 @@ void AddPoint(const v1::PointResult& point, ResultWriter& writer, std::ostream& 
   WarnOfEscapes(point, err);
 }
 
+// Where a result goes: standard output, or the file of --save.
+class Destination {
+ public:
+  // `options` must have passed CheckSave.
+  Destination(const Options& options, Terminal& terminal) : terminal_(terminal) {
+    if (options.save.empty()) {
+      writer_ = NewResultWriter(options.format, terminal.out);
+      view_ = ViewFor(options.format);
+      return;
+    }
+    const FileFormat format = *FormatOfFile(options.save, options.format);
+    path_ = options.save;
+    file_.emplace("--save", path_);
+    writer_ = NewResultFileWriter(format, file_->out());
+    view_ = ViewFor(format);
+  }
+
+  v1::ListResultsRequest::View view() const { return view_; }
+  ResultWriter& writer() { return *writer_; }
+
+  // Prints the path of the file, once the file is complete.
+  absl::Status Finish() {
+    writer_->End();
+    if (file_) {
+      if (absl::Status kept = file_->Keep(); !kept.ok()) return kept;
+      terminal_.out << path_ << '\n';
+    }
+    terminal_.out.flush();
+    return absl::OkStatus();
+  }
+
+ private:
+  Terminal& terminal_;
+  std::string path_;
+  std::optional<NewFile> file_;
+  std::unique_ptr<ResultWriter> writer_;
+  v1::ListResultsRequest::View view_;
+};
+
 // If the server restarts, requests only the current page again: the earlier pages have been
-// printed. Calls writer.Begin when the first page has arrived.
-absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job, Format format,
-                         ResultWriter& writer, std::ostream& err) {
+// printed. Calls Begin of the writer when the first page has arrived.
+absl::Status PrintPoints(const Connection& connection, const v1::EnsembleJob& job,
+                         Destination& destination, std::ostream& err) {
   std::string token;
   do {
     const auto page = connection.Ask(
-        [&] { return connection.client.ResultsPage(job.name(), ViewFor(format), token); });
+        [&] { return connection.client.ResultsPage(job.name(), destination.view(), token); });
     if (!page.ok()) return HintIfExpired(page.status(), connection, job.name());
-    if (token.empty()) writer.Begin(job);
-    for (const v1::PointResult& point : page->points()) AddPoint(point, writer, err);
+    if (token.empty()) destination.writer().Begin(job);
+    for (const v1::PointResult& point : page->points()) {
+      AddPoint(point, destination.writer(), err);
+    }
     token = page->next_page_token();
   } while (!token.empty());
   return absl::OkStatus();
 }
 
-VerbResult End(const v1::EnsembleJob& job, ResultWriter& writer, Terminal& terminal) {
-  writer.End();
-  terminal.out.flush();
+VerbResult End(const v1::EnsembleJob& job, Destination& destination, Terminal& terminal) {
+  if (absl::Status finished = destination.Finish(); !finished.ok()) return finished;
   if (HasEnded(job.state())) return ReportEnd(job, terminal);
   NoteUnfinished(job, terminal);
   return ExitCode::kDone;
@@ -57,27 +100,33 @@ VerbResult End(const v1::EnsembleJob& job, ResultWriter& writer, Terminal& termi
 
 }  // namespace
 
-VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
-                       Terminal& terminal, bool answered_from_store) {
+absl::Status CheckSave(const Options& options) {
+  if (options.save.empty()) return absl::OkStatus();
+  const auto format = FormatOfFile(options.save, options.format);
+  return format.ok() ? CheckNewFile("--save", options.save) : format.status();
+}
+
+VerbResult PrintResult(const Connection& connection, const std::string& name,
+                       const Options& options, Terminal& terminal, bool answered_from_store) {
   auto job = connection.Ask([&] { return connection.client.Get(name); });
   if (!job.ok()) return job.status();
   job->set_answered_from_store(answered_from_store);
-  const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
-  const absl::Status status = PrintPoints(connection, *job, format, *writer, terminal.err);
+  Destination destination(options, terminal);
+  const absl::Status status = PrintPoints(connection, *job, destination, terminal.err);
   if (!status.ok()) return status;
-  return End(*job, *writer, terminal);
+  return End(*job, destination, terminal);
 }
 
 VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
-                      Format format, Terminal& terminal) {
+                      const Options& options, Terminal& terminal) {
   const auto point = connection.Ask([&] { return connection.client.Point(name, index); });
   if (!point.ok()) return HintIfExpired(point.status(), connection, name);
   const auto job = connection.Ask([&] { return connection.client.Get(name); });
   if (!job.ok()) return job.status();
-  const std::unique_ptr<ResultWriter> writer = NewResultWriter(format, terminal.out);
-  writer->Begin(*job);
-  AddPoint(*point, *writer, terminal.err);
-  return End(*job, *writer, terminal);
+  Destination destination(options, terminal);
+  destination.writer().Begin(*job);
+  AddPoint(*point, destination.writer(), terminal.err);
+  return End(*job, destination, terminal);
 }
 
 }  // namespace ballpiston::client

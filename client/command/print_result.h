@@ -7,19 +7,23 @@
 
 #include "client/command/connection.h"
 #include "client/command/terminal.h"
-#include "client/output/format.h"
 
 namespace ballpiston::client {
+
+// Checks --save before a job runs: the file's ending and folder. INVALID_ARGUMENT names the flag.
+absl::Status CheckSave(const Options& options);
 
 // kFailed for a job that failed or was cancelled; its finished points are printed too.
 // FAILED_PRECONDITION, with a hint, if the results have expired; then nothing is printed.
 // `answered_from_store` is the value that Create returned: the server does not store it.
-VerbResult PrintResult(const Connection& connection, const std::string& name, Format format,
-                       Terminal& terminal, bool answered_from_store = false);
+// With --save the result goes to that file, whose path is printed.
+VerbResult PrintResult(const Connection& connection, const std::string& name,
+                       const Options& options, Terminal& terminal,
+                       bool answered_from_store = false);
 
 // The same for the point at `index` of the grid.
 VerbResult PrintPoint(const Connection& connection, const std::string& name, int64_t index,
-                      Format format, Terminal& terminal);
+                      const Options& options, Terminal& terminal);
 
 }  // namespace ballpiston::client
 

@@ -1,23 +1,15 @@
 // ballpiston report: one HTML file with the pictures, tables and specifications of jobs.
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/command/connection.h"
 #include "client/command/hint.h"
 #include "client/output/json.h"
+#include "client/output/new_file.h"
 #include "client/web/one_file_page.h"
 
 namespace ballpiston::client {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr size_t kMostPoints = 10'000;  // of a job; some 6 MB
 constexpr size_t kMostPictured = 12;    // points with histograms and curves; as in report.js
@@ -75,33 +67,6 @@ absl::StatusOr<std::string> Data(const Connection& connection,
                       "\",\"jobs\":[", absl::StrJoin(jobs, ",\n"), "]}");
 }
 
-absl::Status CannotWrite(const std::string& path, const std::string& reason) {
-  return absl::InvalidArgumentError(absl::StrCat("--out: cannot write ", path, ": ", reason));
-}
-
-bool WriteTo(const fs::path& file, const std::string& content) {
-  std::ofstream out(file, std::ios::binary);
-  return static_cast<bool>(out << content << std::flush);
-}
-
-// Writes a hidden file and renames it: a reader never sees a partial file, and after a failure the
-// old file remains. Writes directly to a pipe or a device.
-absl::Status Write(const std::string& path, const std::string& content) {
-  std::error_code error;
-  const bool exists = fs::exists(path, error);
-  const fs::path file = exists ? fs::canonical(path, error) : fs::path(path);
-  const bool is_special = exists && !fs::is_regular_file(file, error);
-  const std::string hidden = absl::StrCat(".", file.filename().string(), ".", getpid());
-  const fs::path part = is_special ? file : file.parent_path() / hidden;
-  absl::Status status;
-  if (!WriteTo(part, content)) status = CannotWrite(path, std::strerror(errno));
-  if (is_special) return status;
-  if (status.ok()) fs::rename(part, file, error);
-  if (status.ok() && error) status = CannotWrite(path, error.message());
-  fs::remove(part, error);
-  return status;
-}
-
 }  // namespace
 
 VerbResult ReportJobs(const Options& options, Terminal& terminal) {
@@ -115,7 +80,9 @@ VerbResult ReportJobs(const Options& options, Terminal& terminal) {
     if (!data.ok()) return data.status();
     const auto page = OneFilePage(*files, "report.html", *data);
     if (!page.ok()) return page.status();
-    if (absl::Status status = Write(options.out, *page); !status.ok()) return status;
+    NewFile file("--out", options.out);
+    file.out() << *page;
+    if (absl::Status kept = file.Keep(); !kept.ok()) return kept;
     terminal.out << options.out << '\n';
     return ExitCode::kDone;
   });

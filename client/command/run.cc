@@ -8,6 +8,7 @@
 namespace ballpiston::client {
 
 VerbResult Run(const Options& options, Terminal& terminal) {
+  if (absl::Status bad = CheckSave(options); !bad.ok()) return bad;
   return WithQuestion(
       options, terminal,
       [&](const Connection& connection, const v1::EnsembleSpec& spec) -> VerbResult {
@@ -19,7 +20,7 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         }
         const auto end = FollowJob(connection, made->name(), StyleOf(options), terminal);
         if (!end.ok()) return end.status();
-        return PrintResult(connection, made->name(), options.format, terminal,
+        return PrintResult(connection, made->name(), options, terminal,
                            made->answered_from_store());
       });
 }

@@ -1,18 +1,14 @@
 // ballpiston server: starts, stops, checks and backs up servers on this machine, makes tokens, and
 // shows the status of any server.
-#include <signal.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
+#include "client/command/ballpistond.h"
 #include "client/command/connection.h"
-#include "client/command/interrupts.h"
-#include "client/library/child_process.h"
 #include "client/library/server_process.h"
 #include "client/output/status_output.h"
 
@@ -66,24 +62,12 @@ absl::Status MakeFolder(const std::string& folder) {
       absl::StrCat("--data-dir: cannot make the folder ", folder, ": ", error.message()));
 }
 
-// Runs ballpistond with these flags and waits for its end. Its output is this program's output.
-VerbResult RunProgram(std::vector<std::string> flags, const Terminal& terminal) {
-  flags.insert(flags.begin(), UsualServerProgram());
-  terminal.Detail(absl::StrJoin(flags, " "));
-  const auto pid = StartChild({.command = std::move(flags), .folder = "", .output = ""});
-  if (!pid.ok()) return absl::FailedPreconditionError(pid.status().message());
-  const Interrupts::Scope scope(terminal.interrupts, [&] { kill(*pid, SIGTERM); });
-  const absl::StatusOr<int> status = WaitForChild(*pid);
-  if (!status.ok()) return status.status();
-  return ExitCodeOf(*status);
-}
-
 VerbResult RunOnStore(const Options& options, std::vector<std::string> flags,
                       const Terminal& terminal) {
   const absl::StatusOr<ServerProgram> program = ProgramOf(options);
   if (!program.ok()) return program.status();
   flags.insert(flags.end(), {"--data-dir", program->folder});
-  return RunProgram(std::move(flags), terminal);
+  return RunBallpistond(std::move(flags), terminal);
 }
 
 }  // namespace
@@ -134,8 +118,8 @@ VerbResult ServerToken(const Options& options, Terminal& terminal) {
   if (options.access_file.empty()) {
     return absl::InvalidArgumentError("server token needs --access-file FILE");
   }
-  return RunProgram({"--access-file", options.access_file, "--new-token", options.credential},
-                    terminal);
+  return RunBallpistond({"--access-file", options.access_file, "--new-token", options.credential},
+                        terminal);
 }
 
 VerbResult ServerBackup(const Options& options, Terminal& terminal) {

@@ -202,6 +202,19 @@ const FlagGroup kResultFormat = {
       "format of the result on standard output, by default table; csv has the estimates, "
       "csv-histograms the bins of all histograms, csv-curves the points of all curves"}}};
 
+const FlagGroup kSave = {
+    "File",
+    {{"--save", File(To(&Options::save)),
+      "write the result to this file, with its specification, seed and versions, and print the "
+      "file's path. The ending selects the format: .json has everything, .npz NumPy arrays, .csv "
+      "the estimates, or what --format selects"}}};
+
+const FlagGroup kVerify = {
+    "Verification",
+    {{"--verify", File(To(&Options::verify_file)),
+      "compute a random point or chunk of samples of this .json file again, on this machine, and "
+      "compare the bits"}}};
+
 const FlagGroup kProgress = {
     "Progress",
     {{"--progress",
@@ -371,7 +384,7 @@ std::vector<Verb> JobVerbs() {
        "Ctrl-C ends the client, but not the job; the message says how to watch the job again. If "
        "the server has stored results for the same specification, it returns them.",
        {kExperiment},
-       With(kQuestion, {&kJob, &kResultFormat, &kProgress, &kServer}),
+       With(kQuestion, {&kJob, &kResultFormat, &kSave, &kProgress, &kServer}),
        {"run conditional-mean-free-time --rho 0.5296 --delta 0.1,0.2 --epsilon 0.1:0.4:4 --verify",
         "run first-hit --rho 0.5296 --delta 0.1 --epsilon 0.125 --exponent 1,2 --samples 1e5 "
         "--format csv"},
@@ -394,10 +407,13 @@ std::vector<Verb> JobVerbs() {
        &Watch},
       {"result",
        "print a job's result: the points that it has finished so far",
-       "",
-       {kOneJob},
-       With({&kPoint, &kResultFormat, &kServer}, {}),
-       {"result ensembleJobs/ID", "result ID --point 17 --format json >point.json"},
+       "With --verify no JOB is given, and no server is used. The exit code is 0 if the file is "
+       "what "
+       "the engine computes, and 4 if not.",
+       {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kOptional}},
+       With({&kPoint, &kResultFormat, &kSave, &kVerify, &kServer}, {}),
+       {"result ensembleJobs/ID", "result ID --save result.json", "result --verify result.json",
+        "result ID --point 17 --format json >point.json"},
        &Result},
       {"list",
        "list the jobs, the newest first",

@@ -39,7 +39,8 @@ class JsonWriter : public ResultWriter {
   explicit JsonWriter(std::ostream& out) : out_(out) {}
 
   void Begin(const v1::EnsembleJob& job) override {
-    out_ << "{\"job\": " << Json(job) << ",\n\"points\": [";
+    out_ << "{\"client_version\": \"" << BALLPISTON_VERSION << "\",\n\"job\": " << Json(job)
+         << ",\n\"points\": [";
   }
   void Add(const v1::PointResult& point) override {
     out_ << (first_ ? "\n" : ",\n") << Json(point);

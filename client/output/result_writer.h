@@ -1,7 +1,8 @@
 // Prints the results of a job, point by point, in one of the formats.
 //
 //   table   a heading with experiment and model, then one row for each point and estimate
-//   json    {"job": {...}, "points": [...]}, one point a line
+//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult; one point a
+//           line
 //   jsonl   one point a line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
 //           model_error,noise_floor,limit; after exponent the other parameters of the question

@@ -68,7 +68,9 @@ uint64_t PointFold::PlannedSamples() const {
 }
 
 LocalPoint::LocalPoint(const PointExperiment& experiment)
-    : fold_(experiment), chunks_(experiment.plan(), {}, experiment.plan().chunks()) {}
+    : experiment_(experiment),
+      fold_(experiment),
+      chunks_(experiment.plan(), {}, experiment.plan().chunks()) {}
 
 std::optional<Block> LocalPoint::NextBlock() {
   return finished() ? std::nullopt : chunks_.NextBlock();
@@ -124,13 +126,17 @@ class QueueOfOne : public BlockQueue {
 
 }  // namespace
 
+bool LocalPoint::Run(const std::stop_token& stop) {
+  LocalQueue queue(*this, stop);
+  const std::unique_ptr<BlockRun> run = experiment_.StartRun(queue);
+  while (!finished() && !stop.stop_requested()) run->Advance();
+  return finished();
+}
+
 std::optional<BlockResult> FoldPoint(const PointExperiment& experiment,
                                      const std::stop_token& stop) {
   LocalPoint point(experiment);
-  LocalQueue queue(point, stop);
-  const std::unique_ptr<BlockRun> run = experiment.StartRun(queue);
-  while (!point.finished() && !stop.stop_requested()) run->Advance();
-  if (!point.finished()) return std::nullopt;
+  if (!point.Run(stop)) return std::nullopt;
   return point.Merged();
 }
 

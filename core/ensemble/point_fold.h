@@ -82,6 +82,10 @@ class LocalPoint {
   std::optional<Block> NextBlock();
   void Add(const Block& block, BlockResult result);
 
+  // Computes all blocks that are left on the calling thread. False if `stop` was requested before
+  // the end.
+  bool Run(const std::stop_token& stop = {});
+
   bool finished() const { return fold_.finished(); }
   // With the merged blocks of the first chunk that is not complete.
   FoldState State() const;
@@ -91,6 +95,7 @@ class LocalPoint {
   // With these blocks.
   PointFold Now() const;
 
+  const PointExperiment& experiment_;
   PointFold fold_;
   ChunkFold chunks_;
 };

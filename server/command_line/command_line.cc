@@ -220,6 +220,11 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
                  "copy the store in --data-dir to this file, and check the copy. A server may use "
                  "the store at the same time")
       ->type_name("FILE");
+  app.add_option(
+         "--verify", line.verify,
+         "compute a random point, or a random chunk of samples, of a saved result again and "
+         "compare; the exit code is 0 if it is the same")
+      ->type_name("FILE");
   // trigger_on_parse: --help prints the help even if another flag is wrong.
   app.add_flag_callback(
          "-h,--help", [] { throw CLI::CallForHelp(); }, "print this page")
@@ -334,6 +339,7 @@ absl::Status CheckOneCommand(const CommandLine& line, const std::string& new_tok
   std::vector<std::string> given;
   if (line.check) given.push_back("--check");
   if (!line.backup.empty()) given.push_back("--backup");
+  if (!line.verify.empty()) given.push_back("--verify");
   if (!new_token.empty()) given.push_back("--new-token");
   if (given.size() <= 1) return absl::OkStatus();
   return absl::InvalidArgumentError(

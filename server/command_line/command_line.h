@@ -24,6 +24,7 @@ struct CommandLine {
   std::optional<TokenRequest> new_token;
   bool check = false;
   std::string backup;  // the file to write
+  std::string verify;  // the saved result to read
 };
 
 // INVALID_ARGUMENT names the flag, its value and the permitted values.

@@ -19,11 +19,13 @@ constexpr char kUsage[] =
     "  ballpistond --listen unix:PATH | --listen 127.0.0.1:PORT [--data-dir DIR] [--workers N]\n"
     "  ballpistond --listen 0.0.0.0:PORT --tls-certificate FILE --tls-key FILE --access-file FILE\n"
     "  ballpistond --access-file FILE --new-token PRINCIPAL:ROLE[:DAYS]\n"
-    "  ballpistond --data-dir DIR --check | --backup FILE\n\n";
+    "  ballpistond --data-dir DIR --check | --backup FILE\n"
+    "  ballpistond --verify FILE\n\n";
 constexpr char kExitCodes[] =
     "Exit codes: 0 stopped (SIGTERM, SIGINT, idle) or done; 1 the disk of the store is full or "
     "fails, retry later; 2 a wrong flag, an unsafe combination of flags, an address or data folder "
-    "in use, or a store that is not sound; 6 a data folder that is not writable, or that other "
+    "in use, or a store that is not sound; 4 a saved result that is not what this engine "
+    "computes; 6 a data folder that is not writable, or that other "
     "users can enter and that is not the server's own.";
 constexpr size_t kIndentation = 8;
 constexpr size_t kWidth = 96;

@@ -1,0 +1,43 @@
+// A file that appears whole: a reader never sees half of it, and a failure keeps the file that was
+// there. A pipe or a device is written to directly.
+#ifndef BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_
+#define BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_
+
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace ballpiston::client {
+
+// OK if a file can be created there, as far as that can be seen without creating it. Errors are
+// those of NewFile::Keep.
+absl::Status CheckNewFile(const std::string& flag, const std::string& path);
+
+class NewFile {
+ public:
+  // `flag` is the flag that named the path, for messages.
+  NewFile(std::string flag, std::string path);
+  ~NewFile();  // without Keep the file does not appear
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  std::ostream& out() { return out_; }
+
+  // Once, after everything is written. INVALID_ARGUMENT with flag, path and reason if the file
+  // cannot be written, for instance because the disk is full.
+  absl::Status Keep();
+
+ private:
+  const std::string flag_, path_;
+  std::filesystem::path file_;  // `path_` without symbolic links
+  std::filesystem::path part_;  // hidden beside it, until Keep; the same for a pipe or a device
+  std::ofstream out_;
+  int open_error_;  // errno, or 0
+};
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_

@@ -1,0 +1,19 @@
+// NumPy's format .npy, version 1.0: a header that describes an array, and its elements.
+#ifndef BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_
+#define BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ballpiston::client {
+
+// The bytes of a file. `shape` has the length of each axis; without axes the array has one element.
+// There are as many elements as the shape says, the last axis varies fastest.
+std::string NpyBytes(const std::vector<double>& elements, const std::vector<size_t>& shape);
+// Of texts in ASCII.
+std::string NpyBytes(const std::vector<std::string>& elements, const std::vector<size_t>& shape);
+
+}  // namespace ballpiston::client
+
+#endif  // BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_

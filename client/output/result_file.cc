@@ -1,0 +1,64 @@
+#include "client/output/result_file.h"
+
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/library/quoted.h"
+#include "client/output/json.h"
+#include "client/output/npz_writer.h"
+
+namespace ballpiston::client {
+namespace {
+
+bool IsCsv(Format format) {
+  return format == Format::kCsv || format == Format::kCsvHistograms || format == Format::kCsvCurves;
+}
+
+class CommentedCsvWriter : public ResultWriter {
+ public:
+  CommentedCsvWriter(Format format, std::ostream& out)
+      : out_(out), rows_(NewResultWriter(format, out)) {}
+
+  void Begin(const v1::EnsembleJob& job) override {
+    out_ << "# " << job.name() << ", engine " << job.engine_version() << ", client "
+         << BALLPISTON_VERSION << "\n# " << Json(job.spec()) << '\n';
+    rows_->Begin(job);
+  }
+  void Add(const v1::PointResult& point) override { rows_->Add(point); }
+  void End() override { rows_->End(); }
+
+ private:
+  std::ostream& out_;
+  std::unique_ptr<ResultWriter> rows_;
+};
+
+}  // namespace
+
+absl::StatusOr<FileFormat> FormatOfFile(const std::string& path, Format asked) {
+  const bool any = asked == Format::kTable;
+  if (absl::EndsWith(path, ".json") && (any || asked == Format::kJson)) return FileFormat();
+  if (absl::EndsWith(path, ".npz") && any) return FileFormat{.is_npz = true};
+  if (absl::EndsWith(path, ".csv") && any) return FileFormat{Format::kCsv};
+  if (absl::EndsWith(path, ".csv") && IsCsv(asked)) return FileFormat{asked};
+  for (const char* ending : {".json", ".npz", ".csv"}) {
+    if (!absl::EndsWith(path, ending)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("--save: a file that ends in ", ending, " cannot have this --format"));
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("--save: ", Quoted(path), " does not end in .json, .csv or .npz"));
+}
+
+std::unique_ptr<ResultWriter> NewResultFileWriter(const FileFormat& format, std::ostream& out) {
+  if (format.is_npz) return NewNpzWriter(out);
+  if (IsCsv(format.format)) return std::make_unique<CommentedCsvWriter>(format.format, out);
+  return NewResultWriter(format.format, out);
+}
+
+v1::ListResultsRequest::View ViewFor(const FileFormat& format) {
+  return format.is_npz ? v1::ListResultsRequest::FULL : ViewFor(format.format);
+}
+
+}  // namespace ballpiston::client
