@@ -4,7 +4,7 @@
 
 namespace ballpiston::server {
 
-inline constexpr char kVersion[] = "0.1.0";
+inline constexpr char kVersion[] = BALLPISTON_VERSION;  // set by CMake
 
 }  // namespace ballpiston::server
 

@@ -35,6 +35,7 @@ grpc::ChannelArguments Arguments() {
   // The web proxy does not lead to a server on this machine or in this laboratory.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   arguments.SetMaxReceiveMessageSize(-1);  // the server limits the size of its answers
+  arguments.SetUserAgentPrefix("ballpiston/" BALLPISTON_VERSION);  // the server checks the version
   arguments.SetServiceConfigJSON(kServiceConfig);
   return arguments;
 }

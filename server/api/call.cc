@@ -4,9 +4,11 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "server/api/client_version.h"
 #include "server/convert/errors.h"
 #include "server/jobs/job_name.h"
 #include "server/observability/call_observer.h"
+#include "server/version.h"
 
 namespace ballpiston::server {
 namespace {
@@ -28,6 +30,12 @@ std::string RequestIdOf(const grpc::CallbackServerContext& context) {
   return IsRequestId(id) ? id : RandomId();
 }
 
+absl::string_view UserAgentOf(const grpc::CallbackServerContext& context) {
+  const auto found = context.client_metadata().find("user-agent");
+  if (found == context.client_metadata().end()) return "";
+  return {found->second.data(), found->second.size()};
+}
+
 // The hint is for the principal `local`, which has a role below admin only over the loopback.
 absl::Status RoleTooLow(const Principal& caller, Role least) {
   const char* const hint = caller.name == LocalPrincipal().name
@@ -45,6 +53,9 @@ absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServ
                                const CallRule& rule) {
   Call call = {.method = rule.method, .request_id = RequestIdOf(context), .caller = {}};
   context.AddTrailingMetadata(kRequestId, call.request_id);
+  if (absl::Status served = CheckClientVersion(UserAgentOf(context), kVersion); !served.ok()) {
+    return served;
+  }
   absl::StatusOr<Principal> caller = service.authenticator.Authenticate(context);
   if (!caller.ok()) return caller.status();
   call.caller = *std::move(caller);

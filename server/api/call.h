@@ -25,6 +25,7 @@ struct CallRule {
 };
 
 // Quick: for gRPC's own threads. Sends the id back in the trailing metadata, whatever the outcome.
+//   FAILED_PRECONDITION  CLIENT_VERSION_NOT_SERVED
 //   UNAUTHENTICATED    CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
 //   PERMISSION_DENIED  ROLE_TOO_LOW
 absl::StatusOr<Call> AdmitCall(const ServiceContext& service, grpc::CallbackServerContext& context,
