@@ -4,8 +4,10 @@
 //   ABSL_EXCLUSIVE_LOCKS_REQUIRED  the caller of a function has to hold the mutex
 //   ABSL_LOCKS_EXCLUDED            the function takes the mutex; its caller must not hold it
 //   ABSL_ACQUIRED_BEFORE           which other mutex is taken later
-//`make thread-safety` fails if the code breaks these rules. The analysis looks at one function at a
-// time, so it cannot check the order between mutexes of classes that call each other.
+//
+// `make thread-safety` fails if the code breaks these rules. The analysis looks at one function at
+// a time, so it cannot check the order between mutexes of classes that call each other.
+//
 // absl::Mutex has these annotations too. But Debian's build of absl::Mutex is not instrumented, so
 // the thread sanitizer would not see its synchronisation. It sees that of std::mutex.
 #ifndef BALLPISTON_SERVER_MUTEX_H_

@@ -1,4 +1,5 @@
 // TraceOrbit: the start and the events of one orbit, in the frame of stream_reactor.h.
+//
 // The events of a message are computed when gRPC has sent the previous message, so a trace runs as
 // fast as its reader, and principals take turns at the threads after each message. The request
 // bounds the cost of a trace (convert/trace.h). Its memory counts among the bytes of the

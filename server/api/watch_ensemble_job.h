@@ -8,11 +8,13 @@
 // often, so that all of them together take at most kSnapshotsPerSecond. A stalled reader keeps two
 // copies of a message. So a message with a large specification waits until the principal's messages
 // on their way leave room for it.
+//
 // Properties of a watch and of the watches that resume it, each with a test of its name:
 //   1. EachFinishedPointIsSentOnceInOrder: also over restarts, and before the terminal state.
 //   2. StatesAndProgressNeverGoBack: progress within a life of the server.
 //   3. TheTerminalStateIsSentOnce, last, and then OK. So the watch of a job that has ended begins
 //      with the finished points that were not sent yet.
+//
 // The resume token names the job, the number of its restarts by newer engines, and the last
 // finished point that was sent. For unfinished points it also has the server process and the last
 // change that was sent. The watch ignores some tokens and sends everything: a token of another job,

@@ -1,4 +1,5 @@
 // Decides the outcome of one Create: an earlier job, an error, or a new job.
+//
 // A retry (the same request id with the same request) returns the original job. If the principal
 // asks the question of an earlier job that succeeded, the server returns that job unless `fresh` is
 // set. Any other request must keep the limits: on a job's size, on active jobs and their points, on
@@ -29,10 +30,9 @@ struct Acceptance {
 
   // The outcome. If `earlier` is empty and `refused` is OK, a new job is to be made.
   std::optional<JobRecord> earlier;
-  bool replay = false;  // the request is a retry, and `earlier` its original job
-  bool answered_from_store =
-      false;             // `earlier` answers the question, now or in the original request
-  absl::Status refused;  // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
+  bool replay = false;               // the request is a retry, and `earlier` its original job
+  bool answered_from_store = false;  // `earlier` answers the question, now or originally
+  absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
 };
 
 // Both set the outcome. Accept then stores the new job or the request, and counts the points of a

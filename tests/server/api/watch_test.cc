@@ -191,7 +191,7 @@ TEST_F(WatchTest, EveryChangeOfStateIsSent) {
   EXPECT_OK(stream.reader->Finish());
 }
 
-TEST_F(WatchTest, EachFinishedPointIsToldOnceInOrder) {
+TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
   constexpr int kWatches = 200;
   RunningServer& server = StartWithPermits();
   const std::string name = server.Submit(Equilibrium(2 * kWatches, 1));
@@ -252,7 +252,7 @@ TEST_F(WatchTest, StatesAndProgressNeverGoBack) {
 }
 
 // Three messages of points, and the end.
-TEST_F(WatchTest, TheTerminalStateIsToldOnce) {
+TEST_F(WatchTest, TheTerminalStateIsSentOnce) {
   RunningServer& server = Start();
   const std::string name = server.Succeeded(Equilibrium(250, 1));
   Chain chain;

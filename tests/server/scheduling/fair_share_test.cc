@@ -95,7 +95,7 @@ TEST(FairShare, APriorityDoesNotTakeFromOtherPrincipals) {
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
-TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
+TEST(FairShare, ANewPrincipalGetsItsShareAtOnce) {
   FairShare share;
   AddRuns(share, {1, 2}, "old");
   Served(share, 1000);
@@ -105,7 +105,7 @@ TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
-TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
+TEST(FairShare, ANewRunStartsAtTheLeastCharge) {
   FairShare share;
   AddRuns(share, {1});
   Served(share, 1000);
@@ -117,7 +117,7 @@ TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
 
 // A run that opens a point for a long time, say, and leaves the other workers to the others: when
 // it goes on they need not wait until it has caught up.
-TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
+TEST(FairShare, UnusedTimeGivesNoCredit) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;
     AddRuns(share, {1}, "a");
@@ -130,7 +130,7 @@ TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
 }
 
 // A row of jobs of one long block each, every one of them new.
-TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
+TEST(FairShare, AReturningPrincipalKeepsItsLead) {
   FairShare share;
   AddRuns(share, {1}, "steady");
   SecondsByRun served;
