@@ -61,7 +61,7 @@ class PrivateServerTest : public ::testing::Test {
   TemporaryFolder home_;
 };
 
-TEST(Server, StopsByItselfWhenNobodyUsesIt) {
+TEST(Server, StopsWhenItIsIdle) {
   const TemporaryFolder home;
   const ProcessResult result =
       RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data-dir", home.File("data"),

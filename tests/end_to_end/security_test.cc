@@ -166,7 +166,7 @@ TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
   EXPECT_THAT(without.err, HasSubstr("--cert FILE --key FILE"));
 }
 
-TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresWrongOnes) {
+TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresInvalidOnes) {
   NewToken("alice", "alice:read");
   Start(TlsFlags());
   NewToken("bob", "bob:read");

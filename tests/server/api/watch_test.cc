@@ -344,7 +344,7 @@ TEST_F(WatchTest, AQuietJobHasAHeartbeat) {
   EXPECT_EQ(beats, 3);
 }
 
-TEST_F(WatchTest, WithATokenOnlyNewsIsSent) {
+TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
   RunningServer& server = Start(7, std::chrono::milliseconds(20));
   const std::string name = server.Submit(Equilibrium(1, 100));
   gate_.AwaitWaiting(2);  // seven blocks are done, and no more will be

@@ -78,7 +78,7 @@ TEST_F(StoredFold, ThatLiesWithinThePlanIsAccepted) {
   EXPECT_OK(Checked({.chunk = plan().chunks(), .complete = Empty()}));
 }
 
-TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
+TEST_F(StoredFold, ThatIsImpossibleForItsExperimentIsDataLoss) {
   BlockResult too_many = Empty(), no_error = Empty();
   too_many.samples = plan().BlockAt(0, 0).samples + 1;
   no_error.health.max_energy_error = kNan;
@@ -265,7 +265,7 @@ TEST(Spec, ViolationShowsAStrangeTextEscapedAndShortened) {
 }
 
 // A message of 4 MiB holds two million empty texts.
-TEST(Spec, OfAListThatIsTooLongNoShapeIsRead) {
+TEST(Spec, ATooLongListOfShapesIsNotParsed) {
   v1::EnsembleSpec message = OneFirstHit();
   for (int i = 0; i <= kMaxPoints; ++i) message.mutable_grid()->add_cells("");
   EXPECT_THAT(ViolatedFields(CheckSpec(message)),
@@ -362,7 +362,7 @@ TEST(Spec, AnUnknownFieldIsAViolation) {
 }
 
 // A message of 4 MiB may hold two million of them.
-TEST(Spec, OfManyUnknownFieldsSomeAreListed) {
+TEST(Spec, AtMostSomeUnknownFieldsAreListed) {
   v1::EnsembleSpec message = OneFirstHit();
   for (int i = 0; i < 10'000; ++i) {
     message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);

@@ -108,7 +108,7 @@ TEST_F(CallLog, AFailedJobSaysWhy) {
   }
 }
 
-TEST_F(CallLog, ACallOverALimitIsLoggedAndAnInvalidOneIsNot) {
+TEST_F(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {
   const auto lines = LinesOf([&] {
     RunningServer server({.limits = {.max_points_per_job = 10}});
     EXPECT_FALSE(server.Create({}).ok());

@@ -75,7 +75,7 @@ TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
 }
 
 // What those of the highest priority cannot use goes to the next.
-TEST(FairShare, RunsWithoutATaskArePassedOver) {
+TEST(FairShare, RunsWithoutATaskAreSkipped) {
   FairShare share;
   AddRuns(share, {1}, "a", 1);
   AddRuns(share, {2}, "a", 0);
@@ -150,7 +150,7 @@ TEST(FairShare, AReturningPrincipalKeepsItsLead) {
 }
 
 // While nobody else was there it took nothing from anybody.
-TEST(FairShare, UseIsForgottenWhenAllAreGone) {
+TEST(FairShare, TheSharesStartAgainWhenAllRunsHaveEnded) {
   FairShare share;
   AddRuns(share, {1}, "a");
   AddRuns(share, {2}, "b");
@@ -164,7 +164,7 @@ TEST(FairShare, UseIsForgottenWhenAllAreGone) {
   EXPECT_NEAR(served.at(4), 50, 0.2);
 }
 
-TEST(FairShare, TheOlderRunComesFirstAtEquality) {
+TEST(FairShare, TheOlderRunComesFirstAtEqualTime) {
   FairShare share;
   AddRuns(share, {8, 7});
   EXPECT_EQ(FirstRun(share), 7);

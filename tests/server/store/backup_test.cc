@@ -130,7 +130,7 @@ TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
   }
 }
 
-TEST_F(BackupTest, NothingIsOverwritten) {
+TEST_F(BackupTest, AnExistingFileIsNotOverwritten) {
   MakeStore();
   WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
@@ -202,7 +202,7 @@ std::vector<std::string> NamesIn(const std::string& folder) {
   return names;
 }
 
-TEST_F(BackupTest, NothingIsLeftBesideAStoreThatNobodyHasOpen) {
+TEST_F(BackupTest, CopyingAndCheckingLeaveNoFilesBesideAnUnusedStore) {
   MakeStore();
   const std::vector<std::string> before = NamesIn(folder_.path());
   const std::string file = Contents(Store());
