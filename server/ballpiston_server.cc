@@ -119,7 +119,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
     if (!status.ok()) return status;
     return server;
   } catch (const std::system_error& error) {
-    return absl::InvalidArgumentError(absl::StrCat("the system gives no more threads (",
+    return absl::InvalidArgumentError(absl::StrCat("the system cannot start more threads (",
                                                    error.what(), "); choose fewer with --workers"));
   }
 }
@@ -226,7 +226,7 @@ absl::Status BallpistonServer::Listen() {
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   SocketListener::Receive receive = AddReceiver(builder);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC does not start");
+  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC cannot start");
   listener_ = *std::move(listener);
   listener_->Start(std::move(receive));
   StartHealth();

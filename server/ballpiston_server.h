@@ -131,7 +131,7 @@ class BallpistonServer {
   AnalyticService analytic_;
   TraceService trace_;
   ServerService server_;
-  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
+  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to other users
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits

@@ -130,7 +130,7 @@ absl::Status ClearSocketPath(const ListenAddress& address) {
   const std::string& path = address.socket_path;
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return absl::OkStatus();
-  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "there is a file there that is no socket");
+  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "a file that is not a socket is there");
   switch (const int error = ErrorOfConnecting(path)) {
     case 0:
     case EAGAIN:  // more wait there than the kernel keeps
@@ -139,8 +139,7 @@ absl::Status ClearSocketPath(const ListenAddress& address) {
       return absl::OkStatus();
     case ECONNREFUSED:  // nobody listens any more
       if (unlink(path.c_str()) == 0 || errno == ENOENT) return absl::OkStatus();
-      return Occupied(address, absl::StrCat("the socket there that nobody listens on cannot be "
-                                            "taken away (",
+      return Occupied(address, absl::StrCat("the unused socket there cannot be removed (",
                                             std::strerror(errno), ")"));
     default:
       return Occupied(address, absl::StrCat("cannot find out whether a server listens there (",

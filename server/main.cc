@@ -47,8 +47,8 @@ sigset_t BlockSignals() {
 
 void Reload(BallpistonServer& server) {
   const absl::Status status = server.Reload();
-  if (status.ok()) return LogInfo(absl::StrCat("read again: ", server.security().Description()));
-  LogError(absl::StrCat("not read again, the old stays: ", status.message()));
+  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.security().Description()));
+  LogError(absl::StrCat("not reloaded, the previous contents stay in use: ", status.message()));
 }
 
 void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer& server) {
@@ -57,7 +57,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
     if (signal == SIGHUP) Reload(server);
     if (signal == SIGTERM || signal == SIGINT) break;
     if (line.idle_exit.count() > 0 && server.IdleFor() >= line.idle_exit) {
-      return LogInfo("nobody uses this server: stopping");
+      return LogInfo("the server is idle: stopping");
     }
   }
   LogInfo("stopping");

@@ -92,7 +92,7 @@ absl::Status InvalidField(std::string field, std::string description) {
 
 absl::Status RequestIdReused(const std::string& request_id) {
   return WithReason(absl::InvalidArgumentError(absl::StrCat(
-                        "request_id ", request_id, " was used before, with another request")),
+                        "request_id ", request_id, " was used before with a different request")),
                     "REQUEST_ID_REUSED", "request_id", request_id);
 }
 
@@ -128,15 +128,14 @@ absl::Status JobStillActive(const std::string& name, absl::string_view state) {
 }
 
 absl::Status ShuttingDown() {
-  return WithReason(absl::UnavailableError("the server is shutting down; try again later"),
+  return WithReason(absl::UnavailableError("the server is shutting down; retry later"),
                     "SHUTTING_DOWN");
 }
 
 absl::Status CredentialsMissing() {
-  return WithReason(
-      absl::UnauthenticatedError("this server wants credentials, and none were shown: "
-                                 "send authorization: Bearer TOKEN"),
-      "CREDENTIALS_MISSING");
+  return WithReason(absl::UnauthenticatedError("this server requires credentials: "
+                                               "send authorization: Bearer TOKEN"),
+                    "CREDENTIALS_MISSING");
 }
 
 absl::Status CredentialsInvalid() {
@@ -171,7 +170,7 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
   const std::string error =
       reached.standard_error
           ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
-          : "no error that could be told";
+          : "an unknown error";
   return WithReason(
       absl::DeadlineExceededError(absl::StrFormat(
           "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,

@@ -22,8 +22,8 @@ absl::Status CheckQueue(Database& database, const Limits& limits, const std::str
   const auto own = CountActiveJobs(database, principal);
   if (!own.ok()) return own.status();
   if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
-    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
-                            "max-active-jobs", static_cast<double>(limits.max_active_jobs));
+    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active"), "max-active-jobs",
+                            static_cast<double>(limits.max_active_jobs));
   } else if (limits.max_active_jobs_per_principal > 0 &&
              *own >= limits.max_active_jobs_per_principal) {
     refused = LimitExceeded(

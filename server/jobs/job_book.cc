@@ -248,7 +248,7 @@ absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
     ++record.restarts;
     older.push_back(&record);
     LogInfo(
-        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
+        absl::StrCat(JobName(record.id), " is computed again by engine ", record.engine_version));
   }
   if (older.empty()) return absl::OkStatus();
   return store_.CommitDeletion([&](Database& database) {

@@ -60,11 +60,11 @@ CallObserver::CallObserver()
     : statistics_(registry_),
       not_let_in_(prometheus::BuildCounter()
                       .Name("ballpiston_failed_authentications_total")
-                      .Help("Calls without the credentials or the role they need.")
+                      .Help("Calls without valid credentials or with too low a role.")
                       .Register(registry_)),
       limits_reached_(prometheus::BuildCounter()
                           .Name("ballpiston_limit_refusals_total")
-                          .Help("Calls refused because a limit was reached.")
+                          .Help("Calls rejected because a limit was reached.")
                           .Register(registry_)) {
   for (const char* reason :
        {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
@@ -190,8 +190,8 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
   const std::optional<int64_t> left_out = (failed ? failures_ : refusals_).Take(Clock::now());
   if (!left_out) return;
   const char* what = failed                          ? "call failed: "
-                     : verdict == Verdict::kNotLetIn ? "call not let in: "
-                                                     : "call refused: ";
+                     : verdict == Verdict::kNotLetIn ? "call not authorised: "
+                                                     : "call rejected: ";
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
        {"principal", call.principal},

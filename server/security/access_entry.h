@@ -6,7 +6,7 @@
 //
 //   HEX          64 hexadecimal digits: the SHA-256 of a token
 //   COMMON_NAME  of a client's certificate; in double quotes if it holds blanks
-//   UNIX_USER    the name of a user of this machine, at a Unix socket that is open to others
+//   UNIX_USER    the name of a user of this machine, at a Unix socket that is open to other users
 //   PRINCIPAL    1 to 64 of a-z, A-Z, 0-9, '.', '_', '@' and '-', but not `local`, the principal of
 //                local connections (principal.h)
 //   ROLE         read | submit | admin (principal.h)

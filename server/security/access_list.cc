@@ -39,7 +39,9 @@ absl::StatusOr<AccessList> AccessList::Parse(const NamedFile& file, absl::string
     const auto entry = ParseAccessEntry(line);
     if (!entry.ok()) return AtLine(file, number, entry.status().message());
     if (*entry && !list.Add(**entry)) {
-      return AtLine(file, number, "the credential is that of an earlier line; permitted: one each");
+      return AtLine(
+          file, number,
+          "the credential is already in an earlier line; permitted: one line for each credential");
     }
   }
   return list;

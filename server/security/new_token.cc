@@ -34,7 +34,7 @@ absl::Status WrongRequest(absl::string_view why) {
 absl::StatusOr<std::string> RandomToken() {
   std::array<unsigned char, 32> bits;
   if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) {
-    return absl::InternalError("the system gives no random numbers");
+    return absl::InternalError("the system cannot provide random numbers");
   }
   std::string text;
   absl::WebSafeBase64Escape({reinterpret_cast<const char*>(bits.data()), bits.size()}, &text);
@@ -64,9 +64,9 @@ absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std:
   if (WriteAll(descriptor, text)) return absl::OkStatus();
   absl::Status failed = Failed(file, "written to");
   if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
-  return absl::PermissionDeniedError(absl::StrCat(std::string(failed.message()),
-                                                  "; nor could its end be taken back: cut it to ",
-                                                  length, " bytes"));
+  return absl::PermissionDeniedError(
+      absl::StrCat(std::string(failed.message()),
+                   "; an incomplete line is at its end: truncate the file to ", length, " bytes"));
 }
 
 absl::Status Append(const NamedFile& file, const std::string& line) {

@@ -66,8 +66,8 @@ absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, 
   constexpr mode_t kForOthers = S_IWGRP | S_IXGRP | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
   return Unusable(file,
-                  absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
-                                  "most (chmod 600 it)",
+                  absl::StrFormat("is open to other users (mode %04o); permitted: 0600, or 0640 "
+                                  "at most (chmod 600 it)",
                                   status.st_mode & 07777));
 }
 

@@ -115,8 +115,8 @@ absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions
   if (!list.ok()) return list.status();
   if (IsOpenSocket(options) && (list->has_tokens() || list->has_certificates())) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
-                                ": has tokens or certificates; a Unix socket permits lines of the "
-                                "kind user only"));
+                                ": has tokens or certificates; a Unix socket permits only "
+                                "lines of the kind user"));
   }
   if (!IsOpenSocket(options) && list->has_users()) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
@@ -240,8 +240,8 @@ void ServerSecurity::WarnOfExpiry() const {
     LogError(absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
                           " is valid from ", MinuteText(tls_->begins()), " to ",
                           MinuteText(tls_->expires()), " only, and now it is ", MinuteText(now),
-                          ": no client connects until it is valid. If the clock is right, get a "
-                          "new one, and send SIGHUP"));
+                          ": clients cannot connect while it is not valid. If the clock is right, "
+                          "get a new one and send SIGHUP"));
     return;
   }
   Log(Severity::kWarning,
@@ -256,7 +256,7 @@ std::string ServerSecurity::Description() const {
     parts.push_back(absl::StrCat("TLS, certificate valid until ", DateText(tls_->expires())));
   }
   if (role_of_everybody_) {
-    parts.push_back(absl::StrCat("no credentials required, everybody who can connect has the role ",
+    parts.push_back(absl::StrCat("no credentials required, every client has the role ",
                                  RoleName(*role_of_everybody_)));
   }
   if (socket_access_.IsOpenToOthers()) {

@@ -156,7 +156,7 @@ void SocketListener::LogClosed() {
   LogClosed(strangers_, absl::StrCat(of_whom, " closed, the last of user ",
                                      last_stranger_ ? absl::StrCat(*last_stranger_) : "unknown"));
   LogClosed(over_reserve_,
-            "closed: the process has nearly as many descriptors as it may (RLIMIT_NOFILE, the "
+            "closed: the process has nearly reached its limit of descriptors (RLIMIT_NOFILE, the "
             "unit's LimitNOFILE)");
 }
 

@@ -97,7 +97,7 @@ absl::StatusOr<std::string> ReadClientCa(const NamedFile& file) {
   const absl::StatusOr<std::string> pem = ReadPublicFile(file);
   if (!pem.ok()) return pem.status();
   const std::vector<Certificate> authorities = Certificates(*pem);
-  if (authorities.empty()) return Unusable(file, "has no certificate (PEM is wanted)");
+  if (authorities.empty()) return Unusable(file, "has no certificate in PEM format");
   return Pem(authorities);
 }
 
@@ -108,7 +108,7 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files) {
   if (!chain.ok()) return chain.status();
   const std::vector<Certificate> certificates = Certificates(*chain);
   if (certificates.empty()) {
-    return Unusable(files.certificate, "has no certificate (PEM is wanted)");
+    return Unusable(files.certificate, "has no certificate in PEM format");
   }
   const absl::StatusOr<std::string> key_text = ReadPrivateFile(files.key);
   if (!key_text.ok()) return key_text.status();

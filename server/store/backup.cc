@@ -22,7 +22,7 @@ namespace {
 
 absl::Status TargetExists(const std::string& target) {
   return absl::AlreadyExistsError(
-      absl::StrCat("backup ", target, ": there is such a file; name another one"));
+      absl::StrCat("backup ", target, ": the file exists already; choose another name"));
 }
 
 absl::Status CannotWrite(const std::string& target, int error) {
@@ -89,9 +89,9 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
   if (!summary.ok()) return summary.status();
   if (!summary->sound()) {
-    return absl::DataLossError(absl::StrCat("backup ", target, " is not made: store ", store,
+    return absl::DataLossError(absl::StrCat("backup ", target, " was not made: store ", store,
                                             " is damaged (", summary->problems.front(),
-                                            "); --check tells more"));
+                                            "); see --check"));
   }
   absl::Status placed = Sync(copy.path());
   if (placed.ok()) placed = MoveTo(copy.path(), target);

@@ -112,8 +112,8 @@ bool IsAServers(const std::string& path) {
 }
 
 absl::Status OpenToOthers(const std::string& path, mode_t mode, const std::string& why) {
-  return absl::PermissionDeniedError(
-      absl::StrFormat("data folder %s is open to others (mode %04o%s", path, mode & 07777, why));
+  return absl::PermissionDeniedError(absl::StrFormat(
+      "data folder %s is open to other users (mode %04o%s", path, mode & 07777, why));
 }
 
 // Jobs, results and the socket are nobody else's.
@@ -133,15 +133,15 @@ absl::Status CloseToOthers(const std::string& path) {
   if (!IsAServers(path)) {
     return OpenToOthers(
         path, found.st_mode,
-        absl::StrCat(") and holds other files than a server's; name a folder of the server's own "
+        absl::StrCat(") and has files that are not a server's; choose a folder for the server "
                      "with --data-dir, such as ",
                      path,
-                     "/ballpiston, or close this one with chmod 700 if nobody else needs "
-                     "what is in it"));
+                     "/ballpiston, or run chmod 700 on this one if no other user needs its files"));
   }
   if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
-  LogInfo(absl::StrFormat("data folder %s was open to others (mode %04o): it is 0700 now", path,
-                          found.st_mode & 07777));
+  LogInfo(
+      absl::StrFormat("data folder %s was open to other users (mode %04o): its mode is 0700 now",
+                      path, found.st_mode & 07777));
   return absl::OkStatus();
 }
 

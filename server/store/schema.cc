@@ -108,17 +108,16 @@ CREATE TABLE pilots (
 )sql";
 
 absl::Status Refused(const std::string& path, const std::string& why) {
-  return absl::FailedPreconditionError(
-      absl::StrCat("store ", path, " ", why,
-                   "; it was left as it is: move it away, or choose another --data-dir"));
+  return absl::FailedPreconditionError(absl::StrCat(
+      "store ", path, " ", why, "; it is unchanged: move it away, or choose another --data-dir"));
 }
 
 // The disk is full, or fails, or the file is not this user's: nothing is said of what is in it.
 absl::Status NotUsable(const std::string& path, const absl::Status& found) {
   return absl::UnavailableError(absl::StrCat(
       "store ", path, " cannot be used now (", found.message(),
-      "); it was left as it is: see whether its disk works and has room, and whether the file is "
-      "this user's"));
+      "); it is unchanged: check that its disk works and has room, and that the file belongs to "
+      "this user"));
 }
 
 absl::Status RefusedFor(const std::string& path, const absl::Status& found) {

@@ -27,7 +27,7 @@ constexpr size_t kMostGroupBytes = 2 << 20;
 constexpr std::chrono::seconds kBetweenReserves(60);
 
 absl::Status Stalled() {
-  return absl::UnavailableError("store: the disk does not answer; the request was not taken");
+  return absl::UnavailableError("store: the disk does not answer; retry later");
 }
 
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
@@ -420,7 +420,7 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
     if (!culprit || IsOfTheDisk(status)) return status;
     Write& refused = batch[*culprit];
     refused.outcome = status;
-    if (refused.lasting) LogError(absl::StrCat("a record is not kept: ", Text(status)));
+    if (refused.lasting) LogError(absl::StrCat("a record was rejected: ", Text(status)));
   }
   MutexLock lock(mutex_);
   ++commits_;
@@ -490,7 +490,7 @@ void Store::Sweep() {
 void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   const bool is_damage = absl::IsDataLoss(swept.status());
   if (is_damage) {
-    LogError(absl::StrCat("the space of deleted jobs is not freed: ", Text(swept.status())));
+    LogError(absl::StrCat("the space of deleted jobs cannot be freed: ", Text(swept.status())));
   } else if (!swept.ok()) {
     NoteHealth(swept.status());
   }

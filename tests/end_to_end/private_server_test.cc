@@ -67,7 +67,7 @@ TEST(Server, StopsWhenItIsIdle) {
       RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data-dir", home.File("data"),
                        "--idle-exit-seconds", "0.1"});
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.err, testing::HasSubstr("nobody uses this server: stopping"));
+  EXPECT_THAT(result.err, testing::HasSubstr("the server is idle: stopping"));
 }
 
 TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {

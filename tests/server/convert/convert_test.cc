@@ -560,7 +560,7 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
                        "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: "
                        "reached 0.005"));
   const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
-  EXPECT_THAT(std::string(without.message()), HasSubstr("reached no error that could be told"));
+  EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
   // A job that ends with it keeps its reason; one without gets that of a failed computation.
   EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
   EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),

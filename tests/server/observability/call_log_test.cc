@@ -121,7 +121,7 @@ TEST_F(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {
                 StatusIs(grpc::StatusCode::NOT_FOUND));
   });
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(FieldOf(lines[0], "message"), HasSubstr("call refused: the grid has 11 points"));
+  EXPECT_THAT(FieldOf(lines[0], "message"), HasSubstr("call rejected: the grid has 11 points"));
   EXPECT_EQ(FieldOf(lines[0], "severity"), "WARNING");
   EXPECT_EQ(FieldOf(lines[0], "method"), "CreateEnsembleJob");
   EXPECT_EQ(FieldOf(lines[0], "principal"), "local");

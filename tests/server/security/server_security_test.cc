@@ -430,7 +430,7 @@ TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     Start(validity);
     EXPECT_THAT(log_, HasSubstr("error: the certificate in --tls-certificate="));
-    EXPECT_THAT(log_, HasSubstr("no client connects until it is valid"));
+    EXPECT_THAT(log_, HasSubstr("clients cannot connect while it is not valid"));
     EXPECT_THAT(List(), StatusIs(grpc::StatusCode::UNAVAILABLE));
   }
 }

@@ -160,7 +160,7 @@ TEST_F(UnixUsersTest, ExcessAndUnnamedUsersAreClosedAndLogged) {
   EXPECT_THAT(Call(As(kBin)), StatusIs(grpc::StatusCode::UNAVAILABLE));
   EXPECT_OK(Call(As(kDaemon)));
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("connection of user 54321 closed: the system knows no name for this user"));
+              HasSubstr("connection of user 54321 closed: the system has no name for this user"));
   EXPECT_THAT(service_.callers(), ElementsAre("daemon submit"));
 }
 
