@@ -30,10 +30,10 @@ constexpr int kExitTryAgain = 1;
 constexpr int kExitUsage = 2;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
-// What stopping the workers and closing the store may take beyond the time to drain.
+// The time for stopping the workers and closing the store, after the time to drain.
 constexpr std::chrono::milliseconds kGrace(800);
 
-// Blocked in this thread before any other is started, so in all of them.
+// Blocks the signals before the first thread starts, so that they are blocked in all threads.
 sigset_t BlockSignals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -151,7 +151,7 @@ int Main(int argc, char** argv) {
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);
-  // Not by way of the destructors: after large answers gRPC may wait 10 s for a poller of its own.
+  // Skips the destructors: after large answers gRPC may wait 10 s for one of its threads.
   std::fflush(nullptr);
   std::_Exit(0);
 }

@@ -269,7 +269,7 @@ std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_arg
   return absl::StrCat(last_argument, " needs a value");
 }
 
-// For CLI11 an empty value of a text is as good as none.
+// CLI11 treats an empty text as a missing value.
 absl::Status CheckValuesAreGiven(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const bool takes_value = option->get_items_expected_max() > 0;
@@ -365,7 +365,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   line.server.workers = DefaultWorkers();
   std::string new_token;
   CLI::App app("", "ballpistond");
-  app.set_help_flag();  // one of its own comes last
+  app.set_help_flag();  // AddCommands adds its own help flag
   SetHelpPage(app);
   AddServerFlags(app, line);
   AddLocalAccessFlags(app, line.server.security);

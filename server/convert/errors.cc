@@ -12,14 +12,14 @@ namespace ballpiston::server {
 namespace {
 
 constexpr char kTypePrefix[] = "type.googleapis.com/";
-// The message travels twice: in the details, and percent-encoded beside them.
+// The message is sent twice: in the details, and percent-encoded beside them.
 constexpr size_t kMaxMessage = 512;
-// What is left of kMaxErrorDetails for violations beside message, reason and metadata.
+// The part of kMaxErrorDetails for violations; the rest is for message, reason and metadata.
 constexpr size_t kMaxViolations = 4 * 1024;
 constexpr size_t kMaxViolationText = 400;
 constexpr size_t kMaxMetadataValue = 256;
 
-// At most `bytes` of it, cut between two characters of UTF-8.
+// The first `bytes` bytes at most, cut between two characters of UTF-8.
 std::string Shortened(absl::string_view text, size_t bytes) {
   if (text.size() <= bytes) return std::string(text);
   size_t end = bytes - 3;

@@ -40,7 +40,7 @@ Verdict VerdictOn(const FailedCall& call) {
     case absl::StatusCode::kUnauthenticated:
     case absl::StatusCode::kPermissionDenied:
       return Verdict::kNotLetIn;
-    case absl::StatusCode::kResourceExhausted:  // the disk may be what is exhausted
+    case absl::StatusCode::kResourceExhausted:  // a limit, or a full disk
       return absl::StartsWith(call.reason, "STORE_") ? Verdict::kServerFailed
                                                      : Verdict::kLimitReached;
     case absl::StatusCode::kUnavailable:
@@ -77,7 +77,7 @@ CallObserver::CallObserver()
   }
 }
 
-// One call. Its hooks run one after the other.
+// Observes one call. gRPC runs its hooks one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  public:
   Interceptor(CallObserver& observer, ServerRpcInfo& info)
@@ -103,8 +103,8 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  private:
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  // gRPC's own services call it UNKNOWN if the client left, and INTERNAL if its request was no
-  // message, or none came, which would look like the server's fault.
+  // gRPC's own services return UNKNOWN if the client left, and INTERNAL if the request was missing
+  // or malformed. Both would look like errors of the server.
   absl::StatusCode CodeOf(const grpc::Status& status) const {
     const auto code = static_cast<absl::StatusCode>(status.error_code());
     if (!absl::StartsWith(path_, "/grpc.")) return code;
@@ -157,7 +157,7 @@ CallObserver::InterceptorFactory() {
   return std::make_unique<Factory>(*this);
 }
 
-// ---- who calls ----
+// ---- callers ----
 
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
   MutexLock lock(mutex_);
@@ -170,7 +170,7 @@ std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
   return node.empty() ? "" : std::move(node.mapped());
 }
 
-// ---- what failed ----
+// ---- failed calls ----
 
 void CallObserver::Failed(const FailedCall& call) {
   const Verdict verdict = VerdictOn(call);

@@ -23,8 +23,8 @@ absl::Status Wrong(absl::string_view field, absl::string_view permitted) {
 
 bool IsBlank(char c) { return absl::ascii_isspace(static_cast<unsigned char>(c)); }
 
-// Takes the first word off the line; in double quotes it may hold blanks. Empty at the end, and
-// at a comment.
+// Removes the first word from the line. A word in double quotes may contain blanks. Empty at the
+// end of the line and at a comment.
 absl::StatusOr<absl::string_view> TakeWord(absl::string_view& line) {
   line = absl::StripLeadingAsciiWhitespace(line);
   if (line.empty() || line[0] == '#') return absl::string_view();
@@ -72,7 +72,7 @@ std::string Text(const TokenHash& hash) { return absl::StrCat("token ", kHashPre
 std::string Text(const CommonName& name) { return absl::StrCat("certificate \"", name.text, "\""); }
 std::string Text(const UnixUser& user) { return absl::StrCat("user \"", user.name, "\""); }
 
-// A time, or a date. Abseil would also take "infinite-future".
+// A time or a date. Abseil would also accept "infinite-future".
 absl::StatusOr<absl::Time> ParseExpiry(absl::string_view text) {
   absl::Time time;
   std::string ignored;

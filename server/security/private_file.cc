@@ -26,7 +26,7 @@ absl::StatusOr<std::string> ReadAll(const NamedFile& file, int descriptor) {
   return Unusable(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
 }
 
-// What is opened is what is checked: nobody can exchange the file in between.
+// Checks the open file, so that nobody can exchange it between check and read.
 absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) {
   const int descriptor = open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {

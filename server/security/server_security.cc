@@ -54,7 +54,8 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
   }
   std::vector<std::string> given = Given(options);
   const bool has_list = !options.access_file.empty();
-  if (IsOpenSocket(options) && has_list) given.erase(given.begin());  // the access file is first
+  if (IsOpenSocket(options) && has_list)
+    given.erase(given.begin());  // removes the access file, which is first
   if (given.empty()) return CheckSocketMode(options);
   return Refused(absl::StrCat("--listen=", address.Text(),
                               ": over a Unix socket the kernel says who connects, by default only "
@@ -63,7 +64,7 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
                               " (an access file goes with --socket-mode=0660 or 0666)"));
 }
 
-// The flags of a Unix socket, at another address.
+// Rejects the flags of a Unix socket at another address.
 absl::Status CheckNoSocketFlags(const SecurityOptions& options, const ListenAddress& address) {
   if (!options.socket_mode && options.socket_group.empty()) return absl::OkStatus();
   return Refused(absl::StrCat(options.socket_mode
@@ -108,7 +109,7 @@ std::string MinuteText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
 
-// No list without an access file.
+// Null without an access file.
 absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions& options) {
   if (options.access_file.empty()) return nullptr;
   absl::StatusOr<AccessList> list = AccessList::Read(AccessFile(options));
@@ -147,7 +148,7 @@ absl::StatusOr<SocketAccess> FindSocketAccess(const SecurityOptions& options) {
   return access;
 }
 
-// The role of all callers if they are not authenticated; none if they are.
+// The role of all callers if they are not authenticated; empty if they are.
 std::optional<Role> RoleOfEverybody(const SecurityOptions& options, const ListenAddress& address) {
   if (IsOpenSocket(options) || !options.access_file.empty()) return std::nullopt;
   return address.socket_path.empty() ? options.loopback_role.value_or(kLoopbackRole) : Role::kAdmin;

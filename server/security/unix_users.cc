@@ -32,8 +32,8 @@ std::optional<Principal> PrincipalOf(uid_t user) {
 
 }  // namespace
 
-// All calls of a connection share its auth context. It is written once, before the first of them
-// goes on, and only read afterwards.
+// All calls of a connection share its auth context. It is written once, before the first call runs,
+// and only read afterwards.
 class UnixUsers::Stamp : public grpc::AuthMetadataProcessor {
  public:
   void Set(Principal user) {

@@ -23,7 +23,7 @@ using v1::EnsembleJob;
 
 bool Ended(int64_t state) { return state >= EnsembleJob::SUCCEEDED; }
 
-// What has not been written back yet lies in the log.
+// The size of the log, whose pages are not written back yet.
 int64_t LogBytes(const std::string& store) {
   struct stat found {};
   return stat((store + "-wal").c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
@@ -42,7 +42,7 @@ class StoreCheck {
                             &StoreCheck::CheckDetails, &StoreCheck::CheckCheckpoints}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
-      // So damaged that this part cannot be read.
+      // The damage prevents reading this part.
       if (!status.ok()) Found(std::string(status.message()));
     }
     return std::move(summary_);
@@ -135,7 +135,7 @@ class StoreCheck {
     }
   }
 
-  // Rows that belong to nothing.
+  // Finds rows whose job or point does not exist.
   absl::Status CheckRows() {
     const auto report = [this](const char* what) {
       return [this, what](const Query& row) {

@@ -277,7 +277,7 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
 
 absl::Status FailureToOpen(const FaultDisk& disk) {
   const absl::Status status = Store::Open(kStorePath, {.vfs = disk.vfs()}).status();
-  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("left as it is"));
+  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("it is unchanged"));
   return status;
 }
 

@@ -176,7 +176,7 @@ TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
   EXPECT_OK(With(0400));
   EXPECT_OK(With(0640));
   for (const mode_t mode : {0604u, 0644u, 0660u, 0620u, 0602u, 0666u, 0777u}) {
-    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to others")) << mode;
+    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to other users")) << mode;
   }
 }
 

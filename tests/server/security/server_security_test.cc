@@ -232,7 +232,7 @@ TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
 
 TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
   chmod(files_.options().tls_key.c_str(), 0644);
-  EXPECT_THAT(Error(), HasSubstr("open to others (mode 0644)"));
+  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
 }
 
 TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
