@@ -21,14 +21,14 @@
 namespace ballpiston::server {
 namespace {
 
-// They mostly wait for the disk.
+// These threads mostly wait for the disk.
 constexpr int kRpcThreads = 8;
-// How often watches are looked at; their snapshots are further apart.
+// The longest time between two looks at the watches. Their snapshots are further apart.
 constexpr std::chrono::milliseconds kLongestLook(50);
 constexpr int kMinPingIntervalMs = 15'000;
 constexpr int kStreamsPerConnection = 2'048;  // twice what one principal may watch
 constexpr int kBlockingThreads = 32;
-// How long health may go on to say that a store takes jobs when it does not.
+// The longest delay until health reports that the store fails.
 constexpr std::chrono::milliseconds kHealthInterval(500);
 constexpr std::chrono::milliseconds kLimitsInterval(1000);
 
@@ -69,8 +69,8 @@ void SetAge(grpc::ServerBuilder& builder, const ConnectionTiming& timing) {
   Set(builder, GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, timing.certified_age_grace);
 }
 
-// What clients may take before it is known who they are: streams, memory, and the threads of
-// reflection, the one service that blocks one for each stream.
+// Bounds what clients can use before they are authenticated: streams, memory, and the threads of
+// reflection, the only service that blocks a thread for each stream.
 void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   using Option = grpc::ServerBuilder::SyncServerOption;
   grpc::ResourceQuota quota("ballpiston");
@@ -79,7 +79,8 @@ void SetBounds(grpc::ServerBuilder& builder, const Limits& limits) {
   }
   quota.SetMaxThreads(kBlockingThreads);
   builder.SetResourceQuota(quota);
-  // Of these gRPC would start one for each core, and end the process if the quota has not as many.
+  // By default gRPC would start a thread for each core, and end the process if the quota has fewer
+  // threads.
   builder.SetSyncServerOption(Option::NUM_CQS, 1);
   builder.SetSyncServerOption(Option::MIN_POLLERS, 1);
   builder.SetSyncServerOption(Option::MAX_POLLERS, 2);
@@ -119,7 +120,7 @@ absl::StatusOr<std::unique_ptr<BallpistonServer>> BallpistonServer::Start(Server
     if (!status.ok()) return status;
     return server;
   } catch (const std::system_error& error) {
-    return absl::InvalidArgumentError(absl::StrCat("the system gives no more threads (",
+    return absl::InvalidArgumentError(absl::StrCat("the system cannot start more threads (",
                                                    error.what(), "); choose fewer with --workers"));
   }
 }
@@ -226,7 +227,7 @@ absl::Status BallpistonServer::Listen() {
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   SocketListener::Receive receive = AddReceiver(builder);
   grpc_ = builder.BuildAndStart();
-  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC does not start");
+  if (grpc_ == nullptr) return absl::FailedPreconditionError("gRPC cannot start");
   listener_ = *std::move(listener);
   listener_->Start(std::move(receive));
   StartHealth();

@@ -36,16 +36,17 @@
 
 namespace ballpiston::server {
 
-// When a connection is given up, with the streams on it: one at whose other end nobody is any more,
-// or one that is old.
+// When the server closes a connection, with its streams: if the client no longer answers, or if the
+// connection is old.
 struct ConnectionTiming {
-  std::chrono::milliseconds handshake{20'000};      // the longest
-  std::chrono::milliseconds ping_interval{60'000};  // of silence before the other end is asked
-  std::chrono::milliseconds ping_timeout{20'000};   // and has to have answered
+  std::chrono::milliseconds handshake{20'000};      // limit of a TLS handshake
+  std::chrono::milliseconds ping_interval{60'000};  // silence before the server sends a ping
+  std::chrono::milliseconds ping_timeout{20'000};   // limit for the client's answer
 
-  // What a client's certificate once opened stays open as long as the connection. So where they are
-  // asked for, a connection takes no more calls after so long (the client makes another, and does
-  // not notice), and is closed when its calls have ended, or have had that long to.
+  // The server checks a client's certificate only when the client connects. So with client
+  // certificates, a connection of this age accepts no new calls (the client's gRPC library makes a
+  // new connection). The server closes it when its calls have ended, at the latest after the grace
+  // time.
   std::chrono::milliseconds certified_age{3'600'000};
   std::chrono::milliseconds certified_age_grace{300'000};
 };
@@ -54,11 +55,11 @@ struct ServerOptions {
   std::string data_dir = DataDirectory::Default();
   std::string listen;  // empty: a Unix socket in data_dir
   SecurityOptions security;
-  // The users who can connect to a Unix socket that is not open to others.
+  // The users who can connect to a Unix socket with mode 0600.
   std::set<uid_t> socket_users = OwnUserAndRoot();
   int workers = 1;
-  std::optional<SlurmOptions> slurm = {};  // a cluster beside the threads
-  ExperimentFactory factory;               // empty: the core's, by the chosen model
+  std::optional<SlurmOptions> slurm = {};  // empty: no cluster
+  ExperimentFactory factory;               // empty: the core's experiment of the chosen model
   WatchTiming watch;
   ConnectionTiming connections;
   Limits limits;
@@ -68,29 +69,30 @@ struct ServerOptions {
 
 class BallpistonServer {
  public:
-  // Takes up unfinished jobs, and answers calls when it returns.
-  //   INVALID_ARGUMENT     an option, named as the flag it comes from
-  //   FAILED_PRECONDITION  data folder or address in use, or a store that cannot be read
+  // Resumes unfinished jobs. The server answers calls when this returns.
+  //   INVALID_ARGUMENT     an option is invalid; the message names its flag
+  //   FAILED_PRECONDITION  data folder or address in use, or the store cannot be read
   //   PERMISSION_DENIED    data folder not writable
   static absl::StatusOr<std::unique_ptr<BallpistonServer>> Start(ServerOptions options);
   ~BallpistonServer();  // Shutdown, without time to drain
 
-  // The port that was chosen, if any was free to be.
+  // With the port that the server uses, also if the options have port 0.
   std::string address() const { return address_.Text(); }
 
   const ServerSecurity& security() const { return *security_; }
 
-  // Reads the access file and the certificates again; calls and connections go on. Of what is wrong
-  // the old stays, and is named in the error. One thread at a time.
+  // Reads the access file and the certificates again; calls and connections go on. If a file is
+  // invalid, the server keeps its previous contents, and the error names the file. One thread at a
+  // time.
   absl::Status Reload() { return security_->Reload(); }
-  // Of the metrics; empty if there are none.
+  // The address of the metrics; empty if there are none.
   std::string metrics_address() const { return metrics_ ? metrics_->address() : ""; }
 
-  // How long nobody has used it and nothing was computed.
+  // How long no client has used the server and no thread has computed.
   std::chrono::steady_clock::duration IdleFor();
 
-  // Health says NOT_SERVING, no job is accepted, watches end with UNAVAILABLE, blocks in flight are
-  // dropped, calls in progress have until then to end, and everything is on disk.
+  // Sets health to NOT_SERVING, rejects new jobs, ends watches with UNAVAILABLE, drops blocks that
+  // are not merged, gives calls in progress the time `drain` to end, and flushes the store.
   void Shutdown(std::chrono::milliseconds drain);
 
  private:
@@ -107,7 +109,7 @@ class BallpistonServer {
   void StartHealth();
 
   const ServerOptions options_;
-  DataDirectory directory_;  // first: its lock guards all that follows
+  DataDirectory directory_;  // first: its lock guards all later members
   ListenAddress address_;
   std::unique_ptr<ServerSecurity> security_;
   std::atomic<bool> draining_ = false;
@@ -120,7 +122,7 @@ class BallpistonServer {
   std::unique_ptr<PointOpener> factory_;  // null: the ladder opens points
   Scheduler scheduler_;
   JobBook book_;
-  // After the book, which the executors' threads use.
+  // After the book: the executors' threads use the book.
   ThreadExecutor threads_;
   std::unique_ptr<SlurmExecutor> slurm_;  // null without a cluster
   RpcExecutor executor_;
@@ -129,12 +131,12 @@ class BallpistonServer {
   AnalyticService analytic_;
   TraceService trace_;
   ServerService server_;
-  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to others
+  std::unique_ptr<UnixUsers> unix_users_;  // null unless a Unix socket is open to other users
   std::unique_ptr<grpc::Server> grpc_;
   std::unique_ptr<SocketListener> listener_;
   std::unique_ptr<PeriodicThread> limits_;    // calls JobBook::KeepLimits
-  std::unique_ptr<Health> health_;            // after grpc_, which has what it sets
-  std::unique_ptr<MetricsEndpoint> metrics_;  // last: it asks all of the above
+  std::unique_ptr<Health> health_;            // after grpc_, which owns the health service
+  std::unique_ptr<MetricsEndpoint> metrics_;  // last: it reads all members above
 };
 
 }  // namespace ballpiston::server

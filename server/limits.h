@@ -11,20 +11,20 @@ namespace ballpiston::server {
 inline constexpr int kQuotaDays = 30;
 
 struct Limits {
-  int64_t max_active_jobs = 10'000;  // neither succeeded nor failed nor cancelled
+  int64_t max_active_jobs = 10'000;  // jobs that have not ended
   int64_t max_active_jobs_per_principal = 1'000;
-  int64_t max_active_points = 20'000'000;  // of the jobs' grids together
+  int64_t max_active_points = 20'000'000;  // sum over the grids of active jobs
   int64_t max_active_points_per_principal = 5'000'000;
   int64_t max_points_per_job = 100'000;
   double max_samples_per_job = 1e15;  // samples or collisions, over all points
   int64_t max_streams = 2'048;        // open watches and traces
   int64_t max_streams_per_principal = 1'024;
-  // Calls in progress that are no streams, and what their requests and answers hold.
+  // Unary calls in progress, and the bytes of their requests and answers.
   int64_t max_calls_per_principal = 1'024;
   int64_t max_call_bytes_per_principal = int64_t{128} << 20;
   int64_t max_message_bytes = int64_t{4} << 20;  // of a request
   int64_t max_transfer_mib = 512;                // of all requests that are being received
-  // What is stored.
+  // Stored results.
   double retain_days = 0;       // from the end of a job until its results expire
   int64_t max_store_bytes = 0;  // above it the oldest results expire
   int64_t max_store_bytes_per_principal = 0;

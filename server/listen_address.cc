@@ -55,7 +55,8 @@ bool IsIpv6(const std::string& host) {
          std::all_of(zone.begin(), zone.end(), &IsOfName);
 }
 
-// What ends in a number would be read as an address: 127.1 is 127.0.0.1 to some programs.
+// A name must not end in a number, because programs may read it as an address: 127.1 means
+// 127.0.0.1 to some.
 bool IsName(const std::string& host) {
   const std::string last = host.substr(host.find_last_of('.') + 1);
   return host.size() <= kLongestName && !last.empty() &&
@@ -80,7 +81,7 @@ absl::Status Occupied(const ListenAddress& address, absl::string_view by) {
       absl::StrCat("--listen=", address.Text(), ": ", by, "; choose another path"));
 }
 
-// 0, or why one cannot connect there. Does not wait for a server that is busy.
+// 0 if a connection succeeds, otherwise its errno. Does not wait for a busy server.
 int ErrorOfConnecting(const std::string& path) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (descriptor < 0) return errno;
@@ -130,17 +131,16 @@ absl::Status ClearSocketPath(const ListenAddress& address) {
   const std::string& path = address.socket_path;
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return absl::OkStatus();
-  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "there is a file there that is no socket");
+  if (!S_ISSOCK(found.st_mode)) return Occupied(address, "a file that is not a socket is there");
   switch (const int error = ErrorOfConnecting(path)) {
     case 0:
-    case EAGAIN:  // more wait there than the kernel keeps
+    case EAGAIN:  // the queue of connections is full
       return Occupied(address, "a server is listening there (stop it)");
     case ENOENT:
       return absl::OkStatus();
     case ECONNREFUSED:  // nobody listens any more
       if (unlink(path.c_str()) == 0 || errno == ENOENT) return absl::OkStatus();
-      return Occupied(address, absl::StrCat("the socket there that nobody listens on cannot be "
-                                            "taken away (",
+      return Occupied(address, absl::StrCat("the unused socket there cannot be removed (",
                                             std::strerror(errno), ")"));
     default:
       return Occupied(address, absl::StrCat("cannot find out whether a server listens there (",

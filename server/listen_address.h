@@ -1,5 +1,5 @@
-// Where a server listens: a Unix socket, or HOST:PORT. What an address needs in the way of
-// credentials is told by security/server_security.h.
+// Where a server listens: a Unix socket, or HOST:PORT. security/server_security.h says which
+// credentials each kind of address needs.
 #ifndef BALLPISTON_SERVER_LISTEN_ADDRESS_H_
 #define BALLPISTON_SERVER_LISTEN_ADDRESS_H_
 
@@ -13,25 +13,26 @@ namespace ballpiston::server {
 struct ListenAddress {
   std::string socket_path;  // of a Unix socket; empty for host:port
   std::string host;         // without brackets
-  int port = 0;             // 0: any that is free
+  int port = 0;             // 0: any free port
 
-  // As gRPC and clients write it.
+  // The address as gRPC and clients write it.
   std::string Text() const;
 
-  // Whether only this machine reaches it: 127.0.0.0/8, ::1, or the name localhost. Other names are
-  // taken for addresses that others reach, whatever they stand for today.
+  // Whether only local connections are possible: 127.0.0.0/8, ::1, or the name localhost. Every
+  // other name counts as an address that other machines reach, because what it resolves to may
+  // change.
   bool IsLoopback() const;
 };
 
-// unix:PATH, or HOST:PORT; a HOST is an IPv4 address, an IPv6 address in brackets (with a zone
-// where it is of a link, [fe80::1%eth0]), or a name. 0.0.0.0 and [::] both mean every address of
-// this machine, of either kind. INVALID_ARGUMENT names the flag --listen, the value, and what is
-// permitted.
+// Parses unix:PATH or HOST:PORT. HOST is an IPv4 address, an IPv6 address in brackets (with a zone
+// if it is link-local, [fe80::1%eth0]), or a name. 0.0.0.0 and [::] both mean every IPv4 and IPv6
+// address of this machine. INVALID_ARGUMENT names the flag --listen, the value, and the permitted
+// values.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
-// Takes away a socket file that no server listens on any more, which is one that refuses
-// connections. FAILED_PRECONDITION if a server does, if that cannot be told, or if the file is no
-// socket; then the file stays.
+// Removes a socket file on which no server listens: it refuses connections. FAILED_PRECONDITION if
+// a server listens on it, if that cannot be determined, or if the file is not a socket; then the
+// file stays.
 absl::Status ClearSocketPath(const ListenAddress& address);
 
 }  // namespace ballpiston::server

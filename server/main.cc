@@ -33,10 +33,10 @@ constexpr int kExitUsage = 2;
 constexpr int kExitDiffers = 4;
 constexpr int kExitNotPermitted = 6;
 constexpr timespec kLookInterval{0, 200'000'000};  // at idleness
-// What stopping the workers and closing the store may take beyond the time to drain.
+// The time for stopping the workers and closing the store, after the time to drain.
 constexpr std::chrono::milliseconds kGrace(800);
 
-// Blocked in this thread before any other is started, so in all of them.
+// Blocks the signals before the first thread starts, so that they are blocked in all threads.
 sigset_t BlockSignals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -50,8 +50,8 @@ sigset_t BlockSignals() {
 
 void Reload(BallpistonServer& server) {
   const absl::Status status = server.Reload();
-  if (status.ok()) return LogInfo(absl::StrCat("read again: ", server.security().Description()));
-  LogError(absl::StrCat("not read again, the old stays: ", status.message()));
+  if (status.ok()) return LogInfo(absl::StrCat("reloaded: ", server.security().Description()));
+  LogError(absl::StrCat("not reloaded, the previous contents stay in use: ", status.message()));
 }
 
 void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer& server) {
@@ -60,7 +60,7 @@ void AwaitEnd(const sigset_t& signals, const CommandLine& line, BallpistonServer
     if (signal == SIGHUP) Reload(server);
     if (signal == SIGTERM || signal == SIGINT) break;
     if (line.idle_exit.count() > 0 && server.IdleFor() >= line.idle_exit) {
-      return LogInfo("nobody uses this server: stopping");
+      return LogInfo("the server is idle: stopping");
     }
   }
   LogInfo("stopping");
@@ -164,7 +164,7 @@ int Main(int argc, char** argv) {
   LogInfo(absl::StrCat("version ", kVersion, " listening on ", (*server)->address()));
   AwaitEnd(signals, *line, **server);
   StopInTime(**server, line->drain);
-  // Not by way of the destructors: after large answers gRPC may wait 10 s for a poller of its own.
+  // Skips the destructors: after large answers gRPC may wait 10 s for one of its threads.
   std::fflush(nullptr);
   std::_Exit(0);
 }

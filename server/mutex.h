@@ -5,11 +5,11 @@
 //   ABSL_LOCKS_EXCLUDED            the function takes the mutex; its caller must not hold it
 //   ABSL_ACQUIRED_BEFORE           which other mutex is taken later
 //
-// `make thread-safety` fails if the code does otherwise. The analysis looks at one function at a
-// time, so it sees no order between mutexes of classes that call each other.
+// `make thread-safety` fails if the code breaks these rules. The analysis looks at one function at
+// a time, so it cannot check the order between mutexes of classes that call each other.
 //
-// absl::Mutex has these annotations too, but Debian's library of it is not instrumented: the thread
-// sanitizer would not see the order that it enforces. It sees that of std::mutex.
+// absl::Mutex has these annotations too. But Debian's build of absl::Mutex is not instrumented, so
+// the thread sanitizer would not see its synchronisation. It sees that of std::mutex.
 #ifndef BALLPISTON_SERVER_MUTEX_H_
 #define BALLPISTON_SERVER_MUTEX_H_
 

@@ -1,4 +1,5 @@
-// The version of the program, as releases are numbered; that of the numbers is the engine's.
+// The version of the program's releases. Computed results have a version of their own:
+// EngineVersion (convert/spec.h).
 #ifndef BALLPISTON_SERVER_VERSION_H_
 #define BALLPISTON_SERVER_VERSION_H_
 

@@ -15,7 +15,8 @@ namespace {
 
 constexpr size_t kMaxRequestId = 64;
 
-// It goes into the log: nothing that could pass for something else there.
+// The id is logged, so it may contain only characters that cannot be mistaken for other parts of a
+// line.
 bool IsRequestId(const std::string& id) {
   const auto permitted = [](unsigned char c) {
     return absl::ascii_isalnum(c) || c == '-' || c == '_' || c == '.';

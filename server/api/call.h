@@ -1,4 +1,4 @@
-// One call: who makes it, and the id by which it is found in the log.
+// One call: its caller, and its request id, which is also in the log.
 #ifndef BALLPISTON_SERVER_API_CALL_H_
 #define BALLPISTON_SERVER_API_CALL_H_
 
@@ -13,18 +13,19 @@ namespace ballpiston::server {
 
 struct Call {
   std::string method;      // CreateEnsembleJob
-  std::string request_id;  // the client's `x-request-id`, or one made here
+  std::string request_id;  // the client's `x-request-id`, or a generated one
   Principal caller;
 };
 
-// What may be done by whom, by method.
+// The least role that a method needs.
 struct CallRule {
   const char* method;
   Role least;
   bool writes = false;  // waits for the disk
 };
 
-// Quick: for gRPC's own threads. Sends the id back in the trailing metadata, whatever the outcome.
+// Authenticates and authorises a call. Does not block, so gRPC's own threads can call it. Always
+// sends the request id back in the trailing metadata.
 //   FAILED_PRECONDITION  CLIENT_VERSION_NOT_SERVED
 //   UNAUTHENTICATED    CREDENTIALS_MISSING, CREDENTIALS_INVALID, CREDENTIALS_EXPIRED
 //   PERMISSION_DENIED  ROLE_TOO_LOW

@@ -73,7 +73,7 @@ v1::ServerLimits LimitsMessage(const Limits& limits) {
   return message;
 }
 
-// 0 if the store cannot be read: the rest is worth telling then, too.
+// 0 if the store cannot be read, so that the status still has its other numbers.
 double StoredJobs(Store& store) {
   double jobs = 0;
   store

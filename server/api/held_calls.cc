@@ -11,9 +11,9 @@ absl::Status TooManyCalls(const std::string& what, const std::string& flag, int6
 }
 
 absl::Status TooManyBytes(const std::string& principal, int64_t bytes, int64_t limit) {
-  return TooManyCalls(absl::StrCat(principal, " has calls in progress, and answers that it has not",
-                                   " read, of ", bytes, " bytes"),
-                      "max-call-bytes-per-principal", limit);
+  return TooManyCalls(
+      absl::StrCat(principal, " has ", bytes, " bytes in calls in progress and unread answers"),
+      "max-call-bytes-per-principal", limit);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
-// How much of the server each principal's calls, or its streams' messages, hold at this moment.
+// Counts the calls in progress of each principal, and the bytes of memory that these calls and the
+// messages of its streams hold.
 //
-// A unary call holds its request from when it is let in, and its answer until the client has taken
-// it: who sends calls and reads no answers holds them all. Thread-safe.
+// A unary call holds its request from its admission, and its answer until the client has received
+// it. A client that sends calls and does not read the answers therefore reaches the limits.
+// Thread-safe.
 #ifndef BALLPISTON_SERVER_API_HELD_CALLS_H_
 #define BALLPISTON_SERVER_API_HELD_CALLS_H_
 
@@ -17,19 +19,20 @@ namespace ballpiston::server {
 
 class HeldCalls {
  public:
-  // One more, of so many bytes. RESOURCE_EXHAUSTED, TOO_MANY_CALLS: it is not held, for the
-  // principal has as many calls as it may, or others that hold as many bytes as it may.
+  // Counts a new call with this many bytes. RESOURCE_EXHAUSTED, TOO_MANY_CALLS if the principal has
+  // reached its limit of calls or of bytes; the call is then not counted.
   absl::Status Begin(const std::string& principal, int64_t bytes, const Limits& limits);
 
-  // The same refusal, of a call that is held already: when it would now get an answer to hold.
+  // The same error, for a call that is counted already, before the server adds the bytes of its
+  // answer.
   absl::Status CheckRoom(const std::string& principal, const Limits& limits) const;
   void AddBytes(const std::string& principal, int64_t bytes);
 
-  // Holds so many bytes, as a call of their own, if with them there are at most `limit`, or no
-  // others. False: it does not.
+  // Counts this many bytes as a separate call if the principal then holds at most `limit` bytes, or
+  // if it holds no others. Returns false, and counts nothing, otherwise.
   bool TryBegin(const std::string& principal, int64_t bytes, int64_t limit);
 
-  // A call with all of its bytes is over.
+  // A call with this many bytes has ended.
   void End(const std::string& principal, int64_t bytes);
 
  private:

@@ -8,8 +8,8 @@
 
 namespace ballpiston::server {
 
-// Adds to `check` what is wrong: a state or experiment that is unspecified or unknown, and a time
-// that is no google.protobuf.Timestamp (years 1 to 9999). At most 100 violations of each list.
+// Adds violations to `check`: a state or experiment that is unspecified or unknown, and a time that
+// is not a valid google.protobuf.Timestamp (years 1 to 9999). At most 100 violations of each list.
 JobFilter ReadListFilter(const v1::ListEnsembleJobsRequest& request, RequestCheck& check);
 
 }  // namespace ballpiston::server

@@ -1,4 +1,4 @@
-// The unary methods of the API, one file each; contract and errors stand in the protos.
+// The unary methods of the API, one file each. The protos have their contracts and errors.
 #ifndef BALLPISTON_SERVER_API_METHODS_H_
 #define BALLPISTON_SERVER_API_METHODS_H_
 

@@ -10,7 +10,7 @@
 namespace ballpiston::server {
 namespace {
 
-// More points than this are planned by as many of them, evenly spread.
+// A plan uses at most this many points, evenly spread over the grid.
 constexpr size_t kMostPoints = 1000;
 
 // In seconds of processor time.

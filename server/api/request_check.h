@@ -1,4 +1,4 @@
-// Reads the fields that many requests share, and gathers all that is wrong with them.
+// Reads the fields that many requests share, and collects all violations.
 //
 //   RequestCheck check;
 //   const std::string id = check.JobId("name", request.name());
@@ -24,14 +24,15 @@ class RequestCheck {
  public:
   std::string JobId(const char* field, const std::string& name);
 
-  // Empty, or a UUID in its usual form; in lower case, so that equal ones are equal.
+  // The request id: empty, or a UUID in its usual form. Returns it in lower case, so that equal
+  // UUIDs are equal strings.
   std::string RequestId(const std::string& request_id);
 
   // 0 is the default, 50; more than 1000 counts as 1000.
   int PageSize(int32_t page_size);
 
-  // Where the page begins; `first` if the token is empty. Tokens are opaque, and good for the list
-  // they were made for.
+  // Where the page begins; `first` if the token is empty. Tokens are opaque and valid only for the
+  // list that returned them.
   int64_t PageStart(const std::string& token, const std::string& list, int64_t first);
   static std::string PageToken(const std::string& list, int64_t start);
 

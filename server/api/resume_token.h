@@ -1,5 +1,6 @@
-// What a watch's resume token says: of which job, and how far a watcher of it has been told. Opaque
-// to clients, and anything may come back in its place. Pure functions.
+// The content of a watch's resume token: the job, and how much of it the client has received.
+// Tokens are opaque to clients. A client may send any text as a token, so parsing must accept
+// everything. Pure functions.
 #ifndef BALLPISTON_SERVER_API_RESUME_TOKEN_H_
 #define BALLPISTON_SERVER_API_RESUME_TOKEN_H_
 
@@ -11,9 +12,9 @@ namespace ballpiston::server {
 
 struct ResumeToken {
   std::string job;       // its id
-  int64_t restarts = 0;  // of the job: its points of before are not those of after
+  int64_t restarts = 0;  // of the job; a restart drops its points
   int64_t finished = 0;
-  std::string instance;  // of the server's life in which `change` means something
+  std::string instance;  // the server process that numbered `change`
   uint64_t change = 0;
 
   friend bool operator==(const ResumeToken&, const ResumeToken&) = default;
@@ -21,7 +22,7 @@ struct ResumeToken {
 
 std::string ResumeTokenText(const ResumeToken& token);
 
-// Nothing unless it is a token, of whatever job.
+// Empty if the text is not a token.
 std::optional<ResumeToken> ParseResumeToken(const std::string& text);
 
 }  // namespace ballpiston::server

@@ -47,7 +47,7 @@ void RpcExecutor::Lane::Stop() {
   for (std::thread& thread : threads) thread.join();
 }
 
-// The first of those that have not got their share already.
+// The first principal that has fewer threads than its share.
 std::list<RpcExecutor::Lane::Queues::iterator>::iterator RpcExecutor::Lane::NextTurn() {
   return std::find_if(turns_.begin(), turns_.end(),
                       [this](const auto& queue) { return queue->second.running < share_; });
@@ -76,9 +76,9 @@ void RpcExecutor::Lane::Work() {
     Task task = Take(turn);
     lock.Unlock();
     task();
-    task = nullptr;  // what it holds is let go without the lock
+    task = nullptr;  // releases its captures without the lock
     lock.Lock();
-    // A thread that found this principal's share taken may go on.
+    // Wakes a thread that waited because this principal had its full share.
     if (queue->second.running-- == share_ && !queue->second.tasks.empty()) changed_.NotifyOne();
     if (queue->second.running == 0 && queue->second.tasks.empty()) queues_.erase(queue);
     if (IsDone()) changed_.NotifyAll();

@@ -1,11 +1,11 @@
-// The threads that answer calls and those that make the messages of streams, so that gRPC's own few
-// are never kept waiting for the disk.
+// The threads that run calls and that make the messages of streams. gRPC's own few threads
+// therefore never wait for the disk.
 //
-// Each kind of task has threads of its own: a thousand watches do not keep a call waiting, nor
-// calls that wait for the disk a watch, nor those that write those that read. Within a kind the
-// principals take turns, whatever the number of their tasks, and one never has more than half of
-// the threads, except of those that write; the tasks of one principal begin in the order of
-// posting. Thread-safe.
+// There are three kinds of tasks: calls that read, calls that write, and messages of streams. Each
+// kind has threads of its own, so no kind waits for another. Within a kind the principals take
+// turns, whatever the number of their tasks. A principal has at most half of the threads of a kind,
+// except of those that write. The tasks of one principal begin in the order of posting.
+// Thread-safe.
 #ifndef BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 #define BALLPISTON_SERVER_API_RPC_EXECUTOR_H_
 
@@ -27,13 +27,13 @@ class RpcExecutor {
  public:
   using Task = std::function<void()>;
 
-  // So many threads for calls that read, as many for those that write, and half as many for
+  // `threads` threads for calls that read, as many for calls that write, and half as many for
   // streams.
   explicit RpcExecutor(int threads);
   ~RpcExecutor();  // stops
 
   void Post(const std::string& principal, Task task) { reads_.Post(principal, std::move(task)); }
-  // Of a call that waits for the disk.
+  // Posts a call that waits for the disk.
   void PostOfWrite(const std::string& principal, Task task) {
     writes_.Post(principal, std::move(task));
   }
@@ -41,12 +41,11 @@ class RpcExecutor {
     streams_.Post(principal, std::move(task));
   }
 
-  // What the calls that were posted hold, and what the messages of streams that wait for their
-  // readers do.
+  // The memory of posted calls, and of stream messages that wait for their readers.
   HeldCalls& held_calls() { return held_calls_; }
   HeldCalls& held_messages() { return held_messages_; }
 
-  // Runs what was posted, then ends the threads; later tasks are dropped.
+  // Runs the posted tasks, then ends the threads. Drops later tasks.
   void Stop();
 
  private:
@@ -77,7 +76,8 @@ class RpcExecutor {
     Mutex mutex_;
     Condition changed_;
     Queues queues_ ABSL_GUARDED_BY(mutex_);  // of principals with tasks, waiting or running
-    // Principals with tasks that wait; first the one whose last turn was the longest ago.
+    // Principals with waiting tasks. The first is the principal whose last turn was the longest
+    // ago.
     std::list<Queues::iterator> turns_ ABSL_GUARDED_BY(mutex_);
     bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
     std::vector<std::thread> threads_ ABSL_GUARDED_BY(mutex_);

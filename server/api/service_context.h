@@ -1,4 +1,4 @@
-// What every method of the API works with.
+// The objects and options that every method of the API uses.
 #ifndef BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
 #define BALLPISTON_SERVER_API_SERVICE_CONTEXT_H_
 
@@ -23,8 +23,8 @@
 namespace ballpiston::server {
 
 struct WatchTiming {
-  std::chrono::milliseconds snapshot{200};      // at most one in this time
-  std::chrono::milliseconds heartbeat{10'000};  // when nothing else was sent for so long
+  std::chrono::milliseconds snapshot{200};      // least time between two snapshots
+  std::chrono::milliseconds heartbeat{10'000};  // sent if no other message was sent in this time
 };
 
 struct ServiceContext {
@@ -39,7 +39,7 @@ struct ServiceContext {
   WatchRegistry& watches;
   Activity& activity;
   const std::atomic<bool>& draining;
-  std::string instance;  // of this server's life: numbers of changes mean nothing beyond it
+  std::string instance;  // of this server process, which numbers the changes
   WatchTiming timing;
   Store& store;
   CallObserver& calls;

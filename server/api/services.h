@@ -11,7 +11,7 @@
 
 namespace ballpiston::server {
 
-// `service` has to outlive them all.
+// `service` must outlive all services.
 class EnsembleService : public v1::EnsembleService::CallbackService {
  public:
   explicit EnsembleService(ServiceContext& service) : service_(service) {}

@@ -1,12 +1,12 @@
-// The frame of every call that is a stream: one write outstanding, and the next message made when
-// it is done.
+// The frame of every call that is a stream. One write is in progress at a time, and the next
+// message is made when that write is done.
 //
-// So a slow reader costs one message of memory and nobody's time. Messages are made on the threads
-// for streams, never on gRPC's. At most one Advance runs at a time, and all writes and the end come
-// from it.
+// A slow reader therefore costs one message of memory, and no thread waits for it. The threads for
+// streams make the messages, never gRPC's own threads. At most one Advance runs at a time. Only
+// Advance writes messages and ends the stream.
 //
-// Once in a heartbeat's time the credentials are looked up again: a stream ends when they do, also
-// if its reader stalls.
+// Once per heartbeat the stream checks its credentials again. It ends if they are no longer valid,
+// also if its reader stalls.
 #ifndef BALLPISTON_SERVER_API_STREAM_REACTOR_H_
 #define BALLPISTON_SERVER_API_STREAM_REACTOR_H_
 
@@ -31,7 +31,7 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
                       public std::enable_shared_from_this<StreamReactor<Message>> {
  public:
   void OnWriteDone(bool ok) override {
-    message_.Clear();  // it may be large, and the next one far away
+    message_.Clear();  // frees its memory, because the next message may come much later
     ReleaseMessage();
     {
       MutexLock lock(mutex_);
@@ -65,7 +65,7 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
         active_(service.activity.Begin()),
         next_check_(Clock::now() + service.timing.heartbeat) {}
 
-  // The reactor owns itself until gRPC is done with it. A call that was not admitted ends at once.
+  // The reactor owns itself until gRPC calls OnDone. A call that was rejected ends at once.
   //   RESOURCE_EXHAUSTED  TOO_MANY_STREAMS
   void Start(const absl::StatusOr<Call>& call) {
     self_ = this->shared_from_this();
@@ -81,20 +81,20 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
     }
   }
 
-  // ---- what a stream has to say ----
+  // ---- the messages of a stream ----
 
-  // Writes the next message, the last one, or none if there is nothing to say now. An error ends
-  // the stream. Called by Advance while no write is outstanding.
+  // Writes the next message, or ends the stream, or does nothing if there is nothing to send now.
+  // An error ends the stream. Advance calls this while no write is in progress.
   virtual absl::Status Tell() = 0;
-  // Whether the caller, whose role may have changed, may still have the stream.
+  // Whether the caller, whose role may have changed, may still read the stream.
   virtual absl::Status CheckRights() const { return absl::OkStatus(); }
-  // Gives back what a message holds when it is written, and what the call holds at its end.
+  // Releases the memory that was counted for a message, when it is written or the call ends.
   virtual void ReleaseMessage() {}
   virtual void ReleaseCall() {}
 
-  // ---- when to say it ----
+  // ---- when to send them ----
 
-  // Has Advance run, once more if it is running now.
+  // Requests a run of Advance. If Advance is running now, it runs once more.
   void Schedule() ABSL_LOCKS_EXCLUDED(mutex_) {
     {
       MutexLock lock(mutex_);
@@ -106,7 +106,7 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
                                    [self = this->shared_from_this()] { self->Advance(); });
   }
 
-  // ---- of Tell ----
+  // ---- for Tell ----
 
   void Write() ABSL_LOCKS_EXCLUDED(mutex_) {
     {
@@ -126,7 +126,7 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
 
   ServiceContext& service_;
   Principal caller_;  // its role may change
-  Message message_;   // of Tell, and of gRPC during a write
+  Message message_;   // used by Tell, and by gRPC during a write
 
   Mutex mutex_;  // never held while gRPC is called
   bool writing_ ABSL_GUARDED_BY(mutex_) = false;
@@ -167,9 +167,9 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
     return Tell();
   }
 
-  // OK while the caller may still have the stream, and while it is not yet time to ask again. An
-  // administrator who is one no more may see his own jobs; a token that is now somebody else's is
-  // not his.
+  // OK if the caller may still read the stream, or if the next check is not due yet. An
+  // administrator who lost that role may still see their own jobs. The stream ends if the token now
+  // belongs to another principal.
   absl::Status CheckCaller() {
     const Clock::time_point now = Clock::now();
     if (now < next_check_) return absl::OkStatus();
@@ -184,7 +184,7 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
     return CheckRights();
   }
 
-  // The reader stalls, and would hold the stream open for ever.
+  // Cancels a write whose reader stalls, because the stream could not end otherwise.
   void AbandonWrite(const absl::Status& why) ABSL_LOCKS_EXCLUDED(mutex_) {
     {
       MutexLock lock(mutex_);
@@ -207,8 +207,8 @@ class StreamReactor : public grpc::ServerWriteReactor<Message>,
 
   bool scheduled_ ABSL_GUARDED_BY(mutex_) = false;
   bool again_ ABSL_GUARDED_BY(mutex_) = false;
-  bool cut_ ABSL_GUARDED_BY(mutex_) = false;        // the client is gone
-  absl::Status abandoned_ ABSL_GUARDED_BY(mutex_);  // why the write is not waited for
+  bool cut_ ABSL_GUARDED_BY(mutex_) = false;        // the client has disconnected
+  absl::Status abandoned_ ABSL_GUARDED_BY(mutex_);  // why the write was cancelled
 
  protected:
   // Only Advance changes this, and it holds the lock then. So Advance may read it without the lock;

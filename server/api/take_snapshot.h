@@ -1,4 +1,4 @@
-// The server's numbers as they are now, for metrics and for its status.
+// The server's counts at this moment, for the metrics and for GetServerStatus.
 #ifndef BALLPISTON_SERVER_API_TAKE_SNAPSHOT_H_
 #define BALLPISTON_SERVER_API_TAKE_SNAPSHOT_H_
 
@@ -7,8 +7,8 @@
 
 namespace ballpiston::server {
 
-// Waits for no disk and holds no lock that a worker needs; takes a look at every active job, some
-// 50 ns each.
+// Does not wait for the disk and holds no lock that a worker needs. Reads every active job, which
+// takes some 50 ns each.
 ServerSnapshot TakeSnapshot(const ServiceContext& service);
 
 }  // namespace ballpiston::server

@@ -1,9 +1,9 @@
 // TraceOrbit: the start and the events of one orbit, in the frame of stream_reactor.h.
 //
-// The events of a message are computed when the one before has been taken, so a trace runs as fast
-// as its reader, and principals take turns at the threads after each message. What a trace costs is
-// bounded by its request (convert/trace.h); its memory counts among the bytes of the principal's
-// calls, because a stalled reader keeps it.
+// The events of a message are computed when gRPC has sent the previous message, so a trace runs as
+// fast as its reader, and principals take turns at the threads after each message. The request
+// bounds the cost of a trace (convert/trace.h). Its memory counts among the bytes of the
+// principal's calls, because a stalled reader keeps that memory in use.
 #ifndef BALLPISTON_SERVER_API_TRACE_ORBIT_H_
 #define BALLPISTON_SERVER_API_TRACE_ORBIT_H_
 
@@ -26,7 +26,7 @@ class TraceReactor : public StreamReactor<v1::TraceOrbitResponse> {
                              const absl::StatusOr<Call>& call,
                              const v1::TraceOrbitRequest& request);
 
-  // Only for the credentials: the end of each write asks for the next message.
+  // Only checks the credentials: the end of each write schedules the next message.
   void Look(Clock::time_point now) override;
 
  private:

@@ -22,7 +22,7 @@ namespace ballpiston::server {
 template <typename Request, typename Response>
 using UnaryMethod = absl::StatusOr<Response> (*)(ServiceContext&, const Call&, const Request&);
 
-// What the method throws (no memory left) ends the call, not the server.
+// An exception of the method (out of memory) ends the call, not the server.
 template <typename Request, typename Response>
 grpc::Status Answer(UnaryMethod<Request, Response> method, ServiceContext& service,
                     const Call& call, const Request& request, Response& response) {
@@ -35,7 +35,7 @@ grpc::Status Answer(UnaryMethod<Request, Response> method, ServiceContext& servi
   }
 }
 
-// What is held of a call, until its answer is on its way.
+// The memory of a call until gRPC has sent its answer.
 class UnaryReactor : public grpc::ServerUnaryReactor {
  public:
   explicit UnaryReactor(ServiceContext& service) : service_(service) {}
@@ -55,7 +55,7 @@ class UnaryReactor : public grpc::ServerUnaryReactor {
     bytes_ += static_cast<int64_t>(bytes);
   }
 
-  // Also when the client is gone.
+  // Also called when the client has disconnected.
   void OnDone() override {
     if (principal_) service_.executor.held_calls().End(*principal_, bytes_);
     delete this;
@@ -75,17 +75,17 @@ void RunAndFinish(UnaryMethod<Request, Response> method, ServiceContext& service
   const grpc::Status status =
       room.ok() ? Answer(method, service, call, request, response) : GrpcStatus(room);
   reactor.HoldAnswer(response.ByteSizeLong());
-  reactor.Finish(status);  // it may be gone after this
+  reactor.Finish(status);  // may delete the reactor
 }
 
 template <typename Request, typename Response>
 grpc::ServerUnaryReactor* RunUnary(ServiceContext& service, grpc::CallbackServerContext* context,
                                    const CallRule& rule, const Request* request, Response* response,
                                    UnaryMethod<Request, Response> method) {
-  auto* reactor = new UnaryReactor(service);  // owns itself until gRPC is done with it
+  auto* reactor = new UnaryReactor(service);  // owns itself until gRPC calls OnDone
   absl::StatusOr<Call> call = AdmitCall(service, *context, rule);
   absl::Status admitted = call.status();
-  // Told here, for all who would tell it may be waiting for the disk themselves.
+  // Answered on this thread, because all threads for writes may be waiting for the disk.
   if (admitted.ok() && rule.writes && service.store.stalled()) {
     admitted = StoreFailure(absl::UnavailableError("store: the disk does not answer"));
   }

@@ -16,15 +16,15 @@ namespace {
 
 constexpr size_t kMaxPoints = 100;  // of a kind in a message
 
-// Of all watches together: some 50 us each, most of it gRPC's.
+// Limit for all watches together. A snapshot takes some 50 us, mostly in gRPC.
 constexpr int64_t kSnapshotsPerSecond = 1000;
 
-// A message is large whose specification is; so many bytes of those may be on their way to one
-// principal.
+// A message with a specification above kLargeSpec is large. The other constant limits the bytes of
+// large messages on their way to one principal.
 constexpr size_t kLargeSpec = size_t{64} << 10;
 constexpr int64_t kLargeMessages = int64_t{32} << 20;
 
-// So often a message that finds no room is tried again.
+// The time between two attempts to find room for a large message.
 constexpr std::chrono::milliseconds kBetweenTries(200);
 
 }  // namespace
@@ -41,7 +41,7 @@ WatchReactor::WatchReactor(ServiceContext& service, grpc::CallbackServerContext&
                            const v1::WatchEnsembleJobRequest& request)
     : StreamReactor(service, context), request_(request), next_heartbeat_(next_check_) {}
 
-// ---- when to speak ----
+// ---- when to send ----
 
 void WatchReactor::Look(Clock::time_point now) {
   {
@@ -60,7 +60,7 @@ bool WatchReactor::HasNews(Clock::time_point now) const {
   return has_state || (told_state_ > 0 && (IsBehind() || IsSnapshotDue(now)));
 }
 
-// Requires the lock, or to be called by Advance, which alone changes what is told.
+// Requires the lock, or a call from Advance, because only Advance changes these members.
 bool WatchReactor::IsSnapshotDue(Clock::time_point now) const {
   return now >= next_snapshot_ &&
          (watched_->last_change() > told_ || watched_->last_finished() > told_finished_);
@@ -76,7 +76,7 @@ WatchReactor::Clock::duration WatchReactor::SnapshotInterval() const {
   return std::max(service_.timing.snapshot, fair);
 }
 
-// ---- what to say ----
+// ---- messages ----
 
 absl::Status WatchReactor::Tell() {
   if (id_.empty()) {
@@ -142,7 +142,7 @@ absl::StatusOr<bool> WatchReactor::TellState() {
   }
   if (!TakeRoom(job_.active->spec_bytes())) return false;
   Job::View view = service_.book.Now(*job_.active);
-  // One that has ended just now may have more points to tell.
+  // A job that has just ended may have more points to send.
   if (!has_ended && HasEnded(view.job.state())) {
     LeaveRoom();
     return TellState();
@@ -164,7 +164,7 @@ absl::StatusOr<bool> WatchReactor::TellSnapshot() {
   const auto shared = service_.book.Snapshot(*job_.active, service_.timing.snapshot, kMaxPoints);
   v1::StatisticsSnapshot& snapshot = *message_.mutable_snapshot();
   *snapshot.mutable_progress() = job_.active->Progress();
-  // One from before the last finished point told may have that one unfinished.
+  // An older snapshot may have a point as unfinished that was already sent as finished.
   if (shared->finished >= told_finished_) {
     for (const JobSnapshot::Point& point : shared->points) {
       if (point.change > told_) *snapshot.add_points() = point.result;
@@ -220,7 +220,7 @@ absl::Status WatchReactor::TellOfEndedJob() {
   }
   absl::StatusOr<v1::EnsembleJob> ended = service_.book.Get(caller_, id_);
   if (!ended.ok()) return ended.status();
-  // Points that have expired since the job was found were perhaps not told.
+  // If the results expired since the job was found, some points may not have been sent.
   if (ended->results_expired() && !job_.expired) return ResultsExpired(request_.name());
   *message_.mutable_job() = *std::move(ended);
   WriteLastUpdate();

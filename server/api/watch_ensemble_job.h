@@ -1,24 +1,26 @@
-// WatchEnsembleJob: what is said of a job, in the frame of stream_reactor.h.
+// WatchEnsembleJob: sends the state, the progress and the points of a job, in the frame of
+// stream_reactor.h.
 //
-// What to say is decided when it can be said: of unfinished points only the newest state is told,
-// and finished ones are read, from the job's memory or from the store, when their turn has come.
-// Messages are made outside of the lock the workers need; watches of one job share what takes that
-// lock (jobs/job_snapshot.h). Many watches are told less often, so that all of them together never
-// take more than kSnapshotsPerSecond. A message with a large specification, of which a stalled
-// reader would keep two copies, waits until those of its principal that are on their way leave room
-// for it.
+// The watch makes a message only when it can send it. Of an unfinished point it sends the newest
+// state. It reads finished points from the job's memory or from the store when it sends them. It
+// makes messages without the lock that the workers need. A snapshot needs that lock; the watches of
+// one job share their snapshots (jobs/job_snapshot.h). With many watches each gets snapshots less
+// often, so that all of them together take at most kSnapshotsPerSecond. A stalled reader keeps two
+// copies of a message. So a message with a large specification waits until the principal's messages
+// on their way leave room for it.
 //
-// Properties, over a watch and those that go on with its tokens, each with a test of its name:
-//   1. EachFinishedPointIsToldOnceInOrder: also over restarts, and before the terminal state.
+// Properties of a watch and of the watches that resume it, each with a test of its name:
+//   1. EachFinishedPointIsSentOnceInOrder: also over restarts, and before the terminal state.
 //   2. StatesAndProgressNeverGoBack: progress within a life of the server.
-//   3. TheTerminalStateIsToldOnce, last, and then OK. So the watch of a job that has ended begins
-//      with the finished points, if there are any left to tell.
+//   3. TheTerminalStateIsSentOnce, last, and then OK. So the watch of a job that has ended begins
+//      with the finished points that were not sent yet.
 //
-// The resume token names the job, the engine that computes it, and the last finished point told;
-// and, for the unfinished ones, the server's life and the last change told. A token of another job,
-// of results that were dropped because another engine computes the job anew, or of points that the
-// store does not have, is as good as none: the watch begins with everything. Of another life, only
-// the unfinished points are told again.
+// The resume token names the job, the number of its restarts by newer engines, and the last
+// finished point that was sent. For unfinished points it also has the server process and the last
+// change that was sent. The watch ignores some tokens and sends everything: a token of another job,
+// of results that were dropped because another engine computes the job again, or of points that the
+// store does not have. With a token of an earlier server process, it sends only the unfinished
+// points again.
 #ifndef BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 #define BALLPISTON_SERVER_API_WATCH_ENSEMBLE_JOB_H_
 
@@ -53,38 +55,39 @@ class WatchReactor : public StreamReactor<v1::WatchEnsembleJobResponse> {
   void ReleaseMessage() override { LeaveRoom(); }
 
   absl::Status FindJob();
-  // Each of these is one message, or false if there is nothing of the kind to tell now.
+  // Each of these sends one message, or returns false if it has nothing to send now.
   absl::StatusOr<bool> TellState();
   absl::StatusOr<bool> TellSnapshot();
   absl::StatusOr<bool> TellFinishedPoints(const v1::JobProgress& progress);
   void TellHeartbeat();
   absl::Status TellOfEndedJob();
 
-  // Room for a job's message with its specification, until it is written. False: not now.
+  // Reserves memory for a message with the job's specification, until the message is written. False
+  // if there is no room now.
   bool TakeRoom(size_t bytes);
   void LeaveRoom();
 
   bool HasNews(Clock::time_point now) const;
   bool IsSnapshotDue(Clock::time_point now) const;
-  bool IsBehind() const;  // by a whole message of finished points
+  bool IsBehind() const;  // at least one full message of finished points waits
   Clock::duration SnapshotInterval() const;
-  absl::StatusOr<bool> AddFinishedPoints();  // to the message: whether there were any
+  absl::StatusOr<bool> AddFinishedPoints();  // to the message; false: none
 
   void ReadToken(const std::string& token, int64_t last_finished);
   std::string Token() const;
-  // With the token, and the time of the next heartbeat.
+  // Adds the token to the message, writes it, and sets the time of the next heartbeat.
   void WriteUpdate() ABSL_LOCKS_EXCLUDED(mutex_);
   void WriteLastUpdate() ABSL_LOCKS_EXCLUDED(mutex_);
 
   const v1::WatchEnsembleJobRequest request_;
 
-  // Of Advance.
+  // Only Advance uses these.
   std::string id_;
   WatchedJob job_;
   std::string told_progress_;
-  bool told_all_points_ = false;  // of a job that had ended before
+  bool told_all_points_ = false;  // of a job that had ended before the watch began
 
-  int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // in TakeRoom
+  int64_t bytes_held_ ABSL_GUARDED_BY(mutex_) = 0;  // by TakeRoom
 
   // Only Advance changes these, and it holds the lock then. So Advance may read them without the
   // lock; other functions need it.

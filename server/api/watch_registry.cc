@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kShortestInterval(2);
 bool IsFull(int64_t streams, int64_t limit) { return limit != 0 && streams >= limit; }
 
 absl::Status TooManyStreams(const std::string& what, const std::string& flag, int64_t limit) {
-  return LimitExceeded("TOO_MANY_STREAMS", absl::StrCat(what, " streams open already"), flag,
+  return LimitExceeded("TOO_MANY_STREAMS", absl::StrCat(what, " open streams"), flag,
                        static_cast<double>(limit));
 }
 

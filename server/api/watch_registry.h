@@ -1,8 +1,8 @@
-// All open streams, and the one thread that looks after them.
+// All open streams, and the one thread that calls them.
 //
-// It looks at each a few times a second, and at once when a job changes its state (but not more
-// often than every few milliseconds, however many jobs do), and asks those that have something to
-// tell to do so. It also counts them, by principal. Thread-safe.
+// The thread calls Look of each stream a few times a second, and at once when a job changes its
+// state, but at most once in a few milliseconds. A stream that has something to send then schedules
+// its next message. The registry also counts the streams of each principal. Thread-safe.
 #ifndef BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
 #define BALLPISTON_SERVER_API_WATCH_REGISTRY_H_
 
@@ -23,22 +23,22 @@ namespace ballpiston::server {
 class Watch {
  public:
   virtual ~Watch() = default;
-  // Quick; no calls into the registry.
+  // Must be quick and must not call the registry.
   virtual void Look(std::chrono::steady_clock::time_point now) = 0;
 };
 
 class WatchRegistry {
  public:
-  // `interval`: between two looks.
+  // `interval`: between two calls of Look.
   explicit WatchRegistry(std::chrono::milliseconds interval);
   ~WatchRegistry();  // stops
 
-  // RESOURCE_EXHAUSTED TOO_MANY_STREAMS: it was not taken in.
+  // RESOURCE_EXHAUSTED, TOO_MANY_STREAMS: the registry did not add the stream.
   absl::Status Add(Watch* watch, const std::string& principal, const Limits& limits);
-  // After this it is not looked at any more; without effect if it was not taken in.
+  // When this returns, the stream is not called any more. No effect if the stream was not added.
   void Remove(Watch* watch);
 
-  // Has all watches looked at now.
+  // Calls Look of all watches soon.
   void LookNow();
 
   void Stop();

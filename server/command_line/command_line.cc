@@ -37,7 +37,7 @@ void BeginGroup(CLI::App& app, const std::string& name) { app.option_defaults()-
 void AddServerFlags(CLI::App& app, CommandLine& line) {
   BeginGroup(app, "Server");
   app.add_option("--listen", line.server.listen,
-                 "address of the API: unix:PATH or HOST:PORT (port 0: any free one). A host that "
+                 "address of the API: unix:PATH or HOST:PORT (port 0: any free port). A host that "
                  "other machines can reach needs --tls-certificate, --tls-key and --access-file. "
                  "Default: the Unix socket server.socket in the data folder")
       ->type_name("ADDRESS");
@@ -49,9 +49,9 @@ void AddServerFlags(CLI::App& app, CommandLine& line) {
   AddInteger(app, "workers", line.server.workers, Between(int64_t{1}, kMostWorkers),
              "threads that compute");
   AddSeconds(app, "watch-heartbeat-seconds", line.server.watch.heartbeat, Between(0.01, 3600.0),
-             "a watch without news sends a message after this time");
+             "a watch with nothing new to send sends a heartbeat after this time");
   AddSeconds(app, "idle-exit-seconds", line.idle_exit, Between(0.0, kMostSeconds, " (never)"),
-             "the server stops when no job was active and no call in progress for this time");
+             "the server stops when it has had no active job and no call for this time");
   AddSeconds(app, "drain-seconds", line.drain, Between(0.0, 3600.0),
              "time for calls in progress to end after SIGTERM or SIGINT");
   AddFlagFile(app);
@@ -89,18 +89,20 @@ void AddSecurityFlags(CLI::App& app, SecurityOptions& security) {
                  "PEM file: the authorities that sign clients' certificates. With it, every client "
                  "needs a certificate")
       ->type_name("FILE");
-  app.add_option("--access-file", security.access_file,
-                 "who may call; needs TLS, or a Unix socket with --socket-mode (see there). A line "
-                 "for each credential: token sha256:HEX PRINCIPAL "
-                 "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
-                 "read, submit or admin")
+  app.add_option(
+         "--access-file", security.access_file,
+         "credentials of the clients; needs TLS, or a Unix socket with --socket-mode (see there). "
+         "One line for each credential: token sha256:HEX PRINCIPAL "
+         "ROLE [EXPIRES], or certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]; ROLE is "
+         "read, submit or admin")
       ->type_name("FILE");
 }
 
 void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
   BeginGroup(app, "Slurm, with --executor=slurm");
-  AddChoice(app, "executor", with_slurm, {{"threads", false}, {"slurm", true}},
-            "threads: this server's alone; slurm: long work also goes to a Slurm cluster");
+  AddChoice(
+      app, "executor", with_slurm, {{"threads", false}, {"slurm", true}},
+      "threads: only this server's threads compute; slurm: long work also goes to a Slurm cluster");
   app.add_option("--slurm-shared-folder", slurm.shared_folder,
                  "folder that the server and all nodes of the cluster see under this absolute "
                  "path. It belongs to the server's user; other users cannot write it")
@@ -121,7 +123,7 @@ void AddSlurmFlags(CLI::App& app, bool& with_slurm, SlurmOptions& slurm) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1);
   AddInteger(app, "slurm-max-tasks", slurm.max_tasks, Between(int64_t{1}, kMostSlurmTasks),
-             "tasks that wait or run at a time; a task uses one core");
+             "tasks that wait or run at the same time; a task uses one core");
   AddInteger(app, "slurm-max-array-size", slurm.max_array_size,
              Between(int64_t{1}, kMostSlurmTasks),
              "tasks of one job array; less than the cluster's MaxArraySize");
@@ -162,10 +164,10 @@ const LimitFlag kLimitFlags[] = {
     {"max-calls-per-principal", &Limits::max_calls_per_principal,
      "calls in progress of one principal, without watches"},
     {"max-call-bytes-per-principal", &Limits::max_call_bytes_per_principal,
-     "bytes of the requests of these calls and of their answers that were not read yet"},
+     "bytes of the requests of these calls and of their unread answers"},
     {"max-transfer-mib", &Limits::max_transfer_mib,
      "MiB for connections and for requests that are being received, of all clients; calls beyond "
-     "it are refused. At least 16 and twice --max-message-bytes, at most 1048576"},
+     "it are rejected. At least 16 and twice --max-message-bytes, at most 1048576"},
     {"retain-days", &Limits::retain_days,
      "days from the end of a job until its results expire, unless it is pinned; its "
      "specification stays"},
@@ -203,7 +205,7 @@ void AddLogFlags(CLI::App& app, CommandLine& line) {
       "the least severe lines that are written: info, warning or error");
   app.add_option("--metrics-listen", line.server.metrics_listen,
                  "address of Prometheus metrics, at /metrics: HOST:PORT with a loopback host (port "
-                 "0: any free one, which the log names). Default: no metrics")
+                 "0: any free port, which the log names). Default: no metrics")
       ->type_name("ADDRESS");
 }
 
@@ -214,8 +216,8 @@ void AddCommands(CLI::App& app, CommandLine& line, std::string& new_token) {
                  "make a token, append its hash to --access-file and print the token")
       ->type_name("PRINCIPAL:ROLE[:DAYS]");
   app.add_flag("--check", line.check,
-               "check all of the store in --data-dir and print a summary; the exit code is 0 if "
-               "the store is sound. A server may use it at the same time");
+               "check the whole store in --data-dir and print a summary; the exit code is 0 if "
+               "the store is sound. A server may use the store at the same time");
   app.add_option("--backup", line.backup,
                  "copy the store in --data-dir to this file, and check the copy. A server may use "
                  "the store at the same time")
@@ -272,7 +274,7 @@ std::string WrongNumberOfValues(const CLI::App& app, const std::string& last_arg
   return absl::StrCat(last_argument, " needs a value");
 }
 
-// For CLI11 an empty value of a text is as good as none.
+// CLI11 treats an empty text as a missing value.
 absl::Status CheckValuesAreGiven(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const bool takes_value = option->get_items_expected_max() > 0;
@@ -369,7 +371,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv) 
   line.server.workers = DefaultWorkers();
   std::string new_token;
   CLI::App app("", "ballpistond");
-  app.set_help_flag();  // one of its own comes last
+  app.set_help_flag();  // AddCommands adds its own help flag
   SetHelpPage(app);
   AddServerFlags(app, line);
   AddLocalAccessFlags(app, line.server.security);

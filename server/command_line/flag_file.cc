@@ -57,7 +57,7 @@ class FlagFile : public CLI::Config {
     return item;
   }
 
-  // VALUE or "VALUE", then perhaps a comment.
+  // VALUE or "VALUE", then an optional comment.
   static std::optional<std::string> ValueOf(const std::string& text) {
     const std::string value(absl::StripAsciiWhitespace(text));
     if (!absl::StartsWith(value, "\"")) {

@@ -10,7 +10,7 @@ namespace {
 
 bool Read(const std::string& text, double& number) { return absl::SimpleAtod(text, &number); }
 
-// Also 1e6; but not nan, and nothing beyond 2^53, where a double is not exact.
+// Accepts 1e6, but not nan, and nothing beyond 2^53, where a double is not exact.
 bool Read(const std::string& text, int64_t& number) {
   if (absl::SimpleAtoi(text, &number)) return true;
   double real = 0;
@@ -29,7 +29,7 @@ std::string Fault(const std::string& text, const Range<Number>& range) {
   return in_range && std::floor(number) != number ? "is not a whole number" : "is out of range";
 }
 
-// Not by CLI11, for which 010 is 8, no text is 0, and 1e30 is the greatest integer.
+// Not parsed by CLI11, which reads 010 as 8, an empty text as 0, and 1e30 as the greatest integer.
 template <typename Number>
 Number NumberWithin(const std::string& flag, const std::string& text, const Range<Number>& range) {
   Number number{};

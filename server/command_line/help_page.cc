@@ -43,8 +43,8 @@ std::string Wrapped(const std::string& text, size_t width) {
   return lines;
 }
 
-// Each flag on a line of its own, and what it does below: CLI11's two columns leave long names and
-// long descriptions no room.
+// Each flag has a line of its own, with its description below. CLI11's two columns are too narrow
+// for long names and descriptions.
 class HelpPage : public CLI::Formatter {
  public:
   HelpPage() { column_width(kIndentation); }

@@ -55,7 +55,7 @@ void CheckDelta(const v1::EvaluatePairsRequest& request, int index, double large
 }
 
 void CheckPairs(const v1::EvaluatePairsRequest& request, Violations& violations) {
-  double largest_rho = 0;  // of the valid ones
+  double largest_rho = 0;  // of the valid values
   for (int i = 0; i < request.rho_size() && !Enough(violations); ++i) {
     const absl::Status status = ValidateRho(request.rho(i));
     Add(Element("rho", i), status, violations);
@@ -71,7 +71,7 @@ void CheckNotEmpty(const v1::EvaluatePairsRequest& request, Violations& violatio
   if (request.delta_size() == 0) violations.push_back({"delta", "required: at least one value"});
 }
 
-// The list that makes the answer long.
+// The name of the list that contributes most to the answer.
 const char* LongestList(const v1::EvaluatePairsRequest& request, double of_energies,
                         double of_temperatures) {
   if (of_energies >= of_temperatures) return "epsilon";
@@ -184,12 +184,12 @@ bool RatesAreInRange(const v1::PairAnalytics& point) {
                      [](const auto& row) { return std::isnormal(row.static_conductivity()); });
 }
 
-// Answers beyond the range of double: deltas that are next to 0.
+// Violations for values beyond the range of double, which occur for deltas close to 0.
 Violations Overflows(const v1::EvaluatePairsRequest& request,
                      const v1::EvaluatePairsResponse& response) {
   Violations violations;
   const int pairs = std::min(request.delta_size(), response.points_size());
-  for (int i = 0; i < pairs; ++i) {  // those of the first rho
+  for (int i = 0; i < pairs; ++i) {  // the pairs of the first rho
     const v1::PairAnalytics& point = response.points(i);
     if (RatesAreInRange(point)) continue;
     violations.push_back(

@@ -1,4 +1,4 @@
-// The closed forms, as AnalyticService gives them. Pure functions.
+// Evaluates the closed forms for AnalyticService. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_ANALYTIC_H_
 #define BALLPISTON_SERVER_CONVERT_ANALYTIC_H_
 
@@ -11,11 +11,12 @@
 namespace ballpiston::server {
 
 inline constexpr int64_t kMaxPairs = 10'000;
-// Numbers that depend on an energy or a temperature, over all pairs; some 1 MB of answer.
+// Limit of the values that depend on an energy or a temperature, over all pairs. So many values
+// take some 1 MB of the answer.
 inline constexpr int64_t kMaxAnalyticValues = 100'000;
 
-// INVALID_ARGUMENT with every violation: the values outside of their domain, or, if there are none,
-// the limits on the answer's size.
+// INVALID_ARGUMENT with every violation: values outside of their domain or, if all values are
+// valid, an answer larger than the limits.
 absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(const v1::EvaluatePairsRequest& request);
 
 }  // namespace ballpiston::server

@@ -1,4 +1,4 @@
-// A message's bytes, equal for equal messages. Pure function.
+// Serializes a message. Equal messages give equal bytes. Pure function.
 #ifndef BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
 #define BALLPISTON_SERVER_CONVERT_DETERMINISTIC_BYTES_H_
 

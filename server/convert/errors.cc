@@ -12,14 +12,14 @@ namespace ballpiston::server {
 namespace {
 
 constexpr char kTypePrefix[] = "type.googleapis.com/";
-// The message travels twice: in the details, and percent-encoded beside them.
+// The message is sent twice: in the details, and percent-encoded beside them.
 constexpr size_t kMaxMessage = 512;
-// What is left of kMaxErrorDetails for violations beside message, reason and metadata.
+// The part of kMaxErrorDetails for violations; the rest is for message, reason and metadata.
 constexpr size_t kMaxViolations = 4 * 1024;
 constexpr size_t kMaxViolationText = 400;
 constexpr size_t kMaxMetadataValue = 256;
 
-// At most `bytes` of it, cut between two characters of UTF-8.
+// The first `bytes` bytes at most, cut between two characters of UTF-8.
 std::string Shortened(absl::string_view text, size_t bytes) {
   if (text.size() <= bytes) return std::string(text);
   size_t end = bytes - 3;
@@ -92,7 +92,7 @@ absl::Status InvalidField(std::string field, std::string description) {
 
 absl::Status RequestIdReused(const std::string& request_id) {
   return WithReason(absl::InvalidArgumentError(absl::StrCat(
-                        "request_id ", request_id, " was used before, with another request")),
+                        "request_id ", request_id, " was used before with a different request")),
                     "REQUEST_ID_REUSED", "request_id", request_id);
 }
 
@@ -128,15 +128,14 @@ absl::Status JobStillActive(const std::string& name, absl::string_view state) {
 }
 
 absl::Status ShuttingDown() {
-  return WithReason(absl::UnavailableError("the server is shutting down; try again later"),
+  return WithReason(absl::UnavailableError("the server is shutting down; retry later"),
                     "SHUTTING_DOWN");
 }
 
 absl::Status CredentialsMissing() {
-  return WithReason(
-      absl::UnauthenticatedError("this server wants credentials, and none were shown: "
-                                 "send authorization: Bearer TOKEN"),
-      "CREDENTIALS_MISSING");
+  return WithReason(absl::UnauthenticatedError("this server requires credentials: "
+                                               "send authorization: Bearer TOKEN"),
+                    "CREDENTIALS_MISSING");
 }
 
 absl::Status CredentialsInvalid() {
@@ -171,7 +170,7 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
   const std::string error =
       reached.standard_error
           ? absl::StrFormat("%.2g", *reached.standard_error / std::fabs(reached.value))
-          : "no error that could be told";
+          : "an unknown error";
   return WithReason(
       absl::DeadlineExceededError(absl::StrFormat(
           "point %d: tolerance %g was not reached within the budget of %g s: reached %s", point,

@@ -26,7 +26,7 @@ inline constexpr size_t kMaxErrorDetails = 6 * 1024;
 // INVALID_ARGUMENT, with every violation; at least one.
 absl::Status InvalidSpec(const std::vector<FieldViolation>& violations);
 absl::Status InvalidRequest(const std::vector<FieldViolation>& violations);
-absl::Status InvalidField(std::string field, std::string description);  // the same, of one
+absl::Status InvalidField(std::string field, std::string description);  // the same, for one field
 absl::Status RequestIdReused(const std::string& request_id);
 
 absl::Status JobNotFound(const std::string& name);     // NOT_FOUND
@@ -58,12 +58,12 @@ absl::Status ToleranceNotReached(const EnsembleSpec& spec, size_t point, const E
 // a reason already keeps it.
 absl::Status StoreFailure(const absl::Status& status);
 
-// Any status, with the reason and domain that clients look for; the second form adds one entry of
-// metadata.
+// The status with a reason and the project's domain, which clients read. The second form adds one
+// entry of metadata.
 absl::Status WithReason(absl::Status status, const std::string& reason);
 absl::Status WithReason(absl::Status status, const std::string& reason, const std::string& key,
                         const std::string& value);
-// The same, unless it has one.
+// The same, but keeps a reason that the status already has.
 absl::Status WithDefaultReason(absl::Status status, const std::string& reason);
 
 // The error that a FAILED job stores.

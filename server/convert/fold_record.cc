@@ -148,7 +148,7 @@ absl::StatusOr<ChunkResult> ChunkFromBytes(const std::string& bytes) {
 
 absl::Status CheckFoldState(const PointExperiment& experiment, const FoldState& state) {
   if (IsPossible(experiment, state)) return absl::OkStatus();
-  return absl::DataLossError("a stored checkpoint is not one of its experiment");
+  return absl::DataLossError("a stored checkpoint does not fit its experiment");
 }
 
 absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& chunk) {
@@ -156,7 +156,7 @@ absl::Status CheckChunk(const PointExperiment& experiment, const ChunkResult& ch
   const bool is_possible = chunk.chunk < plan.chunks() &&
                            IsPossible(experiment, chunk.result, plan.SamplesIn(chunk.chunk));
   if (is_possible) return absl::OkStatus();
-  return absl::DataLossError("a chunk is not one of its experiment");
+  return absl::DataLossError("a chunk does not fit its experiment");
 }
 
 }  // namespace ballpiston::server

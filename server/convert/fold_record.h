@@ -2,7 +2,7 @@
 // chunk. Pure functions.
 //
 // A record that can be parsed may still be damaged. So before a point is resumed, CheckFoldState
-// checks that the point's experiment can have written the record.
+// checks that the record is possible for the point's experiment.
 #ifndef BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
 #define BALLPISTON_SERVER_CONVERT_FOLD_RECORD_H_
 

@@ -1,4 +1,4 @@
-// The ladder of models, as the API tells it. Pure functions.
+// The ladder of models as a message of the API. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_PLAN_H_
 #define BALLPISTON_SERVER_CONVERT_PLAN_H_
 

@@ -12,7 +12,8 @@ namespace {
 
 bool Exists(const std::optional<double>& value) { return value && std::isfinite(*value); }
 
-// Relative to the first estimate; of the others nothing is known but where it is 0.
+// The model's error is relative to the first estimate. For other estimates it is known only if it
+// is 0.
 void SetModelError(const Answer& answer, bool first, storage::Estimate& record) {
   if (!answer.model_error || (!first && *answer.model_error != 0)) return;
   record.set_model_error(*answer.model_error * std::fabs(record.value()));

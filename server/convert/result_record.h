@@ -1,5 +1,5 @@
-// A point's results, from the core's numbers to the store's record: equal numbers give equal bytes.
-// A value that is not finite is left out. Pure functions.
+// Converts a point's results from the core's numbers to the store's record. Equal numbers give
+// equal bytes. A value that is not finite is left out. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
 #define BALLPISTON_SERVER_CONVERT_RESULT_RECORD_H_
 
@@ -23,7 +23,8 @@ storage::Result ResultRecordOf(size_t index, const PointExperiment& experiment,
 storage::Details DetailsRecordOf(const PointSummary& summary,
                                  const std::vector<uint64_t>& chunk_digests = {});
 
-// Value and standard error of the first estimate; of a result without one, 0 and none.
+// Value and standard error of the first estimate. Without an estimate, the value is 0 and the error
+// is empty.
 Estimate FirstEstimateOf(const storage::Result& result);
 
 std::string RecordBytes(const storage::Result& result);

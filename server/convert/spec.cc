@@ -27,7 +27,7 @@ using Violations = std::vector<FieldViolation>;
 // A message can hold millions of unknown fields of a few bytes each; at most this many are listed.
 constexpr int kMaxUnknownFields = 100;
 
-// A number of an enumeration that has no name here.
+// Adds a violation for an unknown number of an enumeration.
 void AddUnknownNumber(const char* field, int number, Violations& violations) {
   violations.push_back(
       {field, absl::StrCat(number,
@@ -161,7 +161,7 @@ void AddUnknownFields(const char* path, const google::protobuf::Message& message
   }
 }
 
-// The core's own findings, except on fields that did not even get there.
+// Adds the core's violations, except of fields that already have a violation.
 void AddCoreViolations(const EnsembleSpec& spec, Violations& violations) {
   std::set<std::string> known;
   for (const FieldViolation& violation : violations) known.insert(violation.field);
@@ -246,7 +246,7 @@ v1::PointParameters ParametersMessage(const PointParameters& parameters) {
     if (!value || parameter == &kCells) continue;
     message.GetReflection()->SetDouble(&message, FieldOf(message, *parameter), *value);
   }
-  const auto& code = parameters.Find(kCells);  // of a damaged record it may be anything
+  const auto& code = parameters.Find(kCells);  // any number, if the record is damaged
   if (code && kCells.validate(*code).ok()) message.set_cells(Text(ShapeOf(*code)));
   return message;
 }

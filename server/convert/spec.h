@@ -1,4 +1,4 @@
-// Between the API's EnsembleSpec and the core's. Pure functions.
+// Converts between the API's EnsembleSpec and the core's. Pure functions.
 #ifndef BALLPISTON_SERVER_CONVERT_SPEC_H_
 #define BALLPISTON_SERVER_CONVERT_SPEC_H_
 
@@ -17,15 +17,14 @@ struct CheckedSpec {
   std::vector<FieldViolation> violations;  // paths begin with "spec."
 };
 
-// What the message asks for and everything that is wrong with it. A field or a number of an
-// enumeration that this version does not know is a violation: it might change the answer.
+// The message's specification and all its violations. A field or an enumeration value that this
+// version does not know is a violation, because it might change the answer.
 CheckedSpec CheckSpec(const v1::EnsembleSpec& message);
 
-// The shape that a text of the user names. INVALID_ARGUMENT quotes at most the beginning of the
-// text.
+// Parses the name of a shape. INVALID_ARGUMENT quotes at most the beginning of the text.
 absl::StatusOr<GasShape> ShapeOfText(const std::string& text);
 
-// The values of `cells` have to be codes of shapes.
+// The values of `cells` must be codes of shapes.
 v1::EnsembleSpec SpecMessage(const EnsembleSpec& spec);
 // `cells` is left out if its value is not the code of a shape.
 v1::PointParameters ParametersMessage(const PointParameters& parameters);
@@ -33,11 +32,11 @@ v1::EnsembleSpec::Model ModelMessage(Model model);
 
 // The same bytes for the same question: the name of the default estimate is left out.
 std::string QuestionBytes(v1::EnsembleSpec message);
-// The same bytes for the same specification: what the store keeps.
+// The same bytes for the same specification. The store keeps these bytes.
 std::string SpecBytes(const v1::EnsembleSpec& message);
 absl::StatusOr<v1::EnsembleSpec> SpecFromBytes(const std::string& bytes);  // DATA_LOSS
 
-// Version of the engine that this program computes with.
+// The version of this program's engine.
 std::string EngineVersion();
 
 }  // namespace ballpiston::server

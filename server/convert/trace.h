@@ -1,4 +1,4 @@
-// One orbit, as TraceService sends it: the core's trace as messages.
+// Converts the core's trace of one orbit to the messages of TraceService.
 #ifndef BALLPISTON_SERVER_CONVERT_TRACE_H_
 #define BALLPISTON_SERVER_CONVERT_TRACE_H_
 
@@ -16,28 +16,30 @@
 
 namespace ballpiston::server {
 
-// Half a second of one core for a pair, a second for a gas, and some 200 MB of messages.
+// So many events take half a second of one core for a pair and a second for a gas, and some 200 MB
+// of messages.
 inline constexpr int64_t kMaxTracedEvents = 1'000'000;
 inline constexpr int64_t kMaxTracedCells = 1'000;
 inline constexpr int kEventsOfMessage = 256;
 
-// The messages of one trace. Not for sharing between threads.
+// The messages of one trace. Not thread-safe.
 class TraceMessages {
  public:
   TraceMessages(std::unique_ptr<Trace> trace, v1::TraceStart start, int64_t events)
       : trace_(std::move(trace)), start_(std::move(start)), events_left_(events) {}
 
-  // The start, then the next events, at most kEventsOfMessage.
+  // Fills the message with the start (in the first message) and the next events, at most
+  // kEventsOfMessage.
   void FillNext(v1::TraceOrbitResponse& message);
   bool HasEnded() const { return events_left_ == 0; }
 
  private:
   std::unique_ptr<Trace> trace_;
-  std::optional<v1::TraceStart> start_;  // until it is told
+  std::optional<v1::TraceStart> start_;  // until it is sent
   int64_t events_left_;
 };
 
-// A request that is valid. Immutable.
+// A valid request. Immutable.
 class TraceQuestion {
  public:
   // INVALID_ARGUMENT with every violation.

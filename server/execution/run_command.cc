@@ -24,8 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kMostOutput = size_t{64} << 20;
-constexpr std::chrono::milliseconds kLook(50);  // at the stop token
-// A program that has closed its output ends at once, as a rule.
+constexpr std::chrono::milliseconds kLook(50);  // between two checks of the stop token
+// Usually a program ends immediately after it has closed its output.
 constexpr std::chrono::milliseconds kPause(1);
 
 class Descriptor {
@@ -67,7 +67,7 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
   return pointers;
 }
 
-// The server blocks signals in its threads, and ignores some; the program has the usual ones.
+// The server blocks and ignores some signals. The program gets the default settings.
 absl::StatusOr<pid_t> Start(const Command& command, const Pipe& in, const Pipe& out,
                             const Pipe& err) {
   posix_spawn_file_actions_t files;
@@ -97,7 +97,7 @@ absl::StatusOr<pid_t> Start(const Command& command, const Pipe& in, const Pipe& 
   return error == ENOENT ? absl::NotFoundError(why) : absl::UnavailableError(why);
 }
 
-// Reads what there is; closes the descriptor at the end.
+// Reads the available output. Closes the descriptor at its end.
 void ReadInto(std::string& text, Descriptor& from) {
   std::array<char, 65536> buffer;
   const ssize_t n = read(from.number(), buffer.data(), buffer.size());
@@ -105,7 +105,7 @@ void ReadInto(std::string& text, Descriptor& from) {
   if (n == 0 || (n < 0 && errno != EINTR && errno != EAGAIN)) from.Close();
 }
 
-// How long a program may run. Not OK: it has to be killed.
+// Whether a program may go on. Not OK: the program must be killed.
 class Bounds {
  public:
   Bounds(const Command& command, const std::stop_token& stop)
@@ -124,7 +124,7 @@ class Bounds {
   const Clock::time_point end_;
 };
 
-// Until both are closed.
+// Reads both outputs until they are closed.
 absl::Status Collect(const Bounds& bounds, Descriptor& out, Descriptor& err,
                      CommandOutput& result) {
   while (out.open() || err.open()) {
@@ -139,7 +139,7 @@ absl::Status Collect(const Bounds& bounds, Descriptor& out, Descriptor& err,
   return absl::OkStatus();
 }
 
-// A program that has closed its output may run on.
+// Waits for the end of a program, which may go on after it has closed its output.
 absl::Status AwaitEnd(pid_t pid, const Bounds& bounds) {
   while (true) {
     siginfo_t ended = {};
@@ -164,7 +164,7 @@ absl::StatusOr<CommandOutput> RunCommand(const Command& command, const std::stop
   for (const auto* pipe : {&in, &out, &err}) {
     if (!pipe->ok()) return pipe->status();
   }
-  // Into an empty pipe, which holds 64 KiB.
+  // Fits into an empty pipe, which holds 64 KiB.
   const size_t bytes = std::min<size_t>(command.input.size(), 65536);
   if (write(in->write.number(), command.input.data(), bytes) != static_cast<ssize_t>(bytes)) {
     return absl::UnavailableError("a pipe cannot be written");

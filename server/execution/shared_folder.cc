@@ -127,7 +127,7 @@ absl::StatusOr<std::vector<std::string>> SharedFolder::ListArrays(const std::str
   for (fs::directory_iterator entry(own_, error), end; !error && entry != end;
        entry.increment(error)) {
     std::string name = entry->path().filename().string();
-    std::error_code unknown;  // of a link to nowhere, which is no array
+    std::error_code unknown;  // of a broken link, which is not an array
     const bool is_folder = entry->is_directory(unknown) && !entry->is_symlink(unknown);
     if (absl::StartsWith(name, prefix) && is_folder) {
       arrays.push_back(std::move(name));

@@ -19,15 +19,15 @@
 namespace ballpiston::server {
 namespace {
 
-// After so many queries in which a task was missing it has ended: a file may become visible on
-// another machine a minute after it was written.
+// A task has ended if it was missing in this many queries. One query is not enough, because a file
+// may become visible on another machine a minute after it was written.
 constexpr int kMissingQueries = 2;
 // While points are being opened, leases are gathered so that one array has many.
 constexpr int kGatherLooks = 2;
 constexpr std::chrono::seconds kFirstBackoff(30);
 constexpr std::chrono::seconds kLongestBackoff(600);
 
-// The signal before the time limit comes at most so much earlier (slurm_tools.cc).
+// Slurm's signal comes at most this long before the time limit (slurm_tools.cc).
 constexpr double kMostSecondsToFinish = 90;
 // A longer chunk would end near the time limit on a slow machine.
 constexpr double kShareOfTheLimit = 0.5;
@@ -244,7 +244,7 @@ void SlurmExecutor::NoteFile(const std::string& array, const ChunkFileName& name
   }
 }
 
-// ---- what an earlier process left ----
+// ---- tasks of an earlier process ----
 
 bool SlurmExecutor::Recover() {
   const absl::Status prepared = folder_.Prepare();
@@ -306,12 +306,14 @@ void SlurmExecutor::Steer() {
   RemoveEnded();
 }
 
-// An exception, for example for want of memory, is a problem and does not end the server.
+// An exception, for example out of memory, becomes a problem in Status() and does not end the
+// server.
 void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()> round) {
   absl::Status outcome;
   try {
     outcome = round();
-    if (activity == Activity::kQueue) return;  // its parts have noted their outcomes
+    if (activity == Activity::kQueue)
+      return;  // the parts of this round have set their own outcomes
   } catch (const std::exception& error) {
     outcome = absl::InternalError(error.what());
   }
@@ -347,7 +349,7 @@ bool SlurmExecutor::IsNeeded(const Task& task) const {
                              [this](const Lease& lease) { return scheduler_.Needs(lease); });
 }
 
-// Empty if Slurm has to do nothing, or not yet: some tasks can be cancelled after a query alone.
+// Empty if nothing is to be cancelled now. Some tasks can be cancelled only after a query.
 std::optional<SlurmExecutor::Cancellation> SlurmExecutor::CancellationOf(const std::string& name,
                                                                          const Array& array) const {
   Cancellation cancellation = {.name = name};
@@ -412,8 +414,7 @@ void SlurmExecutor::NoteQueue(const std::map<std::string, QueuedArray>& queue,
     NoteTasks(name, queued == queue.end() ? nullptr : &queued->second, asked);
   }
   for (const auto& [name, array] : queue) {
-    if (!HasArray(name))
-      tools_->Cancel(name, stop_.get_token()).IgnoreError();  // asked again later
+    if (!HasArray(name)) tools_->Cancel(name, stop_.get_token()).IgnoreError();  // retried later
   }
 }
 
@@ -442,7 +443,7 @@ void SlurmExecutor::NoteTasks(const std::string& name, const QueuedArray* queued
   if (now.running.empty() && forever != now.reasons.end()) GiveUpWaiting(name, *forever);
 }
 
-// A last look for their files comes first.
+// First reads their files once more.
 void SlurmExecutor::EndLostTasks(const std::string& name) {
   CollectArray(name).IgnoreError();  // the thread that reads files meets the same error
   EndFinalTasks();
@@ -473,7 +474,7 @@ void SlurmExecutor::EndLostTasks(const std::string& name) {
 void SlurmExecutor::GiveUpWaiting(const std::string& name, const std::string& reason) {
   BackOff(
       absl::UnavailableError(absl::StrCat("tasks of ", name, " would wait for ever: ", reason)));
-  if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // again after the next query
+  if (!tools_->Cancel(name, stop_.get_token()).ok()) return;  // retried after the next query
   EndArray(name);
 }
 
@@ -513,7 +514,7 @@ void SlurmExecutor::SubmitNew() {
   }
 }
 
-// 0 while nothing is to be submitted. After a failure one task alone.
+// 0 while nothing is to be submitted. After a failure, one task.
 size_t SlurmExecutor::RoomForTasks() const {
   MutexLock lock(mutex_);
   if (stop_.stop_requested() || Clock::now() < next_submission_) return 0;
@@ -561,7 +562,7 @@ void SlurmExecutor::SubmitRun(const std::string& worker, std::vector<Lease> leas
 }
 
 void SlurmExecutor::SubmitArray(const std::string& worker, std::vector<std::vector<Lease>> tasks) {
-  if (RoomForTasks() == 0) return ReturnUntried(tasks);  // an array before it was refused
+  if (RoomForTasks() == 0) return ReturnUntried(tasks);  // Slurm rejected an earlier array
   const std::string name = NewName();
   const absl::Status made = folder_.MakeArray(name);
   const absl::Status written = made.ok() ? WriteArray(name, tasks) : made;
@@ -631,7 +632,7 @@ std::string SlurmExecutor::NewName() {
   return absl::StrFormat("%s%08x", prefix_, random());
 }
 
-// A folder goes when all that was read from it is on disk.
+// Removes a folder when all chunks that were read from it are on disk.
 void SlurmExecutor::RemoveEnded() {
   std::vector<std::string> ended;
   {

@@ -82,7 +82,7 @@ class SlurmExecutor : public Executor {
     Clock::time_point submit_time = {};
   };
 
-  // What Slurm is asked to cancel: some tasks of an array, or the whole array if `id` is empty.
+  // A cancellation to send to Slurm: some tasks of an array, or the whole array if `id` is empty.
   struct Cancellation {
     std::string name;
     std::string id = {};

@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kOtherLimit(60);
 // every 30 s, so the signal comes up to 30 s earlier.
 constexpr int kSecondsToFinish = 60;
 
-// The tool's own words, in one line.
+// The tool's error messages, in one line.
 std::string ErrorsOf(const CommandOutput& output) {
   std::vector<std::string> lines;
   for (absl::string_view line : absl::StrSplit(output.errors, '\n', absl::SkipWhitespace())) {
@@ -34,7 +34,7 @@ std::string ErrorsOf(const CommandOutput& output) {
   return lines.empty() ? absl::StrCat("exit code ", output.exit_code) : absl::StrJoin(lines, "; ");
 }
 
-// For sh.
+// Quotes a word for sh.
 std::string Quoted(const std::string& word) {
   return absl::StrCat("'", absl::StrReplaceAll(word, {{"'", "'\\''"}}), "'");
 }

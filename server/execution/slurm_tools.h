@@ -50,15 +50,16 @@ class SlurmTools {
   explicit SlurmTools(const SlurmOptions& options) : options_(options) {}
   virtual ~SlurmTools() = default;
 
-  // OK: Slurm has taken the array. UNKNOWN: it may have; the next Query says. Otherwise it has not,
-  // and the message is Slurm's own.
+  // OK: Slurm has accepted the array. UNKNOWN: Slurm may have accepted it; the next Query shows it.
+  // Any other error: Slurm has rejected it, and the message is Slurm's own.
   virtual absl::Status Submit(const ArraySubmission& array, const std::stop_token& stop);
 
   // All arrays of this user that have tasks left, whose names have the prefix.
   virtual absl::StatusOr<std::map<std::string, QueuedArray>> Query(absl::string_view prefix,
                                                                    const std::stop_token& stop);
 
-  // The whole array, or some of its tasks: then `id` is the array's number in a recent Query.
+  // Cancels the whole array, or some of its tasks; then `id` is the array's number in a recent
+  // Query.
   virtual absl::Status Cancel(const std::string& name, const std::stop_token& stop);
   virtual absl::Status CancelTasks(const std::string& name, const std::string& id,
                                    const std::set<size_t>& tasks, const std::stop_token& stop);

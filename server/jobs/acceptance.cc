@@ -22,8 +22,8 @@ absl::Status CheckQueue(Database& database, const Limits& limits, const std::str
   const auto own = CountActiveJobs(database, principal);
   if (!own.ok()) return own.status();
   if (limits.max_active_jobs > 0 && *all >= limits.max_active_jobs) {
-    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active already"),
-                            "max-active-jobs", static_cast<double>(limits.max_active_jobs));
+    refused = LimitExceeded("QUEUE_FULL", absl::StrCat(*all, " jobs are active"), "max-active-jobs",
+                            static_cast<double>(limits.max_active_jobs));
   } else if (limits.max_active_jobs_per_principal > 0 &&
              *own >= limits.max_active_jobs_per_principal) {
     refused = LimitExceeded(
@@ -55,10 +55,10 @@ absl::Status CheckRoom(Database& database, const Limits& limits, const ActivePoi
   return refused.ok() ? CheckStoreSize(database, limits, refused) : absl::OkStatus();
 }
 
-// Requests answered with one job of which each is remembered; there may be any number of them.
+// The number of requests with the same job that are stored. Later ones are not stored.
 constexpr int64_t kMostRequestsOfJob = 1000;
 
-// One that is not remembered comes to the same when it is repeated: the answer is there.
+// A retry of a request that is not stored returns the same job, because the job is stored.
 absl::StatusOr<bool> IsWorthKeeping(Database& database, const Acceptance& acceptance, int64_t job) {
   if (acceptance.request.request_id.empty() || acceptance.replay) return false;
   if (!acceptance.answered_from_store) return true;

@@ -1,11 +1,11 @@
-// What one Create comes to: an earlier job, a refusal, or a new job.
+// Decides the outcome of one Create: an earlier job, an error, or a new job.
 //
-// A retry (the same request id with the same request) is answered with the original job. The
-// question of an earlier job that succeeded is answered with that job, unless a fresh answer is
-// wanted. Any other request has to keep the limits: on a job's size, on active jobs and their
-// points, on what is stored and on processor time. All of this is decided inside one transaction of
-// the store. The store runs its transactions one after the other, so of many equal requests at the
-// same time only one makes a job.
+// A retry (the same request id with the same request) returns the original job. If the principal
+// asks the question of an earlier job that succeeded, the server returns that job unless `fresh` is
+// set. Any other request must keep the limits: on a job's size, on active jobs and their points, on
+// stored results and on processor time. All this is decided inside one transaction of the store.
+// The store runs its transactions one after the other, so many equal requests at the same time make
+// one job.
 #ifndef BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 #define BALLPISTON_SERVER_JOBS_ACCEPTANCE_H_
 
@@ -23,20 +23,20 @@
 namespace ballpiston::server {
 
 struct Acceptance {
-  JobRecord record;       // the job that would be made
-  RequestRecord request;  // without an id: nothing is kept of it
-  bool fresh = false;     // an earlier answer will not do
-  absl::Status fits;      // CheckSize, which counts for new jobs only
+  JobRecord record;       // the new job, if there is one
+  RequestRecord request;  // not stored if its id is empty
+  bool fresh = false;     // do not return an earlier job
+  absl::Status fits;      // of CheckSize; used for new jobs only
 
-  // The outcome; if nothing is earlier and nothing refused, there is to be a new job.
+  // The outcome. If `earlier` is empty and `refused` is OK, a new job is to be made.
   std::optional<JobRecord> earlier;
-  bool replay = false;               // `earlier` is what the same request came to before
-  bool answered_from_store = false;  // by `earlier`, now or the first time
+  bool replay = false;               // the request is a retry, and `earlier` its original job
+  bool answered_from_store = false;  // `earlier` answers the question, now or originally
   absl::Status refused;              // INVALID_ARGUMENT or RESOURCE_EXHAUSTED
 };
 
-// Each sets the outcome anew; Accept then writes what it comes to, and counts the points of a new
-// job: whoever commits takes them back if that fails. Not OK: SQLite failed.
+// Both set the outcome. Accept then stores the new job or the request, and counts the points of a
+// new job in `points`; if the commit fails, the caller must remove them. Not OK: SQLite failed.
 absl::Status Judge(Database& database, const Limits& limits, const ActivePoints& points,
                    const Usage& usage, Acceptance& acceptance);
 absl::Status Accept(Database& database, const Limits& limits, ActivePoints& points,

@@ -1,6 +1,6 @@
-// How many points the grids of all active jobs have together: what bounds the memory of those that
-// wait, some 25 bytes a point. (SQL could add them up, but would read every specification to do
-// so.) Thread-safe.
+// Counts the grid points of all active jobs. Their limit bounds the memory of waiting jobs, some 25
+// bytes a point. (To count them with SQL, the store would have to read every specification.)
+// Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_ACTIVE_POINTS_H_
 #define BALLPISTON_SERVER_JOBS_ACTIVE_POINTS_H_
 
@@ -16,12 +16,13 @@ namespace ballpiston::server {
 
 class ActivePoints {
  public:
-  // Whether there is room for so many more. RESOURCE_EXHAUSTED  TOO_MANY_ACTIVE_POINTS
+  // Whether this many more points keep the limits. RESOURCE_EXHAUSTED, TOO_MANY_ACTIVE_POINTS if
+  // not.
   absl::Status Check(const std::string& principal, int64_t points, const Limits& limits) const;
 
-  // Counts those of a job, once.
+  // Counts the points of a job. A second call for the same job has no effect.
   void Add(const std::string& job, const std::string& principal, int64_t points);
-  // Without effect if they are not counted.
+  // No effect if the job is not counted.
   void Remove(const std::string& job);
 
  private:

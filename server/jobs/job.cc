@@ -15,7 +15,7 @@ namespace ballpiston::server {
 namespace {
 
 void LogEnd(const JobRecord& job, const std::string& state) {
-  // One without a beginning was over before it began.
+  // A job without a start time ended before its first turn.
   const absl::Time begin = job.start_time.value_or(job.create_time);
   google::rpc::Status error;
   error.ParseFromString(job.error);

@@ -1,11 +1,11 @@
-// An active job: its state, its progress, and what changed when, for those who watch it.
+// An active job: its state, its progress, and its numbered changes, for watches.
 //
-// Every change has a number, counted from 1. A watcher remembers the number up to which it has told
-// and asks for what is newer, so that a slow one misses what was overtaken and never the newest.
+// Changes are numbered from 1. A watch remembers the number of the last change that it has sent and
+// asks for newer ones. So a slow watch may skip intermediate states, but always gets the newest.
 //
-// Finished points have numbers of their own, which the store gives them and which outlive the
-// server (point_tables.h). A point counts as done, and can be told, when it is stored. Kept are the
-// newest kRecentPoints; all of them are in the store. Thread-safe.
+// Finished points have numbers of their own. The store assigns them, and they stay valid after a
+// restart of the server (point_tables.h). A point counts as done, and can be sent, when it is
+// stored. The job keeps the newest kRecentPoints in memory; the store has all of them. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_H_
 #define BALLPISTON_SERVER_JOBS_JOB_H_
 
@@ -55,27 +55,28 @@ class Job {
   JobRecord Record() const;  // without the specification, which may be large
   size_t spec_bytes() const { return spec_.size(); }
 
-  // These three without a lock: a thousand watchers ask several times a second.
+  // These three take no lock, because a thousand watches call them several times a second.
   uint64_t last_change() const { return last_change_; }
   uint64_t last_state_change() const { return last_state_change_; }
   int64_t last_finished() const { return last_finished_; }  // the number of that point
 
-  // False, and without effect, if `state` may not follow the present one.
+  // False, and no effect, if `state` cannot follow the present state.
   bool Enter(JobState state, absl::Time now, const std::string& error = std::string());
 
-  // Blocks were merged, or a checkpoint was restored: so many samples, that share of their point.
+  // Adds the samples of merged blocks or of a restored checkpoint, and their share of the point.
   // Returns the number of the change.
   uint64_t AddSamples(double samples, double share_of_point);
   void AddWork(double seconds);
   void AddBytes(int64_t bytes);  // of results
   void SetPinned(bool pinned);
-  // A computed point is stored; in the order of their numbers.
+  // Adds a point that is stored now. Call in the order of the points' numbers.
   void AddFinishedPoint(FinishedPoint point);
-  // Points that an earlier process stored, `last` the number of the last of them. Before any other.
+  // Adds points that an earlier process stored; `last` is the number of the last one. Call before
+  // AddFinishedPoint.
   void AddRestoredPoints(int64_t points, double samples, int64_t last);
 
-  // The finished points after number `after`, oldest first, at most `limit`; nothing if some of
-  // those are not kept any more.
+  // The finished points after number `after`, oldest first, at most `limit`. Empty if some of these
+  // points are no longer in memory.
   std::optional<std::vector<FinishedPoint>> FinishedAfter(int64_t after, size_t limit) const;
 
   SharedSnapshot& snapshot() { return snapshot_; }
@@ -88,7 +89,7 @@ class Job {
   const std::string principal_;
   const int64_t restarts_;
   const std::string spec_;  // serialized
-  const bool open_ended_;   // how much there is to do is not known
+  const bool open_ended_;   // the number of samples is not known in advance
   const std::function<void()> on_state_change_;
 
   mutable Mutex mutex_;
@@ -98,7 +99,7 @@ class Job {
   std::atomic<uint64_t> last_state_change_ = 1;
   std::atomic<int64_t> last_finished_ = 0;
   std::deque<FinishedPoint> recent_ ABSL_GUARDED_BY(mutex_);  // oldest first
-  // The number of the last point before these.
+  // The number of the last point before those in recent_.
   int64_t last_forgotten_ ABSL_GUARDED_BY(mutex_) = 0;
 
   SharedSnapshot snapshot_;

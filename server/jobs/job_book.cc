@@ -25,7 +25,7 @@
 namespace ballpiston::server {
 namespace {
 
-// So much of finished points is read at once, and a last point more.
+// Finished points are read until they have this many bytes.
 constexpr size_t kMaxBytesOfPoints = size_t{512} << 10;
 
 // How often processor time is stored. If the server is killed, the time since it was last stored
@@ -96,7 +96,7 @@ absl::StatusOr<std::optional<JobRecord>> FindJobOf(Database& database, const Pri
   return found;
 }
 
-// What an earlier process finished of a job.
+// The points of a job that an earlier process finished.
 struct StoredPoints {
   std::vector<PointRow> rows;  // without results
   int64_t last = 0;            // the number of the last of them
@@ -131,14 +131,14 @@ absl::Status CheckStoredPoints(const JobRecord& record, const EnsembleSpec& spec
                                           " do not fit its specification of ", in_grid, " points"));
 }
 
-// By point of the grid.
+// Whether each point of the grid is finished.
 std::vector<bool> Finished(const JobRecord& record, const StoredPoints& points) {
   std::vector<bool> finished(static_cast<size_t>(record.points), false);
   for (const PointRow& row : points.rows) finished[static_cast<size_t>(row.point)] = true;
   return finished;
 }
 
-// The first finished point that an earlier process had to leave short of the tolerance, if any.
+// The first finished point that missed its tolerance in an earlier process, if any.
 absl::Status ReadShortfall(Database& database, const JobRecord& record, const EnsembleSpec& spec,
                            std::optional<Shortfall>& shortfall, absl::Status& damage) {
   if (!spec.target.tolerance || !spec.target.budget_seconds) return absl::OkStatus();
@@ -154,8 +154,8 @@ absl::Status ReadShortfall(Database& database, const JobRecord& record, const En
   });
 }
 
-// Tells a job from another that had its sequence before the store was restored from a backup, and
-// from itself under an older engine.
+// Distinguishes a job from another job with the same sequence (before the store was restored from a
+// backup), and from the same job under an older engine.
 int64_t GenerationOf(const Job& job) {
   const std::string hash = Sha256(absl::StrCat(job.id(), " ", job.restarts()));
   uint64_t number = 0;
@@ -163,7 +163,7 @@ int64_t GenerationOf(const Job& job) {
   return static_cast<int64_t>(number);
 }
 
-// What a run goes on from. `damage`: what the store has of the job is not what it wrote.
+// The stored state from which a run is resumed. `damage`: the job's rows contradict each other.
 struct Restored {
   StoredPoints points;
   std::optional<Shortfall> shortfall;
@@ -200,7 +200,7 @@ void JobBook::Shutdown() {
   scheduler_.Shutdown();
 }
 
-// ---- what an earlier process left ----
+// ---- resuming jobs of an earlier process ----
 
 absl::Status JobBook::Resume() {
   const absl::Status known = ReadUsage();
@@ -235,7 +235,7 @@ absl::Status JobBook::ReadUsage() {
   });
 }
 
-// Of another engine, and to be computed by this one: all in one commit, for there may be many.
+// Restarts all jobs of another engine version in one commit, because there may be many.
 absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
   std::vector<JobRecord*> older;
   for (JobRecord& record : unfinished) {
@@ -248,7 +248,7 @@ absl::Status JobBook::RestartOlder(std::vector<JobRecord>& unfinished) {
     ++record.restarts;
     older.push_back(&record);
     LogInfo(
-        absl::StrCat(JobName(record.id), " is computed anew by engine ", record.engine_version));
+        absl::StrCat(JobName(record.id), " is computed again by engine ", record.engine_version));
   }
   if (older.empty()) return absl::OkStatus();
   return store_.CommitDeletion([&](Database& database) {
@@ -272,7 +272,8 @@ absl::Status JobBook::ResumeJob(JobRecord record) {
   return ResumeRun(std::move(record), std::move(checked.spec));
 }
 
-// It ends as a run that had nothing more to do would; on disk when all are resumed.
+// Ends the job like a run that has nothing left to compute. The end is on disk when all jobs are
+// resumed.
 absl::Status JobBook::EndUnresumable(const JobRecord& record, const absl::Status& why) {
   StoredPoints points;
   const absl::Status read =
@@ -391,7 +392,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
     Failpoint("create.in_transaction");
     return accepted;
   };
-  // Begun before anybody else can see the job in the store.
+  // The job is registered before another call can see it in the store.
   std::shared_ptr<Job> job;
   const absl::Status committed = store_.Commit(accept, [&](const absl::Status& done) {
     Failpoint("create.committed");
@@ -410,7 +411,7 @@ absl::StatusOr<v1::EnsembleJob> JobBook::Create(const Principal& caller,
   return acceptance.earlier ? EarlierJob(caller, acceptance) : Now(*job).job;
 }
 
-// As it is now; if somebody has deleted it since, as it was when it was found.
+// The job's present state. If the job was deleted meanwhile, its state when it was found.
 absl::StatusOr<v1::EnsembleJob> JobBook::EarlierJob(const Principal& caller,
                                                     const Acceptance& acceptance) {
   absl::StatusOr<v1::EnsembleJob> job = Get(caller, acceptance.earlier->id);
@@ -483,12 +484,12 @@ absl::StatusOr<JobsPage> JobBook::List(const Principal& caller, const JobsQuery&
   if (!read.ok()) return StoreFailure(read);
   JobsPage page{.jobs = {}, .next_before = records.next_before()};
   for (const JobRecord& record : records.records()) {
-    // How far an active one has come, the store does not know.
+    // The store does not have the progress of an active job.
     absl::StatusOr<v1::EnsembleJob> job =
         HasEnded(record.state) ? Message(record) : Get(caller, record.id);
-    if (absl::IsNotFound(job.status())) continue;  // it has ended and was deleted just now
+    if (absl::IsNotFound(job.status())) continue;  // the job was deleted meanwhile
     if (!job.ok()) return job.status();
-    if (!query.filter.MatchesState(job->state())) continue;  // it has changed since the read
+    if (!query.filter.MatchesState(job->state())) continue;  // the state has changed since the read
     if (!query.grids) job->mutable_spec()->clear_grid();
     page.jobs.push_back(*std::move(job));
   }
@@ -584,7 +585,7 @@ absl::StatusOr<std::optional<v1::PointResult>> JobBook::UnfinishedResult(const P
   if (*job == nullptr) return std::nullopt;
   const auto number = static_cast<uint64_t>((*job)->Now().job.spec().experiment());
   const ExperimentKind* const experiment = FindExperiment(number);
-  if (experiment == nullptr) return std::nullopt;  // a test's own
+  if (experiment == nullptr) return std::nullopt;  // an experiment of a test
   const auto live = scheduler_.Unfinished((*job)->sequence(), static_cast<size_t>(point));
   if (!live) return std::nullopt;
   const PointSummary summary = live->experiment->Summarize(live->merged);
@@ -638,7 +639,7 @@ absl::StatusOr<std::shared_ptr<Job>> JobBook::FindActive(const Principal& caller
   const absl::StatusOr<JobRecord> record = ReadRecord(caller, id);
   if (!record.ok()) return record.status();
   if (HasEnded(record->state)) return nullptr;
-  // Committed a moment ago: it is in the book when the store has gone on to the next commit.
+  // The job was committed a moment ago. It is in the book after the store's next commit.
   const absl::Status settled = store_.Flush();
   if (!settled.ok()) return StoreFailure(settled);
   return ActiveOrNull(caller, id);
@@ -676,7 +677,7 @@ std::shared_ptr<const JobSnapshot> JobBook::Snapshot(Job& job, std::chrono::mill
                                                      size_t limit) const {
   return job.snapshot().Get(job.last_change(), max_age, [&] {
     JobSnapshot snapshot;
-    snapshot.change = job.last_change();  // before the points: they may be newer
+    snapshot.change = job.last_change();  // read before the points, which may be newer
     snapshot.finished = job.last_finished();
     for (const LivePoint& point : scheduler_.ChangedSince(job.sequence(), 0, limit)) {
       const storage::Result now =
@@ -696,7 +697,7 @@ absl::StatusOr<std::vector<FinishedPoint>> JobBook::FinishedAfter(int64_t sequen
   std::vector<FinishedPoint> points;
   size_t bytes = 0;
   const auto take = [&](int64_t number, const PointRow& row) {
-    // One that the job does not know of yet would make a token that it does not know either.
+    // A point that the job does not have yet would give a token that the job does not know.
     if (active != nullptr && number > active->last_finished()) return false;
     bytes += row.result.size();
     points.push_back({number, std::make_shared<const std::string>(row.result)});
@@ -777,7 +778,7 @@ std::map<std::string, ActiveJobs> JobBook::ActiveByPrincipal() const {
   std::map<std::string, ActiveJobs> by_principal;
   for (const std::shared_ptr<Job>& job : ActiveJobsNow()) {
     const JobState state = job->state();
-    if (HasEnded(state)) continue;  // it is leaving just now
+    if (HasEnded(state)) continue;  // the book is about to remove it
     ActiveJobs& jobs = by_principal[job->principal()];
     ++(state == v1::EnsembleJob::QUEUED    ? jobs.queued
        : state == v1::EnsembleJob::RUNNING ? jobs.running

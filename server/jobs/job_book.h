@@ -1,9 +1,9 @@
-// The book of jobs: what the API's methods do, without the API.
+// All jobs: the operations of the API's methods, without gRPC.
 //
-// Active jobs live here and in the scheduler; ended ones only in the store. Every change of a
-// job's state is on disk before anybody is told of it (except that a job runs, which a restart
-// finds out by itself). Methods that write wait for the disk: not to be called from gRPC's own
-// threads. Errors carry their reasons (server/convert/errors.h). Thread-safe.
+// Active jobs are here and in the scheduler; ended jobs are only in the store. Every change of a
+// job's state is on disk before a client sees it (except the change to RUNNING, which a restart
+// makes again). Methods that write wait for the disk, so gRPC's own threads must not call them.
+// Errors have reasons (server/convert/errors.h). Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 #define BALLPISTON_SERVER_JOBS_JOB_BOOK_H_
 
@@ -36,8 +36,8 @@
 
 namespace ballpiston::server {
 
-// The most that one page reads from the store while it looks for jobs that match. 2,000 small jobs
-// take 4 ms, 16 MiB of large ones 12 ms.
+// Limits of what one page reads from the store to find matching jobs. 2,000 small jobs take 4 ms;
+// 16 MiB of large jobs take 12 ms.
 inline constexpr int kMaxJobsRead = 2000;
 inline constexpr size_t kMaxJobBytesRead = size_t{16} << 20;
 
@@ -46,40 +46,40 @@ inline constexpr absl::Duration kSoonToExpire = absl::Hours(7 * 24);
 struct JobsQuery {
   JobFilter filter = {};
   bool grids = true;   // in the specifications
-  int64_t before = 0;  // newest first, those older than this sequence
+  int64_t before = 0;  // jobs older than this sequence, newest first
   int max_jobs = 1;
-  size_t max_bytes = 0;  // ends a page that has a job already
-  // These end a page too, even if it has no job yet. At least one job is read.
+  size_t max_bytes = 0;  // ends a page that has at least one job
+  // These also end a page that has no job yet. A page reads at least one job.
   int max_jobs_read = kMaxJobsRead;
   size_t max_bytes_read = kMaxJobBytesRead;
 };
 
 struct JobsPage {
   std::vector<v1::EnsembleJob> jobs;
-  std::optional<int64_t> next_before;  // where the next page begins; none: this is the last page
+  std::optional<int64_t> next_before;  // where the next page begins; empty: this is the last page
 };
 
-// What a watch needs of a job.
+// The data of a job that a watch needs.
 struct WatchedJob {
   std::shared_ptr<Job> active = nullptr;  // null if it has ended
   int64_t sequence = 0;
   int64_t restarts = 0;
   int64_t last_finished = 0;  // the number of its last finished point
   v1::JobProgress progress = {};
-  size_t spec_bytes = 0;  // of one that has ended
+  size_t spec_bytes = 0;  // of a job that has ended
   bool expired = false;
 };
 
 struct ResultsQuery {
   int64_t first_point = 0;
   int max_points = 1;
-  size_t max_bytes = 0;  // ends a page that has a point already
+  size_t max_bytes = 0;  // ends a page that has at least one point
   bool histograms = true;
 };
 
 struct ResultsPage {
   std::vector<v1::PointResult> points;
-  std::optional<int64_t> next_point;  // none: this is the last page
+  std::optional<int64_t> next_point;  // empty: this is the last page
 };
 
 // Active jobs, by state.
@@ -98,33 +98,33 @@ struct EndedJobs {
 
 class JobBook {
  public:
-  // Store and scheduler have to outlive this. `on_state_change` is called after each change of
+  // Store and scheduler must outlive this. The book calls `on_state_change` after each change of
   // state.
   JobBook(Store& store, const Limits& limits, Scheduler& scheduler,
           std::function<void()> on_state_change);
   ~JobBook();  // shuts down
 
-  // Takes up what an earlier process left unfinished. Before anything else.
+  // Resumes the unfinished jobs of an earlier process. Call before anything else.
   absl::Status Resume();
 
-  // Stops computing; what is unfinished stays so in the store.
+  // Stops the computation. Unfinished jobs stay in the store as they are.
   void Shutdown();
 
   // Records the processor time that was not stored yet.
   void StoreNewWork(absl::Time now);
 
-  // What Create would answer now.
+  // The answer that Create would give now.
   absl::StatusOr<v1::EnsembleJob> Preview(const Principal& caller,
                                           const v1::CreateEnsembleJobRequest& request,
                                           const CheckedSpec& checked);
 
   // `checked` is the specification of the request, without violations; the request's id is in lower
-  // case. Answered with an earlier job if this is a replay, or the same question as before.
+  // case. Returns an earlier job if this is a retry, or if an earlier job has the same question.
   absl::StatusOr<v1::EnsembleJob> Create(const Principal& caller,
                                          const v1::CreateEnsembleJobRequest& request,
                                          const CheckedSpec& checked);
 
-  // To all of the following a job that the caller may not see does not exist.
+  // For all methods below, a job that the caller may not see does not exist.
   absl::StatusOr<v1::EnsembleJob> Get(const Principal& caller, const std::string& id);
   absl::StatusOr<JobsPage> List(const Principal& caller, const JobsQuery& query);
   absl::StatusOr<v1::EnsembleJob> Cancel(const Principal& caller, const std::string& id,
@@ -146,17 +146,17 @@ class JobBook {
 
   absl::StatusOr<WatchedJob> FindWatched(const Principal& caller, const std::string& id);
 
-  // The job's unfinished points, the newest `limit`, as they are or were at most `max_age` ago.
+  // The newest `limit` unfinished points of the job. The snapshot is at most `max_age` old.
   std::shared_ptr<const JobSnapshot> Snapshot(Job& job, std::chrono::milliseconds max_age,
                                               size_t limit) const;
 
-  // The finished points after number `after` of an active or (`active` null) ended job, in order,
-  // at most `limit`; fewer if they are large. None: there is no more. May read the store.
+  // The finished points after number `after`, in order, at most `limit`; fewer if they are large.
+  // `active` is null if the job has ended. No points: there are no more. May read the store.
   absl::StatusOr<std::vector<FinishedPoint>> FinishedAfter(int64_t sequence, const Job* active,
                                                            int64_t after, size_t limit);
 
-  // Enforces the limits on stored results and on processor time at the time `now`: lets results
-  // expire, and ends jobs. To be called about once a second; one thread at a time.
+  // Enforces the limits on stored results and on processor time at the time `now`: expires results,
+  // and ends jobs. Call about once a second, from one thread at a time.
   void KeepLimits(absl::Time now);
 
   // Jobs whose results expire within kSoonToExpire. 0 if the store cannot be read.
@@ -180,10 +180,10 @@ class JobBook {
   absl::Status ResumeRun(JobRecord record, EnsembleSpec spec);
   void AddRestoredBytes(Job& job, int64_t bytes);
   std::shared_ptr<Job> Register(JobRecord record);
-  // Key and journal of the request are set here.
+  // Sets the key and the journal of the request.
   void StartRun(std::shared_ptr<Job> job, RunRequest request);
   void Forget(const Job& ended);
-  // Also null if the caller may not see it.
+  // Null if the job is not active, or if the caller may not see it.
   std::shared_ptr<Job> ActiveOrNull(const Principal& caller, const std::string& id) const;
   // The active job; null if it has ended.
   absl::StatusOr<std::shared_ptr<Job>> FindActive(const Principal& caller, const std::string& id);

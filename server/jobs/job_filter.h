@@ -16,7 +16,7 @@ struct JobFilter {
   absl::Time since = absl::InfinitePast();                  // the job was created then or later
 
   bool MatchesState(JobState state) const;
-  // All parts. A specification that cannot be read has no experiment.
+  // Whether the job matches all parts. A specification that cannot be read has no experiment.
   bool Matches(const JobRecord& record) const;
 };
 

@@ -16,7 +16,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Of memory: histograms are what takes room.
+// Bytes of memory; histograms take most of it.
 size_t BytesHeld(const BlockResult& result) {
   size_t bytes = sizeof(BlockResult);
   for (const Histogram& histogram : result.histograms) {
@@ -43,7 +43,7 @@ JobEnd EndOf(const Job& job, const absl::Status& outcome) {
   return end;
 }
 
-// What the store has refused, nobody can fetch.
+// The job fails if the store rejected one of its results, because clients could not read it.
 absl::Status CountStoredPoints(Database& database, const JobRecord& job, JobEnd& end) {
   const absl::StatusOr<int64_t> stored = CountResults(database, job.sequence);
   if (!stored.ok()) return stored.status();
@@ -111,7 +111,7 @@ uint64_t JobJournal::Merged(const MergedSamples& merged) {
 }
 
 void JobJournal::Checkpoint(size_t point, const FoldState& state) {
-  // Shared, because the store's closures are copyable; made into bytes only if it is written.
+  // Shared, because the store's closures must be copyable. Serialized only if it is written.
   auto copy = std::make_shared<const FoldState>(state);
   const size_t bytes = BytesHeld(copy->complete) + BytesHeld(copy->partial) +
                        copy->chunk_digests.size() * sizeof(uint64_t);
@@ -160,7 +160,8 @@ void JobJournal::Ended(const absl::Status& outcome) {
     const absl::Status counted = CountStoredPoints(database, record, *end);
     if (!counted.ok()) return counted;
     const absl::StatusOr<JobState> state = EndJob(database, record.sequence, *end);
-    if (state.ok() && *state != end->state) end->error.clear();  // it was cancelled just before
+    if (state.ok() && *state != end->state)
+      end->error.clear();  // the job was cancelled just before
     end->state = state.value_or(end->state);
     return state.status();
   };

@@ -1,4 +1,4 @@
-// Writes what a job's run reports into the store and into the job.
+// Stores the progress that a job's run reports, and updates the job.
 //
 // Order in the store: a checkpoint after the point's earlier ones and its chunks, a point's result
 // after its checkpoints, the end of the job after all of it. Clients see that the job has begun,
@@ -19,8 +19,8 @@ namespace ballpiston::server {
 
 class JobJournal : public RunJournal {
  public:
-  // `resumed`: an earlier process may have stored checkpoints. `on_ended` is called, on the store's
-  // thread, when the job has ended for good. Store and usage have to outlive this.
+  // `resumed`: an earlier process may have stored checkpoints. The store's thread calls `on_ended`
+  // when the end of the job is on disk. Store and usage must outlive this.
   JobJournal(std::shared_ptr<Job> job, Store& store, Usage& usage, bool resumed,
              std::function<void(const Job&)> on_ended);
 

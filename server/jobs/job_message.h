@@ -9,10 +9,10 @@
 
 namespace ballpiston::server {
 
-// Of a row; its progress is what the row says. A specification that cannot be read is left out.
+// The message of a row, with the row's progress. A specification that cannot be read is left out.
 v1::EnsembleJob JobMessage(const JobRecord& record);
 
-// A time as the API tells it, to the nanosecond.
+// A time in the API's format, to the nanosecond.
 void SetTime(absl::Time time, google::protobuf::Timestamp* timestamp);
 
 // Whether a tolerance or a budget ends the job's points, not a number of samples.

@@ -12,7 +12,7 @@ namespace ballpiston::server {
 std::string JobName(const std::string& id);
 std::string ResultName(const std::string& job_id, int64_t point);
 
-// Empty unless `name` is a job's.
+// Empty unless `name` is the name of a job.
 std::optional<std::string> JobIdOf(const std::string& name);
 
 struct ResultId {
@@ -23,7 +23,7 @@ struct ResultId {
 // Empty unless `name` is the name of a result.
 std::optional<ResultId> ResultIdOf(const std::string& name);
 
-// 16 hexadecimal digits that nobody had before.
+// 16 random hexadecimal digits.
 std::string RandomId();
 
 }  // namespace ballpiston::server

@@ -1,7 +1,7 @@
-// What a job's unfinished points were at one moment, made once for all who watch the job.
+// A copy of a job's unfinished points at one moment, shared by all watches of the job.
 //
-// To make one takes the scheduler's lock and copies what the points have merged, so a thousand
-// watchers share one: what is young enough, or still true, is handed out again. Thread-safe.
+// Making a snapshot takes the scheduler's lock and copies the merged results of the points. So all
+// watches get the same snapshot as long as it is recent enough or nothing has changed. Thread-safe.
 #ifndef BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 #define BALLPISTON_SERVER_JOBS_JOB_SNAPSHOT_H_
 
@@ -19,26 +19,27 @@ namespace ballpiston::server {
 
 struct JobSnapshot {
   struct Point {
-    uint64_t change = 0;     // the number of its last
+    uint64_t change = 0;     // the number of its last change
     v1::PointResult result;  // without histograms and curves
   };
 
-  uint64_t change = 0;        // the job's last one before the snapshot was made
+  uint64_t change = 0;        // the job's last change before the snapshot
   int64_t finished = 0;       // the number of the last finished point then: none of `points` has it
                               // or a smaller one
   std::vector<Point> points;  // newest first
 };
 
-// Of a message about a job: a point that was finished after the unfinished ones were looked at is
-// among the finished ones only.
+// Removes those points from the unfinished ones of a message that are also among its finished ones:
+// they were finished after the snapshot was made.
 void LeaveOutFinished(v1::StatisticsSnapshot& message);
 
 class SharedSnapshot {
  public:
   using Make = absl::FunctionRef<JobSnapshot()>;
 
-  // The last one, if nothing changed since (`change` is the job's last) or it is at most `max_age`
-  // old; else a new one. `make` is called with a lock held, by one at a time.
+  // Returns the last snapshot if nothing has changed since (`change` is the job's last change), or
+  // if it is at most `max_age` old. Otherwise makes a new snapshot: calls `make` with a lock held,
+  // in one thread at a time.
   std::shared_ptr<const JobSnapshot> Get(uint64_t change, std::chrono::milliseconds max_age,
                                          Make make);
 

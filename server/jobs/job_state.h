@@ -1,4 +1,4 @@
-// The states of a job and which may follow which.
+// The states of a job and the permitted transitions.
 //
 //   QUEUED -> RUNNING -> SUCCEEDED | FAILED
 //   QUEUED, RUNNING -> CANCELLING -> CANCELLED

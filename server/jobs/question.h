@@ -1,4 +1,4 @@
-// What makes two requests the same. Pure functions.
+// Hashes that tell whether two requests, or two questions, are the same. Pure functions.
 #ifndef BALLPISTON_SERVER_JOBS_QUESTION_H_
 #define BALLPISTON_SERVER_JOBS_QUESTION_H_
 
@@ -8,11 +8,11 @@
 
 namespace ballpiston::server {
 
-// A hash of all that the answer depends on: the whole specification, its seed included, and the
-// engine's version. Empty if the answer depends on the machine as well: with a budget.
+// A hash of everything that determines the answer: the whole specification with its seed, and the
+// engine's version. Empty if the job has a budget, because the answer then depends on the machine.
 std::string QuestionOf(const v1::EnsembleSpec& spec, const std::string& engine_version);
 
-// A hash of all of a request but its id.
+// A hash of the whole request except its id.
 std::string PayloadOf(const v1::CreateEnsembleJobRequest& request);
 
 }  // namespace ballpiston::server

@@ -1,5 +1,4 @@
-// Whether anybody uses the server: calls and streams in progress, and since when there is none.
-// Thread-safe.
+// Counts the calls and streams in progress, and how long the server has been idle. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_ACTIVITY_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_ACTIVITY_H_
 
@@ -14,13 +13,14 @@ class Activity {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // A call is in progress as long as a copy of what is returned lives (at most as long as this).
+  // A call begins. It is in progress until the last copy of the returned pointer is gone. This
+  // object must outlive the copies.
   std::shared_ptr<void> Begin();
 
-  // Something happened that keeps the server awake without being a call.
+  // Resets the idle time, for an event that is not a call.
   void Touch();
 
-  // How long nothing has happened; zero while a call is in progress.
+  // The time since the last event; zero while a call is in progress.
   Clock::duration IdleFor() const;
 
  private:

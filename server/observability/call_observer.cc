@@ -40,7 +40,7 @@ Verdict VerdictOn(const FailedCall& call) {
     case absl::StatusCode::kUnauthenticated:
     case absl::StatusCode::kPermissionDenied:
       return Verdict::kNotLetIn;
-    case absl::StatusCode::kResourceExhausted:  // the disk may be what is exhausted
+    case absl::StatusCode::kResourceExhausted:  // a limit, or a full disk
       return absl::StartsWith(call.reason, "STORE_") ? Verdict::kServerFailed
                                                      : Verdict::kLimitReached;
     case absl::StatusCode::kUnavailable:
@@ -60,11 +60,11 @@ CallObserver::CallObserver()
     : statistics_(registry_),
       not_let_in_(prometheus::BuildCounter()
                       .Name("ballpiston_failed_authentications_total")
-                      .Help("Calls without the credentials or the role they need.")
+                      .Help("Calls without valid credentials or with too low a role.")
                       .Register(registry_)),
       limits_reached_(prometheus::BuildCounter()
                           .Name("ballpiston_limit_refusals_total")
-                          .Help("Calls refused because a limit was reached.")
+                          .Help("Calls rejected because a limit was reached.")
                           .Register(registry_)) {
   for (const char* reason :
        {"CREDENTIALS_MISSING", "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED", "ROLE_TOO_LOW"}) {
@@ -77,7 +77,7 @@ CallObserver::CallObserver()
   }
 }
 
-// One call. Its hooks run one after the other.
+// Observes one call. gRPC runs its hooks one after the other.
 class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  public:
   Interceptor(CallObserver& observer, ServerRpcInfo& info)
@@ -103,8 +103,8 @@ class CallObserver::Interceptor : public grpc::experimental::Interceptor {
  private:
   double Seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  // gRPC's own services call it UNKNOWN if the client left, and INTERNAL if its request was no
-  // message, or none came, which would look like the server's fault.
+  // gRPC's own services return UNKNOWN if the client left, and INTERNAL if the request was missing
+  // or malformed. Both would look like errors of the server.
   absl::StatusCode CodeOf(const grpc::Status& status) const {
     const auto code = static_cast<absl::StatusCode>(status.error_code());
     if (!absl::StartsWith(path_, "/grpc.")) return code;
@@ -157,7 +157,7 @@ CallObserver::InterceptorFactory() {
   return std::make_unique<Factory>(*this);
 }
 
-// ---- who calls ----
+// ---- callers ----
 
 void CallObserver::Identify(const grpc::ServerContextBase& call, const std::string& principal) {
   MutexLock lock(mutex_);
@@ -170,7 +170,7 @@ std::string CallObserver::Ended(const grpc::ServerContextBase& call) {
   return node.empty() ? "" : std::move(node.mapped());
 }
 
-// ---- what failed ----
+// ---- failed calls ----
 
 void CallObserver::Failed(const FailedCall& call) {
   const Verdict verdict = VerdictOn(call);
@@ -190,8 +190,8 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
   const std::optional<int64_t> left_out = (failed ? failures_ : refusals_).Take(Clock::now());
   if (!left_out) return;
   const char* what = failed                          ? "call failed: "
-                     : verdict == Verdict::kNotLetIn ? "call not let in: "
-                                                     : "call refused: ";
+                     : verdict == Verdict::kNotLetIn ? "call not authorised: "
+                                                     : "call rejected: ";
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},
        {"principal", call.principal},

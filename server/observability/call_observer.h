@@ -1,11 +1,11 @@
-// Sees every call of every service begin and end: counts it, remembers who makes it while it runs,
-// and writes a line for each that the server failed at or refused.
+// Observes the beginning and the end of every call of every service. Counts the call, remembers its
+// caller while it runs, and logs each call that failed in the server or was rejected.
 //
-// It sits inside gRPC (an interceptor), so it also sees calls that never reach their method: a
-// message that is malformed, health, reflection. A call counts as ended just before its status is
-// sent: whoever has the answer finds it counted. A method that no service offers is not counted:
-// anybody could invent any number of them. The counters are prometheus-cpp's; no library connects
-// them to gRPC's C++ server. Thread-safe.
+// It is an interceptor of gRPC, so it also sees calls that never reach a method of the project:
+// malformed messages, health, reflection. A call counts as ended just before its status is sent, so
+// a client that has the answer finds the call counted. Methods that no service has are not counted,
+// because clients could invent any number of them. The counters are prometheus-cpp's; no library
+// connects them to gRPC's C++ server. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_CALL_OBSERVER_H_
 
@@ -26,26 +26,26 @@
 
 namespace ballpiston::server {
 
-// The metadata that a call's id comes with, and goes back in.
+// The metadata key of a call's request id, in the request and in the answer.
 inline constexpr char kRequestId[] = "x-request-id";
 
-// A call that ended with anything but OK.
+// A call that ended with an error.
 struct FailedCall {
   std::string method;      // WatchEnsembleJob
-  std::string principal;   // empty: it was not let in
-  std::string request_id;  // empty: it was not looked at by the project's own frame
+  std::string principal;   // empty: not authenticated
+  std::string request_id;  // empty: the call did not reach the project's own frame
   absl::StatusCode code = absl::StatusCode::kUnknown;
   std::string reason;  // of its ErrorInfo, if there is one
   std::string message;
   double seconds = 0;
 };
 
-// What an operator is told of.
+// How the call is logged and counted.
 enum class Verdict {
-  kOrdinary,      // the request was wrong, the job is not there, the client left: nothing
-  kNotLetIn,      // no credentials, wrong ones, or a role too low
-  kLimitReached,  // a limit of the server's, or of the caller's, is reached
-  kServerFailed   // an error of the server's own, or of its disk
+  kOrdinary,      // not logged: an invalid request, a missing job, a client that left
+  kNotLetIn,      // missing or wrong credentials, or a role too low
+  kLimitReached,  // a limit of the server or of the caller is reached
+  kServerFailed   // an error of the server or of its disk
 };
 Verdict VerdictOn(const FailedCall& call);
 
@@ -53,10 +53,10 @@ class CallObserver {
  public:
   CallObserver();
 
-  // For ServerBuilder::experimental().SetInterceptorCreators. This has to outlive the server.
+  // For ServerBuilder::experimental().SetInterceptorCreators. This must outlive the server.
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> InterceptorFactory();
 
-  // Who makes the call, for the log. Before its method runs.
+  // Sets the caller, for the log. Call before the method runs.
   void Identify(const grpc::ServerContextBase& call, const std::string& principal);
 
   CallStatistics& statistics() { return statistics_; }
@@ -65,14 +65,14 @@ class CallObserver {
   // that were refused because a limit was reached.
   const prometheus::Collectable& metrics() const { return registry_; }
 
-  // Counts and logs. For the interceptors, and for tests.
+  // Counts and logs a failed call. For the interceptors, and for tests.
   void Failed(const FailedCall& call);
 
  private:
   class Interceptor;
   class Factory;
 
-  std::string Ended(const grpc::ServerContextBase& call);  // returns who made it
+  std::string Ended(const grpc::ServerContextBase& call);  // returns the caller
   void WriteLine(const FailedCall& call, Verdict verdict);
 
   prometheus::Registry registry_;  // first: it owns the counters of the next three

@@ -1,10 +1,10 @@
 // Counts the calls of each method: how many began, how many ended with which code, and how long
 // they took, in the families grpc_server_* of a registry.
 //
-// prometheus-cpp counts. The map from a method's path to its counters is ours: Family::Add, which
-// also finds a counter, builds and hashes a map of labels each time, and the three of a call would
-// take 1.3 us; with the map a call takes 0.2 us. Methods are those that the server has registered,
-// so their number is bounded. Thread-safe.
+// prometheus-cpp counts. This class adds a map from a method's path to its counters, because
+// Family::Add builds and hashes a map of labels for every look-up. A call has three look-ups: they
+// take 1.3 us with Add, and 0.2 us with the map. Only registered methods are in the map, so its
+// size is bounded. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_CALL_STATISTICS_H_
 

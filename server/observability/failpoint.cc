@@ -28,7 +28,7 @@ struct Armed {
   std::_Exit(2);
 }
 
-// The environment's memory, which nobody changes.
+// `text` points into the environment, which nobody changes.
 Armed Parse(const char* text) {
   const std::string_view whole(text);
   const size_t colon = whole.rfind(':');

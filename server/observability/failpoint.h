@@ -1,13 +1,13 @@
-// Named places at which a test may have the server killed, as the power or the kernel would.
+// Named places at which a test can kill the server, as a power cut or the kernel would.
 //
 //   Failpoint("store.before_commit");
 //
-// Armed by the environment alone, BALLPISTON_FAILPOINT=NAME:N: at the N-th pass of NAME, counted
-// from 1 over all threads, the process kills itself with SIGKILL, so that nothing is flushed and no
-// destructor runs. NAME:ready+N does not count what passes while the server starts. With the
-// variable unset a pass costs one load and one branch. A value that names no failpoint of the list,
-// or no number from 1 on, ends the process at once with exit code 2: a test that waits for a place
-// that does not exist would wait for ever. Thread-safe.
+// Only the environment arms a failpoint: BALLPISTON_FAILPOINT=NAME:N. At the N-th pass of NAME,
+// counted from 1 over all threads, the process kills itself with SIGKILL, so that nothing is
+// flushed and no destructor runs. NAME:ready+N counts only passes after the server is ready. If the
+// variable is unset, a pass costs one load and one branch. If the value has an unknown name or a
+// number less than 1, the process exits at once with code 2, because the test would otherwise wait
+// for ever. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_FAILPOINT_H_
 
@@ -16,15 +16,15 @@
 
 namespace ballpiston::server {
 
-// Every place there is, in the order of a job's life; tests visit them all.
+// All failpoints, in the order of a job's life. Tests visit each of them.
 inline constexpr std::array<std::string_view, 25> kFailpoints = {
     "create.in_transaction",    // the job's row is written, not committed
     "create.committed",         // the job's row is on disk; the run is not begun
     "create.before_answer",     // the run is begun; the client knows nothing
     "store.before_commit",      // a group of writes is in the transaction
     "store.after_commit",       // the group is on disk; no client has an answer
-    "block.merged",             // into its point; not recorded
-    "checkpoint.before_write",  // in a transaction that has begun
+    "block.merged",             // a block is merged into its point, not recorded
+    "checkpoint.before_write",  // the transaction has begun
     "slurm.tasks_written",      // the leases of an array are in a file, and not submitted
     "slurm.submitted",          // Slurm has the array; the server knows nothing of it
     "slurm.file_reported",      // the scheduler has a file's chunks; few are on disk
@@ -34,15 +34,15 @@ inline constexpr std::array<std::string_view, 25> kFailpoints = {
     "job.end_recorded",         // its end waits to be written
     "job.ended",                // its end is on disk; no watch has it
     "cancel.in_transaction",    // CANCELLING is written, not committed
-    "cancel.committed",         // and committed; the workers do not know
+    "cancel.committed",         // CANCELLING is committed; the workers do not know
     "delete.in_transaction",    // the rows are gone, not committed
-    "delete.committed",         // the client knows nothing
+    "delete.committed",         // the deletion is on disk; the client knows nothing
     "sweep.in_transaction",     // some of a deleted job's results are gone, not committed
-    "resume.job",               // after a restart: one of the unfinished jobs goes on
-    "resume.point",             // and one of its points goes on from its checkpoint
-    "checkpoint.page",          // the log is folded into the store: before each page
+    "resume.job",               // after a restart: an unfinished job is resumed
+    "resume.point",             // a point is resumed from its checkpoint
+    "checkpoint.page",          // the log is copied into the store: before each page
     "stop.before_flush",        // SIGTERM: the workers have stopped
-    "stop.before_checkpoint"    // everything is written; the log is not yet folded into the store
+    "stop.before_checkpoint"    // everything is written; the log is not yet copied into the store
 };
 
 namespace failpoint_internal {
@@ -50,7 +50,7 @@ extern const bool armed;
 void Pass(std::string_view name);
 }  // namespace failpoint_internal
 
-// The server is ready: from here on passes count that were to be counted from here.
+// The server is ready: from now on passes of NAME:ready+N count.
 void CountFailpointsOfReadyServer();
 
 inline bool FailpointsAreArmed() { return failpoint_internal::armed; }

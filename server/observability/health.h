@@ -1,9 +1,9 @@
-// What grpc.health.v1 answers: each service by its name, and the empty name for the whole server.
+// Sets the answers of grpc.health.v1: each service by its name, and the empty name for the whole
+// server.
 //
-// While the disk refuses writes, the services that need it are NOT_SERVING, so that who can choose
-// asks another server; the others, and the whole server, go on: whoever restarts what is not
-// healthy would not help the disk. When the server stops, all are NOT_SERVING, for good.
-// Thread-safe.
+// While the disk rejects writes, the services that need it are NOT_SERVING, so that clients can
+// choose another server. The other services and the whole server stay SERVING, because a restart
+// would not repair the disk. When the server stops, all are NOT_SERVING and stay so. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_HEALTH_H_
 
@@ -22,15 +22,15 @@ class Health {
  public:
   struct Services {
     std::vector<std::string> all;
-    std::vector<std::string> with_store;  // among them
+    std::vector<std::string> with_store;  // those of `all` that need the store
   };
 
-  // `store_fails` is asked every `interval`, on a thread of its own. `health` has to outlive this.
+  // A thread of this object calls `store_fails` every `interval`. `health` must outlive this.
   Health(grpc::HealthCheckServiceInterface& health, Services services,
          std::function<bool()> store_fails, std::chrono::milliseconds interval);
   ~Health();
 
-  void Drain();  // not from two threads at once
+  void Drain();  // one thread at a time
 
  private:
   void Look();

@@ -1,8 +1,8 @@
-// How many lines of one kind may be written: whoever knocks at the door a thousand times a second
-// must not fill the disk with the log of it.
+// Limits how many log lines of one kind are written, so that a client with a thousand rejected
+// calls a second does not fill the disk with the log.
 //
-// At most `lines` in any `period` that begins with a line; what is over that is counted, and the
-// count is told with the next line that is written. Thread-safe.
+// At most `lines` lines are written in a `period`, which begins with a line. Further lines are
+// counted, and the next line that is written gives their number. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_LINE_BUDGET_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_LINE_BUDGET_H_
 
@@ -20,7 +20,8 @@ class LineBudget {
 
   LineBudget(int lines, Clock::duration period) : lines_(lines), period_(period) {}
 
-  // How many were left out since the last line that was written; nothing if this one is left out.
+  // Empty if this line is to be left out. Otherwise the number of lines that were left out since
+  // the last written line.
   std::optional<int64_t> Take(Clock::time_point now);
 
  private:

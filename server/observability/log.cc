@@ -22,7 +22,7 @@ LogOutput& StandardError() {
 
 std::string LossLine(int64_t lost) {
   return LogLine(chosen_format, absl::Now(), Severity::kWarning,
-                 "lines are missing here: nobody read them",
+                 "lines were dropped: the log was not read",
                  {{"lines", static_cast<double>(lost)}});
 }
 

@@ -1,9 +1,9 @@
-// What the server tells its operator: one line each (log_line.h), on standard error. One that
-// nobody reads stops nothing (log_output.h). Thread-safe.
+// The server's log: one line per message (log_line.h), on standard error. If nobody reads the log,
+// the server goes on (log_output.h). Thread-safe.
 //
 //   Log(Severity::kInfo, "job accepted", {{"job", name}, {"principal", caller.name}});
 //
-// Never a token, a key, or what else lets one in.
+// Never log a token, a key or another secret.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_LOG_H_
 
@@ -14,11 +14,11 @@ namespace ballpiston::server {
 
 struct LogOptions {
   LogFormat format = LogFormat::kText;
-  Severity least = Severity::kInfo;  // what is less severe is not written
-  bool silent = false;               // nothing is: for tests of what fails a thousand times
+  Severity least = Severity::kInfo;  // less severe messages are not written
+  bool silent = false;               // nothing is written; for tests with thousands of errors
 };
 
-// From now on, for the whole process.
+// Applies to the whole process from now on.
 void SetLogOptions(const LogOptions& options);
 
 void Log(Severity severity, absl::string_view message, LogFields fields = {});

@@ -13,13 +13,13 @@
 namespace ballpiston::server {
 namespace {
 
-// Of the escaped texts; together with at most twelve fields they stay below kMaxLogLine.
+// Limits of the escaped texts. A message with at most twelve fields stays below kMaxLogLine.
 constexpr size_t kMaxMessage = 1500;
 constexpr size_t kMaxValue = 160;
 constexpr absl::string_view kCut = "...";
 
-// Controls of either kind, the separators of lines and paragraphs, and what turns the direction of
-// writing: none of them is to reach a terminal, nor end a line.
+// False for control characters, line and paragraph separators, and characters that change the
+// direction of writing: they must not reach a terminal or end a line.
 bool IsHarmless(uint32_t c) {
   const bool control = c < 0x20 || (c >= 0x7F && c < 0xA0);
   const bool separator = c == 0x2028 || c == 0x2029;
@@ -37,7 +37,7 @@ void AppendUnit(uint32_t unit, std::string& text) {
            kDigits[unit & 0xF]};
 }
 
-// As JSON writes a character that it cannot, or need not, hold as it is.
+// Appends the character as an escape sequence of JSON.
 void AppendEscape(uint32_t c, std::string& text) {
   if (c == '\n') {
     text += "\\n";
@@ -49,7 +49,7 @@ void AppendEscape(uint32_t c, std::string& text) {
   }
 }
 
-// How much of its beginning stands in either form as it is: all of nearly every text.
+// The length of the beginning that needs no escapes; for most texts the whole length.
 size_t PlainLength(absl::string_view text, bool quoted) {
   const auto is_plain = [quoted](char c) {
     return c >= ' ' && c <= '~' && !(quoted && (c == '"' || c == '\\'));
@@ -143,7 +143,7 @@ std::string TextLine(Severity severity, absl::string_view message, LogFields fie
 
 }  // namespace
 
-// Infinity and what is no number have no place in JSON.
+// JSON has neither infinity nor NaN.
 LogField::LogField(const char* field, double number)
     : name(field),
       value(std::isfinite(number) ? absl::StrFormat("%.9g", number) : "null"),

@@ -3,9 +3,10 @@
 //   kText  ballpistond: error: message (job=ensembleJobs/1f0c principal=alice)
 //   kJson  {"time":"2026-01-02T03:04:05.678901Z","severity":"ERROR","message":"...","job":"..."}
 //
-// Whatever a client sent may stand in a message or a value: control characters, quotes and bytes
-// that are no UTF-8 are escaped, so that it stays one line and looks like nothing else. Messages
-// and values are cut so that a line is at most kMaxLogLine bytes: a pipe takes that in one piece.
+// Messages and values may contain any bytes that a client sent. Control characters, quotes and
+// invalid UTF-8 are escaped, so that a message stays one line and cannot imitate another line.
+// Messages and values are cut so that a line has at most kMaxLogLine bytes, which a pipe accepts in
+// one piece.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_LOG_LINE_H_
 
@@ -35,7 +36,7 @@ struct LogField {
 
 using LogFields = std::initializer_list<LogField>;
 
-// With the line's end.
+// The result ends with a newline.
 std::string LogLine(LogFormat format, absl::Time now, Severity severity, absl::string_view message,
                     LogFields fields);
 

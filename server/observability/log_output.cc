@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kPatienceMilliseconds = 100;
 
-// What a pipe says it has room for, it takes without waiting; a socket has to be asked not to wait.
+// Writes without waiting. A pipe does not block for the bytes that it has room for; a socket needs
+// MSG_DONTWAIT.
 ssize_t WriteSome(int descriptor, absl::string_view bytes) {
   const ssize_t sent = send(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent >= 0 || errno != ENOTSOCK) return sent;

@@ -1,8 +1,8 @@
-// Where the log goes: a descriptor that somebody else reads, or does not.
+// Writes the log to a descriptor, whose reader may be slow or gone.
 //
-// A reader that is slow is waited for, 100 ms at most; one that takes nothing any more costs the
-// lines, not the server: they are counted, and the number stands before the next line that is
-// taken. The same if the descriptor is closed or its disk is full. Thread-safe.
+// A write waits at most 100 ms for a slow reader. If the reader takes nothing, the line is dropped
+// and counted, and the server goes on. The number of dropped lines is written before the next line.
+// The same holds if the descriptor is closed or its disk is full. Thread-safe.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_LOG_OUTPUT_H_
 
@@ -19,8 +19,8 @@ class LogOutput {
  public:
   explicit LogOutput(int descriptor) : descriptor_(descriptor) {}
 
-  // The line has its end, and at most kMaxLogLine bytes (log_line.h). `loss` makes one that says
-  // how many were lost.
+  // `line` ends with a newline and has at most kMaxLogLine bytes (log_line.h). `loss` makes a line
+  // that gives the number of dropped lines.
   void Write(absl::string_view line, absl::FunctionRef<std::string(int64_t lost)> loss);
 
  private:
@@ -29,9 +29,9 @@ class LogOutput {
   bool AwaitRoom() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const int descriptor_;
-  Mutex mutex_;  // lines taken in pieces are not mixed
+  Mutex mutex_;  // also keeps the pieces of different lines apart
   bool stalled_ ABSL_GUARDED_BY(mutex_) = false;
-  bool torn_ ABSL_GUARDED_BY(mutex_) = false;  // a line without its end was written
+  bool torn_ ABSL_GUARDED_BY(mutex_) = false;  // the last line was written only in part
   int64_t lost_ ABSL_GUARDED_BY(mutex_) = 0;
 };
 

@@ -39,15 +39,15 @@ class Page {
 double SinceEpoch(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
 
 void AddServer(const ServerSnapshot& server, Page& page) {
-  page.Gauge("ballpiston_build_info", "Of this program; always 1.", 1,
+  page.Gauge("ballpiston_build_info", "Versions of this program; always 1.", 1,
              {{"version", server.version}, {"engine_version", server.engine_version}});
-  page.Gauge("ballpiston_start_time_seconds", "When the server started, since 1970.",
+  page.Gauge("ballpiston_start_time_seconds", "Start time of the server, in seconds since 1970.",
              SinceEpoch(server.start_time));
   page.Gauge("ballpiston_draining", "1 while the server is stopping.", server.draining);
-  page.Gauge("ballpiston_streams", "Open watches.", server.streams);
+  page.Gauge("ballpiston_streams", "Open watches and traces.", server.streams);
   if (server.certificate_expiry) {
     page.Gauge("ballpiston_certificate_expiry_timestamp_seconds",
-               "Until when the server's certificate is valid, since 1970.",
+               "Expiry of the server's certificate, in seconds since 1970.",
                SinceEpoch(*server.certificate_expiry));
   }
 }
@@ -68,23 +68,26 @@ void AddJobs(const ServerSnapshot& server, Page& page) {
 
 void AddWork(const ServerSnapshot& server, Page& page) {
   page.Gauge("ballpiston_workers", "Threads that compute.", server.workers);
-  page.Gauge("ballpiston_busy_workers", "Those that compute now.", server.busy_workers);
-  page.Counter("ballpiston_blocks_computed_total", "Blocks of samples.", server.blocks_computed);
-  page.Counter("ballpiston_samples_computed_total", "Samples in them.", server.samples_computed);
+  page.Gauge("ballpiston_busy_workers", "Threads that compute now.", server.busy_workers);
+  page.Counter("ballpiston_blocks_computed_total", "Computed blocks of samples.",
+               server.blocks_computed);
+  page.Counter("ballpiston_samples_computed_total", "Computed samples.", server.samples_computed);
   page.Counter("ballpiston_processor_seconds_total", "Processor time of threads and cluster.",
                server.processor_seconds);
 }
 
 void AddStore(const ServerSnapshot& server, Page& page) {
   page.Gauge("ballpiston_store_bytes", "The store on disk, its log included.", server.store_bytes);
-  page.Counter("ballpiston_store_commits_total", "Groups of writes on disk.", server.store_commits);
+  page.Counter("ballpiston_store_commits_total", "Committed groups of writes.",
+               server.store_commits);
   page.Counter("ballpiston_store_checkpoints_written_total",
-               "Checkpoints of unfinished points on disk.", server.store_checkpoints_written);
-  page.Gauge("ballpiston_store_pending_writes", "What waits to be written.",
-             server.store_pending_writes);
+               "Checkpoints of unfinished points that were written.",
+               server.store_checkpoints_written);
+  page.Gauge("ballpiston_store_pending_writes", "Writes that wait.", server.store_pending_writes);
   page.Gauge("ballpiston_expiring_jobs", "Jobs whose results expire within a week.",
              server.expiring_jobs);
-  page.Gauge("ballpiston_store_failing", "1 while the disk refuses writes.", server.store_failing);
+  page.Gauge("ballpiston_store_failing", "1 while the disk rejects writes or hangs.",
+             server.store_failing);
 }
 
 void AddPrincipals(const ServerSnapshot& server, Page& page) {
@@ -92,9 +95,9 @@ void AddPrincipals(const ServerSnapshot& server, Page& page) {
   for (size_t i = 0; i < count; ++i) {
     const PrincipalSnapshot& of_one = server.principals[i];
     const Labels labels = {{"principal", of_one.principal}};
-    page.Gauge("ballpiston_principal_stored_jobs", "Jobs, ended ones included.", of_one.stored_jobs,
-               labels);
-    page.Gauge("ballpiston_principal_stored_bytes", "Of specifications and results.",
+    page.Gauge("ballpiston_principal_stored_jobs", "Stored jobs, including ended ones.",
+               of_one.stored_jobs, labels);
+    page.Gauge("ballpiston_principal_stored_bytes", "Bytes of stored specifications and results.",
                of_one.stored_bytes, labels);
     page.Gauge("ballpiston_principal_processor_seconds",
                "Processor time in the last 30 days, which counts for the quota.",

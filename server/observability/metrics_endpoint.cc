@@ -25,7 +25,8 @@ absl::StatusOr<ListenAddress> ParseLoopback(const std::string& text) {
         "localhost (metrics are not encrypted; let others reach them through a proxy or a "
         "tunnel)"));
   }
-  if (address->host == "localhost") address->host = "127.0.0.1";  // the HTTP server takes no names
+  if (address->host == "localhost")
+    address->host = "127.0.0.1";  // the HTTP server accepts no names
   return address;
 }
 
@@ -58,7 +59,7 @@ class Collector : public prometheus::Collectable {
  public:
   explicit Collector(MetricsEndpoint::Source source) : source_(std::move(source)) {}
 
-  // The HTTP server that calls this is written in C: no exception may pass through it.
+  // The HTTP server that calls this is written in C, so no exception may leave this function.
   std::vector<prometheus::MetricFamily> Collect() const override try {
     return source_();
   } catch (const std::exception&) {
@@ -77,7 +78,7 @@ absl::StatusOr<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::Start(const st
   if (!parsed.ok()) return parsed.status();
   try {
     return std::unique_ptr<MetricsEndpoint>(new MetricsEndpoint(*parsed, std::move(source)));
-  } catch (const std::exception&) {  // its words help nobody
+  } catch (const std::exception&) {  // the page is served without these metrics
     return absl::FailedPreconditionError(
         absl::StrCat("--metrics-listen=", address,
                      ": cannot listen there (in use, or not permitted); choose another address"));

@@ -30,16 +30,16 @@ class MetricsEndpoint {
  public:
   using Source = std::function<std::vector<prometheus::MetricFamily>()>;
 
-  // HOST:PORT, with a HOST in 127.0.0.0/8, [::1] or localhost; port 0: any that is free. A thread
-  // of the HTTP server calls `source` for each request, one thread at a time.
-  //   INVALID_ARGUMENT     the address is none of these
-  //   FAILED_PRECONDITION  nobody can listen there
+  // `address` is HOST:PORT with a HOST in 127.0.0.0/8, [::1] or localhost; port 0: any free port. A
+  // thread of the HTTP server calls `source` for each request, one thread at a time.
+  //   INVALID_ARGUMENT     any other address
+  //   FAILED_PRECONDITION  the server cannot listen at the address
   static absl::StatusOr<std::unique_ptr<MetricsEndpoint>> Start(const std::string& address,
                                                                 Source source);
   // Waits for a request that is not complete, at most kRequestTimeout.
   ~MetricsEndpoint();
 
-  std::string address() const { return address_.Text(); }  // with the port that was chosen
+  std::string address() const { return address_.Text(); }  // with the port in use
 
   // Waits for a call of the source to return. The source is not called again; later requests get
   // the page without its metrics.

@@ -1,4 +1,4 @@
-// What the server is doing, in numbers, at one moment.
+// The server's counts at one moment.
 #ifndef BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
 #define BALLPISTON_SERVER_OBSERVABILITY_SERVER_SNAPSHOT_H_
 
@@ -31,7 +31,7 @@ struct ServerSnapshot {
   int64_t queued_jobs = 0;
   int64_t running_jobs = 0;
   int64_t cancelling_jobs = 0;
-  // Those that ended since the start.
+  // Jobs that ended since the start.
   uint64_t jobs_succeeded = 0;
   uint64_t jobs_failed = 0;
   uint64_t jobs_cancelled = 0;

@@ -8,7 +8,7 @@ namespace {
 constexpr uint32_t kReplacement = 0xFFFD;
 constexpr absl::string_view kReplacementBytes = "\xEF\xBF\xBD";
 
-// How many bytes a character has that begins with this one; 0: none begins so.
+// The number of bytes of a character with this first byte; 0 if no character begins with it.
 size_t Length(uint32_t first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;
@@ -19,7 +19,7 @@ size_t Length(uint32_t first) {
 
 uint32_t Byte(absl::string_view text, size_t i) { return static_cast<unsigned char>(text[i]); }
 
-// The code of the character, if its bytes are one.
+// Sets the code of the character. False if the bytes are not a character.
 bool Decode(absl::string_view bytes, uint32_t& code) {
   constexpr uint32_t kFirstMask[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
   constexpr uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};

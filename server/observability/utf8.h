@@ -13,8 +13,9 @@ struct Utf8Character {
   absl::string_view bytes;  // valid UTF-8
 };
 
-// Takes the first character off the text, which is not empty. A byte that begins none (cut short,
-// overlong, a surrogate, beyond U+10FFFF) counts as one character, U+FFFD.
+// Removes the first character from the text, which must not be empty. A byte that does not begin a
+// valid character (cut short, overlong, a surrogate, beyond U+10FFFF) counts as the character
+// U+FFFD.
 Utf8Character TakeUtf8(absl::string_view& text);
 
 }  // namespace ballpiston::server

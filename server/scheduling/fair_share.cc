@@ -40,7 +40,7 @@ void FairShare::ChangePrincipal(const std::string& principal, Change change) {
   order_.insert({time.Charge(), principal});
 }
 
-// ---- who is there ----
+// ---- principals and runs ----
 
 FairShare::Principals::iterator FairShare::Enter(const std::string& name) {
   const auto [principal, is_new] = principals_.try_emplace(name);
@@ -57,7 +57,7 @@ void FairShare::Leave(Principals::iterator principal) {
   const double charge = principal->second.time.Charge();
   order_.erase({charge, principal->first});
   if (charge > LeastCharge()) ahead_[principal->first] = charge;
-  if (order_.empty()) ahead_.clear();  // nobody is left to be ahead of
+  if (order_.empty()) ahead_.clear();  // no other principal is present to compare with
   principals_.erase(principal);
 }
 
@@ -83,7 +83,7 @@ void FairShare::Remove(int64_t run) {
   if (removed.principal->second.turns.empty()) Leave(removed.principal);
 }
 
-// ---- what they use ----
+// ---- used time ----
 
 // First finds all, then raises one after the other, because rounding may leave a raised charge just
 // below the mark.

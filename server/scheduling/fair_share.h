@@ -14,16 +14,15 @@
 //
 // A choice takes the time of a look-up, plus the time to skip runs without a task. For the threads
 // there are no more such runs than threads, because threads hold all work of such a run. For an
-// executor elsewhere every small run is one. Properties, each with a test of
-// its name:
+// executor elsewhere every small run is such a run. Properties, each with a test of its name:
 //   1. UnequalBlocksGetEqualTime.
 //   2. PrincipalsGetEqualTimeWhateverTheirJobs.
 //   3. AHigherPriorityGoesFirstWithinItsPrincipal.
 //   4. APriorityDoesNotTakeFromOtherPrincipals.
-//   5. ANewPrincipalNeitherWaitsNorStarves.
-//   6. ANewRunStartsAtTheLeastOfThosePresent.
-//   7. TimeThatCouldNotBeUsedIsNotOwed.
-//   8. APrincipalThatComesBackIsAsFarAhead.
+//   5. ANewPrincipalGetsItsShareAtOnce.
+//   6. ANewRunStartsAtTheLeastCharge.
+//   7. UnusedTimeGivesNoCredit.
+//   8. AReturningPrincipalKeepsItsLead.
 // Not thread-safe.
 #ifndef BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
 #define BALLPISTON_SERVER_SCHEDULING_FAIR_SHARE_H_
@@ -72,7 +71,7 @@ class FairShare {
   };
 
   struct Place {
-    int64_t rank = 0;  // the higher the priority, the less
+    int64_t rank = 0;  // a higher priority has a smaller rank
     double charge = 0;
     int64_t run = 0;
 

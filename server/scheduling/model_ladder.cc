@@ -23,10 +23,10 @@
 namespace ballpiston::server {
 namespace {
 
-// Any pair will do.
+// An arbitrary pair.
 constexpr double kAnyRho = 0.53, kAnyDelta = 0.1;
 
-// What `run` takes when nothing of it is in the processor's caches: the median of a few.
+// The time of `run` with cold processor caches: the median of a few runs.
 template <typename Run>
 double SecondsOfAFirst(const Run& run) {
   constexpr size_t kTurns = 5;
@@ -46,8 +46,8 @@ void RemoveStore(const std::string& path) {
   for (const char* suffix : {"", "-wal", "-shm"}) unlink((path + suffix).c_str());
 }
 
-// What a store needs for one of many results like this, with its commits, by the clock: the disk's
-// time counts. 0 if the store cannot be made.
+// The wall-clock time to store one of many results like this one, including commits and the disk's
+// time. 0 if the store cannot be made.
 double SecondsToStore(const std::string& path, PointRow row) {
   using Clock = std::chrono::steady_clock;
   constexpr int64_t kResults = 3000;
@@ -61,7 +61,7 @@ double SecondsToStore(const std::string& path, PointRow row) {
     (*store)->RecordResult(1, row, [](int64_t) {});
   }
   if (!(*store)->Flush().ok()) return 0;
-  store->reset();  // folds the log into the database
+  store->reset();  // copies the log into the database
   return std::chrono::duration<double>(Clock::now() - begin).count() / kResults;
 }
 
@@ -92,7 +92,7 @@ void ModelLadder::Measure() {
 }
 
 PointRow ModelLadder::Serve(const EnsembleSpec& spec) {
-  ThreadSeconds();  // a worker looks at the clock twice
+  ThreadSeconds();  // a worker reads the clock twice
   const OpenedPoint opened = Open(spec, 0);
   const auto& experiment = *std::get<std::unique_ptr<const PointExperiment>>(opened);
   const PointSummary summary = experiment.Summarize(BlockResult());
@@ -111,7 +111,7 @@ OpenedPoint ModelLadder::Open(const EnsembleSpec& spec, size_t index) {
     if (!known) needed = place;
     return known;
   };
-  // Only a budget is weighed with the machine's own rates.
+  // Only a choice with a budget needs the machine's own rates.
   const Machine unmeasured = {MachineRates(), workers_};
   const Machine& rates = spec.target.budget_seconds ? machine() : unmeasured;
   std::optional<Answer> answer = ChooseAnswer(spec, PointAt(spec, index), rates, pilots);

@@ -6,14 +6,14 @@
 namespace ballpiston::server {
 namespace {
 
-// An attempt ends without a result if the machine is lost or the time limit is too short. After so
-// many a chunk is computed here.
+// An attempt ends without a result if the machine is lost or the time limit is too short. After
+// this many attempts this server computes the chunk.
 constexpr int kMostAttemptsElsewhere = 5;
 // Open points of a run that wait for executors elsewhere; each takes some 50 kB.
 constexpr size_t kMostOpenPoints = 2000;
 
-// Points that one lease opens: those that are finished by that, some 3 to 100 us each; and those
-// that may have to wait for executors elsewhere.
+// Points that one lease opens. kCheapPoints: if opening a point finishes it, in some 3 to 100 us.
+// The other: if points may wait for executors elsewhere.
 constexpr size_t kCheapPoints = 128;
 constexpr size_t kPointsForElsewhere = 32;
 
@@ -83,7 +83,7 @@ std::optional<Lease> Run::NextChunks(const Capacity& capacity, const ExecutorTra
       lease->point = *next;
       return Completed(*std::move(lease));
     }
-    // For an executor elsewhere there may be none although a local one has some.
+    // The point may have chunks for a local executor, although it has none for this one.
     next = executor.local ? leasable_.erase(next) : std::next(next);
   }
   return std::nullopt;

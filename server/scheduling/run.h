@@ -87,7 +87,7 @@ class Run {
   // A lease of an earlier process; false if its point is finished.
   bool Adopt(const Lease& lease);
   void ForgetAdopted(size_t point) { unopened_.erase(point); }
-  // Its leases were adopted, and it is not open yet.
+  // Whether the point has adopted leases and is not open yet.
   bool IsUnopened(size_t point) const { return unopened_.contains(point); }
 
   // Chunks of the lease that are still needed go out again, as this attempt.

@@ -83,7 +83,7 @@ void Scheduler::Add(RunRequest request) {
     }
   }
   WakeExecutors();
-  Conclude(run);  // it may have nothing left to compute
+  Conclude(run);  // the run may have nothing left to compute
 }
 
 void Scheduler::Stop(int64_t key, absl::Status why) {
@@ -124,15 +124,17 @@ void Scheduler::StopRun(Run& run, absl::Status why) {
   for (const PilotPlace& place : left) EndPilot(run, place);
 }
 
-// Runs that wait for the pilot open their points again; the first of them may begin it anew.
+// Runs that wait for the pilot open their points again; the first of them may start the pilot
+// again.
 void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
   const auto found = pilots_.find(place);
-  if (found == pilots_.end() || found->second != owner.key()) return;  // another has taken it over
+  if (found == pilots_.end() || found->second != owner.key())
+    return;  // another run has taken the pilot over
   pilots_.erase(found);
   for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
 }
 
-// Ends their turns, if they are of an executor elsewhere.
+// Also ends the run's turns at leases of executors elsewhere.
 template <typename IsDropped>
 void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
   for (size_t i = 0; i < executors_.size(); ++i) {
@@ -348,7 +350,7 @@ absl::Status Scheduler::AwaitPilot(Run& run, size_t index, const PilotPlace& pla
     MutexLock lock(mutex_);
     EndPilot(run, place);
   };
-  // It may have become known before this run took it on.
+  // The pilot's result may have become known before this run took the pilot over.
   if (!std::holds_alternative<PilotPlace>(opener_.Open(run.spec(), index))) return absl::OkStatus();
   auto pilot = std::make_unique<OpenPoint>(opener_.OpenPilot(place));
   std::move(give_up).Cancel();
@@ -482,7 +484,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
     MutexLock lock(mutex_);
     open = run->Find(lease);
   }
-  // A finished merge changes no more, and only this thread closes the point.
+  // A finished merge does not change, and only this thread closes the point.
   absl::Status told = Guarded(lease.point, [&] {
     const BlockResult merged = open->fold().Merged();
     if (lease.pilot) {
@@ -504,7 +506,7 @@ void Scheduler::FinishPoint(const RunPointer& run, const Lease& lease) {
   Conclude(run);
 }
 
-// ---- for those who watch ----
+// ---- for watches ----
 
 std::vector<LivePoint> Scheduler::ChangedSince(int64_t key, uint64_t version, size_t limit) const {
   std::vector<LivePoint> changed;

@@ -88,7 +88,7 @@ class Scheduler {
   void Open(const Lease& lease);
 
   // Chunks that nobody needs are dropped. Errors, of executors that are not local:
-  //   DATA_LOSS    a chunk is not one of its point; the others are taken
+  //   DATA_LOSS    a chunk does not belong to its point; the others are merged
   //   UNAVAILABLE  the point is not open yet: report again later
   absl::Status Report(const Lease& lease, LeaseReport report);
 
@@ -118,7 +118,7 @@ class Scheduler {
   // The run ends with this status.
   void Fail(const Lease& lease, absl::Status why);
 
-  // ---- for those who watch ----
+  // ---- for watches ----
 
   // Copies of the run's unfinished points that changed after `version`, newest first, at most
   // `limit`.

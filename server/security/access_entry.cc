@@ -23,8 +23,8 @@ absl::Status Wrong(absl::string_view field, absl::string_view permitted) {
 
 bool IsBlank(char c) { return absl::ascii_isspace(static_cast<unsigned char>(c)); }
 
-// Takes the first word off the line; in double quotes it may hold blanks. Empty at the end, and
-// at a comment.
+// Removes the first word from the line. A word in double quotes may contain blanks. Empty at the
+// end of the line and at a comment.
 absl::StatusOr<absl::string_view> TakeWord(absl::string_view& line) {
   line = absl::StripLeadingAsciiWhitespace(line);
   if (line.empty() || line[0] == '#') return absl::string_view();
@@ -33,7 +33,7 @@ absl::StatusOr<absl::string_view> TakeWord(absl::string_view& line) {
   const auto size =
       static_cast<size_t>(std::find_if(line.begin(), line.end(), ends) - line.begin());
   if (quoted && (size == 0 || size == line.size())) {
-    return Wrong("a quotation mark lacks its other half or its content", "\"WORDS\"");
+    return Wrong("a quotation mark is missing, or the quotes are empty", "\"WORDS\"");
   }
   const absl::string_view word = line.substr(0, size);
   line.remove_prefix(size + (quoted ? 1 : 0));
@@ -55,7 +55,8 @@ absl::StatusOr<decltype(AccessEntry::credential)> ParseCredential(absl::string_v
   if (kind == "token") {
     const auto hash = absl::ConsumePrefix(&text, kHashPrefix) ? ParseTokenHash(text) : std::nullopt;
     if (hash) return *hash;
-    return Wrong("the token is not given as its SHA-256", "sha256: and 64 hexadecimal digits");
+    return Wrong("the second word is not the SHA-256 of a token",
+                 "sha256: and 64 hexadecimal digits");
   }
   if (kind != "certificate" && kind != "user") {
     return Wrong("the first word is not a kind of credential", "token, certificate, user");
@@ -71,7 +72,7 @@ std::string Text(const TokenHash& hash) { return absl::StrCat("token ", kHashPre
 std::string Text(const CommonName& name) { return absl::StrCat("certificate \"", name.text, "\""); }
 std::string Text(const UnixUser& user) { return absl::StrCat("user \"", user.name, "\""); }
 
-// A time, or a date. Abseil would also take "infinite-future".
+// A time or a date. Abseil would also accept "infinite-future".
 absl::StatusOr<absl::Time> ParseExpiry(absl::string_view text) {
   absl::Time time;
   std::string ignored;
@@ -80,7 +81,8 @@ absl::StatusOr<absl::Time> ParseExpiry(absl::string_view text) {
                   absl::ParseTime("%Y-%m-%d", text, absl::UTCTimeZone(), &time, &ignored))) {
     return time;
   }
-  return Wrong("the time of expiry is none", "2027-01-31T12:00:00Z, 2027-01-31, or nothing");
+  return Wrong("the time of expiry is not a time or a date",
+               "2027-01-31T12:00:00Z, 2027-01-31, or nothing");
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ absl::Status CheckPrincipalName(absl::string_view name) {
       std::all_of(name.begin(), name.end(), permitted)) {
     return absl::OkStatus();
   }
-  return Wrong("the principal's name is not one",
+  return Wrong("the name of the principal is invalid",
                absl::StrCat("1 to ", kLongestName, " of a-z, A-Z, 0-9, '.', '_', '@' and '-', not ",
                             LocalPrincipal().name));
 }

@@ -1,4 +1,4 @@
-// One line of an access file: a credential, whose it is, and until when.
+// One line of an access file: a credential, its principal and role, and its time of expiry.
 //
 //   token sha256:HEX PRINCIPAL ROLE [EXPIRES]
 //   certificate COMMON_NAME PRINCIPAL ROLE [EXPIRES]
@@ -6,14 +6,14 @@
 //
 //   HEX          64 hexadecimal digits: the SHA-256 of a token
 //   COMMON_NAME  of a client's certificate; in double quotes if it holds blanks
-//   UNIX_USER    the name of a user of this machine, at a Unix socket that is open to others
-//   PRINCIPAL    1 to 64 of a-z, A-Z, 0-9, '.', '_', '@' and '-', and not `local`, which is whoever
-//                comes over a Unix socket
+//   UNIX_USER    the name of a user of this machine, at a Unix socket that is open to other users
+//   PRINCIPAL    1 to 64 of a-z, A-Z, 0-9, '.', '_', '@' and '-', but not `local`, the principal of
+//                local connections (principal.h)
 //   ROLE         read | submit | admin (principal.h)
-//   EXPIRES      2027-01-31T12:00:00Z, or a date, which is its 00:00 UTC; refused from then on
+//   EXPIRES      2027-01-31T12:00:00Z, or a date, which means 00:00 UTC; rejected from then on
 //
-// An error names the field and what is permitted, never what was found: whoever mixed up two fields
-// may have written a token where something harmless belongs. Pure functions.
+// An error names the field and the permitted values, but does not quote the line: if the operator
+// mixed up two fields, any field may contain a token. Pure functions.
 #ifndef BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
 #define BALLPISTON_SERVER_SECURITY_ACCESS_ENTRY_H_
 
@@ -46,13 +46,14 @@ struct AccessEntry {
   absl::Time expires = absl::InfiniteFuture();
 };
 
-// Nothing for a line that is empty or a comment (what follows a word that begins with '#').
+// Empty for a line that is empty or only a comment. A comment begins with a word that begins with
+// '#'.
 absl::StatusOr<std::optional<AccessEntry>> ParseAccessEntry(absl::string_view line);
 
-// The line, without its end, that is read as `entry`.
+// The line of `entry`, without a newline.
 std::string FormatAccessEntry(const AccessEntry& entry);
 
-// INVALID_ARGUMENT tells what is permitted.
+// INVALID_ARGUMENT says what is permitted.
 absl::Status CheckPrincipalName(absl::string_view name);
 absl::StatusOr<Role> ParseRole(absl::string_view text);
 

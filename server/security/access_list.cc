@@ -39,7 +39,9 @@ absl::StatusOr<AccessList> AccessList::Parse(const NamedFile& file, absl::string
     const auto entry = ParseAccessEntry(line);
     if (!entry.ok()) return AtLine(file, number, entry.status().message());
     if (*entry && !list.Add(**entry)) {
-      return AtLine(file, number, "the credential is that of an earlier line; permitted: one each");
+      return AtLine(
+          file, number,
+          "the credential is already in an earlier line; permitted: one line for each credential");
     }
   }
   return list;
@@ -59,7 +61,8 @@ absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Tim
   if (token.empty() || token.size() > kLongestToken) return CredentialsInvalid();
   const TokenHash hash = HashOf(token);
   const Holder* found = nullptr;
-  for (const auto& [known, holder] : tokens_) {  // all of them: no early end to be timed
+  for (const auto& [known, holder] :
+       tokens_) {  // always compares all, so that the time tells nothing
     if (known == hash) found = &holder;
   }
   if (found == nullptr) return CredentialsInvalid();

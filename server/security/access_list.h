@@ -1,7 +1,7 @@
-// Who may come in: the entries of an access file, `#` comments and empty lines aside
-// (access_entry.h tells what a line holds).
+// The entries of an access file, without comments and empty lines (access_entry.h describes a
+// line).
 //
-// Immutable, thus thread-safe; a changed file is a new list.
+// Immutable, and therefore thread-safe. A changed file gives a new list.
 #ifndef BALLPISTON_SERVER_SECURITY_ACCESS_LIST_H_
 #define BALLPISTON_SERVER_SECURITY_ACCESS_LIST_H_
 
@@ -19,13 +19,14 @@
 
 namespace ballpiston::server {
 
-// More than any server makes (new_token.h). What is longer is refused unread.
+// Longer than every token that a server makes (new_token.h). Longer tokens are rejected without a
+// look-up.
 inline constexpr size_t kLongestToken = 256;
 
 class AccessList {
  public:
-  // INVALID_ARGUMENT names flag, file, line and what is permitted, and holds no secret; two entries
-  // of one credential are refused.
+  // INVALID_ARGUMENT names the flag, the file, the line and the permitted values, and contains no
+  // secret. Two entries with the same credential are an error.
   static absl::StatusOr<AccessList> Read(const NamedFile& file);
   static absl::StatusOr<AccessList> Parse(const NamedFile& file, absl::string_view text);
 
@@ -34,12 +35,12 @@ class AccessList {
   bool has_certificates() const { return !certificates_.empty(); }
   bool has_users() const { return !users_.empty(); }
 
-  // UNAUTHENTICATED, reason CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. How long it takes does not
-  // depend on which entry the token is close to: its hash is compared with every one.
+  // UNAUTHENTICATED, reason CREDENTIALS_INVALID or CREDENTIALS_EXPIRED. The token's hash is
+  // compared with every entry, so the time does not tell which entry is similar.
   absl::StatusOr<Principal> OfToken(absl::string_view token, absl::Time now) const;
-  // The certificate has to have been verified already.
+  // The caller must have verified the certificate.
   absl::StatusOr<Principal> OfCertificate(absl::string_view common_name, absl::Time now) const;
-  // The kernel has to have named the user.
+  // The name must come from the kernel (peer_user.h).
   absl::StatusOr<Principal> OfUser(const std::string& name, absl::Time now) const;
 
  private:
@@ -53,7 +54,7 @@ class AccessList {
   static absl::StatusOr<Principal> Unexpired(const Holder& holder, absl::Time now);
   template <typename Credential>
   static const Holder* Find(const Held<Credential>& held, const Credential& credential);
-  bool Add(const AccessEntry& entry);  // false if the credential is there already
+  bool Add(const AccessEntry& entry);  // false if the list already has the credential
   Held<TokenHash>& HeldAs(const TokenHash&) { return tokens_; }
   Held<CommonName>& HeldAs(const CommonName&) { return certificates_; }
   Held<UnixUser>& HeldAs(const UnixUser&) { return users_; }

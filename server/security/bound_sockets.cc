@@ -17,7 +17,7 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr int kWaiting = 1024;  // connections the kernel keeps for us
+constexpr int kWaiting = 1024;  // connections in the kernel's queue
 // For a port that is free at the first of several addresses and taken at another.
 constexpr int kAttempts = 20;
 
@@ -47,7 +47,7 @@ struct SocketAddress {
   bool operator==(const SocketAddress& other) const {
     return size == other.size && std::memcmp(&storage, &other.storage, size) == 0;
   }
-  // Of either kind, they stand first in the same place.
+  // IPv4 and IPv6 addresses have the port at the same place.
   in_port_t& port() { return reinterpret_cast<sockaddr_in*>(&storage)->sin_port; }
   bool IsEvery() const {
     if (storage.ss_family == AF_INET) {
@@ -57,7 +57,7 @@ struct SocketAddress {
   }
 };
 
-// Each once, and empty if the host is not known.
+// The addresses of the host, without duplicates. Empty if the host is not known.
 std::vector<SocketAddress> AddressesOf(const ListenAddress& address) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -76,7 +76,7 @@ std::vector<SocketAddress> AddressesOf(const ListenAddress& address) {
   return all;
 }
 
-// Of IPv6, whose socket takes IPv4 too, or of IPv4 alone.
+// The address of IPv6, whose socket also accepts IPv4, or of IPv4.
 SocketAddress EveryAddress(sa_family_t family, int port) {
   SocketAddress every;  // zeros: every address of either kind
   every.storage.ss_family = family;
@@ -85,7 +85,7 @@ SocketAddress EveryAddress(sa_family_t family, int port) {
   return every;
 }
 
-// Negative, with errno, if one cannot listen there.
+// A listening socket. Negative, with errno, on an error.
 int ListenAt(SocketAddress& address) {
   const int type = SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK;
   const int descriptor = socket(address.storage.ss_family, type, 0);
@@ -113,7 +113,7 @@ bool IsNotOfThisMachine(int error) { return error == EADDRNOTAVAIL || error == E
 
 struct Listening {
   std::vector<int> descriptors;
-  int error = 0;  // why there is none
+  int error = 0;  // why there is no socket
 
   void Fail(int why) {
     for (const int descriptor : std::exchange(descriptors, {})) close(descriptor);
@@ -121,7 +121,7 @@ struct Listening {
   }
 };
 
-// At each of them that this machine has, all at the port of the first.
+// Listens at each address that this machine has, all at the port of the first.
 Listening ListenAtAll(std::vector<SocketAddress> addresses) {
   Listening all;
   int missing = EADDRNOTAVAIL;
@@ -143,7 +143,7 @@ Listening ListenAtAll(std::vector<SocketAddress> addresses) {
   return all;
 }
 
-// A machine without IPv6 has IPv4 alone.
+// On a machine without IPv6, uses IPv4.
 Listening ListenEverywhere(int port) {
   Listening both = ListenAtAll({EveryAddress(AF_INET6, port)});
   return IsNotOfThisMachine(both.error) ? ListenAtAll({EveryAddress(AF_INET, port)}) : both;
@@ -171,7 +171,7 @@ BoundSockets::BoundSockets(BoundSockets&& other) noexcept
       device_(other.device_),
       inode_(other.inode_) {}
 
-// Nobody can connect before the file has its mode, because the socket listens only after that.
+// The socket listens only after the file has its mode, so no user can connect before.
 absl::Status BoundSockets::BindPath(const ListenAddress& address, const SocketAccess& access) {
   const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   struct stat made {};
@@ -201,7 +201,7 @@ absl::Status BoundSockets::BindHost(const ListenAddress& address) {
   return absl::OkStatus();
 }
 
-// The file goes first: as long as the socket is open no other file can have its number.
+// Removes the file first: while the socket is open, no other file can have its inode number.
 void BoundSockets::Close() {
   struct stat found {};
   if (!path_.empty() && lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ &&

@@ -1,11 +1,11 @@
 // Sockets that listen at an address: a Unix socket, or one for each address that a HOST stands for,
-// all at one port. Connections wait with the kernel until somebody accepts them.
+// all at one port. The kernel queues connections until they are accepted.
 //
 // The file of a Unix socket has mode 0600 from the moment it exists until it gets the group and the
-// mode that are asked for. It is removed at the end if it is still the one that was made here,
-// because another server may have put its own there meanwhile. No other process can share the port.
-// gRPC gives such a file the mode of the umask, and removes it even if it is another server's
-// (socket_listener.h tells why gRPC and systemd do not listen here).
+// mode that are asked for. Close removes the file only if it is still the same file, because
+// another server may have replaced it. No other process can share the port. gRPC gives such a file
+// the mode of the umask, and removes it even if it is another server's (socket_listener.h tells why
+// gRPC and systemd do not listen here).
 #ifndef BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 #define BALLPISTON_SERVER_SECURITY_BOUND_SOCKETS_H_
 
@@ -32,10 +32,10 @@ class BoundSockets {
   BoundSockets& operator=(BoundSockets&& other) = delete;
   ~BoundSockets() { Close(); }
 
-  const std::vector<int>& descriptors() const { return descriptors_; }  // which do not block
+  const std::vector<int>& descriptors() const { return descriptors_; }  // non-blocking
   int port() const { return port_; }                                    // 0: a Unix socket
 
-  void Close();  // any number of times
+  void Close();  // may be called more than once
 
  private:
   BoundSockets() = default;
@@ -45,7 +45,7 @@ class BoundSockets {
 
   std::vector<int> descriptors_;
   int port_ = 0;
-  std::string path_;  // of the file made here; empty: none
+  std::string path_;  // of the socket's file; empty: none
   dev_t device_ = 0;
   ino_t inode_ = 0;
 };

@@ -30,11 +30,11 @@ absl::Status WrongRequest(absl::string_view why) {
                                                  " (write PRINCIPAL:ROLE or PRINCIPAL:ROLE:DAYS)"));
 }
 
-// The prefix tells people, and programs that look for secrets, what this is.
+// The prefix shows people and secret scanners that the text is a token of this server.
 absl::StatusOr<std::string> RandomToken() {
   std::array<unsigned char, 32> bits;
   if (RAND_bytes(bits.data(), static_cast<int>(bits.size())) != 1) {
-    return absl::InternalError("the system gives no random numbers");
+    return absl::InternalError("the system cannot provide random numbers");
   }
   std::string text;
   absl::WebSafeBase64Escape({reinterpret_cast<const char*>(bits.data()), bits.size()}, &text);
@@ -46,7 +46,7 @@ absl::Status Failed(const NamedFile& file, const char* what) {
       absl::StrCat(file.Text(), ": cannot be ", what, ": ", std::strerror(errno)));
 }
 
-// All of it, on disk; or false, with the reason in errno.
+// Writes the whole text to disk. False on an error, which is in errno.
 bool WriteAll(int descriptor, absl::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(descriptor, text.data(), text.size());
@@ -56,17 +56,17 @@ bool WriteAll(int descriptor, absl::string_view text) {
   return fsync(descriptor) == 0;
 }
 
-// Half a line would make the whole file one that nobody reads: what cannot be written whole (the
-// disk is full) is taken back.
+// An incomplete line would make the whole file invalid. So if the line cannot be written completely
+// (the disk is full), its part is removed.
 absl::Status WriteAllOrNothing(const NamedFile& file, int descriptor, const std::string& text) {
   const off_t length = lseek(descriptor, 0, SEEK_END);
   if (length < 0) return Failed(file, "written to");
   if (WriteAll(descriptor, text)) return absl::OkStatus();
   absl::Status failed = Failed(file, "written to");
   if (ftruncate(descriptor, length) == 0 && fsync(descriptor) == 0) return failed;
-  return absl::PermissionDeniedError(absl::StrCat(std::string(failed.message()),
-                                                  "; nor could its end be taken back: cut it to ",
-                                                  length, " bytes"));
+  return absl::PermissionDeniedError(
+      absl::StrCat(std::string(failed.message()),
+                   "; an incomplete line is at its end: truncate the file to ", length, " bytes"));
 }
 
 absl::Status Append(const NamedFile& file, const std::string& line) {
@@ -74,7 +74,7 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   if (descriptor < 0) return Failed(file, "opened");
   const absl::Cleanup closed = [descriptor] { close(descriptor); };
   if (flock(descriptor, LOCK_EX) != 0) return Failed(file, "locked");
-  // Checked under the lock, and after the file was made: now it is there.
+  // Checked under the lock, when the file exists.
   const absl::StatusOr<std::string> text = ReadPrivateFile(file);
   if (!text.ok()) return text.status();
   const absl::StatusOr<AccessList> list = AccessList::Parse(file, *text);
@@ -82,7 +82,7 @@ absl::Status Append(const NamedFile& file, const std::string& line) {
   const bool unended = !text->empty() && text->back() != '\n';
   const std::string added = absl::StrCat(unended ? "\n" : "", line, "\n");
   const absl::Status written = WriteAllOrNothing(file, descriptor, added);
-  // The folder, too: a token that was printed is one that the file has after a power cut.
+  // Flushes the folder too, so that the entry of a printed token survives a power cut.
   return written.ok() ? SyncFolder(FolderOf(file.path)) : written;
 }
 

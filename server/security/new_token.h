@@ -22,9 +22,10 @@ struct TokenRequest {
 // the permitted values.
 absl::StatusOr<TokenRequest> ParseTokenRequest(absl::string_view text);
 
-// Appends the token's entry to the access file, which is made (mode 0600) if there is none, and
-// returns the token. It is on disk then. A file that is not an access file, or open to others, is
-// refused and left as it is; so it is where the disk is full. Several at once take turns.
+// Appends the token's entry to the access file and returns the token when the entry is on disk.
+// Creates the file (mode 0600) if it does not exist. Rejects a file that is not an access file or
+// that other users can read. On an error, also if the disk is full, the file is unchanged.
+// Concurrent calls wait for each other.
 absl::StatusOr<std::string> IssueToken(const NamedFile& file, const TokenRequest& request,
                                        absl::Time now);
 

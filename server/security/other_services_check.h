@@ -1,11 +1,11 @@
-// The door of what gRPC itself serves: reflection, and whatever else is not the project's, needs
-// the same credentials as a call. Two things pass:
+// Authenticates calls of gRPC's own services: reflection, and every other service that is not the
+// project's, needs the same credentials as the project's calls. This check lets two kinds pass:
 //
-//   /grpc.health.v1.Health/...   a probe has no token, and learns only whether the server serves
-//   /ballpiston.v1....           the call's own frame asks the Authenticator, and can say why it
-//                                refuses (a refusal from here has no room for a reason)
+//   /grpc.health.v1.Health/...   probes have no token, and learn only whether the server serves
+//   /ballpiston.v1....           the frame of these calls asks the Authenticator, and its errors
+//                                have a reason (an error from this check cannot have one)
 //
-// Only for encrypted connections: gRPC gives others no such processor. Thread-safe.
+// Only for encrypted connections: gRPC has no such processor for others. Thread-safe.
 #ifndef BALLPISTON_SERVER_SECURITY_OTHER_SERVICES_CHECK_H_
 #define BALLPISTON_SERVER_SECURITY_OTHER_SERVICES_CHECK_H_
 
@@ -17,7 +17,7 @@ namespace ballpiston::server {
 
 class OtherServicesCheck : public grpc::AuthMetadataProcessor {
  public:
-  // `authenticator` has to outlive it.
+  // `authenticator` must outlive this.
   explicit OtherServicesCheck(const Authenticator& authenticator) : authenticator_(authenticator) {}
 
   bool IsBlocking() const override { return false; }
@@ -28,7 +28,7 @@ class OtherServicesCheck : public grpc::AuthMetadataProcessor {
   const Authenticator& authenticator_;
 };
 
-// Whether this check leaves a call of the method, /PACKAGE.SERVICE/METHOD, to others.
+// Whether this check lets calls of the method, /PACKAGE.SERVICE/METHOD, pass.
 bool PassesUnchecked(absl::string_view method);
 
 }  // namespace ballpiston::server

@@ -25,7 +25,7 @@ std::optional<uid_t> PeerUser(int descriptor) {
   ucred peer{};
   socklen_t size = sizeof(peer);
   if (getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return std::nullopt;
-  // What the kernel gives for a socket without such a peer, as of TCP.
+  // The kernel's value for a socket without a Unix peer, such as TCP.
   if (peer.uid == static_cast<uid_t>(-1)) return std::nullopt;
   return peer.uid;
 }

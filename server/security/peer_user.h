@@ -1,4 +1,5 @@
-// Whose process is at the other end of a Unix socket. The kernel tells; it cannot be forged.
+// The user of the process at the other end of a Unix socket. The kernel provides it; clients cannot
+// forge it.
 #ifndef BALLPISTON_SERVER_SECURITY_PEER_USER_H_
 #define BALLPISTON_SERVER_SECURITY_PEER_USER_H_
 
@@ -10,13 +11,13 @@
 
 namespace ballpiston::server {
 
-// The user the peer had when it connected; nothing if the descriptor is not such a socket.
+// The peer's user at the time of the connection; empty if the descriptor is not a Unix socket.
 std::optional<uid_t> PeerUser(int descriptor);
 
-// This process's own, and root, whom no permission keeps out anyway.
+// This process's user, and root, who has access in any case.
 std::set<uid_t> OwnUserAndRoot();
 
-// A peer whose user is not known is nobody's.
+// Whether the peer is permitted. False if its user is not known.
 bool MayConnect(std::optional<uid_t> peer, const std::set<uid_t>& permitted);
 
 // Whether the number stands for one user. If the server runs in a user namespace (PrivateUsers= of
@@ -24,7 +25,7 @@ bool MayConnect(std::optional<uid_t> peer, const std::set<uid_t>& permitted);
 // `nobody`. They must not share their jobs.
 bool StandsForOneUser(std::optional<uid_t> peer);
 
-// The name in the system's list of users; none if the user is not in the list, or if the list
+// The name in the system's list of users; empty if the user is not in the list, or if the list
 // cannot be read now. May wait for a directory service.
 std::optional<std::string> UserName(uid_t user);
 

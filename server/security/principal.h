@@ -1,4 +1,4 @@
-// Who calls, and what that permits. Pure functions.
+// The principal of a call, and its role. Pure functions.
 #ifndef BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
 #define BALLPISTON_SERVER_SECURITY_PRINCIPAL_H_
 
@@ -6,8 +6,8 @@
 
 namespace ballpiston::server {
 
-// Each may do what those before it may: look at what is one's own; make and end jobs; the same with
-// everybody's.
+// Each role includes the previous ones. kRead: read one's own jobs. kSubmit: also create and end
+// them. kAdmin: the same for the jobs of all principals.
 enum class Role { kRead, kSubmit, kAdmin };
 
 struct Principal {

@@ -26,7 +26,7 @@ absl::StatusOr<std::string> ReadAll(const NamedFile& file, int descriptor) {
   return Unusable(file, absl::StrCat("is longer than ", kMaxSecurityFile, " bytes"));
 }
 
-// What is opened is what is checked: nobody can exchange the file in between.
+// Checks the open file, so that nobody can exchange it between check and read.
 absl::StatusOr<std::string> ReadChecked(const NamedFile& file, bool is_private) {
   const int descriptor = open(file.path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
@@ -66,8 +66,8 @@ absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, 
   constexpr mode_t kForOthers = S_IWGRP | S_IXGRP | S_IRWXO;
   if ((status.st_mode & kForOthers) == 0) return absl::OkStatus();
   return Unusable(file,
-                  absl::StrFormat("is open to others (mode %04o); permitted: 0600, or 0640 at "
-                                  "most (chmod 600 it)",
+                  absl::StrFormat("is open to other users (mode %04o); permitted: 0600, or 0640 "
+                                  "at most (chmod 600 it)",
                                   status.st_mode & 07777));
 }
 

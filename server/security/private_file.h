@@ -1,6 +1,6 @@
-// Reading the files that the server's security rests on.
+// Reads the files with credentials, keys and certificates.
 //
-// An error names the flag, the file and what is wrong with it, never its content.
+// An error names the flag, the file and the problem, and never quotes the file.
 #ifndef BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
 #define BALLPISTON_SERVER_SECURITY_PRIVATE_FILE_H_
 
@@ -24,19 +24,20 @@ struct NamedFile {
 // INVALID_ARGUMENT that names the flag and the file.
 absl::Status Unusable(const NamedFile& file, absl::string_view why);
 
-// More than any list of credentials or chain of certificates.
+// Larger than every list of credentials and every chain of certificates.
 inline constexpr size_t kMaxSecurityFile = size_t{1} << 20;
 
-// A regular file (or a link to one) of at most kMaxSecurityFile bytes. INVALID_ARGUMENT if it is
-// not, or cannot be read.
+// A regular file (or a link to one) of at most kMaxSecurityFile bytes. INVALID_ARGUMENT if the file
+// is something else, or cannot be read.
 absl::StatusOr<std::string> ReadPublicFile(const NamedFile& file);
 
-// The same for a file with a secret or with access rights. It has to belong to the server's user or
-// to root, with mode 0600, or 0640 at most.
+// The same for a file with a secret or with access rights. The file must belong to the server's
+// user or to root, and have at most mode 0640.
 absl::StatusOr<std::string> ReadPrivateFile(const NamedFile& file);
 
-// Whether a file with this status is kept from others: its owner is `user` or root, nobody else
-// writes to it, and at most its group reads it (a key is often root's, readable by a group).
+// Whether a file with this status is private: its owner is `user` or root, only the owner can write
+// it, and only the owner and the group can read it (a key often belongs to root and is readable by
+// a group).
 absl::Status CheckKeptPrivate(const NamedFile& file, const struct stat& status, uid_t user);
 
 }  // namespace ballpiston::server

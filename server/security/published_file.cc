@@ -38,8 +38,8 @@ absl::StatusOr<PublishedFile::Next> PublishedFile::Prepare(absl::string_view con
       absl::StrCat("no memory for the certificates in use: ", std::strerror(errno)));
 }
 
-// dup3 puts one file in the other's place in one step; with two open descriptors it has no reason
-// to fail but EINTR and, beside an open(2) of the same number, EBUSY, which pass.
+// dup3 replaces one file by the other in one step. With two open descriptors it fails only with
+// EINTR or, during an open(2) of the same number, with EBUSY; both are temporary.
 void PublishedFile::Exchange(Next next) {
   changed_ = next.changed_;
   if (descriptor_ < 0) {

@@ -1,8 +1,9 @@
-// A file in memory that others read by its path, exchanged as a whole: a reader sees the old
-// content or the new one. Nothing of it reaches a disk, which suits a private key.
+// A file in memory that other code reads by its path. Its content is exchanged as a whole: a reader
+// sees the old content or the new one. The content never reaches a disk, so the file may hold a
+// private key.
 //
-// The path is one of a descriptor, /proc/self/fd/N, and valid in this process only, as long as the
-// object lives.
+// The path is that of a descriptor, /proc/self/fd/N. It is valid only in this process, and as long
+// as the object lives.
 #ifndef BALLPISTON_SERVER_SECURITY_PUBLISHED_FILE_H_
 #define BALLPISTON_SERVER_SECURITY_PUBLISHED_FILE_H_
 
@@ -24,7 +25,7 @@ class PublishedFile {
   PublishedFile(const PublishedFile&) = delete;
   PublishedFile& operator=(const PublishedFile&) = delete;
 
-  // A content that is ready to be exchanged for the one that is read, or to be given up.
+  // A prepared content, which Exchange publishes. Without Exchange it is dropped.
   class Next {
    public:
     Next(Next&& other) noexcept
@@ -40,18 +41,19 @@ class PublishedFile {
     time_t changed_;
   };
 
-  // Each content's time of change is a later second than the last one's, so that a reader who
-  // compares times sees that it was exchanged. INTERNAL if the system gives no memory or no
-  // descriptor. One thread at a time; readers are free.
+  // The new content's time of change is at least a second later than the previous one's, so that a
+  // reader that compares times notices the exchange. INTERNAL if the system has no memory or no
+  // descriptor. One thread at a time; readers may read at any time.
   absl::StatusOr<Next> Prepare(absl::string_view content) const;
 
-  // Cannot fail, so that of several files all are exchanged or none.
+  // Cannot fail. A caller that prepares several files first can therefore exchange all of them or
+  // none.
   void Exchange(Next next);
 
-  // Both at once; after an error the old content stays.
+  // Prepare and Exchange. After an error the old content stays.
   absl::Status Publish(absl::string_view content);
 
-  std::string Path() const;  // after the first Exchange
+  std::string Path() const;  // valid after the first Exchange
 
  private:
   int descriptor_ = -1;

@@ -54,7 +54,8 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
   }
   std::vector<std::string> given = Given(options);
   const bool has_list = !options.access_file.empty();
-  if (IsOpenSocket(options) && has_list) given.erase(given.begin());  // the access file is first
+  if (IsOpenSocket(options) && has_list)
+    given.erase(given.begin());  // removes the access file, which is first
   if (given.empty()) return CheckSocketMode(options);
   return Refused(absl::StrCat("--listen=", address.Text(),
                               ": over a Unix socket the kernel says who connects, by default only "
@@ -63,7 +64,7 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
                               " (an access file goes with --socket-mode=0660 or 0666)"));
 }
 
-// The flags of a Unix socket, at another address.
+// Rejects the flags of a Unix socket at another address.
 absl::Status CheckNoSocketFlags(const SecurityOptions& options, const ListenAddress& address) {
   if (!options.socket_mode && options.socket_group.empty()) return absl::OkStatus();
   return Refused(absl::StrCat(options.socket_mode
@@ -108,15 +109,15 @@ std::string MinuteText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
 
-// No list without an access file.
+// Null without an access file.
 absl::StatusOr<std::shared_ptr<const AccessList>> ReadList(const SecurityOptions& options) {
   if (options.access_file.empty()) return nullptr;
   absl::StatusOr<AccessList> list = AccessList::Read(AccessFile(options));
   if (!list.ok()) return list.status();
   if (IsOpenSocket(options) && (list->has_tokens() || list->has_certificates())) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
-                                ": has tokens or certificates; a Unix socket permits lines of the "
-                                "kind user only"));
+                                ": has tokens or certificates; a Unix socket permits only "
+                                "lines of the kind user"));
   }
   if (!IsOpenSocket(options) && list->has_users()) {
     return Refused(absl::StrCat(AccessFile(options).Text(),
@@ -147,7 +148,7 @@ absl::StatusOr<SocketAccess> FindSocketAccess(const SecurityOptions& options) {
   return access;
 }
 
-// The role of all callers if they are not authenticated; none if they are.
+// The role of all callers if they are not authenticated; empty if they are.
 std::optional<Role> RoleOfEverybody(const SecurityOptions& options, const ListenAddress& address) {
   if (IsOpenSocket(options) || !options.access_file.empty()) return std::nullopt;
   return address.socket_path.empty() ? options.loopback_role.value_or(kLoopbackRole) : Role::kAdmin;
@@ -240,8 +241,8 @@ void ServerSecurity::WarnOfExpiry() const {
     LogError(absl::StrCat("the certificate in --tls-certificate=", options_.tls_certificate,
                           " is valid from ", MinuteText(tls_->begins()), " to ",
                           MinuteText(tls_->expires()), " only, and now it is ", MinuteText(now),
-                          ": no client connects until it is valid. If the clock is right, get a "
-                          "new one, and send SIGHUP"));
+                          ": clients cannot connect while it is not valid. If the clock is right, "
+                          "get a new one and send SIGHUP"));
     return;
   }
   Log(Severity::kWarning,
@@ -256,7 +257,7 @@ std::string ServerSecurity::Description() const {
     parts.push_back(absl::StrCat("TLS, certificate valid until ", DateText(tls_->expires())));
   }
   if (role_of_everybody_) {
-    parts.push_back(absl::StrCat("no credentials required, everybody who can connect has the role ",
+    parts.push_back(absl::StrCat("no credentials required, every client has the role ",
                                  RoleName(*role_of_everybody_)));
   }
   if (socket_access_.IsOpenToOthers()) {

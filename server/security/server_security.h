@@ -1,16 +1,15 @@
-// What stands between the network and the services: which combinations of address and credentials
-// are safe, and the credentials themselves.
+// The server's security: which combinations of address and credentials are safe, and the
+// credentials.
 //
-//   unix:PATH               the kernel says who connects: the server's own user and root, who are
-//                           administrators; others by their name, if --socket-mode opens the
-//                           socket to them, and if they are on the access file's list or there is
-//                           no list
-//   loopback, no TLS        whoever is on this machine, with the role of --loopback-role
-//   any HOST:PORT with TLS  who is on the access file's list; everybody without one, which is for
-//                           the loopback only
+//   unix:PATH               The kernel names the user who connects. The server's own user and root
+//                           are administrators. Other users can connect if --socket-mode permits
+//                           it and the access file, if there is one, lists them.
+//   loopback, no TLS        Every user of this machine, with the role of --loopback-role.
+//   any HOST:PORT with TLS  Clients with a credential in the access file. Without an access file,
+//                           which is permitted on the loopback only, every client.
 //
-// Everything else is refused at the start: an address that other machines reach needs TLS and an
-// access file; tokens need TLS.
+// The server refuses to start with any other combination: an address that other machines reach
+// needs TLS and an access file; tokens need TLS.
 #ifndef BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
 #define BALLPISTON_SERVER_SECURITY_SERVER_SECURITY_H_
 
@@ -46,37 +45,37 @@ struct SecurityOptions {
 // The role of the principal `local` over the loopback, unless a flag says otherwise.
 inline constexpr Role kLoopbackRole = Role::kSubmit;
 
-// INVALID_ARGUMENT tells which flags are missing, or do not go together, and why. Reads no file.
+// INVALID_ARGUMENT says which flags are missing or contradict each other, and why. Reads no file.
 absl::Status CheckCombination(const SecurityOptions& options, const ListenAddress& address);
 
 inline constexpr absl::Duration kExpiryWarning = absl::Hours(14 * 24);
 
 class ServerSecurity {
  public:
-  // Reads everything. The log warns of a certificate that ends within kExpiryWarning, and of one
-  // that is not valid now. The server starts with such a certificate. INVALID_ARGUMENT names flag,
-  // file and what is permitted.
+  // Reads all files. Logs a warning if the certificate expires within kExpiryWarning or is not
+  // valid now; the server starts with such a certificate. INVALID_ARGUMENT names the flag, the file
+  // and the permitted values.
   static absl::StatusOr<std::unique_ptr<ServerSecurity>> Create(const SecurityOptions& options,
                                                                 const ListenAddress& address);
 
-  // Outlives every call it is asked about.
+  // Valid as long as this object.
   const Authenticator& authenticator() const { return authenticator_; }
 
-  // For gRPC's port. The object has to outlive the server that uses them.
+  // For gRPC's port. This object must outlive the server that uses the credentials.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
-  // Of a Unix socket.
+  // For a Unix socket.
   const SocketAccess& socket_access() const { return socket_access_; }
 
-  // Reads the files again, and warns as Create does; of what is wrong the old stays, and is named
-  // in the error. The access file holds from the next call on, certificates for connections made a
-  // second later. One thread at a time.
+  // Reads the files again, and logs the same warnings as Create. If a file is invalid, its previous
+  // content stays in use, and the error names the file. The new access file applies from the next
+  // call on. New connections use the new certificates a second later. One thread at a time.
   absl::Status Reload();
 
-  // For the log: what holds now.
+  // The present settings, for the log.
   std::string Description() const;
 
-  // Until when the server's certificate is valid; none without TLS. Any thread.
+  // When the server's certificate expires; empty without TLS. Any thread.
   std::optional<absl::Time> CertificateExpiry() const;
 
  private:
@@ -87,10 +86,10 @@ class ServerSecurity {
 
   const SecurityOptions options_;
   const SocketAccess socket_access_;
-  const std::optional<Role> role_of_everybody_;  // none: callers are authenticated
+  const std::optional<Role> role_of_everybody_;  // empty: callers are authenticated
   size_t entries_;                               // of the access file
   Authenticator authenticator_;
-  std::unique_ptr<ServerTls> tls_;  // none: without TLS
+  std::unique_ptr<ServerTls> tls_;  // null: without TLS
 };
 
 }  // namespace ballpiston::server

@@ -38,7 +38,7 @@ absl::Status ServerTls::Reload() {
 absl::Status ServerTls::Load(const TlsIdentity& identity) {
   auto certificate_and_key = certificate_and_key_.Prepare(identity.certificate_and_key);
   if (!certificate_and_key.ok()) return certificate_and_key.status();
-  auto client_ca = client_ca_.Prepare(identity.client_ca);  // empty: nobody reads it
+  auto client_ca = client_ca_.Prepare(identity.client_ca);  // empty: gRPC does not read it
   if (!client_ca.ok()) return client_ca.status();
   certificate_and_key_.Exchange(*std::move(certificate_and_key));
   client_ca_.Exchange(*std::move(client_ca));

@@ -10,7 +10,7 @@ namespace ballpiston::server {
 
 inline constexpr size_t kSha256Bytes = 32;
 
-// kSha256Bytes of them.
+// The hash has kSha256Bytes bytes.
 std::string Sha256(absl::string_view bytes);
 
 }  // namespace ballpiston::server

@@ -26,7 +26,7 @@ constexpr std::chrono::seconds kLogPause(10);
 constexpr int kPauseMilliseconds = 1000;  // when descriptors or memory have run out
 constexpr uint64_t kReserved = 32;
 
-// Errors of accept that are of the one connection, which has gone again.
+// Whether an error of accept concerns only this connection, which has already ended.
 bool IsOfThePeer(int error) {
   switch (error) {
     case EMFILE:
@@ -41,14 +41,14 @@ bool IsOfThePeer(int error) {
   }
 }
 
-// The kernel gives the lowest number that is free: all below it are in use.
+// The kernel assigns the lowest free number, so all lower ones are in use.
 bool IsInReserve(int descriptor) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return false;
   return static_cast<uint64_t>(descriptor) >= limit.rlim_cur - ReservedDescriptors(limit.rlim_cur);
 }
 
-// Answers are whole messages: nothing is gained by waiting for more. Fails for a Unix socket.
+// Disables Nagle's algorithm, because answers are whole messages. Fails for a Unix socket.
 void SendAtOnce(int descriptor) {
   const int on = 1;
   setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
@@ -93,7 +93,7 @@ void SocketListener::Start(Receive receive) {
 
 void SocketListener::Stop() {
   const uint64_t one = 1;
-  // Cannot fail: the event counts to 2^64 - 2 before it would block.
+  // Cannot fail: the eventfd blocks only at 2^64 - 2.
   [[maybe_unused]] const ssize_t written = write(stop_, &one, sizeof(one));
   if (thread_.joinable()) thread_.join();
   sockets_.Close();
@@ -140,7 +140,8 @@ void SocketListener::AcceptOne(int listening, const Receive& receive) {
   LogClosed();
 }
 
-// Out of descriptors, say: the connection stays with the kernel and is looked at again.
+// After an error such as no free descriptors, the connection stays in the kernel's queue and is
+// accepted later.
 void SocketListener::PauseAfter(int error) {
   if (failures_.Take(std::chrono::steady_clock::now())) {
     LogError(absl::StrCat(address_.Text(), ": cannot accept a connection: ", std::strerror(error)));
@@ -156,7 +157,7 @@ void SocketListener::LogClosed() {
   LogClosed(strangers_, absl::StrCat(of_whom, " closed, the last of user ",
                                      last_stranger_ ? absl::StrCat(*last_stranger_) : "unknown"));
   LogClosed(over_reserve_,
-            "closed: the process has nearly as many descriptors as it may (RLIMIT_NOFILE, the "
+            "closed: the process has nearly reached its limit of descriptors (RLIMIT_NOFILE, the "
             "unit's LimitNOFILE)");
 }
 

@@ -1,15 +1,15 @@
-// Accepts connections at an address and hands them on.
+// Accepts connections at an address and passes them to a receiver.
 //
 // At a Unix socket it asks the kernel for the user of each connection. It closes the connections of
-// users who are not permitted before it reads a byte of theirs, and hands the others on with their
-// user. At either kind of address it closes a connection that would leave the process fewer than
-// ReservedDescriptors(). The store, the certificates and the metrics need these: a client that
-// opens connections must not keep results from the disk. Both are logged: the first at once, then
-// their number at most every ten seconds.
+// users who are not permitted before it reads a byte, and passes the others on with their user. At
+// both kinds of address it closes a connection that would leave the process fewer than
+// ReservedDescriptors() descriptors. The store, the certificates and the metrics need these, so a
+// client with many connections cannot stop the store. Closed connections are logged: the first at
+// once, then their number at most every ten seconds.
 //
-// gRPC's own listener, even with SO_REUSEPORT off, does not say who connects. It uses every
-// descriptor, and stops for good at the first EMFILE. Socket activation of systemd would replace
-// only bound_sockets.h, and only where systemd starts the server: a private server would still need
+// gRPC's own listener, even with SO_REUSEPORT off, does not report the user. It uses all
+// descriptors, and stops for good at the first EMFILE. Socket activation by systemd would replace
+// only bound_sockets.h, and only if systemd starts the server: a private server would still need
 // that file.
 #ifndef BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
 #define BALLPISTON_SERVER_SECURITY_SOCKET_LISTENER_H_
@@ -34,23 +34,24 @@ namespace ballpiston::server {
 
 class SocketListener {
  public:
-  // Takes over the descriptor, which does not block. `user`: only at a Unix socket.
+  // Takes ownership of the non-blocking descriptor. `user`: only at a Unix socket.
   using Receive = std::function<void(int descriptor, std::optional<uid_t> user)>;
 
-  // Connections wait until Start. A Unix socket lets in the users that are `permitted`, or, if
-  // `access` opens it to others, every user who can open it and whom StandsForOneUser accepts.
-  // Errors as BoundSockets::Bind's.
+  // Connections wait until Start. A Unix socket accepts the users in `permitted`. If `access` opens
+  // it to other users, it accepts every user who can open it and whom StandsForOneUser accepts. The
+  // errors are those of BoundSockets::Bind.
   static absl::StatusOr<std::unique_ptr<SocketListener>> Listen(const ListenAddress& address,
                                                                 std::set<uid_t> permitted,
                                                                 const SocketAccess& access = {});
   ~SocketListener();
 
-  // With the port that was chosen, if any was free to be.
+  // With the port in use, also if Listen got port 0.
   const ListenAddress& address() const { return address_; }
 
-  void Start(Receive receive);  // which is called on a thread of this object
+  void Start(Receive receive);  // a thread of this object calls `receive`
 
-  // No connection comes after it returned; a Unix socket's file is gone. Any number of times.
+  // When this returns, no more connections come, and the file of a Unix socket is removed. May be
+  // called more than once.
   void Stop();
 
  private:
@@ -73,7 +74,7 @@ class SocketListener {
 
   const ListenAddress address_;
   BoundSockets sockets_;
-  int stop_;  // an event: readable when it is time to stop
+  int stop_;  // an eventfd: readable when the listener must stop
   const std::optional<std::set<uid_t>> permitted_;
   Closed strangers_;
   std::optional<uid_t> last_stranger_;
@@ -82,7 +83,7 @@ class SocketListener {
   std::thread thread_;
 };
 
-// Descriptors of the process that no connection may take, of `limit` in all.
+// The number of descriptors that connections may not use, if the process may have `limit`.
 uint64_t ReservedDescriptors(uint64_t limit);
 
 }  // namespace ballpiston::server

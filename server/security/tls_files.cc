@@ -28,7 +28,7 @@ using Certificate = std::unique_ptr<X509, Freed<X509_free>>;
 using Key = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;
 using Context = std::unique_ptr<SSL_CTX, Freed<SSL_CTX_free>>;
 
-// OpenSSL's last word, which never quotes a file; its queue is empty afterwards.
+// OpenSSL's last error, which never quotes a file. Empties OpenSSL's error queue.
 std::string WhyNot() {
   const char* reason = ERR_reason_error_string(ERR_peek_last_error());
   ERR_clear_error();
@@ -39,7 +39,7 @@ Bio Reading(const std::string& pem) {
   return Bio(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
 }
 
-// Instead of asking at the terminal.
+// Prevents OpenSSL from asking at the terminal.
 int NoPassphrase(char*, int, int, void*) { return 0; }
 
 std::vector<Certificate> Certificates(const std::string& pem) {
@@ -48,7 +48,7 @@ std::vector<Certificate> Certificates(const std::string& pem) {
   while (X509* next = PEM_read_bio_X509(bio.get(), nullptr, &NoPassphrase, nullptr)) {
     all.emplace_back(next);
   }
-  ERR_clear_error();  // it always ends with "no start line"
+  ERR_clear_error();  // reading always ends with the error "no start line"
   return all;
 }
 
@@ -58,7 +58,7 @@ absl::Time TimeOf(const ASN1_TIME* time) {
   return absl::FromTM(parts, absl::UTCTimeZone());
 }
 
-// As TLS itself would: certificate and key in a context of their own.
+// Tests certificate and key in a TLS context of their own, as TLS would.
 absl::Status TryOut(const TlsFiles& files, X509* certificate, EVP_PKEY* key) {
   const Context context(SSL_CTX_new(TLS_server_method()));
   if (SSL_CTX_use_certificate(context.get(), certificate) != 1) {
@@ -79,7 +79,7 @@ std::string Written(BIO& bio) {
   return std::string(data, static_cast<size_t>(size));
 }
 
-// Written anew: whatever else a file held beside its certificates stays out.
+// Writes only the certificates, without other contents of the file.
 std::string Pem(const std::vector<Certificate>& certificates) {
   const Bio bio(BIO_new(BIO_s_mem()));
   for (const Certificate& one : certificates) PEM_write_bio_X509(bio.get(), one.get());
@@ -97,7 +97,7 @@ absl::StatusOr<std::string> ReadClientCa(const NamedFile& file) {
   const absl::StatusOr<std::string> pem = ReadPublicFile(file);
   if (!pem.ok()) return pem.status();
   const std::vector<Certificate> authorities = Certificates(*pem);
-  if (authorities.empty()) return Unusable(file, "has no certificate (PEM is wanted)");
+  if (authorities.empty()) return Unusable(file, "has no certificate in PEM format");
   return Pem(authorities);
 }
 
@@ -108,7 +108,7 @@ absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files) {
   if (!chain.ok()) return chain.status();
   const std::vector<Certificate> certificates = Certificates(*chain);
   if (certificates.empty()) {
-    return Unusable(files.certificate, "has no certificate (PEM is wanted)");
+    return Unusable(files.certificate, "has no certificate in PEM format");
   }
   const absl::StatusOr<std::string> key_text = ReadPrivateFile(files.key);
   if (!key_text.ok()) return key_text.status();

@@ -1,5 +1,5 @@
-// A server's certificate, its key, and whom it lets sign clients' certificates: read, and tried out
-// before gRPC sees them, which would fail only when the first client comes.
+// Reads the server's certificate, its key and the authorities for clients' certificates, and tests
+// them before gRPC uses them: gRPC would fail only when the first client connects.
 #ifndef BALLPISTON_SERVER_SECURITY_TLS_FILES_H_
 #define BALLPISTON_SERVER_SECURITY_TLS_FILES_H_
 
@@ -12,21 +12,21 @@
 namespace ballpiston::server {
 
 struct TlsFiles {
-  NamedFile certificate;  // PEM: the server's, then those between it and its authority
-  NamedFile key;          // PEM, without a passphrase; kept from others
+  NamedFile certificate;  // PEM: the server's certificate, then the intermediate ones
+  NamedFile key;          // PEM, without a passphrase; private
   NamedFile client_ca;    // PEM; empty path: clients need no certificate
 };
 
 struct TlsIdentity {
-  std::string certificate_and_key;  // PEM, in one: they cannot be taken for two that do not belong
+  std::string certificate_and_key;  // PEM, in one file: always of the same pair
   std::string client_ca;            // PEM, or empty
-  absl::Time begins;                // the certificate
+  absl::Time begins;                // of the certificate's validity
   absl::Time expires;
 };
 
-// INVALID_ARGUMENT names flag and file, and one of: cannot be read, open to others (the key), no
-// PEM, key and certificate do not belong together, too weak. The dates are not compared with the
-// clock, which may not be set yet.
+// INVALID_ARGUMENT names the flag, the file and the problem: cannot be read, readable by other
+// users (the key), not PEM, key and certificate of different pairs, too weak. The dates are not
+// compared with the clock, which may not be set yet.
 absl::StatusOr<TlsIdentity> ReadTlsIdentity(const TlsFiles& files);
 
 }  // namespace ballpiston::server

@@ -1,6 +1,6 @@
-// What the server keeps of a token: its SHA-256, from which the token cannot be told. A plain hash
-// is enough because a token is 256 random bits (new_token.h): there is nothing to guess, so nothing
-// that a slow, salted hash would slow down. Pure functions.
+// The SHA-256 of a token: the server stores only this, and the token cannot be computed from it. A
+// plain hash is enough because a token is 256 random bits (new_token.h). Nobody can guess it, so a
+// slow, salted hash would not add security. Pure functions.
 #ifndef BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
 #define BALLPISTON_SERVER_SECURITY_TOKEN_HASH_H_
 
@@ -13,15 +13,15 @@
 namespace ballpiston::server {
 
 struct TokenHash {
-  std::string bytes;  // kSha256Bytes of them
+  std::string bytes;  // kSha256Bytes bytes
 
-  // In a time that does not depend on where they differ.
+  // Constant-time comparison.
   friend bool operator==(const TokenHash& a, const TokenHash& b);
 };
 
 TokenHash HashOf(absl::string_view token);
 
-// 64 hexadecimal digits of either case; empty if it is anything else.
+// Parses 64 hexadecimal digits of either case; empty for any other text.
 std::optional<TokenHash> ParseTokenHash(absl::string_view hex);
 std::string HexOf(const TokenHash& hash);
 

@@ -32,8 +32,8 @@ std::optional<Principal> PrincipalOf(uid_t user) {
 
 }  // namespace
 
-// All calls of a connection share its auth context. It is written once, before the first of them
-// goes on, and only read afterwards.
+// All calls of a connection share its auth context. It is written once, before the first call runs,
+// and only read afterwards.
 class UnixUsers::Stamp : public grpc::AuthMetadataProcessor {
  public:
   void Set(Principal user) {
@@ -87,9 +87,8 @@ grpc::experimental::ExternalConnectionAcceptor* UnixUsers::AcceptorOf(uid_t user
   const bool is_full = taken_.size() == entrances_.size();
   std::optional<Principal> principal = is_full ? std::nullopt : PrincipalOf(user);
   if (!principal) {
-    const char* const why = is_full
-                                ? "more users have connected than this server serves; restart it"
-                                : "the system knows no name for this user";
+    const char* const why = is_full ? "too many different users have connected; restart the server"
+                                    : "the system has no name for this user";
     if (refusals_.Take(std::chrono::steady_clock::now())) {
       LogError(absl::StrCat("connection of user ", user, " closed: ", why));
     }

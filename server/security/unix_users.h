@@ -1,4 +1,4 @@
-// Which Unix user calls, at a socket that several users may open.
+// Identifies the Unix user of each call at a socket that several users may open.
 //
 // gRPC does not tell a call the descriptor of its connection: at a Unix socket every peer is
 // "unix:". Therefore each user has a gRPC acceptor of their own. Its credentials are those of gRPC
@@ -7,8 +7,8 @@
 // there. (With AddInsecureChannelFromFd a call would know the descriptor. But a call can outlive
 // its connection, and then the descriptor may be another user's.)
 //
-// Acceptors can be added only before gRPC starts, so there are always kMostUnixUsers. An unused one
-// costs some 5 KiB and 40 us.
+// Acceptors can be added only before gRPC starts, so there are always kMostUnixUsers. An unused
+// acceptor costs some 5 KiB and 40 us.
 #ifndef BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
 #define BALLPISTON_SERVER_SECURITY_UNIX_USERS_H_
 
@@ -28,7 +28,7 @@ inline constexpr size_t kMostUnixUsers = 1024;
 
 class UnixUsers {
  public:
-  // Adds the acceptors. The server that is built has to end before this object.
+  // Adds the acceptors. This object must outlive the server.
   explicit UnixUsers(grpc::ServerBuilder& builder, size_t most = kMostUnixUsers);
   ~UnixUsers();
 

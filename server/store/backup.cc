@@ -22,7 +22,7 @@ namespace {
 
 absl::Status TargetExists(const std::string& target) {
   return absl::AlreadyExistsError(
-      absl::StrCat("backup ", target, ": there is such a file; name another one"));
+      absl::StrCat("backup ", target, ": the file exists already; choose another name"));
 }
 
 absl::Status CannotWrite(const std::string& target, int error) {
@@ -33,7 +33,7 @@ absl::Status CannotWrite(const std::string& target, int error) {
   return absl::PermissionDeniedError(what);
 }
 
-// An empty file beside the target, for its owner only, that is gone when the object is.
+// An empty file beside the target, for its owner only. The destructor removes it.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& target) : path_(target + ".XXXXXX") {
@@ -47,7 +47,7 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  int error() const { return error_; }  // 0: it was made
+  int error() const { return error_; }  // 0: the file was created
   const std::string& path() const { return path_; }
 
  private:
@@ -63,13 +63,13 @@ absl::Status Sync(const std::string& path) {
   return synced ? absl::OkStatus() : CannotWrite(path, error);
 }
 
-// Not over a file that has come to be there meanwhile.
+// Does not overwrite a file that was created meanwhile.
 absl::Status MoveTo(const std::string& path, const std::string& target) {
   if (renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, target.c_str(), RENAME_NOREPLACE) == 0) {
     return absl::OkStatus();
   }
   if (errno == EEXIST) return TargetExists(target);
-  // This file system cannot tell; a moment ago there was none.
+  // This file system cannot refuse to overwrite. A moment ago the target did not exist.
   if (errno == EINVAL && rename(path.c_str(), target.c_str()) == 0) return absl::OkStatus();
   return CannotWrite(target, errno);
 }
@@ -89,9 +89,9 @@ absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::st
   absl::StatusOr<StoreSummary> summary = CheckStore(copy.path());
   if (!summary.ok()) return summary.status();
   if (!summary->sound()) {
-    return absl::DataLossError(absl::StrCat("backup ", target, " is not made: store ", store,
+    return absl::DataLossError(absl::StrCat("backup ", target, " was not made: store ", store,
                                             " is damaged (", summary->problems.front(),
-                                            "); --check tells more"));
+                                            "); see --check"));
   }
   absl::Status placed = Sync(copy.path());
   if (placed.ok()) placed = MoveTo(copy.path(), target);

@@ -1,10 +1,11 @@
-// A copy of a store, to be put in its place one day.
+// Makes a consistent copy of a store.
 //
-// The store is read through a read-only connection, at one moment, also while a server uses it; it
-// is neither written nor checkpointed. The copy is one file that needs no log beside it.
+// The backup reads the store through a read-only connection in one transaction, also while a server
+// uses the store. It does not change the store. The copy is one file that needs no log beside it.
 //
 // To restore: stop the server, move store.sqlite3, store.sqlite3-wal and store.sqlite3-shm away,
-// copy the backup to store.sqlite3. A log left behind by mistake is noticed, and the store refused.
+// copy the backup to store.sqlite3. If an old log is left beside it by mistake, the server refuses
+// the store.
 #ifndef BALLPISTON_SERVER_STORE_BACKUP_H_
 #define BALLPISTON_SERVER_STORE_BACKUP_H_
 
@@ -15,14 +16,14 @@
 
 namespace ballpiston::server {
 
-// Writes `target`, readable by its owner only, and returns what is in it. It is there when it is
-// complete, checked (check_store.h) and on disk, or not at all.
-//   ALREADY_EXISTS       there is something of that name
+// Writes `target`, readable by its owner only, and returns a summary of it. The file appears only
+// when it is complete, checked (check_store.h) and on disk.
+//   ALREADY_EXISTS       the target exists already
 //   NOT_FOUND            no store
 //   PERMISSION_DENIED    the target's folder cannot be written to
 //   DATA_LOSS            the copy, and so the store, is damaged
 //   RESOURCE_EXHAUSTED, UNAVAILABLE  the disk is full, or failed
-//   FAILED_PRECONDITION  no store of ours, or a newer one
+//   FAILED_PRECONDITION  not a ballpiston store, or a newer one
 absl::StatusOr<StoreSummary> BackupStore(const std::string& store, const std::string& target);
 
 }  // namespace ballpiston::server

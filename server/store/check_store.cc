@@ -23,7 +23,7 @@ using v1::EnsembleJob;
 
 bool Ended(int64_t state) { return state >= EnsembleJob::SUCCEEDED; }
 
-// What has not been written back yet lies in the log.
+// The size of the log, whose pages are not written back yet.
 int64_t LogBytes(const std::string& store) {
   struct stat found {};
   return stat((store + "-wal").c_str(), &found) == 0 ? int64_t{found.st_size} : 0;
@@ -42,7 +42,7 @@ class StoreCheck {
                             &StoreCheck::CheckDetails, &StoreCheck::CheckCheckpoints}) {
       const absl::Status status = (this->*part)();
       if (absl::IsUnavailable(status)) return status;
-      // So damaged that this part cannot be read.
+      // The damage prevents reading this part.
       if (!status.ok()) Found(std::string(status.message()));
     }
     return std::move(summary_);
@@ -103,7 +103,7 @@ class StoreCheck {
     const std::string job = absl::StrCat("job ", row.Bytes(0));
     const int64_t state = row.Integer(1);
     if (state < EnsembleJob::QUEUED || state > EnsembleJob::CANCELLED) {
-      return Found(absl::StrCat(job, " has no such state: ", state));
+      return Found(absl::StrCat(job, " has an unknown state: ", state));
     }
     const absl::StatusOr<v1::EnsembleSpec> spec = SpecFromBytes(row.Bytes(2));
     if (!spec.ok()) Found(absl::StrCat(job, ": ", spec.status().message()));
@@ -116,7 +116,8 @@ class StoreCheck {
           absl::StrCat(job, has_error ? " did not fail, but has" : " failed without", " an error"));
     }
     if ((row.Integer(4) == 0) != Ended(state)) {
-      Found(absl::StrCat(job, Ended(state) ? " ended at no time" : " is active and has ended"));
+      Found(absl::StrCat(
+          job, Ended(state) ? " ended but has no end time" : " is active but has an end time"));
     }
     const bool has_expired = row.Integer(8) != 0;
     if (!has_expired) CheckPoints(job, state, row.Integer(5), row.Integer(6), row.Integer(7));
@@ -134,7 +135,7 @@ class StoreCheck {
     }
   }
 
-  // Rows that belong to nothing.
+  // Finds rows whose job or point does not exist.
   absl::Status CheckRows() {
     const auto report = [this](const char* what) {
       return [this, what](const Query& row) {
@@ -146,25 +147,25 @@ class StoreCheck {
         " WHERE ((sequence IS NULL OR expired_time IS NOT NULL)"
         "  AND job NOT IN (SELECT job FROM dropped))"
         " OR point < 0 OR point >= points",
-        report("a result of no point"));
+        report("a result without a point"));
     if (!results.ok()) return results;
     const absl::Status details = ForEach(
         "SELECT details.job, details.point FROM details LEFT JOIN results"
         " ON results.job = details.job AND results.point = details.point"
         " WHERE results.job IS NULL AND details.job NOT IN (SELECT job FROM dropped)",
-        report("details of no result"));
+        report("details without a result"));
     if (!details.ok()) return details;
     const absl::Status checkpoints =
         ForEach(absl::StrCat("SELECT job, point FROM checkpoints LEFT JOIN jobs ON sequence = job"
                              " WHERE sequence IS NULL OR point < 0 OR point >= points OR state >= ",
                              int{EnsembleJob::SUCCEEDED}),
-                report("a checkpoint of no point of an active job"));
+                report("a checkpoint without a point of an active job"));
     if (!checkpoints.ok()) return checkpoints;
     const absl::Status requests = ForEach(
         "SELECT job, request_id FROM requests LEFT JOIN jobs ON sequence = job"
         " WHERE sequence IS NULL",
         [this](const Query& row) {
-          Found(absl::StrCat("request ", row.Bytes(1), " of no job: ", row.Integer(0)));
+          Found(absl::StrCat("request ", row.Bytes(1), " has no job: ", row.Integer(0)));
         });
     if (!requests.ok()) return requests;
     return ForEach(

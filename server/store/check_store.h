@@ -1,7 +1,8 @@
-// Whether a store is sound: SQLite's own check of every page and index, then ours of what is in it.
+// Checks whether a store is sound: first SQLite's check of every page and index, then our check of
+// the rows.
 //
-// Through a read-only connection, at one moment, also while a server uses the store (whose log
-// cannot be begun anew meanwhile, and grows). Takes about a second a gigabyte for the first part.
+// The check uses a read-only connection in one transaction, also while a server uses the store. The
+// store's log grows during the check. The first part takes about a second per gigabyte.
 #ifndef BALLPISTON_SERVER_STORE_CHECK_STORE_H_
 #define BALLPISTON_SERVER_STORE_CHECK_STORE_H_
 
@@ -22,7 +23,7 @@ struct StoreSummary {
   std::map<std::string, int64_t> jobs;  // by state
   int64_t results = 0;
   int64_t checkpoints = 0;
-  std::vector<std::string> problems;  // a sentence each; the first kMaxProblems
+  std::vector<std::string> problems;  // one sentence each; the first kMaxProblems
   int64_t problem_count = 0;
 
   bool sound() const { return problem_count == 0; }
@@ -33,11 +34,11 @@ struct StoreSummary {
 // results that it states, and a job that succeeded has all results; no ended job and no finished
 // point has a checkpoint.
 //   NOT_FOUND            no such file
-//   FAILED_PRECONDITION  no store of ours, newer, or too damaged to be opened
+//   FAILED_PRECONDITION  not a ballpiston store, newer, or too damaged to be opened
 absl::StatusOr<StoreSummary> CheckStore(const std::string& path,
                                         const std::string& vfs = std::string());
 
-// For people: some lines, without a newline after the last.
+// Some lines of text for people, without a newline after the last.
 std::string SummaryText(const StoreSummary& summary);
 
 }  // namespace ballpiston::server

@@ -26,9 +26,9 @@
 namespace ballpiston::server {
 namespace {
 
-constexpr char kLockFile[] = "lock";  // clients look at both, too (client/library/local_server.cc)
+constexpr char kLockFile[] = "lock";  // clients read both files (client/library/local_server.cc)
 constexpr char kAddressFile[] = "server.address";
-constexpr char kClientsLog[] = "server.log";  // where a client that starts a server has it write
+constexpr char kClientsLog[] = "server.log";  // log of a server that a client starts
 
 // Whether the file contains nothing or a process id. If not, another program wrote it.
 bool IsAServersLock(int file) {
@@ -48,8 +48,7 @@ void WriteProcessId(int file) {
   [[maybe_unused]] const ssize_t written = pwrite(file, line.data(), line.size(), 0);
 }
 
-// A client that looks whether a server lives here has the lock for a moment: hence attempts.
-// Returns errno.
+// Tries several times, because a client that tests the lock holds it for a moment. Returns errno.
 int Lock(int file) {
   constexpr int kAttempts = 5;
   for (int attempt = 1; flock(file, LOCK_EX | LOCK_NB) != 0; ++attempt) {
@@ -90,14 +89,14 @@ absl::Status MakeDirectories(const std::string& path) {
     const absl::Status above = MakeDirectories(path.substr(0, slash));
     if (!above.ok()) return above;
   }
-  // Flushed: or else a power cut could take the folder away with all that was acknowledged in it.
+  // Without this flush a power cut could remove the folder with all acknowledged data in it.
   if (mkdir(path.c_str(), 0700) == 0) return SyncFolder(FolderOf(path));
   if (IsDirectory(path)) return absl::OkStatus();
   return NotWritable(path, errno);
 }
 
-// Whether a server has been in the folder, or nobody: what else is in it may be there for others to
-// reach. A lock that is no regular file is another program's (/var/lock is a link).
+// Whether the folder is empty or was a server's before. Otherwise other users may need its files. A
+// lock that is not a regular file belongs to another program (/var/lock is a link).
 bool IsAServers(const std::string& path) {
   bool has_others = false;
   std::error_code error;
@@ -112,11 +111,11 @@ bool IsAServers(const std::string& path) {
 }
 
 absl::Status OpenToOthers(const std::string& path, mode_t mode, const std::string& why) {
-  return absl::PermissionDeniedError(
-      absl::StrFormat("data folder %s is open to others (mode %04o%s", path, mode & 07777, why));
+  return absl::PermissionDeniedError(absl::StrFormat(
+      "data folder %s is open to other users (mode %04o%s", path, mode & 07777, why));
 }
 
-// Jobs, results and the socket are nobody else's.
+// Other users must not reach jobs, results and the socket.
 absl::Status CloseToOthers(const std::string& path) {
   struct stat found {};
   if (stat(path.c_str(), &found) != 0) return NotWritable(path, errno);
@@ -133,15 +132,15 @@ absl::Status CloseToOthers(const std::string& path) {
   if (!IsAServers(path)) {
     return OpenToOthers(
         path, found.st_mode,
-        absl::StrCat(") and holds other files than a server's; name a folder of the server's own "
+        absl::StrCat(") and has files that are not a server's; choose a folder for the server "
                      "with --data-dir, such as ",
                      path,
-                     "/ballpiston, or close this one with chmod 700 if nobody else needs "
-                     "what is in it"));
+                     "/ballpiston, or run chmod 700 on this one if no other user needs its files"));
   }
   if (chmod(path.c_str(), 0700) != 0) return NotWritable(path, errno);
-  LogInfo(absl::StrFormat("data folder %s was open to others (mode %04o): it is 0700 now", path,
-                          found.st_mode & 07777));
+  LogInfo(
+      absl::StrFormat("data folder %s was open to other users (mode %04o): its mode is 0700 now",
+                      path, found.st_mode & 07777));
   return absl::OkStatus();
 }
 
@@ -167,7 +166,7 @@ absl::StatusOr<DataDirectory> DataDirectory::Open(const std::string& path) {
   const int error = Lock(lock);
   if (error == 0) {
     WriteProcessId(lock);
-    unlink(AddressFile(path).c_str());  // left by one that is gone
+    unlink(AddressFile(path).c_str());  // left by an earlier server
     return DataDirectory(path, lock);
   }
   close(lock);

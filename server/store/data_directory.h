@@ -1,9 +1,10 @@
-// The folder a server keeps its state in, held by one server at a time.
+// The folder with the server's state. One server at a time can use it.
 //
-// Made, readable by its owner only, if it does not exist. One of our user's that others may enter
-// is closed to them if it is empty or has been a server's, and that is logged.
+// The server creates the folder if it does not exist, for its owner only. If the folder belongs to
+// our user and other users can enter it, the server sets its mode to 0700 if it is empty or was a
+// server's before, and logs this.
 //
-// Two files in it are for clients, and for servers that are kept out:
+// Two files in it are for clients, and for further servers that find the lock:
 //   lock            The server holds an exclusive lock (flock) on it as long as this object lives.
 //                   The kernel releases the lock when the process ends, however it ends. The file
 //                   contains the server's process id: one line of decimal digits.
@@ -27,15 +28,15 @@
 
 namespace ballpiston::server {
 
-// The store, in it.
+// The store's file in the folder.
 inline constexpr char kStoreFile[] = "store.sqlite3";
 
 class DataDirectory {
  public:
-  //   FAILED_PRECONDITION  another server uses it; the message says where that one listens
-  //   PERMISSION_DENIED    it cannot be made or written to; or others may enter it, and it is not
-  //                        ours to close: another user's, one that all users share, like /tmp,
-  //                        or one with files in it that are not a server's
+  //   FAILED_PRECONDITION  another server uses the folder; the message has its address
+  //   PERMISSION_DENIED    the folder cannot be created or written; or other users can enter it and
+  //                        the server must not change its mode: it belongs to another user, is
+  //                        shared by all users (/tmp), or has files that are not a server's
   static absl::StatusOr<DataDirectory> Open(const std::string& path);
 
   // $XDG_STATE_HOME/ballpiston, or ~/.local/state/ballpiston.
@@ -45,8 +46,8 @@ class DataDirectory {
   DataDirectory& operator=(DataDirectory&& other) noexcept;
   ~DataDirectory();
 
-  // Tells clients, and servers that are kept out, where this one listens. They can do without: a
-  // disk that does not take it is no failure.
+  // Writes the address file for clients and for further servers. They can do without it, so a disk
+  // error is ignored.
   void TellAddress(const std::string& address) const;
 
   const std::string& path() const { return path_; }

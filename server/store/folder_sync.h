@@ -1,4 +1,4 @@
-// Flushing a folder: the names in it, which a file's own flush does not cover.
+// Flushes a folder, that is the names of its files. The flush of a file does not include its name.
 #ifndef BALLPISTON_SERVER_STORE_FOLDER_SYNC_H_
 #define BALLPISTON_SERVER_STORE_FOLDER_SYNC_H_
 
@@ -8,11 +8,11 @@
 
 namespace ballpiston::server {
 
-// A file created in, renamed into or removed from `folder` before is so after a power cut, too.
-// UNAVAILABLE if the folder cannot be opened or flushed.
+// After this, files that were created in, renamed into or removed from `folder` stay so after a
+// power cut. UNAVAILABLE if the folder cannot be opened or flushed.
 absl::Status SyncFolder(const std::string& folder);
 
-// The folder that a path names something in: "." of a bare name.
+// The folder of a path; "." for a bare name.
 std::string FolderOf(const std::string& path);
 
 }  // namespace ballpiston::server

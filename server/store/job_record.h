@@ -14,14 +14,14 @@ namespace ballpiston::server {
 using JobState = v1::EnsembleJob::State;
 
 struct JobRecord {
-  int64_t sequence = 0;  // given by the store; greater for a newer job, never given twice
+  int64_t sequence = 0;  // assigned by the store; greater for a newer job, never reused
   std::string id;
-  std::string principal;  // whose it is
+  std::string principal;  // the job's owner
   int32_t priority = 0;   // among the principal's; higher first
   bool pinned = false;    // its results do not expire
   int64_t bytes = 0;      // of its specification and, once it has ended, of its results
   std::string spec;       // serialized v1::EnsembleSpec
-  std::string question;   // equal for equal answers (question.h); empty: never the same
+  std::string question;   // hash of the question (question.h); empty: always compute
   JobState state = v1::EnsembleJob::QUEUED;
   absl::Time create_time;
   std::optional<absl::Time> start_time;
@@ -29,12 +29,12 @@ struct JobRecord {
   std::optional<absl::Time> expired_time;  // its results are gone
   std::string error;                       // serialized google.rpc.Status, empty unless FAILED
   std::string engine_version;
-  int64_t restarts = 0;           // how often another engine began anew
-  std::string cancel_request_id;  // of the Cancel, or empty
+  int64_t restarts = 0;           // how often a newer engine started the job again
+  std::string cancel_request_id;  // of the cancellation, or empty
   int64_t points = 0;
   int64_t points_done = 0;  // these two are up to date in ended jobs only
   double samples = 0;
-  double work = 0;  // seconds of processor time; of this server's life, in an ended job of its last
+  double work = 0;  // seconds of processor time, in the server process that runs or ended the job
 };
 
 }  // namespace ballpiston::server

@@ -54,7 +54,7 @@ void BindTextOrNull(Query& query, const std::string& text) {
   }
 }
 
-// The first row, if any, of what the caller's condition leaves.
+// Selects the jobs that meet the caller's condition.
 std::string SelectWhere(const char* condition) {
   return absl::StrCat("SELECT ", kColumns, " FROM jobs WHERE ", condition);
 }

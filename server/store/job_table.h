@@ -1,7 +1,8 @@
 // The SQL about jobs. Each function runs inside the transaction of its caller.
 //
-// Changes of state are decided here, where all writes pass in one order: a cancellation and the
-// last result of a job may come together, and one of them is first. UNAVAILABLE: SQLite failed.
+// These functions decide changes of state, because the store runs all writes in one order: if a
+// cancellation and the last result of a job come at the same time, one of them is first.
+// UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 #define BALLPISTON_SERVER_STORE_JOB_TABLE_H_
 
@@ -30,25 +31,26 @@ absl::StatusOr<std::optional<JobRecord>> FindAnswer(Database& database,
                                                     const std::string& principal,
                                                     const std::string& question);
 
-// Neither SUCCEEDED nor FAILED nor CANCELLED; the principal's, or everybody's.
+// The number of active jobs (neither SUCCEEDED nor FAILED nor CANCELLED), of one principal or of
+// all.
 absl::StatusOr<int64_t> CountActiveJobs(Database& database,
                                         const std::optional<std::string>& principal);
 
-// All there are.
+// The number of all jobs.
 absl::StatusOr<int64_t> CountJobs(Database& database);
 
-// The principal's, or everybody's; newest first, those with a smaller sequence than `before`; ends
-// when `on_job` returns false.
+// Reads the jobs of one principal or of all, with a smaller sequence than `before`, newest first.
+// Ends when `on_job` returns false.
 absl::Status ReadJobs(Database& database, const std::optional<std::string>& principal,
                       int64_t before, const std::function<bool(JobRecord job)>& on_job);
 
-// Neither SUCCEEDED nor FAILED nor CANCELLED; oldest first.
+// The active jobs, oldest first.
 absl::StatusOr<std::vector<JobRecord>> ListUnfinishedJobs(Database& database);
 
-// QUEUED -> RUNNING. Without effect in every other state.
+// QUEUED -> RUNNING. No effect in every other state.
 absl::Status BeginJob(Database& database, int64_t sequence, absl::Time now);
 
-// QUEUED, RUNNING -> CANCELLING. False, and without effect, in every other state.
+// QUEUED, RUNNING -> CANCELLING. False, and no effect, in every other state.
 absl::StatusOr<bool> BeginCancellation(Database& database, int64_t sequence,
                                        const std::string& request_id);
 
@@ -66,7 +68,7 @@ struct JobEnd {
 // state was requested. Returns the job's new state.
 absl::StatusOr<JobState> EndJob(Database& database, int64_t sequence, const JobEnd& end);
 
-// Of an engine that gives other numbers: what was computed is dropped, the version becomes this.
+// Starts a job of another engine version again: drops its results and sets its engine version.
 absl::Status RestartJob(Database& database, int64_t sequence, const std::string& engine_version,
                         const std::string& question);
 
@@ -75,7 +77,7 @@ absl::Status PinJob(Database& database, int64_t sequence, bool pinned);
 struct JobSize {
   int64_t sequence = 0;
   int64_t bytes = 0;       // JobRecord::bytes
-  int64_t spec_bytes = 0;  // of them
+  int64_t spec_bytes = 0;  // of these, the specification's
   std::string principal;
 };
 
@@ -87,7 +89,7 @@ absl::StatusOr<std::optional<JobSize>> FindUnpinned(Database& database, int64_t 
 absl::StatusOr<std::vector<JobSize>> ListExpirable(Database& database, absl::Time ended_before,
                                                    int most);
 absl::StatusOr<int64_t> CountExpirable(Database& database, absl::Time ended_before);
-// The same of jobs whose results have expired.
+// The same for jobs whose results have expired.
 absl::StatusOr<std::vector<JobSize>> ListExpired(Database& database, int most);
 
 // After these two, the sweeper removes the results (sweeper.h); nobody can find them meanwhile.

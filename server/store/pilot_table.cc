@@ -3,7 +3,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Of a pilot in equilibrium: not NULL, so that it can be part of a key.
+// The epsilon of a pilot in equilibrium. It is not NULL, so that it can be part of a key.
 constexpr double kNoEpsilon = -1;
 
 Query& BindPlace(Query& query, const std::string& engine_version, const PilotPlace& place) {

@@ -1,4 +1,4 @@
-// The SQL about pilot runs: what was found of the limit's error, and where. Each function runs
+// The SQL about pilot runs: the measured error of the limit at each place. Each function runs
 // inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_PILOT_TABLE_H_
 #define BALLPISTON_SERVER_STORE_PILOT_TABLE_H_

@@ -1,4 +1,4 @@
-// The SQL about what was computed: checkpoints and chunks of unfinished points, results of finished
+// The SQL about computed data: checkpoints and chunks of unfinished points, results of finished
 // ones. Each function runs inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_POINT_TABLES_H_
 #define BALLPISTON_SERVER_STORE_POINT_TABLES_H_
@@ -36,21 +36,21 @@ struct PointRow {
   double samples = 0;
   std::string result;          // serialized storage::Result
   std::string details = {};    // serialized storage::Details; empty if there are none or not read
-  bool has_checkpoint = true;  // or may have one, or chunks
+  bool has_checkpoint = true;  // may have a checkpoint or chunks
 };
 
-// Drops the point's checkpoint and chunks, which are no longer needed. The first writer wins. The
-// result's number among the job's, greater than those before: 1, 2, 3, ... in the order in which
-// they were stored; 0 if the point had a result.
+// Stores a point's result and drops its checkpoint and chunks. The first writer wins. Returns the
+// number of the result among the job's results, 1, 2, 3, ... in the order of storing; 0 if the
+// point already had a result.
 absl::StatusOr<int64_t> InsertResult(Database& database, int64_t job, const PointRow& row);
 
 enum class Details { kLeftOut, kIncluded };
 
-// In grid order, from point `first`; ends when `on_row` returns false.
+// Reads results in grid order, from point `first`. Ends when `on_row` returns false.
 absl::Status ReadResults(Database& database, int64_t job, int64_t first, Details details,
                          const std::function<bool(PointRow row)>& on_row);
 
-// In the order in which they were stored, those after number `after`; ends when `on_row` returns
+// Reads the results after number `after`, in the order of storing. Ends when `on_row` returns
 // false.
 absl::Status ReadResultsStoredAfter(
     Database& database, int64_t job, int64_t after,

@@ -1,4 +1,4 @@
-// The SQL about requests: which Create made, or was answered with, which job. Each function runs
+// The SQL about requests: for each Create, the job that it made or returned. Each function runs
 // inside the transaction of its caller. UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
 #define BALLPISTON_SERVER_STORE_REQUEST_TABLE_H_
@@ -15,8 +15,8 @@ namespace ballpiston::server {
 
 struct RequestRecord {
   std::string principal;
-  std::string request_id;  // unique among the principal's
-  std::string payload;     // a hash of all the rest of the request
+  std::string request_id;  // unique for the principal
+  std::string payload;     // a hash of the request without its id
   int64_t job = 0;         // its sequence
   bool answered_from_store = false;
 };
@@ -27,7 +27,7 @@ absl::StatusOr<std::optional<RequestRecord>> FindRequest(Database& database,
                                                          const std::string& principal,
                                                          const std::string& request_id);
 
-// How many came to this job; no more than `most` are counted.
+// The number of requests with this job; counts at most `most`.
 absl::StatusOr<int64_t> CountRequests(Database& database, int64_t job, int64_t most);
 
 }  // namespace ballpiston::server

@@ -108,17 +108,17 @@ CREATE TABLE pilots (
 )sql";
 
 absl::Status Refused(const std::string& path, const std::string& why) {
-  return absl::FailedPreconditionError(
-      absl::StrCat("store ", path, " ", why,
-                   "; it was left as it is: move it away, or choose another --data-dir"));
+  return absl::FailedPreconditionError(absl::StrCat(
+      "store ", path, " ", why, "; it is unchanged: move it away, or choose another --data-dir"));
 }
 
-// The disk is full, or fails, or the file is not this user's: nothing is said of what is in it.
+// The disk is full or fails, or the file belongs to another user. This says nothing about the
+// file's content.
 absl::Status NotUsable(const std::string& path, const absl::Status& found) {
   return absl::UnavailableError(absl::StrCat(
       "store ", path, " cannot be used now (", found.message(),
-      "); it was left as it is: see whether its disk works and has room, and whether the file is "
-      "this user's"));
+      "); it is unchanged: check that its disk works and has room, and that the file belongs to "
+      "this user"));
 }
 
 absl::Status RefusedFor(const std::string& path, const absl::Status& found) {
@@ -132,9 +132,9 @@ bool IsFolder(const std::string& path) {
   return stat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
 }
 
-// A store keeps a log beside it from the moment it has tables, and says so in its header, bytes 18
-// and 19. A file that does not, with a log beside it, is a copy that was put where another store
-// was: SQLite would read the other's pages into it.
+// A store with tables has a log beside it; bytes 18 and 19 of its header say so. A file without
+// this mark but with a log beside it is a backup that replaced another store: SQLite would read the
+// other store's pages into it.
 absl::Status CheckLog(const std::string& path, const Database& database, const std::string& vfs) {
   const auto start = database.FileStart(20);
   if (!start.ok()) return RefusedFor(path, start.status());
@@ -145,7 +145,7 @@ absl::Status CheckLog(const std::string& path, const Database& database, const s
                                     "-wal away if this is a restored copy"));
 }
 
-// What kind of file it is. Sets whether it was made, and then interrupted.
+// Checks that the file is a store. `unfinished`: the creation of the store was interrupted.
 absl::Status CheckKind(const std::string& path, Database& database, bool& unfinished) {
   const auto application = database.Integer("PRAGMA application_id");
   const auto version = database.Integer("PRAGMA user_version");
@@ -180,16 +180,16 @@ absl::Status CheckContents(const std::string& path, Database& database) {
   return *check == "ok" ? check.status() : RefusedFor(path, absl::DataLossError(*check));
 }
 
-// Making a store was interrupted when there was nothing in it yet: a journal tells how to undo it,
-// which the connection that writes will do.
+// Whether the creation of the store was interrupted when it was still empty. A journal then has the
+// undo data, which the writing connection applies.
 bool WasInterruptedAtFirstPage(const std::string& path, const Database& database,
                                const std::string& vfs) {
   const auto bytes = database.FileBytes();
   return bytes.ok() && *bytes <= kFirstPageBytes && Database::Exists(path + "-journal", vfs);
 }
 
-// A connection that only reads still makes an (empty) log and its index, if there are none. They go
-// with a file that is refused, unless somebody has written to the log meanwhile.
+// A read-only connection also creates an empty log and its index if they do not exist. This class
+// removes them if the file is rejected, unless another process has written to the log meanwhile.
 class LogOfRefused {
  public:
   LogOfRefused(const std::string& path, const std::string& vfs) {
@@ -284,7 +284,8 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
   if (!checked.ok()) return checked;
   auto database = Database::Open(path, Database::Mode::kReadWrite, vfs);
   if (!database.ok()) return absl::PermissionDeniedError(database.status().message());
-  bool unfinished = false;  // again, for an interrupted change may have been undone by opening
+  bool unfinished =
+      false;  // checked again, because opening the file may have undone an interrupted change
   const absl::Status kind = CheckKind(path, **database, unfinished);
   if (!kind.ok()) return kind;
   const absl::Status prepared = Prepare(**database);

@@ -1,18 +1,18 @@
-// The tables of the store, and the checks before a file is taken for one.
+// The tables of the store, and the checks of a file before it is used as a store.
 //
-//   jobs      one row a job; `sequence` is its age and the key of the next four
-//   requests  (principal, request id) -> the job that was its answer
-//   checkpoints (job, point) -> storage Checkpoint, of unfinished points of active jobs
+//   jobs      one row a job; `sequence` orders them by age and names the job in the next five
+//   requests  (principal, request id) -> the job that the server returned checkpoints (job, point)
+//   -> storage Checkpoint, of unfinished points of active jobs
 //   chunks    (job, point, chunk) -> storage Chunk, of chunks that wait for an earlier one
 //   results   (job, point) -> storage Result, of finished points
 //   details   (job, point) -> storage Details, of those that have any
 //   dropped   deleted and expired jobs whose results are still being removed (sweeper.h)
 //   work      (principal, day) -> processor time (usage_table.h)
-//   server    one row: a random name of this store, by which a cluster's jobs are told apart
-//   pilots    what pilot runs found of the limit's error, by place and engine
+//   server    one row: a random name of this store, which is part of the names of its cluster jobs
+//   pilots    the limit's error that pilot runs measured, by place and engine
 //
-// `application_id` tells a store from another program's database, `user_version` is the version of
-// these tables.
+// `application_id` marks the file as a ballpiston store; `user_version` is the version of these
+// tables.
 #ifndef BALLPISTON_SERVER_STORE_SCHEMA_H_
 #define BALLPISTON_SERVER_STORE_SCHEMA_H_
 
@@ -31,8 +31,8 @@ inline constexpr int64_t kApplicationId = 0x62706973;  // "bpis"
 // The connection that writes and checkpoints. Checks an existing store; creates a store if there is
 // none. On an error the file is unchanged:
 //   FAILED_PRECONDITION  damaged, of a newer version, or of another program
-//   UNAVAILABLE          its disk is full or fails, or it may not be read
-//   PERMISSION_DENIED    it may not be written
+//   UNAVAILABLE          its disk is full or fails, or the file is not readable
+//   PERMISSION_DENIED    the file is not writable
 absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
                                                         const std::string& vfs = std::string());
 

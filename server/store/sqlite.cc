@@ -13,7 +13,7 @@ namespace {
 // A reader never waits for the writer in WAL mode; this covers recovery after a crash.
 constexpr int kBusyMilliseconds = 5000;
 
-// SQLite calls a full disk full, but a spent quota an input/output error.
+// SQLite reports a full disk as full, but a full quota as an input/output error.
 bool IsOutOfSpace(int code, int system_error) {
   if ((code & 0xff) == SQLITE_FULL) return true;
   return (code & 0xff) == SQLITE_IOERR && (system_error == EDQUOT || system_error == ENOSPC);
@@ -209,7 +209,7 @@ absl::StatusOr<std::string> Database::FileStart(int bytes) const {
   const int code = file == nullptr || file->pMethods == nullptr
                        ? SQLITE_CANTOPEN
                        : file->pMethods->xRead(file, start.data(), bytes, 0);
-  // What is missing of a short file reads as zeros.
+  // The missing part of a short file reads as zeros.
   if (code == SQLITE_OK || code == SQLITE_IOERR_SHORT_READ) return start;
   return absl::UnavailableError(absl::StrCat("store: ", sqlite3_errstr(code)));
 }

@@ -1,11 +1,11 @@
-// SQLite with owners: a connection and its statements, errors as absl::Status.
+// SQLite connections and statements as C++ objects, with errors as absl::Status.
 //
-// A status carries SQLite's own message, and says what failed. The disk, so a retry may succeed
-// (IsOfTheDisk):
-//   RESOURCE_EXHAUSTED  it is full, or the user's quota is
+// A status has SQLite's own message. Its code tells what failed.
+// The disk, so a retry may succeed (IsOfTheDisk):
+//   RESOURCE_EXHAUSTED  the disk or the user's quota is full
 //   UNAVAILABLE         input/output error, cannot open, locked, out of memory, ...
 // The file, so a retry fails too:
-//   DATA_LOSS           it is damaged, or no database
+//   DATA_LOSS           the file is damaged, or not a database
 // The statement or a value that was bound to it, so it can never succeed:
 //   INVALID_ARGUMENT    a constraint, a type, a value too big
 //   INTERNAL            anything else
@@ -29,8 +29,8 @@ struct sqlite3_stmt;
 
 namespace ballpiston::server {
 
-// The disk failed, not what was asked of it. A status with a payload is somebody's considered
-// answer and never of the disk.
+// Whether the disk caused the error. False for every status with a payload: the project's code made
+// such a status.
 bool IsOfTheDisk(const absl::Status& status);
 
 // One execution of a prepared statement; parameters are numbered from 1, columns from 0. Returns
@@ -71,7 +71,7 @@ class Database {
   static absl::StatusOr<std::unique_ptr<Database>> Open(const std::string& path, Mode mode,
                                                         const std::string& vfs = std::string());
 
-  // Whether there is such a file, and something in it.
+  // Whether the file exists and is not empty.
   static bool Exists(const std::string& path, const std::string& vfs = std::string());
 
   ~Database();
@@ -89,7 +89,7 @@ class Database {
   absl::StatusOr<int64_t> Integer(const std::string& sql);
   absl::StatusOr<std::string> Text(const std::string& sql);
 
-  // Of the file itself, as it lies on the disk: without its log.
+  // The size of the file on disk, without its log.
   absl::StatusOr<int64_t> FileBytes() const;
   absl::StatusOr<std::string> FileStart(int bytes) const;
 

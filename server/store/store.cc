@@ -20,14 +20,13 @@ namespace {
 // not fit leaves some room for requests.
 constexpr size_t kSmallestGroup = 32;
 
-// Limits how long a transaction holds the writer, and how much the log can hold that the file has
-// no room for.
+// Limits the time of a transaction, and the part of the log that may not fit into the file.
 constexpr size_t kMostGroupBytes = 2 << 20;
 
 constexpr std::chrono::seconds kBetweenReserves(60);
 
 absl::Status Stalled() {
-  return absl::UnavailableError("store: the disk does not answer; the request was not taken");
+  return absl::UnavailableError("store: the disk does not answer; retry later");
 }
 
 absl::Status Closed() { return absl::UnavailableError("store: closed"); }
@@ -93,7 +92,7 @@ absl::Status Store::Await(Write write) {
     if (write.done) write.done(Stalled());
     return Stalled();
   }
-  // Shared: the store's thread may still be leaving set_value when this one returns.
+  // Shared: the store's thread may still be inside set_value when this function returns.
   auto committed = std::make_shared<std::promise<absl::Status>>();
   std::future<absl::Status> result = committed->get_future();
   write.urgent = true;
@@ -204,7 +203,7 @@ void Store::GiveBack(std::unique_ptr<Database> reader) {
   reader_is_free_.NotifyAll();
 }
 
-// Waits for those in use.
+// Waits for the connections in use.
 void Store::CloseReaders() {
   MutexLock lock(readers_mutex_);
   while (free_readers_.size() < readers_) reader_is_free_.Wait(readers_mutex_);
@@ -270,7 +269,7 @@ int64_t Store::pending_writes() const {
   return static_cast<int64_t>(pending_.size() + in_batch_);
 }
 
-// ---- which writes are next ----
+// ---- choice of the next writes ----
 
 void Store::WriteUntilClosed() {
   Sweep();  // goes on where the last process stopped
@@ -286,7 +285,7 @@ void Store::WriteUntilClosed() {
 
 bool Store::BatchIsDue(Clock::time_point now) const {
   if (closing_) return true;
-  // On a full disk, records wait while space is being freed: they would take it at once.
+  // On a full disk, records wait while space is being freed, because they would use it at once.
   const bool records_wait = failing_ && sweep_advances_ && !stop_waiting_;
   if (requests_ > (records_wait ? ordered_ : 0)) return true;
   if (failing_) return !stop_waiting_ && !records_wait && retry_time_ <= now;
@@ -330,7 +329,7 @@ std::optional<Store::Batch> Store::TakeBatch() {
   return TakePending(!records_wait && (!failing_ || retry));
 }
 
-// Takes only requests while the disk fails and it is not yet time to retry: they are few and small.
+// While the disk fails and the next retry is not due, takes only requests, which are few and small.
 Store::Batch Store::TakePending(bool whole) {
   Batch batch;
   batch.whole = whole;
@@ -390,7 +389,8 @@ absl::Status Store::CommitBatch(Writes& batch) {
   return status;
 }
 
-// Of those from `first` on, the disk being `full`. OK if none of them has to wait.
+// Commits the requests from `first` on, one by one, because the disk is full. OK if no write has to
+// wait.
 absl::Status Store::CommitRequestsAlone(Writes& batch, size_t first, const absl::Status& full) {
   absl::Status failed = first < batch.size() ? absl::OkStatus() : full;
   for (size_t i = first; i < batch.size(); ++i) {
@@ -420,7 +420,7 @@ absl::Status Store::CommitGroup(Writes& batch, size_t first, size_t last) {
     if (!culprit || IsOfTheDisk(status)) return status;
     Write& refused = batch[*culprit];
     refused.outcome = status;
-    if (refused.lasting) LogError(absl::StrCat("a record is not kept: ", Text(status)));
+    if (refused.lasting) LogError(absl::StrCat("a record was rejected: ", Text(status)));
   }
   MutexLock lock(mutex_);
   ++commits_;
@@ -490,7 +490,7 @@ void Store::Sweep() {
 void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   const bool is_damage = absl::IsDataLoss(swept.status());
   if (is_damage) {
-    LogError(absl::StrCat("the space of deleted jobs is not freed: ", Text(swept.status())));
+    LogError(absl::StrCat("the space of deleted jobs cannot be freed: ", Text(swept.status())));
   } else if (!swept.ok()) {
     NoteHealth(swept.status());
   }
@@ -503,10 +503,10 @@ void Store::NoteSweep(const absl::StatusOr<bool>& swept) {
   written_.NotifyAll();
 }
 
-// ---- what became of them ----
+// ---- outcomes ----
 
 void Store::Settle(Batch batch, const absl::Status& status) {
-  if (batch.whole) NoteHealth(status);  // before anybody hears of it
+  if (batch.whole) NoteHealth(status);  // before the callers get the outcome
   Writes again;
   Writes settled;
   size_t freed = 0;

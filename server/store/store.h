@@ -70,7 +70,8 @@ class Store {
     int readers = 4;                        // read-only connections
     size_t max_pending = 10'000;            // AwaitRoom waits above it,
     size_t max_pending_bytes = 64 << 20;    // and above this
-    // Disk space for deletions. It is more than the log can hold that the file has no room for.
+    // Disk space for deletions. It is larger than the part of the log that may not fit into the
+    // file.
     size_t reserve_bytes = 16 << 20;
     std::string vfs = {};  // of SQLite; empty: the operating system's
   };
@@ -203,7 +204,8 @@ class Store {
   const Options options_;
   const std::string path_;
   const std::string identity_;
-  // Only the store's thread uses these five. Everybody may ask disk_calls_ how long it waits.
+  // Only the store's thread uses these five. Any thread may read from disk_calls_ how long a call
+  // waits.
   std::unique_ptr<Database> writer_;
   Sweeper sweeper_;
   const std::shared_ptr<DiskCalls> disk_calls_;
@@ -221,7 +223,7 @@ class Store {
   Writes pending_ ABSL_GUARDED_BY(mutex_);
   size_t in_batch_ ABSL_GUARDED_BY(mutex_) = 0;
   size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;     // of pending_ and of the batch
-  size_t urgent_ ABSL_GUARDED_BY(mutex_) = 0;    // among pending_; requests are
+  size_t urgent_ ABSL_GUARDED_BY(mutex_) = 0;    // among pending_; all requests are urgent
   size_t requests_ ABSL_GUARDED_BY(mutex_) = 0;  // among pending_
   size_t ordered_ ABSL_GUARDED_BY(mutex_) = 0;   // among pending_
   bool failing_ ABSL_GUARDED_BY(mutex_) = false;

@@ -24,8 +24,9 @@ class Sweeper {
 
   static constexpr int64_t kFirstRows = 64, kFirstPages = 64;
 
-  int64_t job_ = 0;  // whose rows the last step removed
-  // In one step; adapted to the time that steps take. Another job's rows may be larger.
+  int64_t job_ = 0;  // the last step removed rows of this job
+  // Rows to remove in one step, adapted to the time of earlier steps. Starts again for another job,
+  // whose rows may be larger.
   int64_t rows_ = kFirstRows;
   int64_t pages_ = kFirstPages;
 };

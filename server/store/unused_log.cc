@@ -18,7 +18,7 @@ UnusedLog::UnusedLog(std::string store) : store_(std::move(store)), was_there_(H
 UnusedLog::~UnusedLog() {
   if (was_there_ || !HasLog(store_)) return;
   const auto database = Database::Open(store_, Database::Mode::kReadWrite);
-  // Having read, it is a user of the log; the last one takes it away when it closes.
+  // After a read this connection uses the log. SQLite removes the log when its last user closes.
   if (database.ok()) (*database)->Integer("PRAGMA user_version").status().IgnoreError();
 }
 

@@ -1,8 +1,8 @@
-// The log and its index that a reader leaves beside a store that nobody had open.
+// Removes the log and its index that a reader leaves beside a store that no process had open.
 //
-// A connection that only reads makes an empty log, and may not take it away again. They are taken
-// away here by SQLite itself, through a connection that may: under its locks, so that a server that
-// starts in this moment keeps what it has opened.
+// A read-only connection creates an empty log, but may not remove it. This class lets SQLite remove
+// these files through a connection that can write. SQLite holds its locks meanwhile, so a server
+// that starts at this moment keeps its files.
 #ifndef BALLPISTON_SERVER_STORE_UNUSED_LOG_H_
 #define BALLPISTON_SERVER_STORE_UNUSED_LOG_H_
 
@@ -12,9 +12,9 @@ namespace ballpiston::server {
 
 class UnusedLog {
  public:
-  // Before the store is opened to be read.
+  // Call before the store is opened for reading.
   explicit UnusedLog(std::string store);
-  // When it is closed. Does nothing to a log that was there before.
+  // Runs after the store is closed. Leaves a log that existed before.
   ~UnusedLog();
   UnusedLog(const UnusedLog&) = delete;
   UnusedLog& operator=(const UnusedLog&) = delete;

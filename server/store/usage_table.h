@@ -1,4 +1,4 @@
-// The SQL about what principals use. Each function runs inside the transaction of its caller.
+// The SQL about the usage of principals. Each function runs inside the transaction of its caller.
 // UNAVAILABLE: SQLite failed.
 #ifndef BALLPISTON_SERVER_STORE_USAGE_TABLE_H_
 #define BALLPISTON_SERVER_STORE_USAGE_TABLE_H_

@@ -12,7 +12,7 @@
 // Writing is atomic and durable: a temporary name in the same folder, fsync, rename, fsync of the
 // folder. A reader sees a whole file or none. Errors name the file. Properties, each with a test of
 // its name:
-//   1. NoChangedByteIsAccepted.  2. NoShorterFileIsAccepted.
+//   1. AChangedByteIsRejected.  2. AShorterFileIsRejected.
 #ifndef BALLPISTON_SERVER_WORKER_CHECKED_FILE_H_
 #define BALLPISTON_SERVER_WORKER_CHECKED_FILE_H_
 

@@ -2,7 +2,7 @@
 //
 // Properties, each with a test of its name:
 //   1. ChunksHaveTheBitsOfAWholePoint.  2. ComputesOnlyMissingChunks.
-//   3. NothingIsComputedAfterTheTolerance.
+//   3. StopsAtTheTolerance.
 #ifndef BALLPISTON_SERVER_WORKER_LEASE_RUNNER_H_
 #define BALLPISTON_SERVER_WORKER_LEASE_RUNNER_H_
 

@@ -43,7 +43,7 @@ bool HasExpired(const TestServer& server, const std::string& name) {
   return false;
 }
 
-TEST(Expiry, OldResultsMakeRoomUnlessTheyArePinnedAndAreComputedAgain) {
+TEST(Expiry, OldResultsExpireUnlessPinnedAndCanBeComputedAgain) {
   const TestServer server({.flags = {"--max-store-bytes=600000"}});
   const ProcessResult kept = RunSweep(server, 1), old = RunSweep(server, 2);
   ASSERT_THAT(kept, ExitsWith(0));

@@ -274,7 +274,7 @@ TEST_F(FigureTest, APictureThatIsCutOffIsReported) {
   EXPECT_THAT(result.err, HasSubstr("cell.svg is not complete: the disk may be full"));
 }
 
-TEST_F(FigureTest, ListNamesThem) {
+TEST_F(FigureTest, ListPrintsTheNamesOfTheFigures) {
   const ProcessResult result = server_.Client({"figure", "--list"});
   EXPECT_THAT(result, ExitsWith(0));
   for (const std::string name :

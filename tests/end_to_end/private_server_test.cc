@@ -61,13 +61,13 @@ class PrivateServerTest : public ::testing::Test {
   TemporaryFolder home_;
 };
 
-TEST(Server, StopsByItselfWhenNobodyUsesIt) {
+TEST(Server, StopsWhenItIsIdle) {
   const TemporaryFolder home;
   const ProcessResult result =
       RunServer(home, {"--listen", "unix:" + home.File("socket"), "--data-dir", home.File("data"),
                        "--idle-exit-seconds", "0.1"});
   EXPECT_THAT(result, ExitsWith(0));
-  EXPECT_THAT(result.err, testing::HasSubstr("nobody uses this server: stopping"));
+  EXPECT_THAT(result.err, testing::HasSubstr("the server is idle: stopping"));
 }
 
 TEST_F(PrivateServerTest, OneCommandDoesTheJobInAnEmptyHome) {

@@ -166,17 +166,17 @@ TEST_F(Security, AClientCertificateIsRequiredAndAccepted) {
   EXPECT_THAT(without.err, HasSubstr("--cert FILE --key FILE"));
 }
 
-TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresWrongOnes) {
+TEST_F(Security, SighupReadsTheFilesAgainAndIgnoresInvalidOnes) {
   NewToken("alice", "alice:read");
   Start(TlsFlags());
   NewToken("bob", "bob:read");
   EXPECT_THAT(List(Known("bob")), ExitsWith(6));
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->AwaitLog("read again: "));
+  ASSERT_TRUE(server_->AwaitLog("reloaded: "));
   EXPECT_THAT(List(Known("bob")), ExitsWith(0));
   Write("access", "nonsense\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->AwaitLog("not read again, the old stays: --access-file="));
+  ASSERT_TRUE(server_->AwaitLog("not reloaded, the previous contents stay in use: --access-file="));
   EXPECT_THAT(List(Known("bob")), ExitsWith(0));
   EXPECT_EQ(server_->Stop(), 0);
 }
@@ -205,7 +205,7 @@ TEST_F(Security, UnsafeFlagsExitWithTwoAndOneLine) {
          "--loopback-role=admin cannot be combined with --access-file");
   expect({"--new-token", "alice:read"}, "--access-file is missing");
   chmod(home_.File("server.key").c_str(), 0644);
-  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to others");
+  expect(Joined({TlsFlags(), {"--listen", "127.0.0.1:0"}}), "is open to other users");
 }
 
 TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
@@ -218,11 +218,11 @@ TEST_F(Security, NoTokenIsInTheLogTheStoreOrTheOutputOfAClient) {
   const std::string access = Contents(home_.File("access"));
   Write("access", access.substr(0, access.find('\n') + 1));
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->AwaitLog("read again: "));
+  ASSERT_TRUE(server_->AwaitLog("reloaded: "));
   EXPECT_THAT(List(Known("gone")), ExitsWith(6));
   Write("access", "token " + tokens[1] + " bob submit\n");
   server_->Signal(SIGHUP);
-  ASSERT_TRUE(server_->AwaitLog("not read again"));
+  ASSERT_TRUE(server_->AwaitLog("not reloaded"));
   EXPECT_THAT(List({"--token-file", home_.File("token_gone")}), ExitsWith(2));
   server_->Stop();
   std::string all = client_output_ + server_->log() + access;

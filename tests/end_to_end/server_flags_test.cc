@@ -110,7 +110,7 @@ TEST(ServerFlags, HelpListsEachOnceWithDashes) {
   EXPECT_EQ(FlagsOf(Server({"-h"}).out), expected);
 }
 
-TEST(ServerFlags, HelpTellsDefaultsAndExitCodesInLinesThatFitATerminal) {
+TEST(ServerFlags, HelpListsDefaultsAndExitCodesInShortLines) {
   const std::string page = Server({"--help"}).out;
   EXPECT_THAT(page, HasSubstr("--max-active-jobs N\n"));
   EXPECT_THAT(page, HasSubstr("jobs that have not ended, of all principals; default: 10000\n"));
@@ -125,7 +125,7 @@ TEST(ServerFlags, HelpTellsDefaultsAndExitCodesInLinesThatFitATerminal) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
 }
 
-TEST(ServerFlags, HelpAndVersionAreGivenBesideAWrongFlag) {
+TEST(ServerFlags, HelpAndVersionArePrintedBesideAWrongFlag) {
   for (const Words& wrong :
        {Words{"--workers=0"}, Words{"--nonsense"}, Words{"--config=nowhere"}}) {
     for (const std::string page : {"--help", "--version"}) {
@@ -328,7 +328,7 @@ TEST_F(ConfigFile, NamesTheLineThatIsWrong) {
   }
 }
 
-TEST_F(ConfigFile, HasToBeAFileThatCanBeRead) {
+TEST_F(ConfigFile, MustBeAReadableFile) {
   const std::string missing = home_.File("missing.conf");
   EXPECT_THAT(Refusal({"--config", missing}),
               HasSubstr("--config=" + missing + " is not a file that can be read"));

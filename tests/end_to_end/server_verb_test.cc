@@ -37,7 +37,7 @@ class ServerVerbTest : public ::testing::Test {
   const Words named_ = {"--data-dir", home_.File("data")};
 };
 
-TEST_F(ServerVerbTest, StartsAndStopsTheOneThatClientsUse) {
+TEST_F(ServerVerbTest, StartsAndStopsTheServerOfTheClients) {
   EXPECT_THAT(Server("stop", private_), ExitsWith(3));
   const ProcessResult started = Start(private_);
   EXPECT_THAT(started, ExitsWith(0));
@@ -51,7 +51,7 @@ TEST_F(ServerVerbTest, StartsAndStopsTheOneThatClientsUse) {
   EXPECT_THAT(Client("server status"), ExitsWith(3));
 }
 
-TEST_F(ServerVerbTest, StartsOneInAFolderWithFlags) {
+TEST_F(ServerVerbTest, StartsAServerInAFolderWithFlags) {
   Words flags = named_;
   flags.insert(flags.end(), {"--workers", "1", "--listen", "127.0.0.1:0"});
   const ProcessResult started = Start(flags);
@@ -67,7 +67,7 @@ TEST_F(ServerVerbTest, StartsOneInAFolderWithFlags) {
   EXPECT_THAT(Server("stop", named_), ExitsWith(0));
 }
 
-TEST_F(ServerVerbTest, AWrongFlagOfTheServerIsToldWithTheLastLineOfItsLog) {
+TEST_F(ServerVerbTest, AWrongServerFlagIsReportedWithTheServersLastLogLine) {
   const ProcessResult result = Server("start", Joined({named_, {"--", "--speed=3"}}));
   EXPECT_THAT(result, ExitsWith(2));
   EXPECT_THAT(result.err, HasSubstr("--speed"));
@@ -76,7 +76,7 @@ TEST_F(ServerVerbTest, AWrongFlagOfTheServerIsToldWithTheLastLineOfItsLog) {
 
 // The lock file of a folder that another machine uses holds the number of a process of that
 // machine.
-TEST_F(ServerVerbTest, StopLeavesAProcessAloneThatDoesNotUseTheFolder) {
+TEST_F(ServerVerbTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
   fs::create_directory(home_.File("data"));
   const std::string lock = home_.File("data/lock");
   Process stranger({.command = {"sleep", "60"}});

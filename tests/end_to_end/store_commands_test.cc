@@ -76,7 +76,7 @@ TEST(Limits, ErrorsNameTheFlagOfTheLimit) {
   EXPECT_THAT(ask("0.1:0.2:1000").err, HasSubstr("2048"));  // gRPC's words
 }
 
-TEST(Limits, NegativeOnesAreRejected) {
+TEST(Limits, NegativeValuesAreRejected) {
   const TemporaryFolder home;
   for (const std::string flag : {"--max-active-jobs=-1", "--max-samples-per-job=-2",
                                  "--max-message-bytes=0", "--max-streams=-1"}) {

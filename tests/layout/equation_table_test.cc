@@ -36,7 +36,7 @@ TEST(EquationTable, HasEveryLabelOfThePaperInItsOrder) {
   EXPECT_EQ(labels, paper);
 }
 
-TEST(EquationTable, EveryNameStandsInItsFile) {
+TEST(EquationTable, EveryNameIsInItsFile) {
   EXPECT_THAT(WrongRows(RowsOfTheReadme(), ContentsInProject), IsEmpty());
 }
 
@@ -58,7 +58,7 @@ TEST(EquationTable, ReferencesAreFilesWithNames) {
       ElementsAre(CodeReference{"core/closed_form/a.h", "A"}, CodeReference{"core/b/c.h", "D2"}));
 }
 
-TEST(EquationTable, MissingFilesAndNamesAreWrong) {
+TEST(EquationTable, MissingFilesAndNamesAreErrors) {
   const auto contents = [](const std::string& path) {
     return std::string(path == "core/closed_form/a.h" ? "double Area(double rho);" : "");
   };

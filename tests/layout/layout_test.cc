@@ -105,7 +105,7 @@ TEST(IncludeRules, IncludesAreFoundInOrder) {
               ElementsAre("vector", "core/a.h"));
 }
 
-TEST(IncludeRules, DownwardIncludesAreRight) {
+TEST(IncludeRules, DownwardIncludesArePermitted) {
   EXPECT_THAT(WrongIncludes("core/billiard/x.cc",
                             "#include <cmath>\n#include \"core/sampling/direction.h\"\n"
                             "#include \"core/geometry/pair_geometry.h\"\n#include <Eigen/Core>\n"),
@@ -122,7 +122,7 @@ TEST(IncludeRules, GeometryIncludesNothingAboveIt) {
   ExpectWrong("core/geometry/x.h", "\"core/sampling/direction.h\"");
 }
 
-TEST(IncludeRules, NoTwoFoldersOfTheServerIncludeEachOther) {
+TEST(IncludeRules, FoldersOfTheServerIncludeInOneDirection) {
   ExpectWrong("server/convert/x.h", "\"server/security/principal.h\"");
   ExpectWrong("server/convert/x.h", "\"server/scheduling/lease.h\"");
   ExpectWrong("server/scheduling/x.cc", "\"server/execution/thread_executor.h\"");
@@ -141,7 +141,7 @@ TEST(IncludeRules, BilliardIncludesNoExperiment) {
 }
 
 // Numbers of many bits are for the tools that compare precisions.
-TEST(IncludeRules, BoostsNumbersAreForTheFlowsOfTheTools) {
+TEST(IncludeRules, OnlyToolsUseBoostsNumbers) {
   const std::string numbers = "#include <boost/multiprecision/eigen.hpp>\n";
   EXPECT_THAT(WrongIncludes("tools/flows/x.h", numbers), IsEmpty());
   for (const char* path : {"core/billiard/x.h", "tools/method_comparison/x.h"}) {
@@ -149,12 +149,12 @@ TEST(IncludeRules, BoostsNumbersAreForTheFlowsOfTheTools) {
   }
 }
 
-TEST(IncludeRules, StatisticsKnowsNoPhysics) {
+TEST(IncludeRules, StatisticsIncludesNoPhysics) {
   ExpectWrong("core/statistics/x.h", "\"core/geometry/pair_geometry.h\"");
   ExpectWrong("core/statistics/x.h", "\"core/closed_form/kernel.h\"");
 }
 
-TEST(IncludeRules, TheCoreKnowsNoServiceNoThreadsAndNoClock) {
+TEST(IncludeRules, TheCoreUsesNoServiceThreadsOrClock) {
   for (const char* include :
        {"\"ballpiston/v1/result.pb.h\"", "<google/protobuf/message.h>", "<grpcpp/grpcpp.h>",
         "<sqlite3.h>", "\"server/store/store.h\"", "\"client/library/client.h\"", "<thread>",
@@ -165,7 +165,7 @@ TEST(IncludeRules, TheCoreKnowsNoServiceNoThreadsAndNoClock) {
   }
 }
 
-TEST(IncludeRules, TheClientKnowsTheProtosOnly) {
+TEST(IncludeRules, TheClientIncludesOnlyTheProtos) {
   for (const char* include :
        {"\"core/geometry/pair_geometry.h\"", "\"server/convert/spec.h\"", "<sqlite3.h>",
         "<Eigen/Core>", "<Random123/philox.h>", "\"tests/layout/include_rules.h\""}) {
@@ -173,12 +173,12 @@ TEST(IncludeRules, TheClientKnowsTheProtosOnly) {
   }
 }
 
-TEST(IncludeRules, TheServerKnowsNoClient) {
+TEST(IncludeRules, TheServerDoesNotIncludeTheClient) {
   ExpectWrong("server/api/x.cc", "\"client/library/client.h\"");
   ExpectWrong("server/api/x.cc", "\"tests/layout/include_rules.h\"");
 }
 
-TEST(IncludeRules, ToolsKnowTheCoreOnly) {
+TEST(IncludeRules, ToolsIncludeOnlyTheCore) {
   EXPECT_THAT(WrongIncludes("tools/stability/x.cc",
                             "#include <thread>\n#include <unistd.h>\n#include <hwy/highway.h>\n"
                             "#include \"core/billiard/orbits.h\"\n"
@@ -191,7 +191,7 @@ TEST(IncludeRules, ToolsKnowTheCoreOnly) {
   }
 }
 
-TEST(IncludeRules, OnlyTheirTestsKnowTheTools) {
+TEST(IncludeRules, OnlyTheirTestsIncludeTheTools) {
   const std::string tool = "\"tools/stability/report.h\"";
   EXPECT_THAT(WrongIncludes("tests/tools/stability/x.cc", "#include " + tool), IsEmpty());
   for (const char* path :
@@ -210,7 +210,7 @@ TEST(IncludeRules, OneFolderOfTheServerParsesFlags) {
   }
 }
 
-TEST(IncludeRules, TheWorkerKnowsFilesAndNoService) {
+TEST(IncludeRules, TheWorkerIncludesNoService) {
   EXPECT_THAT(WrongIncludes("server/worker/x.cc",
                             "#include <fcntl.h>\n#include \"core/ensemble/chunk_fold.h\"\n"
                             "#include \"server/worker/lease_record.h\"\n"
@@ -230,7 +230,7 @@ TEST(IncludeRules, PhysicsAndMessagesMeetInConvertOnly) {
   EXPECT_THAT(WrongIncludes("server/convert/x.cc", both), IsEmpty());
 }
 
-TEST(IncludeRules, TestsOfALayerKnowNoLayerAboveIt) {
+TEST(IncludeRules, TestsIncludeNoLayerAboveTheirOwn) {
   ExpectWrong("tests/core/geometry/x.cc", "\"server/store/store.h\"");
   ExpectWrong("tests/core/geometry/x.cc", "\"ballpiston/v1/spec.pb.h\"");
   ExpectWrong("tests/statistical/x.cc", "\"server/store/store.h\"");
@@ -253,7 +253,7 @@ TEST(IncludeRules, SupportOfTestsIsForTestsOfAllLayers) {
   }
 }
 
-TEST(IncludeRules, ARunningServerIsForTestsThatKnowTheServer) {
+TEST(IncludeRules, OnlyTestsOfTheServerIncludeARunningServer) {
   const std::string include = "\"tests/server/running_server.h\"";
   EXPECT_THAT(WrongIncludes("tests/server/x.cc", "#include " + include + "\n"), IsEmpty());
   for (const char* path : {"tests/core/geometry/x.cc", "tests/statistical/x.cc", "tests/oracle/x.h",
@@ -262,7 +262,7 @@ TEST(IncludeRules, ARunningServerIsForTestsThatKnowTheServer) {
   }
 }
 
-TEST(IncludeRules, AFolderWithoutARuleIsWrong) {
+TEST(IncludeRules, AFolderWithoutARuleIsAnError) {
   EXPECT_THAT(WrongIncludes("core/thermostat/x.cc", ""), SizeIs(1));
 }
 

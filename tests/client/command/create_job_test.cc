@@ -120,14 +120,14 @@ TEST_F(CreateJobTest, AComputedAnswerHasNoNote) {
 }
 
 TEST_F(CreateJobTest, AFullQueueExitsWithThreeAndAHint) {
-  server_.ensemble.create_end = LimitExceeded("QUEUE_FULL", "10 jobs are active already");
+  server_.ensemble.create_end = LimitExceeded("QUEUE_FULL", "10 jobs are active");
   server_.Start();
   for (const char* verb : {"run", "submit"}) {
     const Outcome outcome = WithServer({verb, "equilibrium"});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err,
-              "ballpiston: 10 jobs are active already (QUEUE_FULL)\n"
+              "ballpiston: 10 jobs are active (QUEUE_FULL)\n"
               "Retry when some of the jobs have ended.\n");
   }
 }

@@ -209,7 +209,7 @@ void ForEachRefused(bool persistent, const std::function<void(Refused&)>& test) 
   }
 }
 
-TEST(DiskFailure, ACallRefusedOnceHasFailedOrIsDone) {
+TEST(DiskFailure, ACallDuringOneDiskErrorFailsOrSucceeds) {
   ForEachRefused(false, [](Refused& attempt) {
     attempt.ExpectNoFalseAnswer();
     attempt.ExpectItSurvives();
@@ -217,7 +217,7 @@ TEST(DiskFailure, ACallRefusedOnceHasFailedOrIsDone) {
   });
 }
 
-TEST(DiskFailure, ACallRefusedUntilTheDiskWorksHasFailedOrIsDone) {
+TEST(DiskFailure, ACallDuringALongDiskErrorFailsOrSucceeds) {
   ForEachRefused(true, [](Refused& attempt) {
     attempt.ExpectNoFalseAnswer();
     attempt.ExpectItSurvives();
@@ -246,7 +246,7 @@ TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
   EXPECT_THAT(before, testing::ElementsAre(0, 1));  // so it was in doubt
 }
 
-TEST(DiskFailure, WhatIsComputedMeanwhileIsWrittenWhenTheDiskWorksAgain) {
+TEST(DiskFailure, ResultsAreStoredWhenTheDiskWorksAgain) {
   for (const Refusal refusal : kRefusals) {
     Scene scene;
     scene.disk().Refuse(refusal, scene.disk().operation_count());
@@ -277,12 +277,12 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
 
 absl::Status FailureToOpen(const FaultDisk& disk) {
   const absl::Status status = Store::Open(kStorePath, {.vfs = disk.vfs()}).status();
-  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("left as it is"));
+  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("it is unchanged"));
   return status;
 }
 
 // It is not called damaged, nor is anybody told to move it away.
-TEST(DiskFailure, AStoreWhoseDiskFailsAtTheStartIsNotCalledDamaged) {
+TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   for (const FaultDisk::Refusal refusal : kRefusals) {
     FaultDisk disk;
     disk.Refuse(refusal, 0);
@@ -316,7 +316,7 @@ void RecordLarge(Store& store, int64_t job) {
 
 // Two jobs of 2 MB each. The file has no room for the first one's log, so that not even a deletion
 // has room in the log.
-TEST(DiskFailure, OnAFullDiskTheReserveHelpsToDeleteALargeJobForAnother) {
+TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   FaultDisk disk;
   Store::Options options;
   options.retry = std::chrono::milliseconds(1);
@@ -339,7 +339,7 @@ TEST(DiskFailure, OnAFullDiskTheReserveHelpsToDeleteALargeJobForAnother) {
 }
 
 // Results too big for the disk wait, and do not hold up those who would make room.
-TEST(DiskFailure, OnAFullDiskRequestsOvertakeWhatDoesNotFit) {
+TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   Scene scene;
   Store& store = scene.service().store();
   scene.disk().SetCapacity(scene.disk().bytes_used() + 100'000);
@@ -355,7 +355,7 @@ TEST(DiskFailure, OnAFullDiskRequestsOvertakeWhatDoesNotFit) {
 }
 
 // Many records of which some fit: in smaller groups they are written.
-TEST(DiskFailure, OnAFullDiskWhatFitsIsWritten) {
+TEST(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
   Scene scene;
   Store& store = scene.service().store();
   scene.disk().SetCapacity(scene.disk().bytes_used() + 300'000);
@@ -450,7 +450,7 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
 }
 
 // Wherever in a life the disk fails once, and the power goes at its end.
-TEST(DiskFailure, AfterOneRefusalAnywhereAllThatWasToldIsThere) {
+TEST(DiskFailure, AfterADiskErrorAtAnyCallAcknowledgedDataIsThere) {
   const size_t stride = std::getenv("BALLPISTON_TORTURE") != nullptr ? 1 : 3;
   FaultDisk undisturbed;
   ServiceOnDisk service(undisturbed);

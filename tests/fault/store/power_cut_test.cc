@@ -208,7 +208,7 @@ TEST(PowerCut, TheTraceIsTheSameEachTime) {
   EXPECT_EQ(OutlineOf(SubmitToFinish()), OutlineOf(SubmitToFinish()));
 }
 
-TEST(PowerCut, TheTraceWritesTheLogBackAndBeginsItAnew) {
+TEST(PowerCut, TheTraceCheckpointsAndRestartsTheLog) {
   int writes_back = 0;
   int headers = 0;
   for (const DiskOperation& operation : SubmitToFinish().operations) {
@@ -244,7 +244,7 @@ TEST(PowerCut, ADeletedJobThatComesBackIsDetected) {
 
 // Both forms try every cut here. The store is created at the beginning of the trace, where the
 // short form of the other tests has only one or two cuts.
-TEST(PowerCut, AStoreThatWasBeingMadeIsMadeAtTheNextStart) {
+TEST(PowerCut, AnInterruptedCreationIsCompletedAtTheNextStart) {
   FaultDisk disk;
   ASSERT_TRUE(OpenStoreFile(kStorePath, disk.vfs()).ok());
   const std::vector<DiskOperation> operations = disk.operations();
@@ -271,14 +271,14 @@ DiskOperation Sync(bool refused = false) {
   return {.kind = DiskOperation::Kind::kSync, .path = "f", .file = 0, .refused = refused};
 }
 
-TEST(PowerCutModel, WhatWasSyncedStaysAndTheRestMayGo) {
+TEST(PowerCutModel, SyncedDataStaysAndOtherDataMayBeLost) {
   const std::vector<DiskOperation> operations = {Write(0, "ab"), Sync(), Write(1, "X")};
   const DiskFiles initial = {{"f", "...."}};
   EXPECT_EQ(AfterPowerCut(initial, operations, 3, Survival::kNothing, 0).at("f"), "ab..");
   EXPECT_EQ(AfterPowerCut(initial, operations, 3, Survival::kEverything, 0).at("f"), "aX..");
 }
 
-TEST(PowerCutModel, ASyncInProgressPromisesNothing) {
+TEST(PowerCutModel, ASyncInProgressGuaranteesNothing) {
   const std::vector<DiskOperation> operations = {Write(0, "ab"), Sync()};
   EXPECT_EQ(AfterPowerCut({{"f", ".."}}, operations, 1, Survival::kNothing, 0).at("f"), "..");
 }
@@ -296,7 +296,7 @@ TEST(PowerCutModel, ANameIsSafeWhenItsFolderWasFlushed) {
   EXPECT_THAT(AfterPowerCut({}, {create, sync}, 2, Survival::kNothing, 0), Not(IsEmpty()));
 }
 
-TEST(PowerCutModel, SectorsAreOldOrNewAndTornOnesBoth) {
+TEST(PowerCutModel, ASectorIsOldOrNewOrTorn) {
   const std::string before(4096, 'o');
   const std::vector<DiskOperation> operations = {Write(0, std::string(4096, 'n'))};
   int mixed = 0;

@@ -109,7 +109,7 @@ class BatchOfCreates : public testing::Test {
   std::set<std::string> made_;
 };
 
-TEST_F(BatchOfCreates, MakesOneJobThroughKills) {
+TEST_F(BatchOfCreates, MakesEachJobOnceThroughKills) {
   const std::vector<std::string> failpoints = {"",
                                                "create.in_transaction:1",
                                                "store.before_commit:ready+1",

@@ -109,7 +109,7 @@ class HungClients : public testing::Test {
   std::string name_;
 };
 
-TEST_F(HungClients, WithoutAnyTheServerStopsInTime) { CheckStop("no clients"); }
+TEST_F(HungClients, TheServerStopsInTimeWithoutThem) { CheckStop("no clients"); }
 
 TEST_F(HungClients, UnreadWatchesDoNotDelayTheStop) {
   const HungReaders readers(20, server_.address(), name_);

@@ -154,7 +154,7 @@ class LiveWatchers : public testing::Test {
   std::list<LiveWatcher> watchers_;
 };
 
-TEST_F(LiveWatchers, AllHearTheEndAndHealthAnswersWithAFullQueue) {
+TEST_F(LiveWatchers, AllGetTheEndAndHealthAnswersWithAFullQueue) {
   const client::Client client(server_.Connect());
   Health("a quiet server");
   ASSERT_OK_AND_ASSIGN(const v1::EnsembleJob job, client.Create(Endless()));

@@ -70,7 +70,7 @@ void Compare(int workers, const std::string& name, Findings& findings) {
   }
 }
 
-TEST(Overhead, OfTheServiceOverTheBareEngineIsSmall) {
+TEST(Overhead, OfTheServiceIsSmall) {
   Findings findings("overhead");
   Compare(1, "1 worker", findings);
   Compare(2, "2 workers", findings);

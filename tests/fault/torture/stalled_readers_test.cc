@@ -116,7 +116,7 @@ class StalledReaders : public testing::Test {
   double most_mib_ = 0;
 };
 
-TEST_F(StalledReaders, CostBoundedMemoryAndNoEngineTime) {
+TEST_F(StalledReaders, UseBoundedMemoryAndNoEngineTime) {
   mib_without_ = server_.ResidentMiB();
   const int rounds = Size(2, 20);
   for (int i = 0; i < rounds; ++i) Round(i % 2 == 1);

@@ -119,7 +119,7 @@ class Watches : public testing::Test {
   std::unique_ptr<WatchedJob> watched_;
 };
 
-TEST_F(Watches, CutAndRestartedTellEverythingOnceAndTheEndBeforeOk) {
+TEST_F(Watches, SendEverythingOnceThroughCutsAndRestarts) {
   server_.Start();
   watched_ = std::make_unique<WatchedJob>(server_);
   std::vector<std::thread> threads;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ballpiston/v1/progress.pb.h"
+#include "ballpiston/v1/saved_result.pb.h"
 #include "ballpiston/v1/server.pb.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/descriptor.h"
@@ -47,6 +48,7 @@ std::vector<const MethodDescriptor*> AllMethods() {
   // Links the files that nothing else here names.
   v1::GetServerStatusRequest::descriptor();
   v1::WatchProgress::descriptor();
+  v1::SavedResult::descriptor();
   std::vector<const MethodDescriptor*> methods;
   const std::string folder = "ballpiston/v1/";
   for (const auto& entry : std::filesystem::directory_iterator(SourcePath("proto/") + folder)) {

@@ -95,7 +95,7 @@ TEST_F(AnalyticServiceTest, TheWholeRangeOfTemperaturesIsAnswered) {
   }
 }
 
-TEST_F(AnalyticServiceTest, EveryViolationIsToldAtOnceWithItsPath) {
+TEST_F(AnalyticServiceTest, AllViolationsAreReturnedWithTheirPaths) {
   request_.add_rho(0.4);
   request_.add_delta(-1);
   request_.add_delta(std::numeric_limits<double>::quiet_NaN());
@@ -158,7 +158,7 @@ TEST_F(AnalyticServiceTest, HugeWrongListsAreAnsweredQuickly) {
   EXPECT_THAT(Evaluate(), StatusIs(grpc::StatusCode::INVALID_ARGUMENT));
 }
 
-TEST_F(AnalyticServiceTest, WhatLeavesTheRangeOfDoubleIsAViolation) {
+TEST_F(AnalyticServiceTest, AResultBeyondTheRangeOfDoubleIsAViolation) {
   request_.add_delta(1e-300);
   EXPECT_THAT(DetailsOf(Evaluate()).fields, ElementsAre("delta[1]"));
 }

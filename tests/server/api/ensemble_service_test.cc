@@ -112,7 +112,7 @@ TEST(EnsembleService, ValidateOnlyCreatesNoJob) {
   EXPECT_EQ(server.List().jobs_size(), 0);
 }
 
-TEST(EnsembleService, AReplayReturnsTheSameJob) {
+TEST(EnsembleService, ARetryReturnsTheSameJob) {
   RunningServer server;
   const EnsembleJob first = server.Created(CreateRequest(Equilibrium(1, 5), kUuid));
   server.AwaitEnd(first.name());
@@ -227,7 +227,7 @@ TEST(EnsembleService, AnEndedJobCannotBeCancelled) {
   EXPECT_THAT(status.error_message(), HasSubstr("SUCCEEDED"));
 }
 
-TEST(EnsembleService, AReplayedCancellationSucceeds) {
+TEST(EnsembleService, ARetriedCancellationSucceeds) {
   Gate gate;
   RunningServer server({.factory = GatedExperiments(gate, 3)});
   const std::string name = server.Submit(Equilibrium(1, 100));

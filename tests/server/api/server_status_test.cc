@@ -95,7 +95,7 @@ TEST_F(ServerStatusTest, AnExceptionEndsTheCallOnly) {
               StatusIs(grpc::StatusCode::INTERNAL, "no memory left"));
 }
 
-TEST_F(ServerStatusTest, CountsWhatIsQueuedAndComputed) {
+TEST_F(ServerStatusTest, CountsQueuedAndRunningWork) {
   Submit("alice");
   gate_.AwaitWaiting(2);
   Submit("bob");
@@ -149,7 +149,7 @@ TEST_F(ServerStatusTest, AStoppingServerIsDraining) {
   EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::DRAINING);
 }
 
-TEST(ServerStatus, IsServedToAnybodyWithAccess) {
+TEST(ServerStatus, IsOpenToEveryAuthenticatedPrincipal) {
   RunningServer server;
   server.Succeeded(Equilibrium(2, 5));
   const v1::ServerStatus status = server.Status();

@@ -156,7 +156,7 @@ TEST_F(TraceServiceTest, TheSameRequestHasTheSameBytes) {
 
 // ---- bad requests ----
 
-TEST_F(TraceServiceTest, EveryViolationIsToldAtOnce) {
+TEST_F(TraceServiceTest, AllViolationsAreReturnedTogether) {
   v1::TraceOrbitRequest request;
   request.set_cells("2x");
   request.set_temperature(0);
@@ -234,7 +234,7 @@ TEST_F(TraceServiceTest, AStalledReaderDoesNotDelayAStop) {
   EXPECT_THAT(stalled.End(), Not(IsOk()));
 }
 
-TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsTakenAway) {
+TEST(TraceCredentials, AStalledTraceEndsWhenItsTokenIsRevoked) {
   LaboratoryFiles files;
   RunningServer server(Secure(files, {.watch = {.heartbeat = std::chrono::milliseconds(20)}}));
   TestClient alice(server.NewChannel(files.Credentials(kAlice)));

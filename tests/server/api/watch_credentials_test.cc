@@ -39,7 +39,7 @@ class WatchCredentialsTest : public testing::Test {
   TestClient ops_ = ClientWith(kOps);
 };
 
-TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsTakenAway) {
+TEST_F(WatchCredentialsTest, AWatchEndsWhenItsTokenIsRevoked) {
   WatchStream watch(alice_, JobOfAlice());
   ASSERT_TRUE(watch.Next());
   ReplaceAccess(TokenLine(kOps, {"ops", Role::kAdmin}));

@@ -191,7 +191,7 @@ TEST_F(WatchTest, EveryChangeOfStateIsSent) {
   EXPECT_OK(stream.reader->Finish());
 }
 
-TEST_F(WatchTest, EachFinishedPointIsToldOnceInOrder) {
+TEST_F(WatchTest, EachFinishedPointIsSentOnceInOrder) {
   constexpr int kWatches = 200;
   RunningServer& server = StartWithPermits();
   const std::string name = server.Submit(Equilibrium(2 * kWatches, 1));
@@ -252,7 +252,7 @@ TEST_F(WatchTest, StatesAndProgressNeverGoBack) {
 }
 
 // Three messages of points, and the end.
-TEST_F(WatchTest, TheTerminalStateIsToldOnce) {
+TEST_F(WatchTest, TheTerminalStateIsSentOnce) {
   RunningServer& server = Start();
   const std::string name = server.Succeeded(Equilibrium(250, 1));
   Chain chain;
@@ -344,7 +344,7 @@ TEST_F(WatchTest, AQuietJobHasAHeartbeat) {
   EXPECT_EQ(beats, 3);
 }
 
-TEST_F(WatchTest, WithATokenOnlyNewsIsSent) {
+TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
   RunningServer& server = Start(7, std::chrono::milliseconds(20));
   const std::string name = server.Submit(Equilibrium(1, 100));
   gate_.AwaitWaiting(2);  // seven blocks are done, and no more will be

@@ -89,7 +89,7 @@ TEST_F(StoredFold, ThatLiesWithinThePlanIsAccepted) {
       {.chunk = plan().chunks(), .complete = Empty(), .chunk_digests = Digests(plan().chunks())}));
 }
 
-TEST_F(StoredFold, ThatItsExperimentCannotHaveWrittenIsDataLoss) {
+TEST_F(StoredFold, ThatIsImpossibleForItsExperimentIsDataLoss) {
   BlockResult too_many = Empty(), no_error = Empty();
   too_many.samples = plan().BlockAt(0, 0).samples + 1;
   no_error.health.max_energy_error = kNan;
@@ -283,7 +283,7 @@ TEST(Spec, ViolationShowsAStrangeTextEscapedAndShortened) {
 }
 
 // A message of 4 MiB holds two million empty texts.
-TEST(Spec, OfAListThatIsTooLongNoShapeIsRead) {
+TEST(Spec, ATooLongListOfShapesIsNotParsed) {
   v1::EnsembleSpec message = OneFirstHit();
   for (int i = 0; i <= kMaxPoints; ++i) message.mutable_grid()->add_cells("");
   EXPECT_THAT(ViolatedFields(CheckSpec(message)),
@@ -380,7 +380,7 @@ TEST(Spec, AnUnknownFieldIsAViolation) {
 }
 
 // A message of 4 MiB may hold two million of them.
-TEST(Spec, OfManyUnknownFieldsSomeAreListed) {
+TEST(Spec, AtMostSomeUnknownFieldsAreListed) {
   v1::EnsembleSpec message = OneFirstHit();
   for (int i = 0; i < 10'000; ++i) {
     message.GetReflection()->MutableUnknownFields(&message)->AddVarint(100, 1);
@@ -578,7 +578,7 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
                        "point 17: tolerance 1e-06 was not reached within the budget of 0.25 s: "
                        "reached 0.005"));
   const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
-  EXPECT_THAT(std::string(without.message()), HasSubstr("reached no error that could be told"));
+  EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
   // A job that ends with it keeps its reason; one without gets that of a failed computation.
   EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
   EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),

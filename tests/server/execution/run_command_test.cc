@@ -62,7 +62,7 @@ TEST(RunCommand, TheInputIsRead) {
   EXPECT_EQ(RunCommand(command, {})->output, "");
 }
 
-TEST(RunCommand, InputThatIsNotReadIsNoError) {
+TEST(RunCommand, UnreadInputIsAccepted) {
   Command command = Shell("exit 4");
   command.input = std::string(60'000, 'x');
   EXPECT_EQ(RunCommand(command, {})->exit_code, 4);
@@ -82,7 +82,7 @@ TEST(RunCommand, AProgramThatDoesNotExistIsNotFound) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("no-such-program-4711")));
 }
 
-TEST(RunCommand, AFileThatIsNoProgramIsUnavailable) {
+TEST(RunCommand, AFileThatIsNotAProgramIsUnavailable) {
   const TemporaryFolder folder;
   WriteFile(folder.File("text"), "text");
   EXPECT_THAT(RunCommand({.words = {folder.File("text")}}, {}),

@@ -325,7 +325,7 @@ TEST_F(SlurmExecutorTest, AReasonThatLastsForEverCancelsTheArray) {
   RunToRightEnd();
 }
 
-TEST_F(SlurmExecutorTest, AReasonThatPassesCancelsNothing) {
+TEST_F(SlurmExecutorTest, AReasonThatPassesKeepsTheArray) {
   slurm_.SetReason("Resources");
   SubmitRun();
   server_->AwaitQueries(4);
@@ -507,7 +507,7 @@ TEST_P(SlurmBadFileTest, IsRefusedLoggedCountedAndComputedAgain) {
 INSTANTIATE_TEST_SUITE_P(SlurmExecutor, SlurmBadFileTest, testing::ValuesIn(kBadFiles),
                          [](const auto& param) { return param.param.name; });
 
-TEST_F(SlurmExecutorTest, FilesThatAreNoChunkFilesAreLeftAlone) {
+TEST_F(SlurmExecutorTest, OtherFilesAreIgnored) {
   SubmitRun();
   const std::string folder = ArrayFolder(NewestArray());
   for (const std::string name : {"0.log", "task-0.0.chunks.tmp", "task-x.0.chunks", ".nfs01"}) {
@@ -683,7 +683,7 @@ TEST_P(SlurmQueriesTest, ThereIsAtMostOneInAnInterval) {
 
 INSTANTIATE_TEST_SUITE_P(SlurmExecutor, SlurmQueriesTest, testing::Values(1, 1000));
 
-TEST_F(SlurmExecutorTest, SlurmIsNotAskedWithoutTasks) {
+TEST_F(SlurmExecutorTest, SlurmIsQueriedOnlyWhileThereAreTasks) {
   StartServer();
   spec_ = PointOfChunks(1);
   journal_ = server_->AddOpenRun(1, spec_);

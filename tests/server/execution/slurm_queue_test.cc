@@ -123,7 +123,7 @@ TEST(SlurmQueue, AReasonMayHoldAnyCharacter) {
 }
 
 // The job of another user program may be called so; its line has one field more.
-TEST(SlurmQueue, ANameWithABarIsNoState) {
+TEST(SlurmQueue, ANameWithABarIsIgnored) {
   EXPECT_THAT(ParseQueue("1|0|bp-a|x|RUNNING|None\n", "bp-"), IsEmpty());
 }
 

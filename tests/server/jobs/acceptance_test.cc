@@ -188,20 +188,20 @@ TEST_F(AcceptanceTest, AnotherQuestionIsComputed) {
   for (const v1::EnsembleSpec& other : others) ExpectComputed(kAnn, CreateRequest(other), first);
 }
 
-TEST_F(AcceptanceTest, AnotherPrincipalsAnswerIsNotGiven) {
+TEST_F(AcceptanceTest, AnswersAreOnlyForTheirPrincipal) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   ExpectComputed(kBen, CreateRequest(Question()), first);
   // An administrator sees it, but did not ask it.
   ExpectComputed({"root", Role::kAdmin}, CreateRequest(Question()), first);
 }
 
-TEST_F(AcceptanceTest, AJobThatFailedAnswersNothing) {
+TEST_F(AcceptanceTest, AFailedQuestionIsComputedAgain) {
   const std::string failed = Name(kAnn, CreateRequest(Question(kFailingSeed)));
   EXPECT_EQ(AwaitEnd(failed).state(), EnsembleJob::FAILED);
   ExpectComputed(kAnn, CreateRequest(Question(kFailingSeed)), failed);
 }
 
-TEST_F(AcceptanceTest, AnActiveOrCancelledJobAnswersNothing) {
+TEST_F(AcceptanceTest, QuestionsOfActiveAndCancelledJobsAreComputedAgain) {
   const std::string held = Name(kAnn, CreateRequest(Question(kHeldSeed)));
   gate_.AwaitWaiting(1);
   ASSERT_OK_AND_ASSIGN(const auto second, Create(kAnn, CreateRequest(Question(kHeldSeed))));
@@ -226,7 +226,7 @@ JobRecord AnnsJob(const std::string& id, const std::string& engine_version) {
   return record;
 }
 
-TEST_F(AcceptanceTest, AnotherEnginesAnswerIsNotGiven) {
+TEST_F(AcceptanceTest, AnswersAreOnlyForTheirEngine) {
   const auto insert_succeeded = [&](JobRecord record) {
     const auto insert = [&](Database& database) {
       const absl::Status inserted = InsertJob(database, record);
@@ -245,7 +245,7 @@ TEST_F(AcceptanceTest, AnotherEnginesAnswerIsNotGiven) {
   EXPECT_EQ(Name(kAnn, CreateRequest(Question())), "ensembleJobs/of-this-engine");
 }
 
-TEST_F(AcceptanceTest, AJobThatThisEngineComputedAnewAnswers) {
+TEST_F(AcceptanceTest, AJobThatThisEngineComputedAgainIsReturned) {
   JobRecord record = AnnsJob("unfinished", "0.0.1");
   ASSERT_OK(store_->Commit([&](Database& database) { return InsertJob(database, record); }));
   StartAgain();
@@ -349,7 +349,7 @@ TEST(Question, TheEngineIsPartOfIt) {
   EXPECT_EQ(QuestionOf(Question(), "1"), QuestionOf(Question(), "1"));
 }
 
-TEST(Payload, EveryFieldOfTheRequestButItsIdCounts) {
+TEST(Payload, EveryFieldExceptTheIdIsPartOfTheHash) {
   const v1::CreateEnsembleJobRequest request = CreateRequest(Question(), kUuid);
   std::map<std::string, std::string> fields = {{PayloadOf(request), "none"}};
   const auto expect_new = [&](const FieldDescriptor& field,
@@ -393,7 +393,7 @@ TEST_F(AcceptanceTest, ConcurrentRequestsWithOneIdMakeOneJob) {
   EXPECT_EQ(Jobs(), 1u);
 }
 
-TEST_F(AcceptanceTest, AReplayIsTheSameJobAfterARestart) {
+TEST_F(AcceptanceTest, ARetryReturnsTheSameJobAfterARestart) {
   const std::string held = Name(kAnn, FreshRequest(Question(kHeldSeed), kUuid));
   StartAgain();
   ASSERT_OK_AND_ASSIGN(const auto active, Create(kAnn, FreshRequest(Question(kHeldSeed), kUuid)));
@@ -409,7 +409,7 @@ TEST_F(AcceptanceTest, AReplayIsTheSameJobAfterARestart) {
 }
 
 // What was said the first time is said again.
-TEST_F(AcceptanceTest, AReplayOfAStoredAnswerIsTheSame) {
+TEST_F(AcceptanceTest, ARetryOfAStoredAnswerReturnsTheSameJob) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   for (int i = 0; i < 2; ++i) {
     const auto answer = Create(kAnn, CreateRequest(Question(), kUuid));
@@ -574,7 +574,7 @@ TEST(ActivePointsTest, AJobCountsOnce) {
 }
 
 // Of the requests that one job answers a thousand are remembered; the answer is the same.
-TEST_F(AcceptanceTest, AThousandRequestsThatOneJobAnswersAreRemembered) {
+TEST_F(AcceptanceTest, AJobRemembersAThousandRequests) {
   const std::string name = Answered(kAnn, CreateRequest(Question()));
   const auto requests = [&] {
     return ReadFrom(*store_,
@@ -599,7 +599,7 @@ TEST_F(AcceptanceTest, AThousandRequestsThatOneJobAnswersAreRemembered) {
   EXPECT_EQ(requests(), 1000);
 }
 
-TEST_F(LimitTest, ReplaysAndStoredAnswersIgnoreALowerLimit) {
+TEST_F(LimitTest, RetriesAndStoredAnswersIgnoreALowerLimit) {
   const std::string name = Answered(kAnn, CreateRequest(Equilibrium(4, 5), kUuid));
   Limit({.max_points_per_job = 3});
   EXPECT_EQ(Name(kAnn, CreateRequest(Equilibrium(4, 5), kUuid)), name);

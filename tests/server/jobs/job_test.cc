@@ -96,7 +96,7 @@ TEST(Job, ProgressIsTheShareOfWorkDone) {
   EXPECT_EQ(progress.fraction(), 1.5 / 4);
 }
 
-TEST(Job, WithAToleranceThereIsNoFraction) {
+TEST(Job, AToleranceGivesNoFraction) {
   v1::EnsembleSpec spec;
   spec.mutable_target()->set_tolerance(0.1);
   JobRecord record = JobWithPoints(4);
@@ -136,7 +136,7 @@ TEST(Job, RestoredPointsAreNotKept) {
   EXPECT_EQ(job.Progress().points_done(), 4);
 }
 
-TEST(SharedSnapshot, IsMadeAgainOnlyIfItIsOldAndSomethingChanged) {
+TEST(SharedSnapshot, AnOldSnapshotIsReplacedIfTheJobHasChanged) {
   SharedSnapshot shared;
   uint64_t made = 0;
   const auto make = [&made] {
@@ -222,7 +222,7 @@ TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
   EXPECT_EQ(job_->Progress().points_done(), 3);
 }
 
-TEST_F(JobJournalTest, AJobWithoutAllItsResultsHasNotSucceeded) {
+TEST_F(JobJournalTest, AJobWithMissingResultsFails) {
   for (const size_t point : {0u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());
   ASSERT_OK(store_->Flush());

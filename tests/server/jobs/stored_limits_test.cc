@@ -190,7 +190,7 @@ TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   ExpectSound();
 }
 
-TEST_F(StoredLimitsTest, WhatIsPinnedMayFillTheStoreAndThenNoJobIsAccepted) {
+TEST_F(StoredLimitsTest, AStoreFullOfPinnedJobsRejectsNewJobs) {
   Start({.max_store_bytes = 200'000});
   const std::string pinned = *JobIdOf(Create(kAlice, 1, 900)->name());
   ASSERT_OK(book_->Pin(kAlice, pinned, true));
@@ -203,7 +203,7 @@ TEST_F(StoredLimitsTest, WhatIsPinnedMayFillTheStoreAndThenNoJobIsAccepted) {
   while (!Create(kBob, 2).ok()) book_->KeepLimits(absl::Now());
 }
 
-TEST_F(StoredLimitsTest, APrincipalOverItsBytesIsRefusedAndOthersAreNot) {
+TEST_F(StoredLimitsTest, ThePrincipalsByteLimitRejectsOnlyItsJobs) {
   Start({.max_store_bytes_per_principal = 20'000});
   const std::string first = Done(kAlice, 1, 300);
   EXPECT_EQ(static_cast<double>(book_->usage().Of("alice", absl::Now()).bytes),
@@ -302,7 +302,7 @@ TEST(UsageTest, NewWorkIsTakenOnce) {
   EXPECT_TRUE(usage.All(start).empty());  // that day is forgotten
 }
 
-TEST_F(StoredLimitsTest, ProcessorTimeOutlivesTheServer) {
+TEST_F(StoredLimitsTest, ProcessorTimeIsKeptOverARestart) {
   Start({});
   Done(kAlice, 1);
   const double seconds = book_->usage().Of("alice", absl::Now()).seconds;

@@ -42,7 +42,7 @@ TEST(AlertRules, EveryMetricIsServed) {
   EXPECT_THAT(ServedMetrics(), IsSupersetOf(named));
 }
 
-TEST(AlertRules, AMetricThatIsNotServedIsFound) {
+TEST(AlertRules, AMissingMetricIsDetected) {
   EXPECT_THAT(ServedMetrics(), Not(IsSupersetOf(MetricsNamedIn("ballpiston_disk_failing == 1"))));
 }
 

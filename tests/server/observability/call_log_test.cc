@@ -108,7 +108,7 @@ TEST_F(CallLog, AFailedJobSaysWhy) {
   }
 }
 
-TEST_F(CallLog, ACallOverALimitIsLoggedAndAnInvalidOneIsNot) {
+TEST_F(CallLog, CallsOverALimitAreLoggedAndInvalidCallsAreNot) {
   const auto lines = LinesOf([&] {
     RunningServer server({.limits = {.max_points_per_job = 10}});
     EXPECT_FALSE(server.Create({}).ok());
@@ -121,7 +121,7 @@ TEST_F(CallLog, ACallOverALimitIsLoggedAndAnInvalidOneIsNot) {
                 StatusIs(grpc::StatusCode::NOT_FOUND));
   });
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(FieldOf(lines[0], "message"), HasSubstr("call refused: the grid has 11 points"));
+  EXPECT_THAT(FieldOf(lines[0], "message"), HasSubstr("call rejected: the grid has 11 points"));
   EXPECT_EQ(FieldOf(lines[0], "severity"), "WARNING");
   EXPECT_EQ(FieldOf(lines[0], "method"), "CreateEnsembleJob");
   EXPECT_EQ(FieldOf(lines[0], "principal"), "local");

@@ -16,7 +16,7 @@ TEST(LineBudget, LinesOverTheBudgetAreLeftOutAndCountedWithTheNext) {
   EXPECT_EQ(budget.Take(begin + milliseconds(1001)), 0);
 }
 
-TEST(LineBudget, WhoStaysWithinItIsNeverLeftOut) {
+TEST(LineBudget, LinesWithinTheBudgetAreAllWritten) {
   LineBudget budget(2, milliseconds(1000));
   LineBudget::Clock::time_point now{milliseconds(1)};
   for (int i = 0; i < 100; ++i, now += milliseconds(500)) EXPECT_EQ(budget.Take(now), 0);

@@ -71,7 +71,7 @@ TEST(LogLine, TextIsAMessageForPeople) {
   EXPECT_EQ(Text("stopping"), "ballpistond: warning: stopping\n");
 }
 
-TEST(LogLine, WhateverStandsInItItIsOneLineOfJsonWithTheSameFields) {
+TEST(LogLine, AnyTextGivesOneLineOfJsonWithTheSameFields) {
   for (const std::string& text : HostileTexts()) {
     const std::string line = Json(text, {{"principal", text}, {"code", "INTERNAL"}});
     EXPECT_EQ(line.find_first_of('\n'), line.size() - 1);
@@ -84,7 +84,7 @@ TEST(LogLine, WhateverStandsInItItIsOneLineOfJsonWithTheSameFields) {
   }
 }
 
-TEST(LogLine, WhateverStandsInItItIsOneLineOfTextWithoutControls) {
+TEST(LogLine, AnyTextGivesOneLineWithoutControlCharacters) {
   for (const std::string& text : HostileTexts()) {
     const std::string line = Text(text, {{"principal", text}, {"code", "INTERNAL"}});
     EXPECT_EQ(line.find_first_of('\n'), line.size() - 1);
@@ -99,14 +99,14 @@ TEST(LogLine, WhateverStandsInItItIsOneLineOfTextWithoutControls) {
   }
 }
 
-TEST(LogLine, ReadableTextComesBackFromJsonAsItWas) {
+TEST(LogLine, ReadableTextIsUnchangedInJson) {
   for (const std::string text : {"plain", "\"quoted\" \\ back", "tab\tand\nnewline",
                                  "\xC3\xA9\xE2\x82\xAC", "\xF0\x9F\x8E\xB1"}) {
     EXPECT_EQ(TextIn(Parsed(Json(text)), "message"), text);
   }
 }
 
-TEST(LogLine, BytesThatAreNoTextBecomeReplacementCharacters) {
+TEST(LogLine, InvalidUtf8BecomesReplacementCharacters) {
   EXPECT_EQ(TextIn(Parsed(Json("a\xC3z")), "message"), "a\xEF\xBF\xBDz");
   EXPECT_EQ(TextIn(Parsed(Json("\xC0\x80")), "message"), "\xEF\xBF\xBD\xEF\xBF\xBD");
 }
@@ -139,7 +139,7 @@ TEST(LogLine, TwelveLongFieldsStillFitIntoALine) {
             kMaxLogLine);
 }
 
-TEST(LogLine, NumbersThatJsonDoesNotHaveAreNull) {
+TEST(LogLine, InfinityAndNanAreNullInJson) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double number : {infinity, -infinity, std::nan("")}) {
     const auto object = Parsed(Json("", {{"x", number}}));

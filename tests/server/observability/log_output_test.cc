@@ -55,14 +55,14 @@ class LogSocketTest : public LogOutputTest {
   LogSocketTest() : LogOutputTest(true) {}
 };
 
-TEST_F(LogOutputTest, LinesThatAreReadComeAsTheyAre) {
+TEST_F(LogOutputTest, LinesArriveUnchanged) {
   LogOutput output(writer_);
   for (int i = 0; i < 3; ++i) output.Write(absl::StrCat("line ", i, "\n"), Loss);
   EXPECT_EQ(Read(), "line 0\nline 1\nline 2\n");
 }
 
 // A write that waited for the reader would wait for ever.
-TEST_F(LogOutputTest, LinesThatNobodyReadsAreCounted) {
+TEST_F(LogOutputTest, UnreadLinesAreCounted) {
   LogOutput output(writer_);
   const std::string line = std::string(1023, 'x') + "\n";
   constexpr int kLines = 10'000;
@@ -74,7 +74,7 @@ TEST_F(LogOutputTest, LinesThatNobodyReadsAreCounted) {
   EXPECT_EQ(Read(), absl::StrCat(kLines - taken, " lost\nnext\n"));
 }
 
-TEST_F(LogSocketTest, ALineThatWasTornIsEnded) {
+TEST_F(LogSocketTest, AnIncompleteLineGetsItsNewline) {
   const int size = 4096;
   ASSERT_EQ(setsockopt(writer_, SOL_SOCKET, SO_SNDBUF, &size, sizeof(size)), 0);
   LogOutput output(writer_);

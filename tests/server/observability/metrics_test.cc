@@ -83,7 +83,7 @@ TEST(ServerMetrics, TheEndOfACertificateIsAMetricIfThereIsOne) {
   EXPECT_EQ(names(server)[kExpiry], 2e9);
 }
 
-TEST_F(MetricsTest, AWatchOfHealthThatItsClientEndsIsNoFailure) {
+TEST_F(MetricsTest, AHealthWatchEndedByItsClientCountsAsOk) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();
   {
@@ -190,7 +190,7 @@ TEST_F(MetricsTest, RefusalsAreCountedByReason) {
   EXPECT_EQ(Metrics().at("ballpiston_limit_refusals_total{reason=\"TOO_MANY_POINTS\"}"), 2);
 }
 
-TEST_F(MetricsTest, UsageIsToldOfEachPrincipal) {
+TEST_F(MetricsTest, UsageIsReportedForEachPrincipal) {
   RunningServer& server = Start();
   server.Succeeded(Equilibrium(1, 2));
   EXPECT_EQ(Metrics().at("ballpiston_principal_stored_jobs{principal=\"local\"}"), 1);
@@ -198,7 +198,7 @@ TEST_F(MetricsTest, UsageIsToldOfEachPrincipal) {
   EXPECT_GT(Metrics().at("ballpiston_principal_processor_seconds{principal=\"local\"}"), 0);
 }
 
-TEST_F(MetricsTest, LabelsNameNoJob) {
+TEST_F(MetricsTest, LabelsContainNoJobIds) {
   RunningServer& server = Start();
   const std::string name = server.Succeeded(Equilibrium(1, 2));
   const std::string page = Page();

@@ -146,7 +146,7 @@ TEST(Scheduler, AnEarlyChunkIsStoredAndAMergedOneIsInTheCheckpoint) {
   EXPECT_EQ(journal->early[0].size(), 1u);
 }
 
-TEST(Scheduler, ADamagedChunkIsRefusedAndTheOthersAreTaken) {
+TEST(Scheduler, ADamagedChunkIsRejectedAndTheOthersAreMerged) {
   const auto damages = {
       +[](const ChunkResult& chunk) { return WithAnotherHistogram(chunk); },
       +[](const ChunkResult& chunk) { return WithTooManySamples(chunk); },
@@ -201,7 +201,7 @@ TEST(Scheduler, APartialChunkFromElsewhereIsDropped) {
 }
 
 // Right chunks of the point that another lease has: nobody else has to compute them.
-TEST(Scheduler, AChunkOutsideItsLeaseIsTaken) {
+TEST(Scheduler, AChunkOutsideItsLeaseIsMerged) {
   Cluster cluster;
   const auto journal = cluster.Begin(SixChunks());
   const auto lease = cluster.remote.Take();
@@ -375,7 +375,7 @@ TEST(Scheduler, PointsAreOpenedAheadForAHungryExecutorElsewhere) {
 }
 
 // Only so many wait: the local executor then computes chunks itself.
-TEST(Scheduler, AHungryExecutorThatTakesNothingMoreHoldsNobodyUp) {
+TEST(Scheduler, AHungryExecutorDoesNotDelayOthers) {
   Cluster cluster(kWholePoint);
   const EnsembleSpec spec = SixChunks(3000);
   cluster.Begin(spec);
@@ -518,7 +518,7 @@ TEST(Scheduler, AdoptedChunksAreNotLeased) {
   ExpectComplete(SixChunks(), *journal);
 }
 
-TEST(Scheduler, ReportsOfAdoptedLeasesAreTakenWhenThePointIsOpen) {
+TEST(Scheduler, ReportsOfAdoptedLeasesAreMergedWhenThePointIsOpen) {
   Cluster cluster(kWholePoint);
   const auto journal = cluster.Add(SixChunks(3));
   const auto adopted = cluster.scheduler.Adopt(EarlierLease(cluster, 2, 4, 2));

@@ -75,7 +75,7 @@ TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
 }
 
 // What those of the highest priority cannot use goes to the next.
-TEST(FairShare, RunsWithoutATaskArePassedOver) {
+TEST(FairShare, RunsWithoutATaskAreSkipped) {
   FairShare share;
   AddRuns(share, {1}, "a", 1);
   AddRuns(share, {2}, "a", 0);
@@ -95,7 +95,7 @@ TEST(FairShare, APriorityDoesNotTakeFromOtherPrincipals) {
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
-TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
+TEST(FairShare, ANewPrincipalGetsItsShareAtOnce) {
   FairShare share;
   AddRuns(share, {1, 2}, "old");
   Served(share, 1000);
@@ -105,7 +105,7 @@ TEST(FairShare, ANewPrincipalNeitherWaitsNorStarves) {
   EXPECT_NEAR(served.at(3), 50, 0.2);
 }
 
-TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
+TEST(FairShare, ANewRunStartsAtTheLeastCharge) {
   FairShare share;
   AddRuns(share, {1});
   Served(share, 1000);
@@ -117,7 +117,7 @@ TEST(FairShare, ANewRunStartsAtTheLeastOfThosePresent) {
 
 // A run that opens a point for a long time, say, and leaves the other workers to the others: when
 // it goes on they need not wait until it has caught up.
-TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
+TEST(FairShare, UnusedTimeGivesNoCredit) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;
     AddRuns(share, {1}, "a");
@@ -130,7 +130,7 @@ TEST(FairShare, TimeThatCouldNotBeUsedIsNotOwed) {
 }
 
 // A row of jobs of one long block each, every one of them new.
-TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
+TEST(FairShare, AReturningPrincipalKeepsItsLead) {
   FairShare share;
   AddRuns(share, {1}, "steady");
   SecondsByRun served;
@@ -150,7 +150,7 @@ TEST(FairShare, APrincipalThatComesBackIsAsFarAhead) {
 }
 
 // While nobody else was there it took nothing from anybody.
-TEST(FairShare, UseIsForgottenWhenAllAreGone) {
+TEST(FairShare, TheSharesStartAgainWhenAllRunsHaveEnded) {
   FairShare share;
   AddRuns(share, {1}, "a");
   AddRuns(share, {2}, "b");
@@ -164,7 +164,7 @@ TEST(FairShare, UseIsForgottenWhenAllAreGone) {
   EXPECT_NEAR(served.at(4), 50, 0.2);
 }
 
-TEST(FairShare, TheOlderRunComesFirstAtEquality) {
+TEST(FairShare, TheOlderRunComesFirstAtEqualTime) {
   FairShare share;
   AddRuns(share, {8, 7});
   EXPECT_EQ(FirstRun(share), 7);

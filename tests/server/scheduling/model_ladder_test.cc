@@ -56,7 +56,7 @@ class ModelLadderTest : public testing::Test {
   Pilot found_ = {.difference = 0.01, .standard_error = 0.001};
 };
 
-TEST_F(ModelLadderTest, APilotIsAskedForOnceAndStored) {
+TEST_F(ModelLadderTest, APilotIsRequestedOnceAndStored) {
   const EnsembleSpec spec = Relaxation();
   ModelLadder ladder(*store_, 2);
   for (int asked = 0; asked < 3; ++asked) {
@@ -73,7 +73,7 @@ TEST_F(ModelLadderTest, APilotIsAskedForOnceAndStored) {
   EXPECT_EQ(stored->standard_error, found_.standard_error);
 }
 
-TEST_F(ModelLadderTest, AnotherServerOnTheSameStoreDoesNotRunItAgain) {
+TEST_F(ModelLadderTest, AnotherServerUsesTheStoredPilot) {
   const EnsembleSpec spec = Relaxation();
   Answer first;
   {
@@ -104,7 +104,7 @@ TEST_F(ModelLadderTest, OneStoredPilotServesAllSmallerDeltas) {
   EXPECT_EQ(runs_, 1);
 }
 
-TEST_F(ModelLadderTest, WithoutNeedNoPilotIsRun) {
+TEST_F(ModelLadderTest, PilotsRunOnlyIfNeeded) {
   ModelLadder ladder(*store_, 2);
   EnsembleSpec closed = Relaxation();
   closed.experiment = &kEquilibrium;

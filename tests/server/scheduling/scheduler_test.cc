@@ -59,7 +59,7 @@ TEST(Scheduler, EveryBlockOfAPointIsMergedOnce) {
   }
 }
 
-TEST(Scheduler, APointGoesOnFromItsCheckpoint) {
+TEST(Scheduler, APointIsResumedFromItsCheckpoint) {
   const EnsembleSpec spec = FakeSpec(2, 80);
   auto journal = std::make_shared<RecordingJournal>();
   journal->stored[1] = FakeState(spec, 1, 45);
@@ -380,7 +380,7 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
 }
 
 // The first has a point that takes long to be opened; nothing but that keeps it from working.
-TEST(Scheduler, ARunWithoutTasksLetsTheNextGoOn) {
+TEST(Scheduler, ARunWithoutTasksIsSkipped) {
   Gate gate;
   ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {
     if (spec.seed == 1) gate.Pass({});

@@ -41,7 +41,7 @@ std::string ErrorOf(const std::string& text) {
   return std::string(error.message());
 }
 
-TEST(TokenHash, IsTheStandardsSha256) {
+TEST(TokenHash, MatchesTheTestVectorsOfSha256) {
   EXPECT_EQ(HexOf(HashOf("abc")),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(*ParseTokenHash(HexOf(HashOf("abc"))), HashOf("abc"));
@@ -121,7 +121,7 @@ TEST(AccessList, AFormattedEntryIsReadBack) {
 }
 
 // In every place of a line where somebody may have put a token.
-TEST(AccessList, ErrorsNameTheLineAndShowNoneOfItsWords) {
+TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   const std::string secret = "hunter2hunter2";
   const std::string good = HashText("one");
   const std::pair<std::string, std::string> cases[] = {
@@ -176,11 +176,11 @@ TEST_F(AccessFile, AFileThatOthersMayReadOrWriteIsRefused) {
   EXPECT_OK(With(0400));
   EXPECT_OK(With(0640));
   for (const mode_t mode : {0604u, 0644u, 0660u, 0620u, 0602u, 0666u, 0777u}) {
-    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to others")) << mode;
+    EXPECT_THAT(std::string(With(mode).message()), HasSubstr("is open to other users")) << mode;
   }
 }
 
-TEST_F(AccessFile, AFileOfAnotherUserThanRootIsRefused) {
+TEST_F(AccessFile, OnlyFilesOfTheServersUserOrRootAreAccepted) {
   struct stat status {};
   status.st_mode = S_IFREG | 0600;
   status.st_uid = 1000;

@@ -125,7 +125,7 @@ class LostConnections {
   std::jthread watcher_;
 };
 
-TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsOfWhichNoneFails) {
+TEST_F(OldConnectionsWithTime, AreReplacedBetweenCallsAndAllCallsSucceed) {
   const std::string name = Submit(1);
   const LostConnections lost(server_.channel());
   while (lost.count() < 3) {

@@ -84,7 +84,7 @@ TEST_F(NewToken, AnOpenOrMalformedFileStaysUnchanged) {
   chmod(file_.path.c_str(), 0644);
   const TokenRequest request = *ParseTokenRequest("alice:read");
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),
-              HasSubstr("open to others"));
+              HasSubstr("open to other users"));
   chmod(file_.path.c_str(), 0600);
   WriteFile(file_.path, "nonsense\n");
   EXPECT_THAT(std::string(IssueToken(file_, request, kIssueTime).status().message()),

@@ -76,7 +76,7 @@ TEST(SecurityCombination, OnlySafeOnesOfAllSixteenAreAccepted) {
   }
 }
 
-TEST(SecurityCombination, ARefusalNamesWhatIsMissing) {
+TEST(SecurityCombination, AnErrorNamesTheMissingFlags) {
   EXPECT_THAT(Refusal("0.0.0.0:1", ""),
               HasSubstr("missing: --tls-certificate and --tls-key and --access-file"));
   EXPECT_THAT(Refusal("0.0.0.0:1", "ck"), HasSubstr("missing: --access-file"));
@@ -222,7 +222,7 @@ TEST_F(TlsFilesTest, AKeyOfAnotherCertificateIsRefused) {
 }
 
 // The clock may be set only later.
-TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRead) {
+TEST_F(TlsFilesTest, AnExpiredOrFutureCertificateIsRead) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));
@@ -232,7 +232,7 @@ TEST_F(TlsFilesTest, ACertificateOutOfItsTimeIsRead) {
 
 TEST_F(TlsFilesTest, AKeyThatOthersMayReadIsRefused) {
   chmod(files_.options().tls_key.c_str(), 0644);
-  EXPECT_THAT(Error(), HasSubstr("open to others (mode 0644)"));
+  EXPECT_THAT(Error(), HasSubstr("open to other users (mode 0644)"));
 }
 
 TEST_F(TlsFilesTest, AFileThatIsNotPemIsRefused) {
@@ -293,7 +293,7 @@ std::string Published() {
 }
 
 // The certificate must not be exchanged without the authority that belongs to it.
-TEST(ServerTls, WhenThereIsRoomForOneFileOnlyBothStayOld) {
+TEST(ServerTls, IfOneFileCannotBePublishedBothStayOld) {
   const LaboratoryFiles files(true);
   const SecurityOptions& options = files.options();
   ASSERT_OK_AND_ASSIGN(const auto tls,
@@ -359,7 +359,7 @@ TEST_F(SecureServer, AnAccessFileIsReadAgainWhileAConnectionLives) {
   EXPECT_EQ(channel->GetState(false), GRPC_CHANNEL_READY);
 }
 
-TEST_F(SecureServer, AnAccessFileThatIsWrongLeavesTheOldOne) {
+TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
   const auto channel = Channel();
   files_.WriteAccessFile("nonsense " + std::string(kBob) + "\n");
   const absl::Status status = Reload();
@@ -384,7 +384,7 @@ TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
   EXPECT_OK(List(Channel(), kAlice));
 }
 
-TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
+TEST_F(SecureServer, AnInvalidCertificateKeepsThePreviousOne) {
   files_.Write("server.key", files_.authority().Issue("x").key);
   EXPECT_THAT(std::string(Reload().message()), HasSubstr("--tls-key="));
   files_.WriteCertificate(files_.authority().Issue("good"));
@@ -396,7 +396,7 @@ TEST_F(SecureServer, ACertificateThatIsWrongLeavesTheOldOne) {
 }
 
 // Neither a certificate that has expired nor one that is early, as it is to a clock that is late.
-TEST_F(SecureServer, ACertificateOutOfItsTimeDoesNotReplaceOneThatIsValid) {
+TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     files_.WriteCertificate(files_.authority().Issue("x", validity));
@@ -430,7 +430,7 @@ TEST_F(ClockNotSet, TheServerStartsLogsAndIsRefusedByClients) {
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
     Start(validity);
     EXPECT_THAT(log_, HasSubstr("error: the certificate in --tls-certificate="));
-    EXPECT_THAT(log_, HasSubstr("no client connects until it is valid"));
+    EXPECT_THAT(log_, HasSubstr("clients cannot connect while it is not valid"));
     EXPECT_THAT(List(), StatusIs(grpc::StatusCode::UNAVAILABLE));
   }
 }
@@ -442,7 +442,7 @@ TEST_F(ClockNotSet, ClientsConnectAsSoonAsTheCertificateIsValid) {
   }
 }
 
-TEST_F(ClockNotSet, ANewCertificateIsTakenEvenIfItIsNotValidYetEither) {
+TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
   using std::chrono::hours;
   Start({hours(-2), hours(-1)});
   files_.WriteCertificate(files_.authority().Issue("early", {hours(1), hours(2)}));

@@ -23,7 +23,7 @@ TestServerOptions OnPort(const ConnectionTiming& timing) {
   return {.listen = "127.0.0.1:0", .connections = timing};
 }
 
-TEST(SilentConnection, AConnectionThatNeverSpeaksIsClosed) {
+TEST(SilentConnection, AConnectionWithoutAHandshakeIsClosed) {
   RunningServer server(OnPort({.handshake = milliseconds(200), .ping_interval = kNever}));
   Connection connection(server.address());
   EXPECT_THAT(connection.ReadToTheEnd(), HasSubstr(kGoAway));

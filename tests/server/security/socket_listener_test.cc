@@ -227,7 +227,7 @@ TEST(SocketServer, AnotherUserGetsNoAnswer) {
   EXPECT_THAT(CallByName(server.channel(), kCheckHealth), StatusIs(grpc::StatusCode::UNAVAILABLE));
 }
 
-TEST(SocketServer, ManyConnectionsAreServedAndNoneIsLeftAtTheEnd) {
+TEST(SocketServer, ManyConnectionsAreServedAndAllAreClosedAtTheEnd) {
   const int before = OpenDescriptors();
   {
     RunningServer server;

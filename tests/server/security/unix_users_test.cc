@@ -152,7 +152,7 @@ TEST_F(UnixUsersTest, FirstCallsAtOnceAgreeOnTheUser) {
   EXPECT_THAT(service_.callers(), ElementsAre("bin submit"));
 }
 
-TEST_F(UnixUsersTest, AUserTooManyOrWithoutANameIsClosedAndLogged) {
+TEST_F(UnixUsersTest, ExcessAndUnnamedUsersAreClosedAndLogged) {
   Start(1);
   ::testing::internal::CaptureStderr();
   EXPECT_THAT(Call(As(kNameless)), StatusIs(grpc::StatusCode::UNAVAILABLE));
@@ -160,11 +160,11 @@ TEST_F(UnixUsersTest, AUserTooManyOrWithoutANameIsClosedAndLogged) {
   EXPECT_THAT(Call(As(kBin)), StatusIs(grpc::StatusCode::UNAVAILABLE));
   EXPECT_OK(Call(As(kDaemon)));
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              HasSubstr("connection of user 54321 closed: the system knows no name for this user"));
+              HasSubstr("connection of user 54321 closed: the system has no name for this user"));
   EXPECT_THAT(service_.callers(), ElementsAre("daemon submit"));
 }
 
-TEST(PeerUser, TheNumberOfAllUnmappedUsersStandsForNone) {
+TEST(PeerUser, TheUserNobodyStandsForNoUserInANamespace) {
   EXPECT_TRUE(StandsForOneUser(kDaemon));
   EXPECT_TRUE(StandsForOneUser(0));
   EXPECT_FALSE(StandsForOneUser(std::nullopt));

@@ -75,18 +75,19 @@ TEST_F(BackupTest, EachInconsistencyIsReported) {
     const char* sql;
     const char* sentence;
   } damages[] = {
-      {"UPDATE jobs SET state = 9 WHERE sequence = 1", "has no such state: 9"},
+      {"UPDATE jobs SET state = 9 WHERE sequence = 1", "has an unknown state: 9"},
       {"UPDATE jobs SET spec = x'ff' WHERE sequence = 1", "job "},
-      {"UPDATE jobs SET end_time = NULL WHERE sequence = 1", "ended at no time"},
+      {"UPDATE jobs SET end_time = NULL WHERE sequence = 1", "ended but has no end time"},
       {"UPDATE jobs SET error = x'ff' WHERE sequence = 1", "its error cannot be read"},
       {"UPDATE jobs SET points_done = 1 WHERE sequence = 1", "finished 1 points and has 2 results"},
       {"UPDATE jobs SET points = 3 WHERE sequence = 1", "succeeded with 2 results of 3"},
       {"DELETE FROM results WHERE job = 1 AND point = 1", "succeeded with 1 results of 2"},
-      {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result of no point"},
+      {"UPDATE results SET point = 7 WHERE job = 1 AND point = 1", "a result without a point"},
       {"UPDATE results SET result = x'ff' WHERE job = 1 AND point = 1", "the result of job 1"},
       {"INSERT INTO results (job, point, samples, result, finish) VALUES (77, 0, 1, x'', 1)",
-       "a result of no point: job 77, point 0"},
-      {"INSERT INTO checkpoints VALUES (1, 0, x'')", "a checkpoint of no point of an active job"},
+       "a result without a point: job 77, point 0"},
+      {"INSERT INTO checkpoints VALUES (1, 0, x'')",
+       "a checkpoint without a point of an active job"},
       {"INSERT OR REPLACE INTO checkpoints VALUES (2, 2, x'ff')",
        "the checkpoint of job 2, point 2"},
       {"INSERT INTO checkpoints VALUES (2, 0, x'')", "a checkpoint of a finished point"},
@@ -130,7 +131,7 @@ TEST_F(BackupTest, ACopyIsOneFileOfMode0600) {
   }
 }
 
-TEST_F(BackupTest, NothingIsOverwritten) {
+TEST_F(BackupTest, AnExistingFileIsNotOverwritten) {
   MakeStore();
   WriteFile(Copy(), "precious");
   EXPECT_THAT(BackupStore(Store(), Copy()), StatusIs(absl::StatusCode::kAlreadyExists));
@@ -202,7 +203,7 @@ std::vector<std::string> NamesIn(const std::string& folder) {
   return names;
 }
 
-TEST_F(BackupTest, NothingIsLeftBesideAStoreThatNobodyHasOpen) {
+TEST_F(BackupTest, CopyingAndCheckingLeaveNoFilesBesideAnUnusedStore) {
   MakeStore();
   const std::vector<std::string> before = NamesIn(folder_.path());
   const std::string file = Contents(Store());

@@ -44,7 +44,7 @@ TEST_F(DataFolder, TheProcessIdOfAKilledServerIsReplaced) {
   EXPECT_EQ(Contents(path_ + "/lock"), OwnId());
 }
 
-TEST_F(DataFolder, AServerThatIsKeptOutDoesNotChangeTheProcessId) {
+TEST_F(DataFolder, ASecondServerDoesNotChangeTheProcessId) {
   ASSERT_OK_AND_ASSIGN(const auto directory, DataDirectory::Open(path_));
   WriteFile(path_ + "/lock", "12345\n");
   EXPECT_THAT(DataDirectory::Open(path_), StatusIs(absl::StatusCode::kFailedPrecondition));

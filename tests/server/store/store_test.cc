@@ -179,7 +179,7 @@ TEST_F(StoreTest, APilotIsFoundByItsEngineAndItsPlaceAlone) {
   EXPECT_FALSE(StoredPilot(*store, "2", {.rho = 0.54, .delta = 0.1}));
 }
 
-TEST_F(StoreTest, AFileThatIsNoDatabaseIsRefusedAndUntouched) {
+TEST_F(StoreTest, AFileThatIsNotADatabaseIsRejectedAndUnchanged) {
   WriteFile(File(), std::string(5000, 'x'));
   const auto store = Store::Open(File(), {});
   EXPECT_THAT(store, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("damaged")));
@@ -286,7 +286,7 @@ TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
 }
 
 // The log of a store that was in use, put beside another.
-TEST_F(StoreTest, TheLogOfAnotherStoreIsNoticed) {
+TEST_F(StoreTest, TheLogOfAnotherStoreIsRejected) {
   TemporaryFolder other;
   MakeStore(other.File("store.sqlite3"), 20);
   // Its log has some of its pages; one that had all of them would be a whole store.
@@ -297,7 +297,7 @@ TEST_F(StoreTest, TheLogOfAnotherStoreIsNoticed) {
   ExpectRefusedAndUntouched(File(), "damaged");
 }
 
-TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
+TEST_F(StoreTest, AnImpossibleWriteIsRejectedAlone) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   const auto broken = [](Database& database) {
     return database.Execute(
@@ -316,7 +316,7 @@ TEST_F(StoreTest, AWriteThatCanNeverSucceedIsRefusedAloneAndToldSo) {
   EXPECT_EQ(Checkpoint(*store, 1, 1), "after");
 }
 
-TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
+TEST_F(StoreTest, ARejectedChangeIsRolledBackAndTheOthersStay) {
   const auto store = Open({.delay = std::chrono::hours(1)});
   store->RecordCheckpoint(1, 0, 0, [] { return "kept"; });
   absl::Status full = absl::ResourceExhaustedError("too many jobs");
@@ -332,7 +332,7 @@ TEST_F(StoreTest, AChangeThatRefusesItselfIsUndoneAndTheOthersStay) {
   EXPECT_EQ(Checkpoint(*store, 1, 0), "kept");
 }
 
-TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsTriedAgain) {
+TEST_F(StoreTest, AChangeThatRunsOutOfMemoryIsRetried) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
@@ -439,7 +439,7 @@ TEST_F(StoreTest, DoneIsCalledInOrderAfterTheCommit) {
   EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
-TEST_F(StoreTest, AFailedCommitTellsAndLeavesNothingBehind) {
+TEST_F(StoreTest, AFailedCommitReturnsItsErrorAndHasNoEffect) {
   const auto store = Open();
   const absl::Status failed = store->Commit([](Database& database) {
     JobRecord record = Record("half");
@@ -450,7 +450,7 @@ TEST_F(StoreTest, AFailedCommitTellsAndLeavesNothingBehind) {
   EXPECT_FALSE(Find(*store, "half"));
 }
 
-TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
+TEST_F(StoreTest, RecordsAreRetriedUntilTheDiskWorks) {
   const auto store =
       Open({.delay = std::chrono::milliseconds(1), .retry = std::chrono::milliseconds(1)});
   int attempts = 0;
@@ -465,7 +465,7 @@ TEST_F(StoreTest, RecordsAreTriedAgainUntilTheDiskWorks) {
 }
 
 // A transaction that takes long does not mean that the disk hangs.
-TEST_F(StoreTest, ALongTransactionIsNoHangingDisk) {
+TEST_F(StoreTest, ALongTransactionDoesNotCountAsAHangingDisk) {
   const auto store = *Store::Open(folder_.File("store"), {.stall = std::chrono::milliseconds(0)});
   EXPECT_OK(store->Commit([&](Database&) {
     EXPECT_FALSE(store->stalled());
@@ -473,7 +473,7 @@ TEST_F(StoreTest, ALongTransactionIsNoHangingDisk) {
   }));
 }
 
-TEST_F(StoreTest, WhileTheDiskHangsReadsGoOnAndRequestsAreRefused) {
+TEST_F(StoreTest, AHangingDiskRejectsRequestsAndServesReads) {
   HangingDisk disk;
   const auto store = *Store::Open(folder_.File("store"),
                                   {.stall = std::chrono::milliseconds(1), .vfs = disk.vfs()});
@@ -503,7 +503,7 @@ TEST_F(StoreTest, WhileTheDiskHangsReadsGoOnAndRequestsAreRefused) {
   EXPECT_TRUE(run);
 }
 
-TEST_F(StoreTest, JobsAreReadOneByOneAndNoMoreThanAreWanted) {
+TEST_F(StoreTest, JobsAreReadOneByOneUntilTheReaderStops) {
   const auto store = *Store::Open(folder_.File("store"), {});
   for (const char* id : {"a", "b", "c", "d"}) Insert(*store, Record(id));
   std::vector<std::string> read;
@@ -524,7 +524,7 @@ TEST_F(StoreTest, AfterClosingWritesFail) {
               StatusIs(absl::StatusCode::kUnavailable));
 }
 
-TEST_F(StoreTest, ACancellationThatCameFirstIsNotOvertakenByTheEnd) {
+TEST_F(StoreTest, AnEarlierCancellationWinsOverTheEnd) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   bool begun = false;
@@ -537,7 +537,7 @@ TEST_F(StoreTest, ACancellationThatCameFirstIsNotOvertakenByTheEnd) {
   EXPECT_EQ(Find(*store, "a")->error, "");
 }
 
-TEST_F(StoreTest, ACancellationThatCameLastHasNoEffect) {
+TEST_F(StoreTest, ALaterCancellationHasNoEffect) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   EXPECT_EQ(End(*store, job, v1::EnsembleJob::SUCCEEDED), v1::EnsembleJob::SUCCEEDED);
@@ -574,7 +574,7 @@ TEST_F(StoreTest, ADeletedJobLeavesNothingAndItsSequenceIsNotUsedAgain) {
   EXPECT_GT(Insert(*store, Record("a")), job);
 }
 
-TEST_F(StoreTest, ARestartForAnotherEngineDropsWhatWasComputed) {
+TEST_F(StoreTest, ARestartForAnotherEngineDropsTheResults) {
   const auto store = Open();
   const int64_t job = Insert(*store, Record("a"));
   store->RecordResult(job, {0, 1, "r"});

@@ -39,7 +39,7 @@ TEST(CheckedFile, ThePayloadComesBack) {
 }
 
 // All other values of every byte: of the header, the payload and the checksum.
-TEST(CheckedFile, NoChangedByteIsAccepted) {
+TEST(CheckedFile, AChangedByteIsRejected) {
   const std::string good = SomeFile();
   for (size_t at = 0; at < good.size(); ++at) {
     std::string file = good;
@@ -50,7 +50,7 @@ TEST(CheckedFile, NoChangedByteIsAccepted) {
   }
 }
 
-TEST(CheckedFile, NoShorterFileIsAccepted) {
+TEST(CheckedFile, AShorterFileIsRejected) {
   const std::string good = SomeFile();
   for (size_t size = 0; size < good.size(); ++size) {
     ASSERT_THAT(PayloadOf(kKind, good.substr(0, size)),

@@ -76,7 +76,7 @@ TEST(LeaseRunner, ComputesOnlyMissingChunks) {
   EXPECT_TRUE(AreEqual(recorder.chunks[0], {all[0], all[2], all[4]}));
 }
 
-TEST(LeaseRunner, NothingIsComputedAfterTheTolerance) {
+TEST(LeaseRunner, StopsAtTheTolerance) {
   EnsembleSpec spec = SpecOf(kFirstHit, Model::kBilliard);
   spec.target = {.tolerance = 0.003};
   LeaseWork work = {LeaseOf(spec).lease};
