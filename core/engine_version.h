@@ -1,4 +1,4 @@
-// The version of the numbers: raised whenever the same specification may give other bits.
+// The version of the numerical results. Raise it whenever a specification may give other bits.
 #ifndef BALLPISTON_CORE_ENGINE_VERSION_H_
 #define BALLPISTON_CORE_ENGINE_VERSION_H_
 

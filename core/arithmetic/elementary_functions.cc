@@ -2,15 +2,15 @@
 //
 // Angle. With t = short side/long side in [0, 1] and c = k/8 the nearest eighth,
 //     atan t = atan c + atan r,   r = (t - c)/(1 + c t),   |r| <= 1/16,
-// the first from a table of twice the precision, the second by its series. The octant adds 0, pi/2
-// or pi, also of twice the precision, as r is: what is rounded at the result's own size is the last
-// sum alone.
+// The first term is from a table in twice the precision, the second from its series. The octant
+// adds 0, pi/2 or pi. These constants and r also have twice the precision, so only the last sum is
+// rounded at the size of the result.
 //
 // Power. log(base^exponent) reaches 700, so the logarithm needs ten bits more than the result. With
 // base = 2^e m, 1/sqrt2 <= m < sqrt2 and c = k/8 next to m,
 //     log base = e log 2 + log c + 2 atanh s,   s = (m - c)/(m + c),   |s| < 1/22,
-// where m - c is exact and s is kept as a sum of two doubles; the series' cubic term, 2^-10 of s
-// itself, bears being rounded. Then exp = 2^k exp(r), |r| <= log(2)/2, by its series.
+// where m - c is exact and s is kept as a sum of two doubles. The cubic term of the series is only
+// 2^-10 of s, so it may be rounded. Then exp = 2^k exp(r), |r| <= log(2)/2, by its series.
 #include "core/arithmetic/elementary_functions.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace ballpiston {
 namespace {
 
-// A number as the sum of a double and what is left of it.
+// A number as the sum of a double and a small remainder.
 struct Split {
   double high;
   double low;
@@ -50,7 +50,7 @@ constexpr Split kLogOfEighths[] = {
 };
 constexpr Split kLog2 = {0x1.62e42fefa2000p-1, 0x1.9ef35793c7673p-41};  // times a short int: exact
 constexpr double kOneOverLog2 = 0x1.71547652b82fep+0;
-constexpr double kLeastExponent = -700;  // of e, before results leave the normal numbers
+constexpr double kLeastExponent = -700;  // of e; smaller results leave the normal numbers
 
 // Exactly a + b (Knuth).
 Split Sum(double a, double b) {
@@ -135,7 +135,7 @@ double Atan2(double y, double x) {
   const double series =
       r * square *
       Polynomial<6>({-1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11, 1.0 / 13}, square);
-  // From the nearest axis, then which axis that is.
+  // The angle from the nearest axis, added to the angle of that axis.
   const bool steep = height > width;
   const Split axis = steep ? kHalfPi : x < 0 ? kPi : Split{0, 0};
   const double sign = steep != (x < 0) ? -1 : 1;

@@ -1,4 +1,4 @@
-// A number as a message shows it: the shortest decimal text that reads back as the same double.
+// The text of a number in messages: the shortest decimal text that parses to the same double.
 #ifndef BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
 #define BALLPISTON_CORE_ARITHMETIC_NUMBER_TEXT_H_
 

@@ -1,10 +1,10 @@
-// Arithmetic with 113 bits, the reference for results in double: a formula that loses eighteen
+// Arithmetic with 113 bits, the reference for results in double. A formula that loses eighteen
 // digits here still has as many correct digits as a double. Only tests and the stability tables use
-// it; the engines compute no result in it.
+// this arithmetic; the engines do not.
 //
-// On x86 this is __float128 with the compiler's libquadmath, elsewhere a long double of the same
-// format. The functions are declared here because quadmath.h lies in a folder of GCC's own, which
-// other compilers do not look into.
+// On x86 the type is __float128 with the compiler's libquadmath, elsewhere a long double of the
+// same format. The functions are declared here because quadmath.h is in a folder of GCC that other
+// compilers do not search.
 #ifndef BALLPISTON_CORE_ARITHMETIC_QUAD_PRECISION_H_
 #define BALLPISTON_CORE_ARITHMETIC_QUAD_PRECISION_H_
 
@@ -48,7 +48,7 @@ inline Quad Atan(Quad x) { return std::atan(x); }
 
 inline Quad QuadPi() { return 4 * Atan(Quad{1}); }
 
-// |value/exact - 1|; where exact is zero, zero if value is and infinity if not.
+// |value/exact - 1|. If exact is zero: zero if value is zero, else infinity.
 inline double RelativeError(double value, Quad exact) {
   if (exact == 0) return value == 0 ? 0 : std::numeric_limits<double>::infinity();
   const Quad error = (Quad{value} - exact) / exact;

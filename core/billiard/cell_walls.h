@@ -1,5 +1,5 @@
-// The four arcs that a ball flies between, one flight at a time, in numbers of any precision: part
-// of EventFlow (event_flow.h says what keeps it stable).
+// The four arcs around the ball's cell, and the ball's flight from arc to arc, in numbers of any
+// precision. Part of EventFlow; event_flow.h describes the numerical stability.
 //
 // Real is a floating-point type with numeric_limits, sqrt and fabs. Immutable.
 #ifndef BALLPISTON_CORE_BILLIARD_CELL_WALLS_H_
@@ -29,8 +29,9 @@ class CellWalls {
         inverse_rho_(1 / rho_),
         centres_{Centre(0), Centre(1), Centre(2), Centre(3)} {}
 
-  // A disc that a ball's ray meets: distance along the ray, and the angle phi between the ray and
-  // the normal there, rho sin(phi) = c, rho cos(phi) = s. kNoDisc, infinitely far, if it misses it.
+  // The disc that a ball's ray hits: the distance along the ray, and the angle phi between the ray
+  // and the normal at the hit, rho sin(phi) = c, rho cos(phi) = s. If the ray misses the disc,
+  // `disc` is kNoDisc and the distance is infinite.
   struct Encounter {
     int disc = kNoDisc;
     Real distance = std::numeric_limits<Real>::infinity();
@@ -38,22 +39,23 @@ class CellWalls {
     Real cos_phi = 0;
   };
 
-  // The disc that a ball in the cell meets next, which is not `last_disc`, on which it is.
+  // The disc that a ball in the cell hits next. `last_disc`, on which the ball is, is excluded.
   Encounter Next(const Vector& position, const Vector& direction, int last_disc) const {
     // The ball is inside the unit cell, so it moves away from the centre in the quadrant behind it.
     const int behind = (direction.x() < 0 ? 1 : 0) | (direction.y() < 0 ? 2 : 0);
     const std::array<Encounter, 3> discs = {Meet(behind ^ 1, position, direction, last_disc),
                                             Meet(behind ^ 2, position, direction, last_disc),
                                             Meet(behind ^ 3, position, direction, last_disc)};
-    // Which one is hit is as good as random: an index costs less here than mispredicted jumps do.
+    // The disc that is hit is practically random, so an index costs less than mispredicted
+    // branches.
     const size_t beside = discs[1].distance < discs[0].distance;
     const size_t ahead = discs[2].distance < discs[beside].distance;
     return discs[std::max(beside, 2 * ahead)];
   }
 
-  // Moves the ball to the wall, and reflects it there. Along the ray the impact parameter is
-  // constant, and centre - hit = s u + c u_perp. The factor that keeps the normal's length at 1 is
-  // taken from u: it need not wait for the root.
+  // Moves the ball to the wall and reflects it there. The impact parameter is constant along the
+  // ray, and centre - hit = s u + c u_perp. The factor that keeps the normal's length at 1 is
+  // computed from u, so it does not wait for the square root.
   void Reflect(const Encounter& hit, Vector& position, Vector& direction) const {
     const Real unit = OneOverLength(direction);
     const Vector normal =
@@ -77,8 +79,7 @@ class CellWalls {
     const Real foot = direction.dot(to_centre);
     const Real impact = Cross(direction, to_centre);
     const Real square = rho_ * rho_ - impact * impact;
-    // The operator is & and not &&: && makes a branch for each condition, and those are
-    // mispredicted.
+    // & instead of &&, because && makes a branch for each condition, which is often mispredicted.
     const int hit = int{disc != last_disc} & int{foot > 0} & int{square > 0};
     const Real half_chord = sqrt(hit ? square : Real(0));
     const Real distance = std::max(foot - half_chord, Real(0));

@@ -1,5 +1,5 @@
-// The functions of EventFlow, for the files that instantiate it. `inline` as a hint: instances are
-// weak symbols, calls between which cost some 8% more instructions than those of a plain class did.
+// The functions of EventFlow, for the files that instantiate it. `inline` is a hint: instances are
+// weak symbols, and calls between them cost about 8% more instructions than those of a plain class.
 #ifndef BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_
 #define BALLPISTON_CORE_BILLIARD_EVENT_FLOW_INL_H_
 
@@ -26,7 +26,8 @@ EventOf<Real> EventFlow<Real>::Step() {
   Real duration = wall_first ? time_to_wall_ : time_to_piston_wall_;
   const Real approach = state_.ball_speed * state_.direction.x() - state_.piston_velocity;
   const Real gap = std::max(state_.piston - state_.position.x(), Real(0));
-  // Also where they meet as the piston turns: it may never come nearer to a ball at rest.
+  // <= includes a contact at the moment when the piston turns: the piston may never come nearer to
+  // a ball at rest.
   if (approach > 0 && gap <= approach * duration) {
     duration = gap / approach;
     Advance(duration);

@@ -10,14 +10,14 @@
 
 namespace ballpiston {
 
-// 1/|a| by one Newton step: enough where the length is off from 1 by rounding.
+// 1/|a| by one Newton step, which is enough if |a| differs from 1 by rounding only.
 template <typename Vector>
 auto OneOverLength(const Vector& a) {
   using Real = typename Vector::Scalar;
   return static_cast<Real>(1.5) - static_cast<Real>(0.5) * a.squaredNorm();
 }
 
-// std::copysign; Boost's type of 128 bits has none.
+// std::copysign, also for Boost's 128-bit type, which lacks it.
 template <typename Real>
 Real WithSignOf(const Real& signed_number, const Real& magnitude) {
   if constexpr (std::is_floating_point_v<Real>) {

@@ -12,8 +12,8 @@
 namespace ballpiston {
 
 struct LaneHit {
-  LaneFrame frame;  // about to leave the wall that was hit
-  double length;    // of the flight that ended there
+  LaneFrame frame;  // the ball, about to leave the wall that it hit
+  double length;    // of the flight that ended at the wall
   double x;         // abscissa of the ball in the cell; the engine compares it with the piston's
 };
 

@@ -1,9 +1,11 @@
-// Some flights of several vectors of balls, with the state before and after every flight kept, and
-// the lanes whose ball is where a piston can be. Included once for each instruction set.
+// A burst: some flights of several vectors of balls. The burst keeps the state before and after
+// every flight, and the lanes whose ball is within a piston's reach. Included once for each
+// instruction set.
 //
-// Slot t is before flight t, slot t + kVectors after it, t % kVectors the vector. The vectors'
-// flights overlap (lane_flight-inl.h): while one aims, the one kLag before it takes the root, and
-// the one 2 kLag before it turns. More vectors would not fit a processor's nearest cache.
+// Slot t is the state before flight t, slot t + kVectors the state after it, and t % kVectors is
+// the vector. The vectors' flights overlap (lane_flight-inl.h): while a vector is in the stage Aim,
+// the vector kLag before it is in FindRoot, and the vector 2 kLag before it is in Turn. More
+// vectors would not fit into the first-level cache.
 #if defined(BALLPISTON_CORE_BILLIARD_LANE_BURST_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_BILLIARD_LANE_BURST_INL_H_
 #undef BALLPISTON_CORE_BILLIARD_LANE_BURST_INL_H_
@@ -35,12 +37,12 @@ constexpr size_t kMostSteps = kVectors * kMostFlights;
 template <typename T>
 inline constexpr double kSlack = sizeof(T) == 8 ? 1e-11 : 1e-3;
 
-// The largest c'^2 - 2 that is taken for rounding, which makes some ulps.
+// The largest c'^2 - 2 that counts as a rounding error. Rounding causes a few ulps.
 template <typename T>
 inline constexpr T kMissedByRounding = sizeof(T) == 8 ? T(1e-12) : T(1e-5);
 
-// From here on, in the lanes' units, the piston at an arc's tip can reach the arc; measured along
-// it from its middle: (q_x - q_y)/2.
+// The place on an arc, in the lanes' units, from which the piston at the arc's tip can reach the
+// arc. Places are measured along the arc from its middle: (q_x - q_y)/2.
 template <typename T>
 T EdgeOfReach(const PairGeometry& geometry, double scale) {
   // The arc with the right tip is x = 1/2 + rho sin(angle - 45 degrees), up to 45 degrees.
@@ -49,8 +51,8 @@ T EdgeOfReach(const PairGeometry& geometry, double scale) {
   return static_cast<T>(scale * std::sin(std::asin(sine) + M_PI_4));
 }
 
-// The lanes whose ball, on a wall, is in reach of the arc's tip toward -y of the frame (above), or
-// of that toward -x (below).
+// The lanes whose ball, on a wall, is within reach of a piston: at the arc's tip toward -y of the
+// frame (above), or at the tip toward -x (below).
 struct TipsInReach {
   uint32_t above, below;
 };
@@ -63,8 +65,9 @@ HWY_INLINE TipsInReach TipsOf(const Balls<T>& balls, T edge) {
   return {Bits(d, hn::Gt(across, hn::Set(d, edge))), Bits(d, hn::Lt(across, hn::Set(d, -edge)))};
 }
 
-// `flights` flights of each vector. `reach(balls)` tells the lanes in reach of a piston, which
-// in_reach[t] keeps for each slot but the first ones. Returns whether some ball has left its cell.
+// Computes `flights` flights of each vector. `reach(balls)` returns the lanes in reach of a piston;
+// in_reach[t] keeps them for each slot except the first kVectors. Returns true if a ball has left
+// its cell.
 template <typename T, class Reach>
 HWY_INLINE bool FlyBurst(const FlightConstants<T>& constants, size_t flights, const Reach& reach_of,
                          Balls<T>* HWY_RESTRICT slots, uint16_t* HWY_RESTRICT in_reach) {
@@ -93,7 +96,7 @@ HWY_INLINE bool FlyBurst(const FlightConstants<T>& constants, size_t flights, co
   return SignBits(d, hn::Add(worst, hn::Set(d, kMissedByRounding<T>))) != 0;
 }
 
-// The same of one vector, whose flights wait for each other: slot t + 1 is after flight t.
+// FlyBurst for one vector, whose flights do not overlap: slot t + 1 is after flight t.
 template <typename T, class Reach>
 HWY_INLINE bool FlyOneVector(const FlightConstants<T>& constants, size_t flights,
                              const Reach& reach, Balls<T>* HWY_RESTRICT slots,

@@ -1,40 +1,41 @@
-// One flight of the ball, wall to wall, in every lane of a vector; frame and symbols of
-// lane_frame.h. Included once for each instruction set.
+// One flight of the ball, from wall to wall, in every lane of a vector. lane_frame.h defines the
+// frame and the symbols. Included once for each instruction set.
 //
-// For a disc displaced by D from the one just left, the ray's impact parameter is c + u x D and the
-// distance to its foot u . D - s: an addition each for the three candidates at (1, 0), (0, 1) and
-// (1, 1). c + e = u x (cell's centre - ball) tells on which side the ray passes the centre;
-// mirrored if need be, it passes below, so that of the two discs beside only the one at (1, 0) can
-// be hit:
+// For a disc displaced by D from the disc just left, the ray's impact parameter is c + u x D, and
+// the distance to its foot is u . D - s. This needs one addition each for the three candidates at
+// (1, 0), (0, 1) and (1, 1). The sign of c + e = u x (cell's centre - ball) tells on which side the
+// ray passes the centre. If the ray passes above, the frame is mirrored. Then the ray passes below,
+// and cannot hit the disc at (0, 1). Two candidates remain:
 //   c1 = c - u_y, foot f1 = u_x - s;        beyond it (1, 1):  c2 = c1 + u_x, f2 = f1 + u_y.
-// The two meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) =
-// c + e - u_y (1/2 - lambda/2) > 0, hits the disc at (1, 0). One above hits it only with a chord
-// that lies between the tips:
+// The two discs meet at the tip t = (1 - lambda/2, 1/2). A ray below the tip, u x (t - ball) =
+// c + e - u_y (1/2 - lambda/2) > 0, hits the disc at (1, 0). A ray above the tip hits this disc
+// only with a chord that lies between the tips:
 //   c1 > -rho, f1 > 0 and the chord's foot at height -u_x c1 < 1/2.
-// So which it is, is a matter of four signs. Then, with the c' of the disc that is hit,
-// s' = sqrt(rho^2 - c'^2), length f' - s', and the direction turns by the angle with
+// So four signs decide which disc is hit. Then, with the c' of this disc,
+// s' = sqrt(rho^2 - c'^2), the length is f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
-// In the next disc's frame the cell lies toward (-, -) after (1, 1): a turn by 180 degrees, and
+// In the frame of the disc (1, 1) the cell lies toward (-, -), so the frame turns by 180 degrees:
 //   (h, e) becomes -(h cos + e sin, e cos - h sin).
-// After (1, 0) it lies toward (-, +): a turn by 90 degrees, which is the same with (e, -h) in place
-// of (h, e). So with x = u_x and y = u_y, where (1, 1) is hit, and both 0 elsewhere,
+// In the frame of the disc (1, 0) it lies toward (-, +), so the frame turns by 90 degrees: the same
+// formula with (e, -h) in place of (h, e). So with x = u_x and y = u_y if (1, 1) is hit, else both
+// 0,
 //   n = h - x,   h2 = e + y,   c' = c + e - n,   f' = f1 + y,
 //   h' = -(h2 cos - n sin),   e' = n cos + h2 sin:
-// additions in place of a choice between two cases.
+// which uses additions instead of a choice between two cases.
 //
-// Nothing here asks that the ball has just left the disc at the origin. A ball anywhere in the cell
-// will do, with u_x >= 0 and u_y >= 0: it cannot hit the discs behind it (FrameOfBall).
+// The formulas hold also if the ball has not just left the disc at the origin. The ball may be
+// anywhere in the cell with u_x >= 0 and u_y >= 0: it cannot hit the discs behind it (FrameOfBall).
 //
-// h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c': no factor,
-// and the cosine need not wait for the root.
+// h, e, c and s are kept in units of rho/sqrt(2). Then cos = 1 - s'^2 and sin = -s' c' need no
+// factor, and the cosine does not wait for the square root.
 //
-// |u| would do a random walk by rounding; one Newton step a flight, of the direction before, keeps
-// h^2 + e^2 at 1/2.
+// Rounding would let |u| do a random walk. One Newton step in each flight, on the direction before
+// the turn, keeps h^2 + e^2 at 1/2.
 //
-// A flight is a chain of some 60 cycles, of which a processor overlaps little more than one. So it
-// has three stages that are joined by memory (Aim, FindRoot, Turn), and other balls are in other
-// stages: nothing that a stage needs was begun just before. The compass changes by exclusive or, a
-// bit for each lane, beside the vectors.
+// A flight is a dependency chain of about 60 cycles, and a processor can overlap little more than
+// one such chain. So a flight has three stages (Aim, FindRoot, Turn) that pass their results
+// through memory. Other balls are in other stages, so no stage waits for a result that was started
+// just before. The compass has one bit for each lane and changes by exclusive or.
 #if defined(BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
 #undef BALLPISTON_CORE_BILLIARD_LANE_FLIGHT_INL_H_
@@ -115,7 +116,7 @@ HWY_INLINE uint32_t Bits(D d, hn::Mask<D> mask) {
 #endif
 }
 
-// Where the sign bit is set.
+// The lanes in which the sign bit is set.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> SignMask(D d, V v) {
 #if HWY_TARGET <= HWY_AVX3
@@ -130,15 +131,15 @@ HWY_INLINE hn::Mask<D> SignMask(D d, V v) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE uint32_t SignBits(D d, V v) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
-  return Bits(d, hn::MaskFromVec(v));  // there it looks at sign bits only
+  return Bits(d, hn::MaskFromVec(v));  // on these targets MaskFromVec reads sign bits only
 #else
   return Bits(d, SignMask(d, v));
 #endif
 }
 
-// The first stage: which disc is hit, and where. Leaves n, h2, s'^2 and f' in h, e, s and path of
-// `to`, and returns s'^2: below 0, and not by rounding, the ball has left the cell. `from` and `to`
-// may be the same.
+// The first stage: finds the disc that is hit, and the place. Writes n, h2, c', s'^2 and f' into h,
+// e, c, s and path of `to`. Returns s'^2. If s'^2 is below 0 by more than rounding, the ball has
+// left the cell. `from` and `to` may be the same.
 template <typename T>
 HWY_INLINE hn::Vec<hn::ScalableTag<T>> Aim(const FlightConstants<T>& k, const Balls<T>& from,
                                            Balls<T>& to) {
@@ -167,8 +168,8 @@ HWY_INLINE hn::Vec<hn::ScalableTag<T>> Aim(const FlightConstants<T>& k, const Ba
   hn::Store(square, d, to.s);
   hn::Store(hn::Add(foot1, y_ahead), d, to.path);
 
-  // The compass is mirrored, which turns b and m, then turned by 180 degrees, or by 90 after (1,
-  // 0).
+  // Mirrors the compass, which changes the signs of b and m. Then turns it by 180 degrees, or by 90
+  // after a hit of (1, 0).
   const uint32_t mirrored = SignBits(d, side), beside = ~SignBits(d, ahead);
   const uint32_t ab = from.ab ^ mirrored;
   to.a = ~(from.a ^ (ab & beside));
@@ -177,15 +178,15 @@ HWY_INLINE hn::Vec<hn::ScalableTag<T>> Aim(const FlightConstants<T>& k, const Ba
   return square;
 }
 
-// The second stage: the root s'. Where rounding lets a ray miss its disc by some ulps, s'^2 is
-// negative, and s' is 0.
+// The second stage: the root s'. If rounding lets a ray miss its disc by some ulps, s'^2 is
+// negative, and s' is set to 0.
 template <typename T>
 HWY_INLINE void FindRoot(Balls<T>& to) {
   const hn::ScalableTag<T> d;
   hn::Store(hn::Sqrt(hn::Max(hn::Load(d, to.s), hn::Zero(d))), d, to.s);
 }
 
-// The last stage; `path` is what the balls had gone before.
+// The last stage. `path` is the length of the balls' paths before this flight.
 template <typename T>
 HWY_INLINE void Turn(const FlightConstants<T>& k, hn::Vec<hn::ScalableTag<T>> path, Balls<T>& to) {
   const hn::ScalableTag<T> d;

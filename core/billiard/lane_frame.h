@@ -1,17 +1,17 @@
-// A ball as the lanes keep it, on a wall unless it comes from elsewhere, and the way back to a
-// position in the cell.
+// The representation of a ball in the lanes, and the conversion to a position in the cell. The ball
+// is on a wall, except after FrameOfBall.
 //
-// The frame. Its origin is the centre of the disc just left; axes are those of the cell, possibly
-// mirrored, such that the cell lies toward (+, +). With u the unit direction of flight and q the
-// ball's place, |q| = rho on the wall:
+// The frame. Its origin is the centre of the disc just left. Its axes are those of the cell,
+// possibly mirrored, such that the cell lies toward (+, +). With u the unit direction of flight and
+// q the ball's position, |q| = rho on the wall:
 //   c = rho sin(phi) = u x (0 - q),   s = rho cos(phi) = u . q >= 0,
 //   h = (u_x + u_y)/2,   e = (u_x - u_y)/2,   h^2 + e^2 = 1/2,
-// and q = (s u_x + c u_y, s u_y - c u_x). Mirroring x <-> y flips the signs of e and c alone, which
-// is why h and e are kept instead of the components.
+// and q = (s u_x + c u_y, s u_y - c u_x). The mirror image x <-> y changes only the signs of e and
+// c. Therefore the frame stores h and e instead of the components.
 //
-// The compass tells where the cell's right tip is. r is the unit vector of the frame that points to
-// the right in the cell: a = r_x + r_y, b = r_x - r_y, both +1 or -1, which turn as h and e do.
-// m is the frame's handedness: +1, or -1 if it is a mirror image of the cell.
+// The compass gives the direction of the cell's right tip. r is the unit vector of the frame that
+// points to the right in the cell: a = r_x + r_y, b = r_x - r_y. Both are +1 or -1, and turn like h
+// and e. m is the frame's handedness: +1, or -1 if the frame is a mirror image of the cell.
 #ifndef BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_
 #define BALLPISTON_CORE_BILLIARD_LANE_FRAME_H_
 
@@ -26,7 +26,7 @@ struct LaneFrame {
   double a, b, m;
 };
 
-// `mirrors`, each -1 or +1, turn the cell's axes into the frame's.
+// `mirrors`, each -1 or +1, convert the cell's axes into the frame's.
 inline LaneFrame SeenIn(const Eigen::Vector2d& mirrors, const Eigen::Vector2d& position,
                         const Eigen::Vector2d& direction) {
   const double mx = mirrors.x(), my = mirrors.y();
@@ -41,8 +41,8 @@ inline LaneFrame SeenIn(const Eigen::Vector2d& mirrors, const Eigen::Vector2d& p
           .m = mx * my};
 }
 
-// A ball anywhere in the cell, seen from the disc behind it, which it need not have left: then
-// |q| >= rho, and the rest holds as it does on that disc.
+// A ball anywhere in the cell, in the frame of the disc behind it. |q| may be larger than rho; all
+// other relations hold as for a ball on that disc.
 inline LaneFrame FrameOfBall(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) {
   return SeenIn({std::copysign(1, direction.x()), std::copysign(1, direction.y())}, position,
                 direction);
@@ -61,8 +61,8 @@ inline LaneFrame Scaled(const LaneFrame& frame, double factor) {
 // in the frame first.
 double Abscissa(const LaneFrame& frame);
 
-// From components in the frame to components in the cell: x along r, y along r turned by a right
-// angle, the other way round in a mirror image.
+// Converts components in the frame to components in the cell: x along r, y along r turned by a
+// right angle (in the opposite sense if the frame is a mirror image).
 inline Eigen::Vector2d InCell(const LaneFrame& frame, double x, double y) {
   const double rx = (frame.a + frame.b) / 2, ry = (frame.a - frame.b) / 2;
   return {x * rx + y * ry, frame.m * (y * rx - x * ry)};

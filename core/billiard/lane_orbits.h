@@ -9,7 +9,7 @@
 namespace ballpiston {
 
 std::unique_ptr<OrbitRun> StartLaneOrbits(const PairGeometry& geometry, OrbitSource& source);
-// The flights in single precision: quicker, and off by what single_precision.h tells.
+// With flights in single precision: faster, with the errors that single_precision.h states.
 std::unique_ptr<OrbitRun> StartLaneOrbitsSingle(const PairGeometry& geometry, OrbitSource& source);
 
 }  // namespace ballpiston

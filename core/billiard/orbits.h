@@ -1,17 +1,18 @@
-// Orbits of many ball-piston pairs, from collision to collision: what every experiment runs.
+// Orbits of many ball-piston pairs, from collision to collision. All experiments with a pair use
+// them.
 //
 // Two engines do the same work behind one interface.
-//   kReference  one orbit after the other by ReferenceFlow, every event resolved.
-//   kLanes      the ball's flight between walls in vector lanes, without positions; the piston is
-//               not stepped: its position is a triangle wave in time, looked at only when the ball
-//               is where the piston can be. The engine finds a contact from the positions of both
-//               at the flight's end and where the piston turned, resolves it within the flight, and
-//               the orbit goes on from there in its lane.
+//   kReference  computes one orbit after the other by ReferenceFlow, event by event.
+//   kLanes      computes the ball's flights between walls in vector lanes, without positions. The
+//               piston's position is a triangle wave in time, which the engine evaluates only when
+//               the ball is within the piston's reach. The engine finds a contact from the
+//               positions of both bodies at the flight's end and at the piston's turning point, and
+//               resolves the contact within the flight. The orbit then continues in its lane.
 //
-// An orbit's numbers do not depend on the lane it ran in, on how many lanes there are, or on what
-// runs beside it: every operation is elementwise, and exact, correctly rounded or fused as written.
-// So the bits are the same on every processor with fused multiply-add. The two engines round
-// differently: their orbits agree for some 30 wall hits, then only in law.
+// An orbit's numbers do not depend on its lane, on the number of lanes, or on other orbits: every
+// operation is elementwise, and is exact, correctly rounded or fused as written. So the bits are
+// the same on every processor with fused multiply-add. The two engines round differently: their
+// orbits agree for about 30 wall hits, then only in law.
 #ifndef BALLPISTON_CORE_BILLIARD_ORBITS_H_
 #define BALLPISTON_CORE_BILLIARD_ORBITS_H_
 
@@ -30,17 +31,17 @@ namespace ballpiston {
 
 enum class Engine { kReference, kLanes, kLanesSingle };
 
-// How an orbit came to a ball-piston collision.
+// A ball-piston collision of an orbit, and the orbit's path to it.
 struct Contact {
-  PairState state;  // in contact, still approaching: as ExchangeComponents of the flow wants it
-  double time = 0;  // since the orbit's start, or its collision before
+  PairState state;  // in contact, before the exchange of velocity components
+  double time = 0;  // since the orbit's start or its previous collision
   uint64_t ball_wall_hits = 0;
   uint64_t piston_wall_hits = 0;
   bool escaped = false;  // the orbit left the cell; all other fields are meaningless
   bool expired = false;  // no collision within the time limit; `state` is meaningless, and `time`
-                         // says only that the limit has passed
+                         // means only that the limit has passed
 
-  void Add(const Event& event);  // one more event before the contact
+  void Add(const Event& event);  // adds an event before the contact
 };
 
 enum class AfterContact { kGoOn, kEnd };
@@ -52,7 +53,7 @@ struct OrbitStart {
 };
 
 // A contact of orbit `orbit`. The source sets `after`. kGoOn: ball and piston exchange components,
-// and the orbit continues. An orbit that escaped or expired ends whatever `after` is.
+// and the orbit continues. An orbit that escaped or expired ends for any value of `after`.
 struct Meeting {
   uint64_t orbit = 0;
   Contact contact = {};
@@ -67,12 +68,12 @@ class OrbitSource {
   virtual ~OrbitSource() = default;
   // Fills the first elements of `starts` and returns their number. A number below starts.size()
   // means that the source has no more orbits now. The lanes ask again about 0.2 ms later, as long
-  // as they have other orbits on their way.
+  // as they have other orbits in progress.
   virtual size_t Start(std::span<OrbitStart> starts) = 0;
   virtual void Meet(std::span<Meeting> meetings) = 0;
   // An orbit expires after this time without a collision: the source receives an expired contact,
-  // and the orbit ends. The contact may come later than the limit. The limit keeps the engine from
-  // waiting for ever for a ball or a piston that is slow or at rest.
+  // and the orbit ends. The expired contact may come later than the limit. The limit ensures that
+  // the engine does not wait for ever for a ball or a piston that is slow or at rest.
   virtual double TimeLimit() const { return std::numeric_limits<double>::infinity(); }
   // True if the engine should return. The engine asks about 5000 times a second.
   virtual bool Pause() = 0;

@@ -1,5 +1,5 @@
-// The piston between collisions: a triangle wave. Its phase is the way it has gone since it was
-// last at its left wall, in [0, 2 stroke): to the right below `stroke`, to the left above.
+// The piston between collisions: a triangle wave. Its phase is the path length since it was last at
+// its left wall, in [0, 2 stroke). Below `stroke` the piston moves to the right, above to the left.
 #ifndef BALLPISTON_CORE_BILLIARD_PISTON_WAVE_H_
 #define BALLPISTON_CORE_BILLIARD_PISTON_WAVE_H_
 
@@ -25,38 +25,40 @@ class PistonWave {
 
   double Phase(const PairState& state) const {
     const double way = std::clamp(state.piston - left_, 0.0, stroke_);
-    // By its sign bit: a piston at rest keeps it.
+    // The sign bit gives the direction; a piston at rest keeps its sign bit.
     return std::signbit(state.piston_velocity) ? 2 * stroke_ - way : way;
   }
   double Position(double phase) const {
     return left_ + (phase < stroke_ ? phase : 2 * stroke_ - phase);
   }
-  // The phase after a way >= 0 from phase 0; 0 or 2 stroke may be off by rounding.
+  // The phase after a path of length `way` >= 0 from phase 0. Rounding may give a result just
+  // outside of [0, 2 stroke).
   double Reduced(double way) const {
     const double turns = way * frequency_;
-    // The cast costs less than std::floor; beyond, no digit of the phase is left.
+    // The cast costs less than std::floor. Above 2^52 turns the phase has no correct digit.
     return turns < 0x1p52 ? way - 2 * stroke_ * static_cast<double>(static_cast<int64_t>(turns))
                           : 0;
   }
   double Velocity(double phase, double speed) const { return phase < stroke_ ? speed : -speed; }
 
-  // Where a ball meets the piston: after `way`, with the piston on its way to the right or back.
+  // A meeting of ball and piston: the ball's path length `way` until then, and the direction in
+  // which the piston moves.
   struct Meeting {
     double way;
     bool piston_goes_right;
   };
-  // The first meeting of a ball that goes at most `length`, from a place `x` to the right of the
-  // piston's left wall and not beyond the piston, along a direction with the component `ux`. The
-  // piston goes `ratio` times as far. Two that touch and part do not meet there. The piston comes
-  // past every ball that is right of its left wall: so they meet before it turns there, or the ball
-  // has left its reach.
+  // The first meeting of piston and ball. The ball goes at most `length`, from a distance `x` right
+  // of the piston's left wall and not beyond the piston, along a direction with the component `ux`.
+  // The piston goes `ratio` times as far. A ball and a piston that touch and move apart do not
+  // meet. The piston passes every ball that is right of the piston's left wall. So they meet before
+  // the piston turns there, or the ball has left the piston's reach.
   std::optional<Meeting> FirstMeeting(double phase, double ratio, double x, double ux,
                                       double length) const {
     double way = 0;
-    if (x < 0) {  // to where the piston can be
+    if (x < 0) {  // the ball first flies to the piston's left wall
       if (ux <= 0) return std::nullopt;
       way = -x / ux;
-      x = -ux * way;  // so that it is exactly there
+      x = -ux * way;  // so that x + ux way is exactly 0
       const double periods = (phase + ratio * way) / (2 * stroke_);
       phase = 2 * stroke_ * (periods - std::floor(periods));
     }
@@ -73,10 +75,11 @@ class PistonWave {
     return met ? Within(length, {way + *met, false}) : std::nullopt;
   }
 
-  // Whether FirstMeeting may find one; a test of less work, for balls that seldom do. The distance
-  // between ball and piston is a concave function of time, except where the piston turns at its
-  // left wall. So they meet if the ball ends beyond the piston, or is right of that wall when the
-  // piston turns there for the first or the last time. `slack` is a length that rounding may hide.
+  // Whether FirstMeeting may find a meeting: a cheaper test, for balls that seldom meet the piston.
+  // The distance between ball and piston is a concave function of time, except where the piston
+  // turns at its left wall. So they meet if the ball ends beyond the piston, or if the ball is
+  // right of that wall when the piston turns there for the first or the last time. `slack` is a
+  // tolerance of length for rounding.
   bool MayMeet(double phase, double ratio, double x, double ux, double length, double slack) const {
     const double period = 2 * stroke_, after = phase + ratio * length, end = x + ux * length;
     const double last = Reduced(after);
@@ -86,14 +89,14 @@ class PistonWave {
            ((after >= period - slack) & (std::max(at_first, at_last) > -slack * ratio));
   }
 
-  // Walls hit while it goes `way` further, and 2^63 if there are more.
+  // The number of walls that the piston hits while it goes `way` further; at most 2^63.
   uint64_t Hits(double phase, double way) const {
     const double hits = std::floor((phase + way) / stroke_) - std::floor(phase / stroke_);
     return static_cast<uint64_t>(std::min(hits, 0x1p63));
   }
 
  private:
-  // The ball's way until a gap closes, unless the piston has gone the rest of its way before.
+  // The ball's path length until a gap closes; empty if the piston turns before.
   static std::optional<double> Meet(double gap, double approach, double ratio, double rest) {
     gap = std::max(gap, 0.0);  // below 0 by rounding
     if (approach <= 0 || gap * ratio > approach * rest) return std::nullopt;
@@ -105,7 +108,7 @@ class PistonWave {
 
   double left_;
   double stroke_;
-  double frequency_;  // turns at the left wall in a unit of its way
+  double frequency_;  // turns at the left wall per unit of path length
 };
 
 }  // namespace ballpiston

@@ -1,5 +1,5 @@
-// The billiard flow in double precision, every event resolved, one at a time: the yardstick for
-// every faster engine, and the source of traces. What it does and promises: event_flow.h.
+// The billiard flow in double precision, computed event by event. Every faster engine is compared
+// with it, and traces use it. event_flow.h describes the method and its properties.
 #ifndef BALLPISTON_CORE_BILLIARD_REFERENCE_FLOW_H_
 #define BALLPISTON_CORE_BILLIARD_REFERENCE_FLOW_H_
 

@@ -1,9 +1,10 @@
-// Where the lanes may fly in single precision, and how far what they measure is off there.
+// The domain in which the lanes may fly in single precision, and the errors of the measured values.
 //
-// The flight is in single precision; what happens at the piston is resolved in double. So the error
-// is that of the density of balls in the tip that the piston reaches, and it grows as the tip's
-// depth delta falls to the rounding of a position, and in cells so small that the ball forgets
-// slowly. Measured against exact values, with one standard error:
+// Flights are in single precision; collisions with the piston are computed in double. So the error
+// is that of the density of balls in the tip that the piston reaches. The error grows when the
+// tip's depth delta approaches the rounding of a position, and in small cells, where the ball's
+// velocity stays correlated for long. Relative differences from exact values, with one standard
+// error:
 //
 //   mean free times at fixed energies, at delta's bound     rho = 0.6            0.9e-4 +- 1.3e-4
 //     (6e6 returns at each of 4 energies)                   rho = 0.65          -3.3e-4 +- 1.3e-4
@@ -19,10 +20,10 @@
 //     within 1.4e-4                                                             -3.4e-4 +- 1.0e-4
 //     within 1.4e-5                                                              3.1e-3 +- 3e-4
 //
-// The errors of the shares are those of independent hits; hits of one ball are not, and double
-// precision is as far off in the first four rows of them.
+// The standard errors of the shares assume independent hits, although hits of one ball are
+// correlated; in the first four rows of the shares double precision differs as much.
 //
-// Where the runs tell less, they show no difference either: mean free times at rho = 0.7, delta =
+// Less precise runs show no difference: mean free times at rho = 0.7, delta =
 // 1e-3 (2.6e-3 +- 1.4e-3); the narrow tips of rho = 1/2 + 1e-9, 0.501 and 0.53 (5e-4 +- 3e-4 at
 // delta's bound, 1e-3 +- 1e-3 at a tenth of it, 7e-3 at a hundredth); means of cos alpha and sigma
 // (0.03 to 0.4 % at the bound); relaxation times against double precision (0.3 to 2 %).
@@ -36,7 +37,7 @@
 
 namespace ballpiston {
 
-// Outside of these ranges single precision is refused.
+// Single precision is permitted only in these ranges.
 inline constexpr double kSingleMinRho = kMinRho + 1e-9;
 inline constexpr double kSingleMaxRho = kMaxRho - 1e-3;
 inline constexpr double kSingleMinDelta = 1e-3;

@@ -6,12 +6,13 @@
 // Symbols: beta inverse temperature; eb, ep energies of ball and piston (a Gamma(1) and a
 // Gamma(1/2) variable). Units: P per energy^2; averages in |dG_bp|/|G| times energy^(1/2) for <f>,
 // energy^(5/2) for the other two. Domain of P: beta > 0, eb >= 0, ep >= 0 (P is infinite at
-// ep = 0). Domain of the averages: kMinTemperature <= beta <= kMaxTemperature, and so 1/beta
-// (core/geometry/temperature.h); there <h>, which grows as T^(5/2), stays in the range of double.
+// ep = 0). Domain of the averages: kMinTemperature <= beta <= kMaxTemperature, and the same for
+// 1/beta (core/geometry/temperature.h); there <h>, which grows as T^(5/2), stays in the range of
+// double.
 //
 // Properties, each with the test that bears its name:
 //   1. DensityIntegratesToOne.
-//   2. AveragesAreThoseOfTheMoments: of kernel_moments.h over P.
+//   2. AveragesAreThoseOfTheMoments: integrals of kernel_moments.h over P.
 //   3. AveragesSatisfyTheIdentities of eq. nucanavg.
 //
 // Pure functions: safe from any thread.

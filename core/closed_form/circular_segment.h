@@ -1,14 +1,14 @@
-// The circular segment: what a chord cuts off a disc.
+// The circular segment: the part of a disc that a chord cuts off.
 //
 //   segment = r^2 (theta - sin theta)/2,   theta = 2 arcsin(chord/(2 r))
 //
-// The printed closed forms contain this difference in disguise (a trapezium minus a sector), where
-// it loses every digit on short arcs. Here it is formed on its own.
+// The printed closed forms contain this difference as a trapezium minus a sector, which loses all
+// digits on short arcs. The functions here compute the difference directly.
 //
 // Domain: 0 <= angle <= 2 pi; 0 <= chord <= 2 radius, radius > 0.
 //
 // Properties, each with the test that bears its name:
-//   1. AngleMinusSineIsAccurate to kAngleMinusSineRelativeError, until angle^3 underflows.
+//   1. AngleMinusSineIsAccurate to kAngleMinusSineRelativeError, unless angle^3 underflows.
 //   2. ChordAngleInvertsTheChord: chord = 2 r sin(angle/2).
 //
 // Pure functions: safe from any thread.

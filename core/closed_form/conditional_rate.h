@@ -25,8 +25,9 @@ inline constexpr double kConditionalRateRelativeError = 1e-15;
 double Phi(double ep);
 
 // The mean time to return to the collision surface at fixed energies. At exactly ep = 0 and
-// ep = 1/2 one of the two rests, and what is never visited does not count (VolumesAtRest): there
-// the value is not the limit tau_bp/phi of its neighbours, and it is what an orbit shows.
+// ep = 1/2 the piston or the ball rests, and only the visited part of phase space counts
+// (VolumesAtRest). There the value is the mean along an orbit, and differs from the limit of
+// tau_bp/phi.
 double ConditionalMeanFreeTime(const PairGeometry& geometry, double ep);
 
 }  // namespace ballpiston

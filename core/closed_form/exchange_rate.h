@@ -1,28 +1,31 @@
-// How often a ball and a piston of the gas exchange energy at temperature T, and the conductivity
-// that follows from it.
+// The rate at which a ball and a piston of the gas exchange energy at temperature T, and the static
+// conductivity, which follows from this rate.
 //
 //   exchange rate = <f> |dG_bp|/|G| = sqrt(T/(2 pi)) |dG_bp|/|G|          eq. nucanavg
 //   lim delta -> 0 of exchange rate/delta^2 = sqrt(T/pi)/cell             eq. nucanavgrare
 //   static conductivity = exchange rate/2                  derivation in exchange_rate.cc
 //
 // <f> is the average over the canonical measure, beta = 1/T. |dG_bp| and |G| are those of a pair.
-// In a gas every piston takes area from two balls, so the gas's own exchange rate is higher: at the
-// paper's rho and delta = 0.2 by 2.4 % in a chain and 4.9 % in a lattice, and the difference falls
-// as delta^3. The static conductivity leaves out the dynamic correlations: the true conductivity is
-// a little lower than half of the gas's own exchange rate.
+// In a gas every piston takes area from two balls, so the exchange rate of a gas is higher: at the
+// paper's rho and delta = 0.2 by 2.4 % in a chain and 4.9 % in a lattice. The difference falls as
+// delta^3. The static conductivity neglects dynamic correlations: the true conductivity is a little
+// lower than half of the gas's exchange rate.
 //
 // Units: the Boltzmann constant is 1, so T is an energy, in the units of the pair's energy. Rates
-// count collisions of one contact (a ball and a piston) in a unit of time. The conductivity is the
-// heat current through the cross-section of one cell, divided by the temperature's difference from
-// one cell to the next. Domain: kMinTemperature <= T <= kMaxTemperature (temperature.h),
-// kMinRho < rho < kMaxRho, every PairGeometry with delta > 1e-140. Below, rates can underflow.
+// count collisions of one contact (a ball and a piston) per unit of time. The conductivity is the
+// heat current through the cross-section of one cell, divided by the temperature difference between
+// neighbouring cells. Domain: kMinTemperature <= T <= kMaxTemperature (temperature.h),
+// kMinRho < rho < kMaxRho, every PairGeometry with delta > 1e-140; for smaller delta rates can
+// underflow.
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomGeometries: relative error below kExchangeRateRelativeError.
 //   2. RareLimitIsTheLimitOfTheRate.
 //   3. IsTheAverageOfTheMicrocanonicalRate, 1/tau_bp at energy 1/2, over the pair's energy.
-//   4. HalfOfItConductsBetweenUnequalTemperatures: what the kernel carries between a ball and a
-//      piston of slightly different temperatures, half a cell apart, is the static conductivity.
+//   4. HalfOfItConductsBetweenUnequalTemperatures: the energy that the kernel carries between a
+//   ball
+//      and a piston of slightly different temperatures, half a cell apart, gives the static
+//      conductivity.
 //
 // Pure functions: safe from any thread.
 #ifndef BALLPISTON_CORE_CLOSED_FORM_EXCHANGE_RATE_H_

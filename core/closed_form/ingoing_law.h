@@ -1,22 +1,22 @@
-// The equilibrium law of the velocities with which ball and piston meet, at a given piston energy:
-// what the first-hit histograms are compared with.
+// The equilibrium law of the velocities with which ball and piston collide, at a given piston
+// energy. The first-hit histograms are compared with this law.
 //
 //   h(alpha, sigma) = (sqrt(eb) cos alpha - sigma sqrt(ep))_+/N      eq. falpha with n = 1
 //   N = 4 pi f(eb, ep)                                               eqs. cnuep, intkernelnuf
 //
 // Symbols: alpha in [-pi, pi] is the direction of the ball's velocity, 0 towards the piston;
-// sigma = +1 or -1 is the sign of the piston's, +1 away from the ball. eb = 1/2 - ep. Both before
-// the collision is resolved (the outgoing law is this one seen backwards: v -> -v).
+// sigma = +1 or -1 is the sign of the piston's velocity, +1 away from the ball. eb = 1/2 - ep. Both
+// are values before the collision. The outgoing law is the time reversal v -> -v of this law.
 //
-// For each sigma alpha is confined to |alpha| < AlphaMax(sigma): to cos alpha > sigma sqrt(ep/eb).
-// From ep = 1/4 on, the piston is the faster one: sigma = +1 never meets the ball, and for
-// sigma = -1 every alpha is allowed.
+// For each sigma the permitted angles are |alpha| < AlphaMax(sigma), that is
+// cos alpha > sigma sqrt(ep/eb). For ep >= 1/4 the piston is at least as fast as the ball: a piston
+// with sigma = +1 never meets the ball, and with sigma = -1 every alpha is permitted.
 //
-// Domain: ep in [0, 1/2], sigma = +-1, -pi <= a0 <= a1 <= pi. Probabilities are per unit angle for
-// Density and pure numbers else.
+// Domain: ep in [0, 1/2], sigma = +-1, -pi <= a0 <= a1 <= pi. Density is per unit angle; the
+// probabilities have no dimension.
 //
 // Properties, each with the test that bears its name:
-//   1. BinProbabilityIsTheIntegralOfTheDensity, with no cancellation on narrow bins nor next to
+//   1. BinProbabilityIsTheIntegralOfTheDensity, without cancellation on narrow bins and next to
 //      AlphaMax.
 //   2. NothingOutsideOfTheAllowedInterval counts in a bin that reaches beyond it.
 //   3. ProbabilitiesSumToOne over sigma, and to SigmaProbability over a partition of alpha.
@@ -24,8 +24,8 @@
 //   5. PistonAtRestIsHitAlikeOnBothSigns (ep = 0), BallAtRestHasNoDirection (ep = 1/2).
 //   6. ContinuousWhereBallAndPistonAreEquallyFast (ep = 1/4).
 //
-// The error bound of a bin is relative and counts AlphaMax, a double, as exact: on a bin of width w
-// at the edge, its rounding is 1e-16/w of the probability.
+// The error bound of a bin is relative and treats AlphaMax, a double, as exact. On a bin of width w
+// at AlphaMax the rounding of AlphaMax changes the probability by a relative 1e-16/w.
 //
 // Immutable: safe to share between threads.
 #ifndef BALLPISTON_CORE_CLOSED_FORM_INGOING_LAW_H_
@@ -39,7 +39,7 @@ class IngoingLaw {
  public:
   explicit IngoingLaw(double ep);
 
-  // Half-width of the allowed interval of alpha: 0 if none is, pi if all are.
+  // Half-width of the permitted interval of alpha: 0 if no angle is permitted, pi if all are.
   double AlphaMax(int sigma) const { return sigma > 0 ? alpha_max_plus_ : alpha_max_minus_; }
 
   double Density(int sigma, double alpha) const;

@@ -1,12 +1,13 @@
-// The stochastic kernel: rate density of a collision that leaves the piston with energy ep_out.
+// The stochastic kernel: rate density of collisions after which the piston has the energy ep_out.
 //
 //   W(eb, ep -> ep_out) = max(sqrt ep_out, sqrt ep)/(2 pi sqrt(ep_out (eb - ep_out)))   eq. kernel
 //
-// for ep_out < eb, else 0: all the piston gets is the ball's normal part.
+// for ep_out < eb, else 0: the piston's new energy is the energy of the ball's normal velocity
+// component.
 //
 // Symbols: eb and ep are the energies of ball and piston before the collision. Units: |dG_bp|/|G|
 // over energy^(1/2), per unit of ep_out. Domain: eb, ep, ep_out >= 0, finite. At ep_out = 0 < ep
-// the density is infinite (and integrable). PairKernel is the same at total energy 1/2,
+// the density is infinite (and integrable). PairKernel is the kernel at total energy 1/2,
 // eb = 1/2 - ep, with ep and ep_out in [0, 1/2].
 //
 // Properties, each with the test that bears its name:

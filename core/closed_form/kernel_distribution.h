@@ -1,25 +1,25 @@
 // The stochastic kernel's distribution function: the fraction of the collisions at given energies
-// that leave the piston with less than a given energy.
+// after which the piston has less than a given energy.
 //
 //   F(ep_out | eb, ep) = int_0^ep_out W(eb, ep -> x) dx / f(eb, ep)      eqs. kernel, intkernelnuf
 //       = sqrt(ep) a / (p + q)                       for ep_out <= ep,  a = arcsin sqrt(ep_out/eb)
 //       = 1 - sqrt(eb - ep_out) / (p + q)            above,
 //   p = sqrt(ep) arcsin sqrt(min(ep/eb, 1)),  q = sqrt(max(eb - ep, 0)),  f = (p + q)/pi.
 //
-// Where W is the law of a collision, F(ep_out) is uniform on [0, 1] whatever the energies before.
+// If W is the law of a collision, F(ep_out) is uniform on [0, 1] for all energies before it.
 //
 // Symbols: eb and ep are the energies of ball and piston before the collision. Domain: eb and ep in
-// [0, 1e290], eb of at least 1e-290 or 0; ep_out >= 0. From eb on F is 1. OfPair is the same at
-// total energy 1/2, with the digits of eb = 1/2 - ep that its rounding drops; ep in [0, 1/2].
+// [0, 1e290], eb of at least 1e-290 or 0; ep_out >= 0. F = 1 for ep_out >= eb. OfPair is F at total
+// energy 1/2, and keeps the digits of eb = 1/2 - ep that rounding drops; ep in [0, 1/2].
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomEnergies: relative error of F and of the rate below
 //      kKernelDistributionRelativeError; and AccurateWhereTheBallIsLeftWithLittle.
-//   2. RisesFromZeroToOne, which is at ep_out = eb, never falling but by rounding.
+//   2. RisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by rounding.
 //   3. SlopeIsTheKernelOverItsRate.
-//   4. DetailedBalanceOfCollisions: in equilibrium a collision that takes the piston from below x
-//      to below y is as frequent as one from below y to below x.
-// Made of +, -, *, /, sqrt and Atan2 alone: the same bits on every processor.
+//   4. DetailedBalanceOfCollisions: in equilibrium, collisions that take the piston's energy from
+//      below x to below y are as frequent as those from below y to below x.
+// Uses only +, -, *, /, sqrt and Atan2, so the bits are the same on every processor.
 //
 // Immutable: safe to share between threads.
 #ifndef BALLPISTON_CORE_CLOSED_FORM_KERNEL_DISTRIBUTION_H_
@@ -43,7 +43,7 @@ class KernelDistribution {
   KernelDistribution(double eb, double eb_low, double ep);
 
   double eb_;      // the ball's energy,
-  double eb_low_;  // and what its rounding dropped
+  double eb_low_;  // and the remainder that its rounding dropped
   double ep_;
   double piston_speed_;  // sqrt(ep)
   double p_;

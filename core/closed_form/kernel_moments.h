@@ -1,14 +1,14 @@
-// Moments of the stochastic kernel: how often a pair with energies (eb, ep) interacts, and how much
-// energy zeta goes from the ball to the piston.
+// Moments of the stochastic kernel: the rate of collisions of a pair with energies (eb, ep), and
+// the moments of the energy zeta that goes from the ball to the piston.
 //
 //   f(eb, ep) = int W dzeta           rate of collisions           eq. intkernelnuf
 //   j(eb, ep) = int zeta W dzeta      energy current               eq. intkerneleta
 //   h(eb, ep) = int zeta^2 W dzeta    second moment of transfer    eq. intkerneleta2
 //
 // Symbols: eb energy of the ball, ep of the piston. Units: |dG_bp|/|G| times energy^(1/2),
-// energy^(3/2), energy^(5/2). Domain: eb >= 0, ep >= 0, finite. The Pair forms are the same at
-// total energy 1/2, eb = 1/2 - ep, ep in [0, 1/2]; they exist because 1/2 - ep rounds, which near
-// the zero of j costs digits that the argument ep still has.
+// energy^(3/2), energy^(5/2). Domain: eb >= 0, ep >= 0, finite. The Pair functions are f, j, h at
+// total energy 1/2, eb = 1/2 - ep, ep in [0, 1/2]. They avoid the rounding of 1/2 - ep, which would
+// lose digits near the zero of j.
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateOverTheWholeRange: relative error below kKernelMomentsRelativeError; and

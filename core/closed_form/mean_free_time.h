@@ -2,7 +2,7 @@
 //
 //   tau_x = 4 |G|/|dG_x|,  x = bp, bw, pw                       eqs. taubpmft, tauwall
 //
-// and what becomes of them when interactions are rare:
+// and their limit of rare interactions:
 //
 //   lim delta -> 0 of 1/(tau_bp delta^2) = 1/(2 sqrt(2) cell)    eq. taubpmftdelta
 //
@@ -12,8 +12,9 @@
 //   1. AccurateAtRandomGeometries: relative error below kMeanFreeTimeRelativeError.
 //   2. RareLimitRateIsTheLimitOfTheRate 1/(tau_bp delta^2).
 //   3. DeltaFirstThenRhoGivesTheWedge, RhoFirstThenDeltaGivesTheCusp: the limits delta -> 0 and
-//      rho -> 1/2 of delta^2 |G|/|dG_bp| differ by a factor of three (eq. limitsrhodelta). What
-//      counts is delta against lambda: the piston meets a wedge if delta << lambda, else a cusp.
+//      rho -> 1/2 of delta^2 |G|/|dG_bp| differ by a factor of three (eq. limitsrhodelta). The
+//      ratio delta/lambda decides: the piston moves in a wedge if delta << lambda, in a cusp if
+//      delta >> lambda.
 //
 // Pure functions: safe from any thread.
 #ifndef BALLPISTON_CORE_CLOSED_FORM_MEAN_FREE_TIME_H_
@@ -40,7 +41,7 @@ MeanFreeTimes MeanFreeTimesOf(const PairGeometry& geometry);
 // lim delta -> 0 of 1/(tau_bp delta^2). Domain: kMinRho < rho < kMaxRho.
 double RareLimitRate(double rho);
 
-// delta^2 |G|/|dG_bp|, whose double limit depends on the order.
+// delta^2 |G|/|dG_bp|. Its double limit depends on the order of the limits.
 double ScaledVolumeRatio(const PairGeometry& geometry);
 
 // lim rho -> 1/2 of lim delta -> 0 of ScaledVolumeRatio: (4 - pi)/(4 sqrt 2).

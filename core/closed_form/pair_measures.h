@@ -1,5 +1,5 @@
-// Volume and surface areas of the pair's configuration space: what every equilibrium rate is made
-// of.
+// Volume and surface areas of the pair's configuration space. All equilibrium rates follow from
+// them.
 //
 //   |G|      volume of all (ball, piston) positions                       eq. Gv
 //   |dG_bp|  area of the ball-piston collision surface                    eq. dGc
@@ -8,11 +8,11 @@
 //   cell     area of the ball's cell                                      eq. areax1x2
 //   eta      height of the piston, the cell's width at its leftmost place
 //
-// The printed formulas subtract numbers of order one to get areas down to lambda delta^2. These
-// are the same functions in forms that do not cancel; the derivation opens pair_measures.cc.
+// The printed formulas subtract numbers of order one to get areas as small as lambda delta^2. The
+// functions here are the same formulas in a form without cancellation, derived in pair_measures.cc.
 //
-// Units: cells (so cells^2 for areas, cells^3 for the volume). Domain: every PairGeometry; below
-// delta = 1e-140 areas approach the smallest doubles and the error bound is not promised.
+// Units: cells (so cells^2 for areas, cells^3 for the volume). Domain: every PairGeometry. For
+// delta below 1e-140 areas approach the smallest doubles, and the error bound may not hold.
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomGeometries, AccurateWhereTheCellVanishes (rho -> 1/sqrt(2)),
@@ -47,9 +47,10 @@ PairMeasures Measures(const PairGeometry& geometry);
 // Area of the ball's cell, eq. areax1x2. Domain: kMinRho < rho < kMaxRho.
 double CellArea(double rho);
 
-// What of |Gamma| can be reached at the two ends of the energy axis, where one of the two rests:
-// a resting piston is met only if it stands left of the cell's tip, a resting ball only if it lies
-// where the piston comes by. Both are less than |Gamma|.
+// The part of |Gamma| that can be reached at the two ends of the energy axis, where the piston or
+// the ball rests. The ball meets a resting piston only if the piston is left of the cell's tip. The
+// piston meets a resting ball only if the ball is within the piston's reach. Both volumes are less
+// than |Gamma|.
 struct RestingVolumes {
   double piston;  // epsilon = 0
   double ball;    // epsilon = 1/2

@@ -1,7 +1,7 @@
 // The paper's formulas as printed, one expression each, in any arithmetic. In double they are the
-// naive evaluation; the rest of this folder has to be more exact. In quadruple precision they are
-// the reference value where 34 digits are enough despite the cancellation. Only tests and the
-// stability tables use them.
+// naive evaluation, which the other files of this folder improve. In quadruple precision they are
+// the reference values, as long as 34 digits are enough despite the cancellation. Only tests and
+// the stability tables use them.
 //
 // Rates, moments and the kernel are in units of |dG_bp|/|G|, as in the library.
 #ifndef BALLPISTON_CORE_CLOSED_FORM_PRINTED_FORMULAS_H_

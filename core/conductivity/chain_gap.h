@@ -1,16 +1,16 @@
-// The spectral gap of a closed chain in the limit of rare collisions: how fast balls and pistons in
-// a row forget every distribution of their energies.
+// The spectral gap of a chain in the limit of rare collisions: the slowest rate at which the
+// energies of balls and pistons in a row relax to equilibrium.
 //
-// The chain ends freely at both sides, and its total energy S is fixed. In equilibrium the energies
-// over S have Dirichlet's law. The generator acts between the polynomials of the energies of a
-// total degree up to `degree`; the least eigenvalue above 0 is an upper bound of the gap, and falls
-// as the degree grows.
+// The chain has free ends, and its total energy S is fixed. In equilibrium the energies divided by
+// S have Dirichlet's law. The generator acts between the polynomials of the energies of a total
+// degree up to `degree`. Its least eigenvalue above 0 is an upper bound of the gap, and falls as
+// the degree grows.
 //
 // The contact matrices are those of independent Gamma laws, where S is random. A polynomial y_q
 // that is orthogonal to all those of lower degree under Dirichlet's law is S^q times a function of
-// the energies over S. It is a combination of products of Gamma polynomials of degree q, and it is
-// one of those that the lowering operator sum(e d^2/de^2 + (d/2) d/de) takes to 0. A contact's
-// rates grow as sqrt S, so with the Gamma law of S, of shape a = sum(d/2),
+// the energies over S. It is a combination of products of Gamma polynomials of degree q that the
+// lowering operator sum(e d^2/de^2 + (d/2) d/de) maps to 0. A contact's rates grow as sqrt S, so
+// with the Gamma law of S, of shape a = sum(d/2),
 //
 //   <y_q, L y_r> at S = 1:   <S^q y_q, L S^r y_r> / <S^(q + r + 1/2)>,   <y_q, y_q>:
 //   <...>/<S^(2q)>.
@@ -31,11 +31,11 @@
 
 namespace ballpiston {
 
-// Eigenvalues of -L on the polynomials of a degree from 1 to `degree`, ascending: the first is the
-// gap. `dimensions` of the sites' velocities: 2 for a ball, 1 for a piston.
+// Eigenvalues of -L on the polynomials of a degree from 1 to `degree`, ascending; the first is the
+// bound of the gap. `dimensions` are those of the sites' velocities: 2 for a ball, 1 for a piston.
 Eigen::VectorXd ChainRates(const std::vector<int>& dimensions, int degree);
 
-// The gap, extrapolated from two or more degrees, ascending.
+// The gap, extrapolated from two or more ascending degrees.
 ExtrapolatedValue ChainGap(const std::vector<int>& dimensions, const std::vector<int>& degrees);
 
 }  // namespace ballpiston

@@ -1,10 +1,10 @@
 // Functions of the energies of a few neighbouring sites, summed over all their translates.
 //
 // A monomial is a product of orthonormal polynomials (gamma_law.h), one for each of its sites, of
-// degree 1 or more. Its translates count as the same function. Only those combinations matter that
-// change sign under the reflection of x, as the field does, and do not under that of y. So a
-// function of the basis is the sum of a monomial's reflections with these signs, and monomials
-// whose reflections cancel have none.
+// degree 1 or more. Its translates count as the same function. Only combinations that are odd under
+// the reflection of x, like the field, and even under the reflection of y contribute. So a function
+// of the basis is the sum of a monomial's reflections with these signs. A monomial whose
+// reflections cancel gives no function.
 //
 // Properties, each with the test that bears its name:
 //   1. TranslatesAreOneFunction.  2. ReflectionsDifferInSignOnly.
@@ -49,11 +49,12 @@ using Cluster = std::vector<Site>;
 
 // `length` neighbouring sites of a chain.
 std::vector<Cluster> ChainClusters(const SiteLattice& chain, int length);
-// The sites with |x| + |y| up to `radius` from a ball, and those from a piston along x and along y.
+// Three clusters: the sites with |x| + |y| up to `radius` from a ball, from a piston that moves
+// along x, and from a piston that moves along y.
 std::vector<Cluster> LatticeClusters(const SiteLattice& lattice, int radius);
 
 struct BasisLimits {
-  int degree;       // in all
+  int degree;       // total degree
   int sites = 100;  // of a monomial
 };
 
@@ -66,10 +67,10 @@ class ClusterBasis {
   const BasisLimits& limits() const { return limits_; }
   // One for each function.
   const std::vector<Monomial>& monomials() const { return monomials_; }
-  // k + 1 for a monomial with the sign + in function k, -(k + 1) for the sign -, 0 for one in no
-  // function.
+  // k + 1 for a monomial with the sign + in function k, -(k + 1) for the sign -, 0 for a monomial
+  // in no function.
   int Find(const Monomial& monomial) const;
-  // All reflections of a monomial, as they come.
+  // All reflections of a monomial; those at odd places are reflected in x.
   std::vector<Monomial> Reflections(const Monomial& monomial) const;
 
  private:

@@ -7,19 +7,19 @@
 //   kappa T^2 = (1/2) inf_f sum over the contacts c of a cell < rate_c (delta_c (X + f))^2 >
 //             = inf_f ( E + 2 b f + f A f ) = E - b A^-1 b,
 //
-// delta_c is the change by an exchange, and A, b and E are those of galerkin_form.h. f = 0 gives
+// where delta_c is the change by an exchange, and galerkin_form.h defines A, b and E. f = 0 gives
 // the static conductivity kappa_0, half the exchange rate for balls and pistons. Every finite set
 // of functions gives an upper bound. The correction kappa/kappa_0 - 1 is a universal number for
-// each lattice: it depends neither on temperature nor on the cell's shape.
+// each lattice: it is independent of the temperature and of the cell's shape.
 //
 //   kappa/kappa_0 - 1 <= -b A^-1 b/E
 //
 // with f the polynomials of a total degree n on clusters of neighbouring sites. As n grows, the
 // bound tends to its limit with the power of tail_limit.h. A refinement has steps: first a small
-// cluster and high degrees, then what larger clusters add, at lower degrees. The limit of each step
-// in n is extrapolated. The last step tells what still larger clusters add.
+// cluster with high degrees, then the contributions of larger clusters, with lower degrees. Each
+// step is extrapolated in n. The last step gives an estimate for still larger clusters.
 //
-// The values are constants, because they are universal and the service has to answer at once.
+// The values are constants, because they are universal and the service must answer at once.
 // QuickPlan recomputes them in a few tenths of a second with a larger error. A slow test recomputes
 // them with FinePlan. docs/conductivity.md has the tables.
 //
@@ -64,7 +64,7 @@ struct RefinementStep {
 
 struct RefinementPlan {
   std::vector<RefinementStep> steps;
-  double beyond;  // what still larger clusters add, over the last step
+  double beyond;  // contribution of still larger clusters, divided by that of the last step
 };
 
 struct ComputedBound {
@@ -75,7 +75,7 @@ struct ComputedBound {
 
 struct ConductivityRatio {
   double correction;   // extrapolated kappa/kappa_0 - 1
-  double error;        // of the extrapolation: the sum of all steps' and half of what lies beyond
+  double error;        // sum of all steps' errors and half of the contribution beyond
   double upper_bound;  // the least bound that was computed
   std::vector<ComputedBound> table;
 };

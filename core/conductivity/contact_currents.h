@@ -1,22 +1,23 @@
 // Mean effects of the exchanges of one contact, at given energies of its ball and piston: the
-// energy that they carry, and the change of a test function.
+// energy that exchanges carry, and the change of a test function.
 //
-// The ball's angle is uniform and the piston's sign even, so with the speeds s = sqrt(2 e_b) and
-// w = sqrt(2 e_p), and a change D that depends on the exchange by v_a^2 alone,
+// The ball's angle is uniform and both signs of the piston's velocity are equally likely. So with
+// the speeds s = sqrt(2 e_b) and w = sqrt(2 e_p), and a change D that depends on the exchange only
+// through v_a^2,
 //
 //   < (v_a - v_b)+ D > = (w/2) <D> + (1/pi) integral over v_a > w of (v_a - w) D
 //
-// over the angles from 0 to acos(w/s); the last term is 0 where the piston is faster. It has a
-// singularity of the power 3/2 at s = w. So the table has one part on each side, over the root of
-// the total energy and over sqrt(|e_b - e_p|/(e_b + e_p)), in which both are smooth. Between the
-// nodes it is interpolated by cubic polynomials.
+// over the angles from 0 to acos(w/s); the last term is 0 if the piston is faster. This term has a
+// singularity of the power 3/2 at s = w. So the table has two parts, one for each side of s = w.
+// Its variables are the root of the total energy and sqrt(|e_b - e_p|/(e_b + e_p)), in which both
+// parts are smooth. Between the nodes cubic polynomials interpolate.
 //
 // Units: those of contact_matrix.h. Domain: energies of at least 0, not both 0. Error of the table:
 // kContactCurrentsError. Properties, each with the test that bears its name:
 //   1. AgreeWithTheirDefinition.  2. TableIsWithinItsErrorOfThem.  3. TableTakesEveryEnergy.
 //
-// Made of +, -, *, / and sqrt alone, so the same bits everywhere. Immutable; safe to share between
-// threads.
+// Uses only +, -, *, / and sqrt, so the bits are the same everywhere. Immutable; safe to share
+// between threads.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_CONTACT_CURRENTS_H_
 
@@ -31,9 +32,9 @@ namespace ballpiston {
 // Root mean square error in equilibrium, divided by the root mean square of the value.
 inline constexpr double kContactCurrentsError = 3e-4;
 
-// In a unit of time, the means of
+// Means per unit of time.
 struct ContactCurrents {
-  double energy = 0;                 // what the piston gains
+  double energy = 0;                 // the piston's gain of energy
   double products = 0;               // sum_r of (change of u_r) (change of w_r)
   TestFunction::Values ball = {};    // the change of u_r
   TestFunction::Values piston = {};  // the change of w_r
@@ -46,7 +47,7 @@ class ContactCurrentsTable {
  public:
   explicit ContactCurrentsTable(const TestFunction& f);
 
-  // Computed once for each process, in some 10 ms.
+  // Each table is computed once in a process, in about 10 ms.
   static const ContactCurrentsTable& OfChain();
   static const ContactCurrentsTable& OfLattice();
 

@@ -1,5 +1,5 @@
-// One contact's part of the jump process's generator, between products of polynomials of the two
-// sites' energies.
+// The matrix of one contact's part of the jump process's generator, between products of polynomials
+// of the two sites' energies.
 //
 // Two sites a and b have velocities of d_a and d_b components, which are isotropic at given
 // energies. In a contact they exchange their components v_a and v_b along the contact, at the rate

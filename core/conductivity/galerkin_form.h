@@ -1,15 +1,15 @@
-// The generator of the jump process between the functions of a cluster basis, and the field's
-// coupling to them.
+// The matrix of the jump process's generator between the functions of a cluster basis, and the
+// field's coupling to these functions.
 //
 // With the field X = sum(x e), the functions f_k of the basis, each summed over all translates, and
 // sums over the contacts of one cell,
 //
 //   A_kl = sum <f_k, -L_c f_l>,   b_k = sum <f_k, -L_c X>,   E = sum <X, -L_c X>.
 //
-// A contact acts on two sites and leaves the others as they are. So the basis is cut into blocks: a
-// contact with all monomials that agree elsewhere, their environment. Its part of A is the leading
-// part of the ContactMatrix, up to the degree that the environment leaves. Blocks of one degree are
-// multiplied together.
+// A contact changes two sites only. So the basis is divided into blocks. A block is a contact with
+// all monomials that agree on the other sites; their common part is the environment. The block's
+// part of A is the leading part of the ContactMatrix, up to the total degree less the environment's
+// degree. Blocks of the same degree are multiplied together.
 //
 // Units: those of contact_matrix.h; lengths are distances of neighbouring sites. Properties, each
 // with the test that bears its name:
@@ -35,7 +35,7 @@ class GalerkinForm {
 
   // A v.
   Eigen::VectorXd Apply(const Eigen::VectorXd& v) const;
-  // The diagonal of A, less couplings of a function to its own reflections; positive.
+  // The diagonal of A without the couplings of a function to its own reflections; positive.
   const Eigen::VectorXd& scales() const { return scales_; }
   const Eigen::VectorXd& field() const { return field_; }  // b
   double field_energy() const { return field_energy_; }    // E

@@ -1,6 +1,6 @@
 // Polynomials and Gauss's quadrature of the Gamma law, whose density at x > 0 is
 // x^(shape-1) exp(-x)/Gamma(shape). It is the law of a site's energy at temperature 1, with shape
-// d/2 where the site has d degrees of freedom. Its orthogonal polynomials are Laguerre's, with
+// d/2 for a site with d degrees of freedom. Its orthogonal polynomials are Laguerre's, with
 // alpha = shape - 1.
 //
 // Domain: shape > 0, degree and nodes 1 to 100. Properties, each with the test that bears its name:

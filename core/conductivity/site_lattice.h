@@ -1,8 +1,8 @@
 // The infinite chains and the lattice on which the jump process moves energy, as a graph of sites.
 //
-// Sites have whole coordinates and neighbours have distance 1: a ball has even coordinates, a
-// piston stands where one coordinate is odd. Unlike elsewhere in the core a cell is 2 long here. In
-// a chain of equal sites a cell is 1 long.
+// Sites have whole coordinates, and neighbours have distance 1. A ball has even coordinates; a
+// piston has one odd coordinate. Unlike elsewhere in the core, a cell here has length 2. In a chain
+// of equal sites a cell has length 1.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_SITE_LATTICE_H_
 
@@ -24,13 +24,13 @@ struct Site {
   }
 };
 
-// A contact of one cell. Others follow by translation and by reflection of x and of y.
+// A contact of one cell. All other contacts follow by translation and by reflection of x and of y.
 struct SiteContact {
   Site a;
   Site b;
   int copies;  // in one cell, by reflections
 
-  // By how much the field sum(x e) grows if an energy 1 goes from b to a.
+  // The change of the field sum(x e) if an energy 1 goes from b to a.
   int field() const { return a.x - b.x; }
 };
 

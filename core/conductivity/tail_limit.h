@@ -1,10 +1,10 @@
-// The limit of a sequence whose distance from it falls as a power.
+// The limit of a sequence that approaches it with a power law.
 //
 // v(n) = limit + c_0 n^-p + c_1 n^-(p+1) + ... , with as many terms as the values determine. The
 // solutions of the jump process are not smooth where an energy is 0, so polynomials converge with a
-// power of their degree. Measured powers, of d the least number of a site's velocity components:
-// d + 2 for the conductivity, 6 for the gap of balls and pistons. What clusters of n sites leave
-// out falls as n^-6.
+// power of their degree. Measured powers: d + 2 for the conductivity, where d is the least number
+// of a site's velocity components; 6 for the gap of balls and pistons. The error of clusters of n
+// sites falls as n^-6.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_TAIL_LIMIT_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_TAIL_LIMIT_H_
 
@@ -17,7 +17,7 @@ struct ExtrapolatedValue {
   double error;  // the change of the value by its last term
 };
 
-// `at` ascending and positive, with as many values: two or more.
+// `at` is ascending and positive. `at` and `values` have the same size, two or more.
 ExtrapolatedValue TailLimit(absl::Span<const double> at, absl::Span<const double> values,
                             double power);
 

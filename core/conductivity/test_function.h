@@ -1,6 +1,6 @@
 // A function of neighbouring balls and pistons that nearly minimises Varadhan's formula
-// (conductivity.h). What it leaves of the current is small, so it makes Green and Kubo's formula
-// converge faster (core/gas/jump_current.h).
+// (conductivity.h). The remaining current J' is small, so Green and Kubo's formula converges faster
+// (core/gas/jump_current.h).
 //
 //   f = sum over the balls of sum_r u_r(ball) (w_r(piston on its right) - w_r(piston on its left))
 //
@@ -8,12 +8,12 @@
 //
 //   kappa/kappa_0 - 1 = bound - (integral over t > 0 of <J'(0) J'(t)>)/(kappa_0 T^2 cells)
 //
-// where J' = L(X + f) is the current that the function leaves. This holds for every f. So the
-// coefficients may be rounded, but the bound has to be theirs.
+// where J' = L(X + f) is the remaining current. This holds for every f. So the coefficients may be
+// rounded, but the bound must be computed from the rounded coefficients.
 //
-// u_r and w_r are sums of exp(-e/2), exp(-e) and exp(-2 e). Of all functions of neighbouring balls
-// and pistons the best has the bound -0.001331 in the chain; these have -0.001311. Polynomials are
-// no alternative: their large values at rare energies would decide the scatter.
+// u_r and w_r are sums of exp(-e/2), exp(-e) and exp(-2 e). In the chain the best function of
+// neighbouring balls and pistons has the bound -0.001331; this function has -0.001311. Polynomials
+// do not work: their large values at rare energies would dominate the scatter.
 //
 // Units: those of galerkin_form.h; temperature 1, neighbouring sites at distance 1. Test:
 // TestFunction.HasItsBound.

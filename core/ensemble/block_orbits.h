@@ -17,10 +17,10 @@
 namespace ballpiston {
 
 // `Orbits` is the class of one block's orbits:
-//   uint64_t count() const;                                          at least 1
-//   PairState Start(uint64_t orbit);                                 each once
+//   uint64_t count() const;                                     at least 1
+//   PairState Start(uint64_t orbit);                            called once for each orbit
 //   AfterContact Meet(uint64_t orbit, const Contact& contact);
-//   BlockResult Result() const;                                      after all have ended
+//   BlockResult Result() const;                                 called after all orbits have ended
 // `Make` makes the orbits of a block: Orbits make(const Block&).
 template <typename Orbits, typename Make>
 class BlockOrbits : public BlockRun, private OrbitSource {

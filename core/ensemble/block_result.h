@@ -1,8 +1,8 @@
-// What one block of an experiment measured, and what any number of blocks measured together.
+// The measurements of one block of an experiment, or of several merged blocks.
 //
-// A plain bag of accumulators; each experiment says what stands at which index. Merging the blocks
-// of a point in the order of their indices gives the same bits whoever computed them. Properties,
-// each with a test of its name:
+// A plain set of accumulators; each experiment defines the meaning of each index. Merging the
+// blocks of a point in the order of their indices gives the same bits, whichever machine computed
+// them. Properties, each with a test of its name:
 //   1. MergeWithEmptyIsIdentity.  2. MergeKeepsEverySample.
 //   3. EveryBlockHasTheShapeOfTheEmptyOne.
 #ifndef BALLPISTON_CORE_ENSEMBLE_BLOCK_RESULT_H_
@@ -34,7 +34,8 @@ struct BlockResult {
 
   // Requires the same experiment and point on both sides, or one side default-constructed.
   void Merge(const BlockResult& other);
-  // Whether Merge can take it: as many accumulators of each kind, histograms of the same bins.
+  // Whether `other` can be merged: it has as many accumulators of each kind, and histograms with
+  // the same bins.
   bool HasShapeOf(const BlockResult& other) const;
   friend bool operator==(const BlockResult&, const BlockResult&) = default;
 };

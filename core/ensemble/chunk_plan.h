@@ -3,9 +3,9 @@
 // Workers compute blocks, and the fold merges blocks. A block takes at most about 0.05 s, or has
 // one sample. A chunk has about 32 blocks or more; a tolerance is judged at the end of a chunk.
 // Chunk k has base 2^k samples, up to a maximum that takes about a minute at nominal speed. base
-// takes a few milliseconds or is 64 samples, whichever is more. So a question of 10 ms is answered
-// in about 10 ms, and a question of hours is judged at most a few hundred times. The stated error
-// stays correct, because the sizes at which the tolerance is judged double.
+// takes a few milliseconds or is 64 samples, whichever is more. So a computation of 10 ms ends
+// after about 10 ms, and the tolerance of a computation of hours is judged at most a few hundred
+// times. The stated error stays correct, because the sizes at which the tolerance is judged double.
 //
 // All sizes are powers of two, so a rounding difference in the predicted cost of a sample changes
 // the plan only if that cost lies next to a power of two. The sizes depend only on the engine and

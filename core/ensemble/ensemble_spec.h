@@ -58,7 +58,7 @@ struct FieldViolation {
   std::string description;
 };
 
-// Everything wrong with the spec; empty if it can be run.
+// All errors of the spec; empty if the spec can be run.
 std::vector<FieldViolation> Violations(const EnsembleSpec& spec);
 
 size_t PointCount(const EnsembleSpec& spec);
@@ -68,7 +68,8 @@ PointParameters PointAt(const EnsembleSpec& spec, size_t index);  // index < Poi
 EnsembleSpec OnePointSpec(const EnsembleSpec& spec, const PointParameters& point, Model model);
 
 bool IsAnsweredByClosedForm(const EnsembleSpec& spec);
-// Whether no point takes samples, by the spec alone. AUTO may still choose the spectrum.
+// True if the spec alone shows that no point needs samples. If false, AUTO may still choose the
+// spectrum, which needs none.
 bool NeedsNoSamples(const EnsembleSpec& spec);
 
 // The engine that runs the orbits. In double precision the lanes are as exact as the reference, so

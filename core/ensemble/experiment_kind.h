@@ -73,10 +73,10 @@ struct ExperimentKind {
   // Samples of one orbit that are measured together; a power of two up to 64.
   uint64_t samples_together = 1;
 
-  // The exact probabilities of the bins of each histogram; of the energy at a time those of the
-  // limit delta -> 0. They sum to 1 over the histograms of one law: over both signs of
-  // the piston's velocity, and in each other histogram. Null if no law of the histograms is known,
-  // or there are none.
+  // The exact probabilities of the bins of each histogram; for the energy at a time those of the
+  // limit delta -> 0. They sum to 1 over the histograms of one law: over both signs of the piston's
+  // velocity together, and over each other histogram. Null if the experiment has no histograms, or
+  // no law of them is known.
   std::vector<std::vector<double>> (*expected_probabilities)(const PointParameters& point) =
       nullptr;
 

@@ -6,8 +6,8 @@
 
 namespace ballpiston {
 
-// kMarkov: the jump process of the limit delta -> 0, sampled. kSpectrum: by its generator. kAuto:
-// the service chooses.
+// kMarkov: the jump process of the limit delta -> 0, sampled. kSpectrum: the same process, computed
+// from its generator. kAuto: the service chooses.
 enum class Model { kAuto, kClosedForm, kSpectrum, kMarkov, kBilliard, kBilliardReference };
 
 // Cheapest first.

@@ -25,7 +25,7 @@ inline constexpr double kMaxExponent = 1000;
 
 absl::Status ValidateEpsilon(double epsilon);
 absl::Status ValidateExponent(double exponent);
-absl::Status ValidateCells(double cells);  // whether it is the code of a shape
+absl::Status ValidateCells(double cells);  // OK if `cells` is the code of a shape
 absl::Status ValidateTemperature(double temperature);
 absl::Status ValidateHot(double temperature);
 absl::Status ValidateCold(double temperature);

@@ -58,7 +58,7 @@ class PointFold {
   const FoldState& state() const { return state_; }
   bool HasBlocks() const { return state_.chunk > 0 || state_.blocks > 0; }
   BlockResult Merged() const;       // the result of all merged chunks and blocks
-  uint64_t PlannedSamples() const;  // of these; escaped orbits count
+  uint64_t PlannedSamples() const;  // of the merged blocks, including escaped orbits
   size_t waiting() const { return early_.size(); }
 
  private:
@@ -74,10 +74,10 @@ class PointFold {
 // A whole point computed in one place: all its chunks, and their fold.
 class LocalPoint {
  public:
-  // The experiment must outlive this.
+  // The experiment must outlive this object.
   explicit LocalPoint(const PointExperiment& experiment);
 
-  // The next block to compute; empty if none is left or the point is finished
+  // The next block to compute; empty if no block is left or the point is finished
   // (ChunkFold::NextBlock).
   std::optional<Block> NextBlock();
   void Add(const Block& block, BlockResult result);
@@ -92,7 +92,7 @@ class LocalPoint {
   BlockResult Merged() const;
 
  private:
-  // With these blocks.
+  // The fold, with the merged blocks of the first chunk that is not complete.
   PointFold Now() const;
 
   const PointExperiment& experiment_;

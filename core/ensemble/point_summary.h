@@ -1,4 +1,4 @@
-// What a point's merged blocks say: estimates with errors, and the exact values beside them.
+// The results of a point's merged blocks: estimates with errors, and exact values beside them.
 #ifndef BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
 #define BALLPISTON_CORE_ENSEMBLE_POINT_SUMMARY_H_
 
@@ -17,9 +17,9 @@ struct Estimate {
   std::string name;
   double value = 0;
   std::optional<double> standard_error = {};  // empty with too few samples
-  std::optional<double> exact = {};           // the closed form, where there is one
-  std::optional<double> limit = {};           // what the limit delta -> 0 gives here, if known
-  // Of a distance between laws, which is never below 0: its mean if the two were the same.
+  std::optional<double> exact = {};           // the closed form, if one exists
+  std::optional<double> limit = {};           // the value in the limit delta -> 0, if known
+  // For a distance between laws, which is never below 0: its mean if the two laws were equal.
   std::optional<double> noise_floor = {};
 
   // (value - exact)/standard_error; empty unless both exist and the error is not 0.
@@ -43,7 +43,7 @@ struct CurvePoint {
   double at = 0;  // along the curve's axis
   double value = 0;
   std::optional<double> standard_error = {};
-  std::optional<double> limit = {};  // what the limit delta -> 0 gives here
+  std::optional<double> limit = {};  // the value in the limit delta -> 0
 };
 
 struct Curve {
@@ -54,7 +54,7 @@ struct Curve {
 
 struct PointSummary {
   uint64_t samples = 0;
-  std::vector<Estimate> estimates = {};  // the first one is what a tolerance refers to
+  std::vector<Estimate> estimates = {};  // a tolerance refers to the first estimate
   std::optional<KlDivergence> kl_divergence = {};
   std::vector<NamedHistogram> histograms = {};
   std::vector<Curve> curves = {};

@@ -8,7 +8,7 @@ namespace ballpiston {
 struct SampleWork {
   double ball_wall = 0;
   double piston_wall = 0;
-  double collisions = 0;  // of ball and piston, in orbits that go on
+  double collisions = 0;  // of ball and piston, in orbits that continue
   double starts = 0;      // of orbits, with their ends, in units of the simplest start
   double jumps = 0;       // of the limit's jump process, or measurements of a step of the energy
 

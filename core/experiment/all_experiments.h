@@ -1,4 +1,4 @@
-// The experiments, listed once; each row stands in its experiment's file.
+// The list of all experiments. Each row is defined in its experiment's file.
 #ifndef BALLPISTON_CORE_EXPERIMENT_ALL_EXPERIMENTS_H_
 #define BALLPISTON_CORE_EXPERIMENT_ALL_EXPERIMENTS_H_
 

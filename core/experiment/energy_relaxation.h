@@ -1,25 +1,26 @@
-// How the piston's energy relaxes, by the billiard or by the jump process of its limit.
+// Relaxation of the piston's energy, in the billiard or in the jump process of its limit.
 //
 // Without epsilon: the autocorrelation C(t) = <ep(0) ep(t)> - 1/36 in equilibrium, from orbits that
-// start from the flow's invariant measure; time origins over kOriginTimes mean free times, lags up
-// to kWindowTimes of them. relaxation_time is the integral time int_0^W C dt/C(0), W the window,
-// and what the limit's spectrum adds beyond it (0.03 %). C(0) = 1/45 and the mean 1/6 are exact at
-// every delta, and used.
+// start from the flow's invariant measure. Time origins extend over kOriginTimes mean free times,
+// lags over kWindowTimes. relaxation_time is the integral time int_0^W C dt/C(0) over the window W,
+// plus the part beyond W from the limit's spectrum (0.03 %). The exact values C(0) = 1/45 and
+// mean 1/6, valid at every delta, are used.
 //
-// With epsilon: E[ep(t)] from that energy, ball and piston anywhere; decay_integral is
-// int_0^W (E[ep(t)] - 1/6) dt with the limit's remainder, and relaxation_time that over
-// epsilon - 1/6. The latter is given outside kNoDecayFrom ... kNoDecayTo only: around 1/6 the mean
-// energy first moves away from 1/6, and the ratio has a zero (at 0.141) and a pole.
+// With epsilon: E[ep(t)] from this initial energy, with uniform positions of ball and piston.
+// decay_integral is int_0^W (E[ep(t)] - 1/6) dt plus the part beyond W from the limit.
+// relaxation_time is decay_integral/(epsilon - 1/6). It is given only outside of kNoDecayFrom ...
+// kNoDecayTo: around 1/6 the mean energy first moves away from 1/6, and the ratio has a zero (at
+// 0.141) and a pole.
 //
-// The window matters. A piston of speed u is out of the ball's reach for a time of up to
-// 2 lambda/u, whatever delta: so in the billiard C has a tail of order lambda/t from slow pistons,
-// whose integral grows with the logarithm of W. It has no part in the limit: at a fixed W/tau it
-// vanishes with lambda/tau, as delta^2.
+// The result depends on the window. A piston of speed u is out of the ball's reach for a time of up
+// to 2 lambda/u, at every delta. So in the billiard slow pistons give C a tail of order lambda/t,
+// whose integral grows with the logarithm of W. The tail vanishes in the limit: at a fixed W/tau it
+// is of order lambda/tau, that is delta^2.
 //
-// EnergyRelaxation has the scales that all models share, an orbit's measurements and the estimates.
-// Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. With epsilon also
-// histograms of the piston's energy at each of kLawLags: the law P(ep, t) of eq. meq, beside that
-// of the limit (energy_law.h). A sample is one orbit.
+// EnergyRelaxation has the scales that all models share, the measurements of an orbit, and the
+// estimates. Moments: [0] the integral, [1 + i] the curve at the i-th of kLags times. With epsilon
+// also histograms of the piston's energy at each of kLawLags: the law P(ep, t) of eq. meq, compared
+// with that of the limit (energy_law.h). A sample is one orbit.
 #ifndef BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 #define BALLPISTON_CORE_EXPERIMENT_ENERGY_RELAXATION_H_
 
@@ -51,8 +52,8 @@ inline constexpr size_t kLags = 33;  // equally spaced, from 0 to the window
 
 // The law of the energy is measured at 1/4, 1/2, 1, 2, 4 and 8 mean free times.
 inline constexpr std::array<size_t, 6> kLawLags = {1, 2, 4, 8, 16, 32};
-// Over [0, 1/2]. A prime, so that no decimal number inside is an edge of a bin. At an edge,
-// rounding would decide the bin of an orbit that has not changed its energy.
+// Bins over [0, 1/2]. A prime number, so that no short decimal number inside is an edge of a bin.
+// At an edge, rounding would decide the bin of an orbit that has not changed its energy.
 inline constexpr size_t kEnergyBins = 61;
 
 class EnergyRelaxation {
@@ -61,7 +62,7 @@ class EnergyRelaxation {
 
   const std::optional<double>& epsilon() const { return epsilon_; }
   double unit() const { return unit_; }
-  double orbit_time() const;  // how far an orbit is followed
+  double orbit_time() const;  // duration of an orbit
 
   // A result without orbits.
   BlockResult Empty() const;
@@ -71,12 +72,12 @@ class EnergyRelaxation {
   // Adds the numbers of one orbit.
   void Record(const std::vector<double>& values, BlockResult& result) const;
 
-  // relaxation_time where there is one; with epsilon decay_integral.
+  // relaxation_time, if it exists; with epsilon also decay_integral.
   std::vector<Estimate> Estimates(const BlockResult& merged) const;
   Curve MeasuredCurve(const BlockResult& merged) const;
   std::vector<NamedHistogram> MeasuredLaws(const BlockResult& merged) const;
 
-  // The same for the limit. The standard errors are those of the computation.
+  // These four are for the limit. Their standard errors are those of the computation.
   std::vector<Estimate> EstimatesOfLimit() const;
   Curve CurveOfLimit() const;
   std::vector<NamedHistogram> LawsOfLimit() const;  // their bins, without counts
@@ -93,16 +94,16 @@ class EnergyRelaxation {
   SpectralValue CurveOfLimitAt(double time) const;
   // int_0^window of the limit's curve: autocorrelation, or mean energy less 1/6.
   SpectralValue IntegralOfLimit(double window) const;
-  // The integral as decay_integral, and over epsilon - 1/6.
+  // The estimates from the integral: decay_integral, and relaxation_time.
   std::vector<Estimate> Named(const Estimate& integral) const;
 
   std::optional<double> epsilon_;
   double unit_of_limit_;  // |G|/|dG_bp|: the spectrum's unit of time
-  double unit_;           // the same as measurements take it, without its last bits
+  double unit_;           // unit_of_limit_ without its last bits; measurements use it
   double mean_free_time_;
 };
 
-// Whether there is a relaxation_time: in equilibrium, and from energies far enough from 1/6.
+// Whether relaxation_time exists: in equilibrium, and from energies far enough from 1/6.
 bool HasRelaxationTime(const std::optional<double>& epsilon);
 
 // Mean number of ball-piston collisions in an orbit.

@@ -1,5 +1,6 @@
 // Upper bound of the difference between the relaxation time of the limit delta -> 0 and that of the
-// billiard at a given delta. The mechanisms give its form, measurements its constants.
+// billiard at a given delta. The form of the bound follows from the mechanisms; its constants are
+// fitted to measurements.
 //
 // In equilibrium, with x = (lambda + 2 delta)/tau_bp, the bound of the relative difference is
 //
@@ -12,7 +13,7 @@
 // difference is larger: collisions of the same ball and piston follow each other more often than at
 // random. The two terms for these cases are fitted to measurements.
 //
-// From a given energy the same delays change the decay integral. In mean free times by up to
+// From a given energy the same delays change the decay integral, in mean free times by up to
 //
 //   0.45 x log(1 + 1/x) max(1, 0.16/u) + 0.35 2 tip/(v tau_bp) + 0.1 cusp/v
 //

@@ -25,16 +25,16 @@ GasGeometry GasGeometryOf(const PointParameters& point, GasEnds ends);
 // have.
 void CheckGasGrid(const EnsembleSpec& spec, std::vector<FieldViolation>& found);
 
-// How long a replica is followed, in the billiard's units at temperature 1.
+// The duration of a replica, in the billiard's units at temperature 1.
 struct GasTimes {
-  double relax = 0;  // before anything is measured
+  double relax = 0;  // before the measurement
   double measure = 0;
-  double share = 1;  // of the time that a stationary state takes; below 1, no errors are given
+  double share = 1;  // of the time that a stationary state needs; below 1, no errors are given
 
   double Total() const { return relax + measure; }
 };
 
-// The work of a replica at temperature 1 that is followed so long.
+// The work of a replica at temperature 1 for this duration.
 SampleWork WorkOfReplica(Model model, const GasGeometry& geometry, double time);
 
 class GasExperiment : public PointExperiment {
@@ -50,13 +50,13 @@ class GasExperiment : public PointExperiment {
   GasRandom RandomOf(uint64_t sample) const { return {random().seed, random().stream, sample}; }
   virtual GasState Draw(CounterRandom& random) const = 0;
   virtual ThermalWalls WallsOf(const GasRandom&) const { return {}; }
-  // Measures the current of a replica that starts like this; null if nothing has to be measured.
+  // A meter of the current of a replica with this start; null if the current is not measured.
   virtual std::unique_ptr<CurrentMeter> CurrentOf(const GasState&) const { return nullptr; }
   // Adds one replica's numbers.
   virtual void Measure(const GasMeter& meter, BlockResult& result) const = 0;
 
  protected:
-  // The times are rounded (without_last_bits.h): the C library has a part in them.
+  // Rounds the times (without_last_bits.h), because their last bits depend on the C library.
   GasExperiment(const EnsembleSpec& spec, const PointParameters& point, const GasGeometry& geometry,
                 const GasTimes& times);
 
@@ -64,8 +64,8 @@ class GasExperiment : public PointExperiment {
   // (contacts times duration); the mean energy of a ball; twice the mean energy of a piston.
   void AddMeans(const GasMeter& meter, size_t first, BlockResult& result) const;
 
-  // These two scale a number measured at temperature 1. There is no error if the replicas are too
-  // few to estimate it, or if they were cut short.
+  // These two scale a number measured at temperature 1. There is no error if there are too few
+  // replicas to estimate it, or if the replicas were shortened.
   Estimate Mean(const char* name, const BlockResult& merged, size_t index, double scale) const;
   std::optional<double> Told(const BlockResult& merged, std::optional<double> error,
                              double scale) const;

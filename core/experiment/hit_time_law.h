@@ -1,9 +1,9 @@
-// The law of the time to the first ball-piston collision, beside its limit delta -> 0, in which it
-// is expected to become exponential with the rate of eq. fmftbpeprate.
+// The law of the time to the first ball-piston collision. In the limit delta -> 0 the law is
+// expected to become exponential with the rate of eq. fmftbpeprate.
 //
-// Counted in kHitTimeBins bins, each a tenth of the mean return time at this energy; later hits
-// count in the last bin. The result has the law as the curve `survival`: the probability that
-// ball and piston have not met up to a time.
+// Times are counted in kHitTimeBins bins, each a tenth of the mean return time at this energy;
+// later hits count in the last bin. The result shows the law as the curve `survival`: the
+// probability that ball and piston have not collided up to a time.
 #ifndef BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 #define BALLPISTON_CORE_EXPERIMENT_HIT_TIME_LAW_H_
 
@@ -20,7 +20,7 @@ inline constexpr double kHitTimeMeans = 8;  // upper end of the bins, in mean re
 // `mean`: the mean return time at this energy.
 Histogram EmptyHitTimes(double mean);
 
-// At the lower edges of the bins. The errors are binomial.
+// The points are at the lower edges of the bins. The errors are binomial.
 Curve SurvivalCurve(const Histogram& hit_times);
 
 }  // namespace ballpiston

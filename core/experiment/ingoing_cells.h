@@ -1,5 +1,6 @@
-// The cells of the ingoing law, eq. kld: bins of alpha over the interval that each sign of the
-// piston's velocity allows; sigma = -1 first, then +1, which only epsilon < 1/4 allows.
+// The cells of the ingoing law, eq. kld: bins of alpha over the interval that is permitted for each
+// sign of the piston's velocity. sigma = -1 comes first, then +1, which occurs only for
+// epsilon < 1/4.
 #ifndef BALLPISTON_CORE_EXPERIMENT_INGOING_CELLS_H_
 #define BALLPISTON_CORE_EXPERIMENT_INGOING_CELLS_H_
 

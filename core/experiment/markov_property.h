@@ -6,8 +6,8 @@
 
 namespace ballpiston {
 
-// Enough that the one exchange of an orbit that has no other before it costs little, and few enough
-// that orbits fill the lanes.
+// Large enough that an orbit's first exchange, which has no exchange before it, costs little; small
+// enough that there are enough orbits to fill the lanes.
 inline constexpr uint64_t kExchangesPerOrbit = 32;
 
 }  // namespace ballpiston

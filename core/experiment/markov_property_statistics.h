@@ -1,28 +1,28 @@
-// Whether a sequence of energy exchanges is the limit's Markov jump process: the counts of an
-// experiment, whatever the orbits come from.
+// Statistics that test whether a sequence of energy exchanges is the limit's Markov jump process.
+// They apply to orbits of any model.
 //
 // In the limit an exchange is e_k -> (waiting time tau_k, energy e_{k+1}), e the piston's energy,
 // and with the exact laws of both (eqs. cnuep, kernel)
 //   T_k = 1 - exp(-r(e_k) tau_k)      r the collision rate
 //   V_k = F(e_{k+1} | e_k)            F the kernel's distribution function
-// are uniform on [0, 1], independent of each other, of e_k and of all that was before. By detailed
-// balance so is B_k = F(e_{k-1} | e_k), read backward, and B_k, V_k are independent if the energy
-// before last does not matter. Measured:
+// are uniform on [0, 1], and independent of each other, of e_k and of all earlier exchanges. By
+// detailed balance the backward B_k = F(e_{k-1} | e_k) is also uniform. B_k and V_k are independent
+// if e_{k+1} does not depend on e_{k-1} at given e_k. Measured:
 //   hitting_time_ks_distance       of T_k to the uniform law
-//   transition_divergence          of V_k to the uniform law, given a cell of e_k; its law is exact
-//                                  at every delta, as the invariant law at fixed energies is its
-//                                  own ingoing law: this one tests what makes the orbits
+//   transition_divergence          of V_k to the uniform law, given a cell of e_k. The law of V_k
+//                                  is exact at every delta, because the invariant law at fixed
+//                                  energies is its own ingoing law. So this is a test of the engine
 //   memory_divergence              of (B_k, V_k) to the uniform law of the square
 //   memory_correlation             of B_k and V_k
 //   waiting_outcome_correlation    of T_k and V_k
 //   waiting_memory_correlation     of T_{k-1} and T_k
-// A correlation is 12 <(x - 1/2)(y - 1/2)>, its error from the scatter between orbits. Distances
-// have the noise floors that the Markov process would have.
+// A correlation is 12 <(x - 1/2)(y - 1/2)>; its error is from the scatter between orbits. The noise
+// floors of distances are those of the Markov process.
 //
 // In a BlockResult: histograms [0] T; then kEnergyRows rows of V by u = sqrt(2 e), and kMemoryBins
-// rows of V by B. Batch means, an orbit each: [0] memory, [1] waiting-outcome, [2] waiting-memory.
-// Units: times in |G|/|dG_bp|, total energy 1/2. Property, with a test of its name:
-//   1. JumpProcessHasNoMemory: sampled as it is defined, every estimate is noise.
+// rows of V by B. Batch means, one batch an orbit: [0] memory, [1] waiting-outcome, [2]
+// waiting-memory. Units: times in |G|/|dG_bp|, total energy 1/2. Property, with a test of its name:
+//   1. JumpProcessHasNoMemory: for a sample of the jump process every estimate is noise.
 #ifndef BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
 #define BALLPISTON_CORE_EXPERIMENT_MARKOV_PROPERTY_STATISTICS_H_
 
@@ -52,7 +52,8 @@ BlockResult EmptyMarkovPropertyCounts();
 void CountOrbit(double energy, std::span<const Exchange> exchanges, BlockResult& counts);
 
 // In this order: memory_correlation, the other correlations, the distances. `exact_correlation` is
-// 0 where the orbits are the jump process itself. Distances are left out if nothing was counted.
+// 0 if the orbits are those of the jump process, else empty. Distances are omitted if the counts
+// are empty.
 std::vector<Estimate> MarkovPropertyEstimates(const BlockResult& merged,
                                               std::optional<double> exact_correlation);
 

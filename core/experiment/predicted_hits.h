@@ -1,4 +1,5 @@
-// How many wall hits come between two collisions of ball and piston: what a sample will cost.
+// Mean number of wall hits between two collisions of ball and piston. It predicts the cost of a
+// sample.
 #ifndef BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
 #define BALLPISTON_CORE_EXPERIMENT_PREDICTED_HITS_H_
 

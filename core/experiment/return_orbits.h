@@ -1,6 +1,6 @@
-// Returns to the collision surface at fixed energies: start uniform on dGamma_bp with an outgoing
-// law, fly until ball and piston meet next, and keep how they meet, before the collision is
-// resolved. Samples of first-hit and conditional-mean-free-time: each orbit is one sample.
+// Returns to the collision surface at fixed energies. An orbit starts uniformly on dGamma_bp with
+// an outgoing law and ends at the next ball-piston collision. The ingoing velocities are recorded
+// before the exchange. Each orbit is one sample of first-hit and of conditional-mean-free-time.
 #ifndef BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
 #define BALLPISTON_CORE_EXPERIMENT_RETURN_ORBITS_H_
 
@@ -25,7 +25,7 @@ struct Return {
   bool escaped = false;  // if true, all other fields are meaningless
 };
 
-// Returns are followed however long they take.
+// Returns may take any time.
 inline constexpr double kNoTimeLimit = std::numeric_limits<double>::infinity();
 
 struct ReturnLaw {

@@ -1,8 +1,9 @@
-// A number that the C library had a part in, to 30 bits.
+// Rounds a number that depends on functions of the C library to 30 bits.
 //
-// The library's sines round by the processor, so the last bits of a mean free time do, and would
-// show in every sum of what is measured in its units. To 30 bits they do not, unless one geometry
-// in a million hits the edge; no measurement could tell the difference.
+// The last bits of the library's sine depend on the processor. So do the last bits of a mean free
+// time, and of every sum measured in units of it. After rounding to 30 bits the difference remains
+// only for about one geometry in a million, next to a rounding edge. Rounding changes results by
+// much less than their statistical errors.
 #ifndef BALLPISTON_CORE_EXPERIMENT_WITHOUT_LAST_BITS_H_
 #define BALLPISTON_CORE_EXPERIMENT_WITHOUT_LAST_BITS_H_
 

@@ -1,15 +1,16 @@
-// Gases in local equilibrium: places uniform over all that the gas may take, velocities Gaussian.
+// Draws gases in local equilibrium: positions uniform over all permitted configurations, velocities
+// Gaussian.
 //
-// A ball at temperature T has the energy law Gamma(1), exp(-e/T)/T, a piston Gamma(1/2); all
-// velocities and the places are independent of each other. With one temperature this is the
-// canonical ensemble, which the gas's flow leaves as it is.
+// A ball at temperature T has the energy law Gamma(1), exp(-e/T)/T, a piston Gamma(1/2). All
+// velocities are independent of each other and of the positions. With one temperature this is the
+// canonical ensemble, which is invariant under the gas's flow.
 //
-// Places by partial rejection sampling: draw all balls and pistons, then draw again, at once, every
-// ball and piston that are on the wrong sides of each other, until there are none. Two such events
-// that share a ball or a piston exclude each other, because the parts of a cell that its pistons
-// cut off do not overlap; for events of that kind the method is exact (Guo, Jerrum, Liu 2017).
-// Properties, each with the test that bears its name:
-//   1. PistonsHaveTheirExactLaw: of a ring of one cell, of two, of a lattice.
+// Positions are drawn by partial rejection sampling: draw all balls and pistons; then draw again,
+// all at once, every ball and piston that are on the wrong sides of each other; repeat until there
+// are none. Two such violations that share a ball or a piston exclude each other, because the parts
+// of a cell that its pistons cut off do not overlap. In this case the method is exact (Guo, Jerrum,
+// Liu 2017). Properties, each with the test that bears its name:
+//   1. PistonsHaveTheirExactLaw: in rings of one and of two cells, and in a lattice.
 //   2. EnergiesHaveTheirGammaLaws.
 #ifndef BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
 #define BALLPISTON_CORE_GAS_CANONICAL_GAS_H_
@@ -23,8 +24,8 @@
 
 namespace ballpiston {
 
-// A temperature that depends on x, in cells from the left end: T^(3/2) falls linearly from one end
-// to the other, as in a gas that conducts with a conductivity that grows as sqrt T.
+// A temperature that depends on x, in cells from the left end. T^(3/2) falls linearly from one end
+// to the other, as in a stationary gas whose conductivity grows as sqrt T.
 class TemperatureProfile {
  public:
   explicit TemperatureProfile(double everywhere) : TemperatureProfile(everywhere, everywhere, 1) {}

@@ -1,13 +1,14 @@
-// The heat current of a periodic gas along x, and Green and Kubo's conductivity from it.
+// The heat current of a periodic gas along x, and the conductivity from it by Green and Kubo's
+// formula.
 //
-// The current is measured in equilibrium, integrated over equal steps of time. Its autocorrelation
-// C(t) for one cell gives the conductivity,
+// The current is measured in equilibrium, integrated over equal time steps. Its autocorrelation
+// C(t) per cell gives the conductivity,
 //
 //   kappa T^2 = integral over t > 0 of C(t),
 //
-// cut off at a window: C counts fully up to the window and falls to 0 over one more step. A replica
-// gives one value of everything below, free of bias but for the window. The scatter grows as the
-// root of the window.
+// cut off at a window: C counts fully up to the window, and its weight falls to 0 over one more
+// step. A replica gives one value of each quantity below. The values have no bias except that of
+// the window. The scatter grows as the root of the window.
 //
 // Properties, each with the test that bears its name:
 //   1. StepsHoldTheWholeCurrent.  2. CountsProductsOfDifferentExchanges.
@@ -36,7 +37,7 @@ class CurrentSteps {
   const std::vector<double>& values() const { return steps_; }
 
  private:
-  // The last step has all that comes later.
+  // Times after the last step count in the last step.
   size_t StepAt(double time) const;
 
   std::vector<double> steps_;
@@ -46,8 +47,8 @@ class CurrentSteps {
 // The measurements of one replica at temperature 1. Each list has one value for each lag, which is
 // its index in steps.
 struct GreenKubo {
-  std::vector<double> autocorrelation;  // the mean of C over the steps, without what is static
-  std::vector<double> conductivity;     // with a window of so many steps
+  std::vector<double> autocorrelation;  // the mean of C over the steps, without the static part
+  std::vector<double> conductivity;     // with a window of this many steps
   double plain = 0;  // the conductivity with the longest window, without a test function
 };
 
@@ -63,10 +64,9 @@ class CurrentMeter {
   virtual GreenKubo Result() const = 0;
 };
 
-// The current is the energy that exchanges carry over half a cell. The products of each exchange
-// with itself give the static conductivity, half of the exchange rate. It is known exactly, so it
-// replaces these products. The result is the static conductivity plus the products of different
-// exchanges.
+// The current is the energy that exchanges carry over half a cell. The mean product of an exchange
+// with itself gives the static conductivity, half of the exchange rate. Its exact value replaces
+// these products. The result is the static conductivity plus the products of different exchanges.
 class CarriedCurrent : public CurrentMeter {
  public:
   // `exchange_rate` is that of the gas at temperature 1.
@@ -83,7 +83,7 @@ class CarriedCurrent : public CurrentMeter {
   double cells_;
   double exchange_rate_;
   CurrentSteps steps_;
-  double squares_ = 0;  // the sum of those of all exchanges
+  double squares_ = 0;  // the sum of the squares of all exchanges
 };
 
 }  // namespace ballpiston

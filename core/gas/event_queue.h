@@ -1,5 +1,5 @@
-// The times of the next events of many bodies, and the earliest of them: a heap that knows where in
-// it each body is. Bodies with equal times come in the order of their numbers.
+// The times of the next events of many bodies, and the earliest of them: a heap that stores the
+// place of each body. Bodies with equal times come in the order of their numbers.
 #ifndef BALLPISTON_CORE_GAS_EVENT_QUEUE_H_
 #define BALLPISTON_CORE_GAS_EVENT_QUEUE_H_
 
@@ -67,7 +67,7 @@ class EventQueue {
     Put(place, entry);
   }
 
-  // heap_.size() or more if there is none.
+  // The earliest child of `place`; heap_.size() or more if there is none.
   size_t FirstChild(size_t place) const {
     size_t first = kChildren * place + 1;
     const size_t end = first + kChildren < heap_.size() ? first + kChildren : heap_.size();

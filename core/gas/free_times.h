@@ -14,7 +14,8 @@ class FreeTimes {
   // A surface is a kind of event with certain bodies.
   explicit FreeTimes(size_t surfaces) : last_(surfaces, kNever) {}
 
-  // An event on the surface now: the time since the last one there, if there was one.
+  // Records an event on the surface now. Returns the time since the previous event on this surface;
+  // empty for the first event.
   std::optional<double> Hit(size_t surface, double now) {
     const double last = last_[surface];
     last_[surface] = now;

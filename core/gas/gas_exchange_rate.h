@@ -1,18 +1,18 @@
-// How often a ball and a piston of the gas exchange energy, exactly, in the canonical ensemble.
+// The exact rate at which a ball and a piston of the gas exchange energy in the canonical ensemble.
 //
 //   rate = sqrt(T/(2 pi)) |dG_bp|/(stroke cell) F(z),   z = Q/(stroke cell),   F(0) = 1,
 //
-// stroke = lambda + 2 delta, and Q the mean area that a piston cuts off from the cell on one of its
-// sides, times stroke. For the pair |G| = stroke cell - Q, so there F would be 1/(1 - z). In the
-// gas every piston takes area from two cells. The parts of a cell that its pistons cut off do not
-// overlap, so its free area is the cell less one part for each piston, and the configuration
-// integral is a polynomial in z; its derivation is in gas_exchange_rate.cc.
+// where stroke = lambda + 2 delta, and Q is the mean area that a piston cuts off from the cell on
+// one of its sides, times stroke. For the pair |G| = stroke cell - Q, which corresponds to
+// F = 1/(1 - z). In the gas every piston takes area from two cells. The parts of a cell that its
+// pistons cut off do not overlap. So its free area is the cell minus one part for each piston, and
+// the configuration integral is a polynomial in z, derived in gas_exchange_rate.cc.
 //
 // At the paper's rho and delta = 0.2 the rate is 2.4 % above that of a pair in a chain and 4.9 % in
 // a lattice; the difference falls as delta^3.
 //
-// Units and domain as in closed_form/exchange_rate.h. Rates are those of one contact, a ball and a
-// piston, in a unit of time. Properties, each with the test that bears its name:
+// Units and domain as in closed_form/exchange_rate.h. A rate counts the exchanges of one contact (a
+// ball and a piston) per unit of time. Properties, each with the test that bears its name:
 //   1. RingsAreTracesOfTheirTransferOperator.  2. ToriCountEveryConfiguration.
 //   3. LargeGasesTendToTheInfiniteOne, to kGasExchangeRateRelativeError.
 //   4. AgreesWithSampledConfigurations.

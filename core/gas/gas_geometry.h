@@ -1,13 +1,15 @@
-// The gas of balls and pistons: which ball meets which piston, and where.
+// The geometry of the gas of balls and pistons: the contacts of balls with pistons, and their
+// places.
 //
-// Cells form a lattice of `columns` x `rows`; cell b = row * columns + column has its ball b. A
-// piston stands on every edge that two cells share: on those across x, and in a lattice on those
-// across y as well. Along y the gas is periodic. Along x it is periodic too, or it ends on both
-// sides at reservoirs: there each row has a piston more, and the outermost two meet one ball only.
+// Cells form a lattice of `columns` x `rows`; cell b = row * columns + column contains ball b. A
+// chain has a piston on every edge between neighbouring columns; a lattice also has one on every
+// edge between neighbouring rows. Along y the gas is periodic. Along x it is periodic, or it ends
+// at reservoirs on both sides. With reservoirs each row has one more piston, and the two outermost
+// pistons of a row meet only one ball.
 //
-// A ball sees each of its pistons as a pair's ball does, in the cell turned by quarter turns until
-// the piston is on the right: direction 0 right, 1 up (in a lattice), 2 left, 3 down. Then all of
-// the pair's geometry holds, with the gas's bound on delta: rho/sqrt(2) - lambda/2.
+// If the cell is turned by quarter turns until a piston is on the right, its ball sees the piston
+// as in a pair. Directions: 0 right, 1 up (in a lattice), 2 left, 3 down. So all of the pair's
+// geometry holds, with the gas's bound on delta: rho/sqrt(2) - lambda/2.
 //
 // A piston has an offset from its edge, toward +x or +y, in [-reach, reach], reach = lambda/2 +
 // delta.
@@ -55,15 +57,15 @@ class GasGeometry {
   int64_t BallOf(int64_t piston, Direction direction) const;
   static constexpr int64_t kNoBall = -1;
 
-  // kRight or kUp: in which the ball before it, toward -x or -y, sees the piston.
+  // The direction in which the ball before the piston, toward -x or -y, sees it: kRight or kUp.
   Direction DirectionTo(int64_t piston) const {
     return IsAlongX(piston) ? Direction::kRight : Direction::kUp;
   }
   bool IsAlongX(int64_t piston) const { return piston < edges_ * shape_.rows; }
-  // Where its edge is along x, in cells from the gas's left end.
+  // The x of the piston's edge, in cells from the gas's left end.
   double PositionOfPiston(int64_t piston) const;
 
-  // Places of the whole gas, where cell (column, row) is centred at (column, row).
+  // Positions in the whole gas, in which cell (column, row) is centred at (column, row).
   Eigen::Vector2d CentreOfCell(int64_t ball) const;
   Eigen::Vector2d MiddleOfEdge(int64_t piston) const;
 
@@ -77,10 +79,11 @@ class GasGeometry {
   PairGeometry pair_;
   GasShape shape_;
   GasEnds ends_;
-  int64_t edges_;  // across x, of a row
+  int64_t edges_;  // of a row, with a piston that moves along x
 };
 
-// A vector of the cell as seen after turning the cell until `direction` points to the right.
+// The components of a vector of the cell after the cell is turned until `direction` points to the
+// right.
 inline Eigen::Vector2d SeenToward(Direction direction, const Eigen::Vector2d& v) {
   switch (direction) {
     case Direction::kUp:
@@ -95,7 +98,7 @@ inline Eigen::Vector2d SeenToward(Direction direction, const Eigen::Vector2d& v)
   return v;
 }
 
-// The way back.
+// The inverse of SeenToward.
 inline Eigen::Vector2d SeenFrom(Direction direction, const Eigen::Vector2d& v) {
   const bool is_across = direction == Direction::kUp || direction == Direction::kDown;
   return is_across ? Eigen::Vector2d(-SeenToward(direction, v)) : SeenToward(direction, v);
@@ -105,7 +108,7 @@ inline Direction Opposite(Direction direction) {
   return static_cast<Direction>((static_cast<int>(direction) + 2) % 4);
 }
 
-// +1 where the direction is that of a piston's positive offset.
+// +1 if the direction is that of a piston's positive offset, else -1.
 inline double SignOf(Direction direction) {
   return direction == Direction::kRight || direction == Direction::kUp ? 1 : -1;
 }

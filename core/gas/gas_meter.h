@@ -1,8 +1,8 @@
-// Measures a gas in a window of time: the number of exchanges, the energy that is carried along x,
-// and each body's mean energy. The engine reports every exchange to the meter, in the order of
-// time. It passes exchanges on to a meter of the current, if it has one.
+// Measures a gas in a time window: the number of exchanges, the energy that is carried along x, and
+// each body's mean energy. The engine reports every exchange to the meter, in the order of time.
+// The meter forwards exchanges to a meter of the current, if it has one.
 //
-// Bodies are the balls, then the pistons. Not for sharing between threads.
+// Bodies are the balls, then the pistons. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_GAS_METER_H_
 #define BALLPISTON_CORE_GAS_GAS_METER_H_
 
@@ -18,8 +18,7 @@
 
 namespace ballpiston {
 
-// A ball that exchanges with the piston it sees in `direction`, and the energies that they have
-// then.
+// An exchange of a ball with the piston that it sees in `direction`, and the energies after it.
 struct GasExchange {
   double time = 0;
   int64_t ball = 0;
@@ -42,7 +41,7 @@ class GasMeter {
   void MeasureCurrent(std::unique_ptr<CurrentMeter> current) { current_ = std::move(current); }
   const CurrentMeter* current() const { return current_.get(); }  // or null
 
-  // Forgets what was measured before, but for the current.
+  // Discards all earlier measurements except the current.
   void Begin(double time) {
     begin_ = time;
     exchanges_ = 0;
@@ -67,7 +66,7 @@ class GasMeter {
     Set(time, energy, bodies_[balls_ + static_cast<size_t>(piston)]);
   }
 
-  // A ball has left its cell, which none should do.
+  // A ball has left its cell, which is a defect.
   void CountEscape() { ++escapes_; }
 
   void End(double time) {
@@ -78,7 +77,7 @@ class GasMeter {
 
   uint64_t escapes() const { return escapes_; }  // since the start
   uint64_t exchanges() const { return exchanges_; }
-  // Through all contacts along x, toward +x.
+  // The energy carried through all contacts along x, toward +x.
   double carried() const { return carried_; }
   double duration() const { return end_ - begin_; }
 
@@ -95,8 +94,8 @@ class GasMeter {
  private:
   struct Body {
     double energy = 0;
-    double since = 0;     // has that energy
-    double integral = 0;  // of its energy, until then
+    double since = 0;     // the time from which the body has this energy
+    double integral = 0;  // of its energy up to that time
   };
 
   static void Set(double time, double energy, Body& body) {

@@ -1,11 +1,10 @@
 // Gases in motion: one interface for the engines.
 //
-//   kReference  every event of every ball and piston resolved, one at a time (reference_gas.h).
+//   kReference  computes every event of every ball and piston, one at a time (reference_gas.h).
 //   kLanes      the same gas, with the flights of many balls in vector lanes (lane_gas.h).
-//   kJumps      the limit of rare collisions: energies alone, exchanged at random (jump_gas.h).
+//   kJumps      the limit of rare collisions: a jump process of the energies (jump_gas.h).
 //
-// A replica's numbers depend on its start alone, not on how far each call goes or on what runs
-// beside it.
+// A replica's numbers depend only on its start, not on the times of the calls or on other replicas.
 #ifndef BALLPISTON_CORE_GAS_GAS_RUN_H_
 #define BALLPISTON_CORE_GAS_GAS_RUN_H_
 
@@ -33,12 +32,13 @@ struct GasStart {
 class GasRun {
  public:
   virtual ~GasRun() = default;
-  // Moves all replicas to `time`, not before that of the last call.
+  // Moves all replicas to `time`, which must not be less than in the previous call.
   virtual void AdvanceTo(double time) = 0;
 };
 
-// `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). The jump process takes
-// its rates from it, the lanes take from it how far balls fly ahead, which changes no result.
+// `exchange_rate` is that of the gas at temperature 1 (gas_exchange_rate.h). It determines the
+// rates of the jump process. In lanes it determines only how far balls fly ahead, which changes no
+// result.
 std::unique_ptr<GasRun> StartGases(GasEngine engine, const GasGeometry& geometry,
                                    double exchange_rate, std::vector<GasStart> replicas);
 

@@ -1,10 +1,10 @@
-// The shape of a gas: how many cells it has, and how they are joined.
+// The shape of a gas: the number of its cells, and how they are joined.
 //
-// A chain of N cells, written "N": each ball meets a piston on its left and one on its right. A
-// lattice of N x M cells, written "NxM": N columns along x and M rows along y, and each ball meets
-// four pistons. Both close on themselves unless reservoirs stand at the ends of x.
+// A chain of N cells, written "N": each ball meets a piston on its left and another on its right. A
+// lattice of N x M cells, written "NxM": N columns along x and M rows along y; each ball meets four
+// pistons. Both are periodic, except along x if there are reservoirs at the ends.
 //
-// A ring of one cell is permitted: its ball meets one piston from both sides.
+// A ring of one cell is permitted: its ball meets the same piston on both sides.
 #ifndef BALLPISTON_CORE_GAS_GAS_SHAPE_H_
 #define BALLPISTON_CORE_GAS_GAS_SHAPE_H_
 
@@ -30,8 +30,8 @@ struct GasShape {
   friend bool operator==(const GasShape&, const GasShape&) = default;
 };
 
-// "12" or "4x3". INVALID_ARGUMENT with the text and what is permitted: whole numbers, 1 to
-// kMaxCells cells in all.
+// Parses "12" or "4x3". INVALID_ARGUMENT, with the text and the permitted values, unless the
+// numbers are whole and there are 1 to kMaxCells cells in all.
 absl::StatusOr<GasShape> ParseGasShape(absl::string_view text);
 
 std::string Text(const GasShape& shape);

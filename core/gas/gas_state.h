@@ -1,4 +1,4 @@
-// Where all balls and pistons of a gas are, and how they move: a point of its phase space.
+// The positions and velocities of all balls and pistons of a gas: a point of its phase space.
 #ifndef BALLPISTON_CORE_GAS_GAS_STATE_H_
 #define BALLPISTON_CORE_GAS_GAS_STATE_H_
 
@@ -9,7 +9,7 @@ namespace ballpiston {
 
 struct GasBall {
   Eigen::Vector2d position = {0, 0};   // from the centre of its cell
-  Eigen::Vector2d direction = {1, 0};  // of its flight, length 1; kept when at rest
+  Eigen::Vector2d direction = {1, 0};  // of its velocity, length 1; kept when the ball is at rest
   double speed = 0;
 };
 

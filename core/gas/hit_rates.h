@@ -1,5 +1,5 @@
-// Wall hits of a ball and of a piston in a unit of time at temperature 1, as if no ball met a
-// piston. They predict the cost of runs, and decide how far balls fly ahead.
+// Wall hits of a ball and of a piston per unit of time at temperature 1, without ball-piston
+// collisions. They predict the cost of runs, and determine how far balls fly ahead.
 #ifndef BALLPISTON_CORE_GAS_HIT_RATES_H_
 #define BALLPISTON_CORE_GAS_HIT_RATES_H_
 
@@ -14,7 +14,8 @@ namespace ballpiston {
 // The mean speed of a ball at temperature 1.
 inline double MeanBallSpeed() { return std::sqrt(std::numbers::pi / 2); }
 
-// Between two walls: pi area/perimeter of the ball's cell, in its mean over the piston's places.
+// The mean length of a ball's flight between walls: pi area/perimeter of its cell, averaged over
+// the piston's positions.
 inline double MeanFlight(const PairGeometry& pair) {
   const PairMeasures measures = Measures(pair);
   return std::numbers::pi * measures.cell_area * pair.stroke() / measures.area_ball_wall;

@@ -1,24 +1,25 @@
 // The conductivity of the jump process by Green and Kubo's formula, with little scatter.
 //
-// Between exchanges the current that is expected at the present energies is known exactly: J =
-// sum over the contacts along x of (1/2) j(e_b, e_p). The process is reversible, so
+// Between exchanges the expected current at the present energies is known exactly: J = sum over the
+// contacts along x of (1/2) j(e_b, e_p). The process is reversible, so
 //
 //   kappa T^2 = kappa_0 T^2 - (integral over t > 0 of <J(0) J(t)>)/cells
 //
-// and the scatter is that of a correction of 0.2 %, not of the conductivity. J changes only at
-// exchanges, so its integral over each step is exact. Its part that is linear in functions
-// of one energy adds up to 0 round a ring.
+// and only a correction of 0.2 % of the conductivity has scatter. J changes only at exchanges, so
+// its integral over each step is exact. The part of J that is a sum of functions of one energy adds
+// up to 0 round a ring.
 //
-// The same formula holds with the current J' = L(X + f) that a test function leaves, and a bound in
-// place of kappa_0 (conductivity/test_function.h): that gives `conductivity`. With f = sum_r
-// u_r(ball) A_r(ball), where A_r is w_r of the piston on its right less that on its left, and B_r
-// of a piston is u_r of the ball on its left less that on its right,
+// The same formula holds with the current J' = L(X + f) of a test function f, and a bound in place
+// of kappa_0 (conductivity/test_function.h); this gives `conductivity`. Here f = sum over balls and
+// r of u_r(ball) A_r(ball). A_r of a ball is w_r of the piston on its right minus w_r of the piston
+// on its left. B_r of a piston is u_r of the ball on its left minus u_r of the ball on its right.
+// Then
 //
 //   2 J' = sum over contacts along x of +-(j + sum_r <(change of u_r) (change of w_r)>)
 //        + sum over balls, r of A_r (L u_r) + sum over pistons along x, r of B_r (L w_r).
 //
 // L u_r of a ball is the sum over its contacts. An exchange changes the terms of two balls and two
-// pistons. In one column there is no current.
+// pistons. A gas of one column has no current.
 //
 // Properties, each with the test that bears its name:
 //   1. CurrentsAreThoseOfTheirDefinition.  2. TheJumpProcessConductsAsTheSpectrumSays.
@@ -62,7 +63,7 @@ class JumpCurrent : public CurrentMeter {
   struct Contact {
     size_t ball = 0;
     size_t piston = 0;
-    double sign = 0;  // that of x from ball to piston
+    double sign = 0;  // of x from ball to piston
     ContactCurrents now = {};
   };
 

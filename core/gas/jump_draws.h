@@ -1,6 +1,6 @@
-// The random numbers of a gas's jump process, drawn ahead, many at once in vector lanes: attempts
-// and waiting times. An attempt chooses a body, and the least speed at which the body is kept.
-// The bits are the same on every target that fuses multiply-add.
+// The random numbers of a gas's jump process: attempts and waiting times, drawn in advance, many at
+// once in vector lanes. An attempt chooses a body, and the least speed at which the body is
+// accepted. The bits are the same on every target with fused multiply-add.
 #ifndef BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 #define BALLPISTON_CORE_GAS_JUMP_DRAWS_H_
 
@@ -14,10 +14,11 @@ namespace ballpiston {
 
 inline constexpr size_t kJumpDraws = 32;  // a whole number of vectors on every processor
 
-// Bodies `first` to `first + count - 1`, at most 2^31 - 1. All have equally many attempts.
+// Bodies `first` to `first + count - 1`, at most 2^31 - 1. All have the same rate of attempts. A
+// uniform number, the place, chooses the body.
 struct JumpBodies {
-  double before = 0;     // where their places begin, in [0, 1]
-  double per_place = 0;  // bodies in a unit of place
+  double before = 0;     // where the places of these bodies begin, in [0, 1]
+  double per_place = 0;  // bodies per unit of place
   double first = 0;
   double count = 0;
   double largest = 0;  // least speeds are uniform below it
@@ -31,7 +32,7 @@ struct JumpAttempts {
 };
 
 void DrawJumpAttempts(const JumpKinds& kinds, CounterRandom& random, JumpAttempts& attempts);
-// Finds the attempts of the same words again, after the kinds have changed.
+// Computes the attempts again from the same words, after the kinds have changed.
 void FindJumpAttempts(const JumpKinds& kinds, JumpAttempts& attempts);
 
 // Exponentially distributed with mean 1.

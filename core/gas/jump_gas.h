@@ -1,19 +1,19 @@
-// The gas in the limit of rare collisions: energies alone. A ball and a piston that can meet
-// exchange at a rate that depends on their energies, with the law of a contact: the ball's angle
-// uniform, the piston's sign even, weight (v1 - v3)+; then they exchange v1 and v3. So the energies
-// follow the kernel W of the pair (markov/jump_process.h), which is homogeneous: rates scale with
-// the root of the energy.
+// The gas in the limit of rare collisions: a jump process of the energies. A ball and a piston that
+// can meet exchange v1 and v3 at a rate that depends on their energies. In a contact the ball's
+// angle is uniform and both signs of the piston's velocity are equally likely, with the weight (v1
+// - v3)+. So the energies follow the kernel W of the pair (markov/jump_process.h), which is
+// homogeneous: rates scale with the root of the energy.
 //
-// Sampled by thinning, twice. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose means are v_b/pi and
-// v_p/2. So each body proposes exchanges at a rate that its speed alone decides, and a proposal is
-// accepted with the ratio of the two; seven in ten are accepted. To draw a body at its rate, any
-// body is drawn and kept with the ratio of its speed to the largest one; one in four is kept. So an
-// exchange costs nearly as much in a large gas as in a small one, until the gas exceeds the caches.
-// An outermost piston has a new thermal velocity at every proposal, because between two of its
-// exchanges it hits its thermal wall many times.
+// The process is sampled by thinning in two steps. (v1 - v3)+ is at most (v1)+ + (-v3)+, whose
+// means are v_b/pi and v_p/2. So each body proposes exchanges at a rate that depends only on its
+// speed. A proposal is accepted with the probability (v1 - v3)+/((v1)+ + (-v3)+), seven times in
+// ten. To draw a body at its rate, any body is drawn, and accepted with the ratio of its speed to
+// the largest speed, once in four. So the cost of an exchange hardly grows with the size of the
+// gas, until the gas exceeds the caches. An outermost piston gets a new thermal velocity at every
+// proposal, because it hits its thermal wall many times between two exchanges.
 //
-// Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>,
-// at temperature T in the mean density sqrt(T/pi).
+// Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>;
+// its mean at temperature T is density sqrt(T/pi).
 // Properties, each with the test that bears its name:
 //   1. PairsAreTheJumpProcess.  2. KeepsTheGammaLaws.  3. EqualReservoirsAreAnEquilibrium.
 #ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
@@ -34,11 +34,12 @@ namespace ballpiston {
 
 class JumpGas {
  public:
-  // Requires a ball and a piston that move.
+  // At least one ball or piston must move.
   JumpGas(const GasGeometry& geometry, double density, const GasState& start, ThermalWalls walls,
           const CounterRandom& random);
 
-  // Exchanges until `time`; tells the meter. An outermost piston has its mean energy there.
+  // Exchanges until `time`, and reports the exchanges to the meter. There an outermost piston has
+  // its mean energy.
   void AdvanceTo(double time, GasMeter& meter);
 
  private:
@@ -73,13 +74,13 @@ class JumpGas {
   ThermalWalls walls_;
   CounterRandom random_;
   size_t balls_;
-  // The balls' speeds, then the pistons'. An outermost piston has the speed at which it would
-  // propose as often.
+  // The balls' speeds, then the pistons'. An outermost piston has the speed that gives its rate of
+  // proposals.
   std::vector<double> speeds_;
   JumpKinds kinds_;             // balls, pistons
   double rate_ = 0;             // of all proposals
   size_t changes_ = 0;          // since the rates were found
-  JumpAttempts attempts_ = {};  // drawn ahead, so that the speeds are on their way from memory
+  JumpAttempts attempts_ = {};  // drawn in advance, so that the speeds can be prefetched
   size_t used_attempts_ = kJumpDraws;
   JumpWaits waits_ = {};
   size_t used_waits_ = kJumpDraws;

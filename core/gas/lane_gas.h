@@ -1,14 +1,15 @@
-// Many gases in vector lanes. Between its exchanges a ball's way does not depend on the pistons. So
-// in each window of time all balls fly ahead, many at once (lane_visits.h), and every visit to
-// where a piston can be is compared with that piston's place, a triangle wave in time. The first
-// visit in which they meet is the ball's next contact, and the window's contacts stand in a queue
-// by time. An exchange changes the way of its ball and the motion of its piston: so the ball, and
-// the other ball of that piston, fly the rest of the window again. Nothing else depends on it.
+// Many gases in vector lanes. Between its exchanges a ball's path does not depend on the pistons.
+// So in each time window all balls fly ahead, many at once (lane_visits.h). Every visit of a ball
+// to a piston's reach is compared with the piston's position, a triangle wave in time. The first
+// visit in which they meet is the ball's next contact. A queue holds the window's contacts in the
+// order of time. An exchange changes the path of its ball and the motion of its piston. So this
+// ball, and the other ball of the piston, fly the rest of the window again. All other contacts stay
+// valid.
 //
-// Replicas are gases of one geometry that know nothing of each other; small gases fill the lanes
-// together. A replica's numbers do not depend on how many there are, nor on the windows.
+// Replicas are independent gases of one geometry; small gases fill the lanes together. A replica's
+// numbers do not depend on the number of replicas or on the windows.
 // Properties, each with the test that bears its name:
-//   1. AgreesWithTheReferenceEventByEvent, until rounding has grown too large.
+//   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
 //   2. ManyShortCallsGiveTheBitsOfOne.  3. ReplicasDoNotDependOnTheirNeighbours.  4. EnergyStays.
 //   5. BallsThatMeetPistonsInTipsStayInTheirCells.
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
@@ -43,8 +44,8 @@ class LaneGas : public GasRun {
   // A ball's contact, or an outermost piston's arrival at its thermal wall.
   struct Entry {
     double time = 0;
-    uint32_t body = 0;     // a ball, or a piston behind all balls
-    uint32_t version = 0;  // void unless the body's version is the same
+    uint32_t body = 0;     // the balls come first, then the pistons
+    uint32_t version = 0;  // the entry is valid if the body's version is the same
     size_t meeting = 0;    // in meetings_
 
     bool operator>(const Entry& other) const {
@@ -83,14 +84,14 @@ class LaneGas : public GasRun {
   double mean_flight_;
   double window_ = 0;  // of time
   std::vector<Replica> replicas_;
-  // By ball. At the window's beginning, or the last exchange in it; and at its end, each before the
-  // flight in which that is.
+  // By ball. `from_` is the ball before the flight in which the window begins, or in which its last
+  // exchange in the window is. `to_` is the ball before the flight in which the window ends.
   std::vector<FlyingBall> from_, to_;
   std::vector<uint32_t> versions_;                                        // by ball, then by piston
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;  // of the window
   std::vector<MeetingInTime> meetings_;
   std::vector<FlightOrder> orders_;
-  double now_ = 0;  // what was before has been done
+  double now_ = 0;  // all events before this time are done
   double end_ = 0;  // of the window
 };
 

@@ -1,5 +1,5 @@
-// Balls fly ahead in vector lanes, and find where they first meet one of the pistons as these move
-// now.
+// Balls fly ahead in vector lanes and find their first contact with a piston, as long as the
+// pistons keep their present motion.
 #ifndef BALLPISTON_CORE_GAS_LANE_VISITS_H_
 #define BALLPISTON_CORE_GAS_LANE_VISITS_H_
 
@@ -17,12 +17,12 @@
 
 namespace ballpiston {
 
-// A ball between two flights, in the lanes' units: its frame (billiard/lane_frame.h), and what it
-// has gone since it was placed.
+// A ball between two flights, in the lanes' units: its frame (billiard/lane_frame.h), and its path
+// length since it was placed.
 struct FlyingBall {
   double h, e, c, s;
   double path;
-  // Signs of the frame's compass: a and m are set for -1, ab where a and b differ.
+  // Signs of the frame's compass: a and m are true for -1; ab is true if a and b differ.
   bool a, ab, m;
   bool is_in_reach;  // of a piston
   bool has_escaped;
@@ -36,8 +36,8 @@ struct BallInTime {
   std::array<uint32_t, 4> pistons = {};  // by direction
 };
 
-// A piston since its last change. Its phase then is that of PistonWave, seen from the ball before
-// it.
+// A piston since its last change of velocity. `phase` is that of PistonWave at that time, as seen
+// by the ball before the piston.
 struct PistonInTime {
   double since = 0;
   double speed = 0;
@@ -74,9 +74,9 @@ struct MeetingInTime {
 // A ball that is to fly.
 struct FlightOrder {
   uint32_t ball = 0;
-  double until = 0;       // it may stop at this path, in the lanes' unit, which it has
-  double until_time = 0;  // at this time
-  double from_time = 0;   // what it met before does not count
+  double until = 0;       // the path length, in the lanes' unit, at which the ball may stop
+  double until_time = 0;  // the time at which the ball has this path length
+  double from_time = 0;   // contacts before this time do not count
   bool has_arrived = false;
   std::optional<MeetingInTime> first = {};  // between the two times
 };
@@ -84,16 +84,16 @@ struct FlightOrder {
 inline constexpr size_t kMostFlightsAhead = 12;
 inline constexpr size_t kMostBallsAhead = 48;
 
-// Places this far from a piston's reach, in cells, count as in it: rounding must not hide a
-// contact.
+// Positions up to this distance outside a piston's reach, in cells, count as inside: rounding must
+// not hide a contact.
 inline constexpr double kReachSlack = 1e-11;
 
 // A ball anywhere in the cell; it may be on a wall, or beyond one by rounding.
 FlyingBall PlacedBall(const GasInTime& gas, Eigen::Vector2d position, Eigen::Vector2d direction);
 
 // Flies up to kMostBallsAhead balls by up to `flights` <= kMostFlightsAhead flights each. A ball
-// that passes `until` has arrived: it is left before the flight in which it does. `to` may be
-// `from`. A ball's numbers do not depend on the others, nor on how flights are divided between
+// that passes `until` has arrived; its state is that before the flight in which it passes. `to` may
+// be `from`. A ball's numbers do not depend on other balls, or on how flights are divided between
 // calls.
 void FlyAhead(const GasInTime& gas, size_t flights, std::span<FlightOrder> orders,
               std::span<const FlyingBall> from, std::span<FlyingBall> to);

@@ -1,13 +1,13 @@
-// The gas, every event resolved, one at a time, in double precision: the yardstick for the faster
-// engines, and the source of traces. Balls move as in the pair's reference (cell_walls.h says what
-// keeps that stable); a queue holds the time of each body's next event.
+// The gas in double precision, computed event by event. The faster engines are compared with it,
+// and traces use it. Balls move as in the pair's reference (event_flow.h describes the stability).
+// A queue holds the time of each body's next event.
 //
-// A body is moved only at its own events: a ball's time is that of its last wall or exchange, a
-// piston's that of its last wall or exchange. Properties, each with a test of its name:
+// A body is moved only at its own events: its time is that of its last wall hit or exchange.
+// Properties, each with a test of its name:
 //   1. OneBallAndOnePistonAreThePair.  2. ReversedVelocitiesRetraceTheirWay.
 //   3. EnergyStays.
 //
-// Times are in cells per unit speed. One object is one gas; not for sharing between threads.
+// Times are in cells over unit speed. One object is one gas. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
 #define BALLPISTON_CORE_GAS_REFERENCE_GAS_H_
 
@@ -54,7 +54,7 @@ class ReferenceGas {
   struct Ball {
     GasBall state;
     double time = 0;
-    int last_disc = kNoDisc;  // on which the ball is, if it is on one
+    int last_disc = kNoDisc;  // the disc on which the ball is, if any
     CellWalls<double>::Encounter encounter = {};
     double wall_time = 0;
     double contact_time = 0;

@@ -1,6 +1,6 @@
 // The reservoirs at the two ends of a gas: thermal walls, which the outermost pistons hit from
-// inside. A piston leaves such a wall with a speed from the flux law of the wall's temperature; if
-// both are the same, the gas between them is in equilibrium at that temperature.
+// inside. A piston leaves a thermal wall with a speed from the flux law at the wall's temperature.
+// If both temperatures are equal, the gas is in equilibrium at this temperature.
 #ifndef BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
 #define BALLPISTON_CORE_GAS_THERMAL_WALLS_H_
 
@@ -13,7 +13,8 @@
 
 namespace ballpiston {
 
-// The random numbers of one replica of a gas. Each user has a sequence of its own.
+// The random numbers of one replica of a gas. The start, the jumps and each wall have separate
+// sequences.
 class GasRandom {
  public:
   GasRandom(uint64_t seed, uint64_t stream, uint64_t replica)
@@ -33,7 +34,7 @@ class GasRandom {
 
 class ThermalWalls {
  public:
-  ThermalWalls() = default;  // of a periodic gas: none
+  ThermalWalls() = default;  // no walls, for a periodic gas
   // The left one is hot, the right one cold: hot >= cold > 0.
   ThermalWalls(const GasGeometry& geometry, double hot, double cold, const GasRandom& random)
       : edges_(geometry.shape().columns + 1), hot_(hot), cold_(cold) {
@@ -44,7 +45,7 @@ class ThermalWalls {
     pistons_ = edges_ * geometry.shape().rows;
   }
 
-  // Whether the piston has a thermal wall, and so meets one ball only.
+  // Whether the piston has a thermal wall. Such a piston meets only one ball.
   bool Has(int64_t piston) const {
     return piston < pistons_ && (IsHot(piston) || piston % edges_ == edges_ - 1);
   }

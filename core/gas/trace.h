@@ -1,22 +1,21 @@
 // Traces: one orbit of the pair or of a periodic gas, event by event, by the reference engines.
 //
-// Positions are in one system for the whole gas: cell (column, row) is centred at (column, row),
-// and a body has the coordinates of its own place in the cell or on the edge, so positions do not
-// jump where a periodic gas closes on itself. The piston on the edge at the left of column c is
-// near x = c - 1/2, the one below row r near y = r - 1/2. The pair is in the cell (0, 0), its
-// piston at (q3, 0).
+// The whole gas has one coordinate system: cell (column, row) is centred at (column, row). A body
+// keeps the coordinates of its cell or edge, so positions do not jump at the periodic boundary. The
+// piston at the left edge of column c is near x = c - 1/2, the piston at the lower edge of row r
+// near y = r - 1/2. A pair is in the cell (0, 0), its piston at (q3, 0).
 //
 // The free time of an event is the time since the last event of its kind with the same ball and
-// piston, on the same side of the ball: the paper's tau_bp (eq. bpfreetime), and likewise of the
-// walls. So the mean over the events of a kind is the mean free time of that kind; of exchanges in
-// a gas it is one over the exchange rate (gas_exchange_rate.h).
+// piston, on the same side of the ball: the paper's tau_bp (eq. bpfreetime), and likewise for the
+// walls. Its mean over the events of a kind is the mean free time of that kind; for exchanges in a
+// gas it is 1/exchange rate (gas_exchange_rate.h).
 //
 // Properties, each with a test of its name:
 //   1. OfThePairIsTheReferenceFlow.  2. OfAGasIsTheReferenceGas.
 //   3. EveryEventConservesEnergy.    4. BodiesFlyStraightBetweenTheirEvents.
 //   5. FreeTimesAreThoseOfTheSameKindAndBodies.
 //
-// Units: lengths are cells, masses 1. One object is one orbit; not for sharing between threads.
+// Units: lengths are cells, masses 1. One object is one orbit. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_TRACE_H_
 #define BALLPISTON_CORE_GAS_TRACE_H_
 
@@ -50,7 +49,7 @@ struct TracedChange {
 struct TraceEvent {
   EventKind kind = EventKind::kEscape;
   double time = 0;                  // since the start
-  std::optional<double> free_time;  // none at the first event of its kind with these bodies
+  std::optional<double> free_time;  // empty at the first event of its kind with these bodies
   std::optional<TracedChange> ball;
   std::optional<TracedChange> piston;
 };
@@ -59,18 +58,18 @@ class Trace {
  public:
   virtual ~Trace() = default;
 
-  // Where all bodies are at the start, before the first call of Next.
+  // All bodies at the start. To be called before the first call of Next.
   virtual std::vector<TracedBody> Balls() const = 0;
   virtual std::vector<TracedBody> Pistons() const = 0;
 
-  // None if nothing moves any more. A ball that escapes, which none should do, has no event after
-  // that; in the pair it is the last event.
+  // The next event; empty if all bodies are at rest. A ball that escapes, which is a defect, has no
+  // later event; for the pair the escape is the last event.
   virtual std::optional<TraceEvent> Next() = 0;
 };
 
-// The pair from this start, a state inside its phase space.
+// A trace of the pair from this start, a state inside its phase space.
 std::unique_ptr<Trace> TracePair(const PairGeometry& geometry, const PairState& start);
-// The gas, which has to be periodic.
+// A trace of the gas, which must be periodic.
 std::unique_ptr<Trace> TraceGas(const GasGeometry& geometry, const GasState& start);
 
 }  // namespace ballpiston

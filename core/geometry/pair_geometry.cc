@@ -21,13 +21,13 @@ absl::Status ValidateDelta(double rho, double delta, double bound, absl::string_
 }  // namespace
 
 double Lambda(double rho) {
-  // The factors are exact or correctly rounded; 4 rho^2 - 1 would lose all digits at rho -> 1/2.
+  // Both factors are exact or correctly rounded. 4 rho^2 - 1 would lose all digits for rho -> 1/2.
   return std::sqrt((2 * rho - 1) * (2 * rho + 1));
 }
 
 double PairDeltaBound(double rho) {
-  // (1 - lambda)/2 times (1 + lambda)/(1 + lambda); the fused product keeps 1 - 2 rho^2 exact to
-  // an ulp where the cell vanishes.
+  // (1 - lambda)/2 times (1 + lambda)/(1 + lambda). The fused product keeps 1 - 2 rho^2 exact to an
+  // ulp for rho -> 1/sqrt(2), where the cell vanishes.
   return std::fma(-2 * rho, rho, 1) / (1 + Lambda(rho));
 }
 
@@ -49,7 +49,7 @@ absl::Status ValidatePairDelta(double rho, double delta) {
 
 absl::Status ValidateGasDelta(double rho, double delta) {
   return ValidateDelta(rho, delta, GasDeltaBound(rho), "rho/sqrt(2) - lambda/2",
-                       "the bound of a gas, where no two pistons may overlap");
+                       "the bound of a gas, in which pistons must not overlap");
 }
 
 absl::Status ValidateSomeDelta(double delta) {

@@ -5,11 +5,12 @@
 // neighbouring discs, so the cell's right tip lies at (1/2 - lambda/2, 0). The piston, a vertical
 // segment of height eta, moves in [1/2 - lambda/2 - delta, 1/2 + lambda/2 + delta].
 //
-// Two bounds on delta. Where a pair stands alone the closed forms hold up to (1 - lambda)/2, where
-// the piston reaches the cell's middle. In a gas no two pistons may overlap, which is the paper's
-// bound rho/sqrt(2) - lambda/2 (its eq. x1x2x3 and the footnote before it).
+// delta has two bounds. For a single pair the closed forms hold up to (1 - lambda)/2, where the
+// piston reaches the cell's middle. In a gas pistons must not overlap; this gives the paper's bound
+// rho/sqrt(2) - lambda/2 (eq. x1x2x3 and the footnote before it).
 //
-// Lengths in cells. All members are accurate to a few ulps for every rho and delta in the domain.
+// Lengths are in cells. All members are accurate to a few ulps for every rho and delta in the
+// domain.
 // Immutable, so safe to share between threads.
 #ifndef BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
 #define BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
@@ -18,8 +19,8 @@
 
 namespace ballpiston {
 
-// Domain of the disc radius, both ends excluded: the cell's tips become cusps at 1/2, the cell
-// vanishes at 1/sqrt(2).
+// Domain of the disc radius; both ends are excluded. The cell's tips become cusps at 1/2, and the
+// cell vanishes at 1/sqrt(2).
 inline constexpr double kMinRho = 0.5;
 inline constexpr double kMaxRho = 0.70710678118654752440;
 
@@ -32,8 +33,8 @@ double PairDeltaBound(double rho);
 // rho/sqrt(2) - lambda/2, the largest delta of a gas. Same domain.
 double GasDeltaBound(double rho);
 
-// A delta above its bound by at most this relative amount is accepted and set to the bound: users
-// round the bounds, and computing them rounds too.
+// A delta above its bound by at most this relative amount is accepted and set to the bound, because
+// both users and the computer round the bounds.
 inline constexpr double kDeltaSlack = 1e-12;
 
 class PairGeometry {
@@ -61,11 +62,11 @@ class PairGeometry {
   double piston_right_;
 };
 
-// OK, or the message Create would fail with: for callers that collect every violation.
+// OK, or the error that Create would return. For callers that collect all violations.
 absl::Status ValidateRho(double rho);
 absl::Status ValidatePairDelta(double rho, double delta);  // rho has to be valid
 absl::Status ValidateGasDelta(double rho, double delta);   // likewise
-absl::Status ValidateSomeDelta(double delta);  // whether some rho permits it: 0 < delta < 1/2
+absl::Status ValidateSomeDelta(double delta);  // OK if some rho permits delta: 0 < delta < 1/2
 
 }  // namespace ballpiston
 

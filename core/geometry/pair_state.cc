@@ -10,7 +10,7 @@ double EnergyError(const PairState& state) {
 }
 
 bool InsideCell(const PairGeometry& geometry, const Eigen::Vector2d& position, double slack) {
-  // Of the four corners' discs the one in the ball's own quadrant is nearest.
+  // The nearest disc is the one in the ball's quadrant.
   const double dx = 0.5 - std::fabs(position.x()), dy = 0.5 - std::fabs(position.y());
   return dx >= 0 && dy >= 0 && std::sqrt(dx * dx + dy * dy) >= geometry.rho() - slack;
 }

@@ -1,8 +1,9 @@
-// Where ball and piston are and how they move: a point of the flow's phase space.
+// Positions and velocities of ball and piston: a point of the flow's phase space.
 //
-// The ball's speed is a number of its own beside a unit direction, so that reflections cannot
-// change it by rounding. Energies: eb = ball_speed^2/2, ep = piston_velocity^2/2, sum 1/2.
-// PairState has doubles; other numbers are for flows in other precisions (billiard/event_flow.h).
+// The ball's velocity is stored as a speed and a unit direction, so that rounding in reflections
+// cannot change the speed. Energies: eb = ball_speed^2/2, ep = piston_velocity^2/2, sum 1/2.
+// PairState uses doubles. Other number types are for flows in other precisions
+// (billiard/event_flow.h).
 #ifndef BALLPISTON_CORE_GEOMETRY_PAIR_STATE_H_
 #define BALLPISTON_CORE_GEOMETRY_PAIR_STATE_H_
 
@@ -17,7 +18,7 @@ struct PairStateOf {
   using Vector = Eigen::Matrix<Real, 2, 1>;
 
   Vector position = {0, 0};   // of the ball, (q1, q2)
-  Vector direction = {1, 0};  // of the ball's flight, length 1; kept when at rest
+  Vector direction = {1, 0};  // of the ball's velocity, length 1; kept when the ball is at rest
   Real ball_speed = 0;
   Real piston = 0;  // q3
   Real piston_velocity = 0;
@@ -25,7 +26,7 @@ struct PairStateOf {
 
 using PairState = PairStateOf<double>;
 
-// The same state in other numbers, each rounded on its own.
+// The same state in another number type. Each number is rounded separately.
 template <typename To, typename From>
 PairStateOf<To> RoundedTo(const PairStateOf<From>& state) {
   const auto vector = [](const auto& v) -> typename PairStateOf<To>::Vector {
@@ -38,15 +39,16 @@ PairStateOf<To> RoundedTo(const PairStateOf<From>& state) {
           .piston_velocity = static_cast<To>(state.piston_velocity)};
 }
 
-// Of ball and piston together, by their speeds.
+// The energy of ball and piston together, from their speeds.
 inline double EnergyOf(const PairState& state) {
   return (state.ball_speed * state.ball_speed + state.piston_velocity * state.piston_velocity) / 2;
 }
 
-// |2 E - 1|: how far the pair's energy, computed from all of the state, is from 1/2, relatively.
+// |2 E - 1|, the relative deviation of the pair's energy E from 1/2. E is computed from the whole
+// state, including the length of `direction`.
 double EnergyError(const PairState& state);
 
-// Whether a ball at `position` lies between the discs, up to `slack` inside of one.
+// Whether a ball at `position` lies between the discs. It may be inside a disc by up to `slack`.
 bool InsideCell(const PairGeometry& geometry, const Eigen::Vector2d& position, double slack = 0);
 
 }  // namespace ballpiston

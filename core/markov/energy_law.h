@@ -1,4 +1,4 @@
-// The law of the piston's energy at time t in the limit of rare collisions, from a start at one
+// The law of the piston's energy at time t in the limit of rare collisions, from a given initial
 // energy: the solution of the master equation (eq. meq), integrated over bins.
 //
 // With u = sqrt(2 ep), r the jump rate and K the kernel of generator.h, the law at time t is the
@@ -38,7 +38,7 @@ class EnergyLaw {
   // Equal bins of the energy over [0, 1/2].
   EnergyLaw(const Discretisation& discretisation, int bins);
 
-  // An energy from where to start, with what all times share.
+  // An initial energy, with the values that are the same for all times.
   struct Start {
     double u;
     size_t bin;

@@ -1,4 +1,4 @@
-// Gauss's quadrature as a loop: sums over the nodes are integrals of smooth functions.
+// Gauss's quadrature as a loop over the nodes.
 #ifndef BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
 #define BALLPISTON_CORE_MARKOV_GAUSS_NODES_H_
 
@@ -7,7 +7,7 @@
 
 namespace ballpiston {
 
-// Calls f(x, weight) at the nodes of (lower, upper); never, if it is empty.
+// Calls f(x, weight) at the nodes of (lower, upper). No calls if the interval is empty.
 template <int nodes, typename F>
 void ForEachGaussNode(double lower, double upper, F f) {
   static_assert(nodes % 2 == 0);  // Boost lists half of them
@@ -20,7 +20,7 @@ void ForEachGaussNode(double lower, double upper, F f) {
   }
 }
 
-// The same for functions that are smooth in sqrt(upper - x).
+// ForEachGaussNode for functions that are smooth in sqrt(upper - x).
 template <int nodes, typename F>
 void ForEachGaussNodeWithRoot(double lower, double upper, F f) {
   if (!(upper > lower)) return;

@@ -1,22 +1,24 @@
-// The generator of the pair's jump process, discretised: how the energies relax.
+// The discretised generator of the pair's jump process, which describes the relaxation of the
+// energies.
 //
 //   (L g)(u) = int_0^s K(u, u') (g(u') - g(u)) du',  K = max(u, u')/(sqrt(2) pi sqrt(1 - u^2 -
 //   u'^2))
 //
-// with u = sqrt(2 ep) and s = sqrt(1 - u^2); eq. meq in the variable in which its kernel (eq.
-// kernel) is symmetric and the stationary law uniform on [0, 1]. -L is self-adjoint and not
-// negative; 0 belongs to the stationary law. Its continuum is the range of the jump rate,
-// [1/(sqrt(2) pi), 1/(2 sqrt(2))]: K is compact beside it, being weakly singular.
+// with u = sqrt(2 ep) and s = sqrt(1 - u^2). This is eq. meq in the variable u, in which the kernel
+// (eq. kernel) is symmetric and the stationary law is uniform on [0, 1]. -L is self-adjoint and
+// non-negative; the eigenvalue 0 belongs to the stationary law. The continuous spectrum is the
+// range of the jump rate, [1/(sqrt(2) pi), 1/(2 sqrt(2))], because K is weakly singular and thus
+// compact.
 //
 // Method: Galerkin, with polynomials in theta = arcsin u on a mesh that is symmetric under
-// theta -> pi/2 - theta. Then the kernel's singularity u^2 + u'^2 = 1 runs through corners and
-// diagonals of the mesh's squares only, where substitutions take it out, and matrix elements are
-// exact to rounding. Eigenfunctions are not smooth at u = 0 and 1 (u^2 log u) and, on one side, at
-// 1/sqrt(2) (power 3/2): there the mesh is graded. Eigenvalues below the continuum converge from
-// above, with the square of their functions' error.
+// theta -> pi/2 - theta. Then the kernel's singularity u^2 + u'^2 = 1 lies only on corners and
+// diagonals of the mesh's squares. Substitutions remove it there, so matrix elements are exact to
+// rounding. Eigenfunctions are not smooth at u = 0 and 1 (u^2 log u) and, on one side, at 1/sqrt(2)
+// (power 3/2); there the mesh is graded. Eigenvalues below the continuum converge from above, with
+// the square of the error of their functions.
 //
 // Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Properties, each with the test that bears its name:
-//   1. ConservesProbability: L 1 = 0 to kGeneratorRoundingError; and it is symmetric to that.
+//   1. ConservesProbability: L 1 = 0, and L is symmetric, to kGeneratorRoundingError.
 //   2. RatesConvergeFromAbove as degree and levels grow.
 //
 // Immutable; safe to share between threads.
@@ -56,7 +58,7 @@ class Generator {
 
   Eigen::Index size() const { return rates_.size(); }
 
-  // Eigenvalues of -L, ascending; the first is 0 but for rounding.
+  // Eigenvalues of -L, ascending; the first is 0 up to rounding.
   const Eigen::VectorXd& rates() const { return rates_; }
 
   // Coefficients of a function of u by eigenfunction, orthonormal in du on [0, 1]. `function` may
@@ -69,8 +71,8 @@ class Generator {
   // int K(u, u') function_k(u') du' for each eigenfunction k.
   Eigen::VectorXd Gains(double u) const;
 
-  // |L 1|, and the largest difference of the matrix from its transpose: what quadrature and
-  // rounding leave.
+  // The errors of quadrature and rounding: |L 1|, and the largest difference of the matrix from its
+  // transpose.
   double conservation_error() const { return conservation_error_; }
   double asymmetry() const { return asymmetry_; }
 

@@ -1,9 +1,9 @@
 // The jump process of the pair: the billiard's energy exchange in the limit of rare collisions,
 // delta -> 0 (eq. meq with the kernel W of kernel.h), sampled exactly and without rejection.
 //
-// State: u = sqrt(2 ep) in [0, 1], ep the piston's energy of 1/2 in all; s = sqrt(1 - u^2) =
-// sqrt(2 eb). The pair waits for a time that is exponential with the rate r(u) =
-// PairCollisionRate(u^2/2), then jumps to u' in [0, s], whose density is proportional to
+// State: u = sqrt(2 ep) in [0, 1], where ep is the piston's energy and the total energy is 1/2;
+// s = sqrt(1 - u^2) = sqrt(2 eb). The pair waits for an exponential time with the rate r(u) =
+// PairCollisionRate(u^2/2), then jumps to u' in [0, s] with a density proportional to
 // max(u, u')/sqrt(s^2 - u'^2). Units: times |G|/|dG_bp|, rates |dG_bp|/|G|.
 //
 // With A = atan2(u, q), q = sqrt(max(1 - 2 u^2, 0)) and c = q + u A,
@@ -12,18 +12,18 @@
 //   F(u') = u asin(u'/s)/c                for u' <= min(u, s): the arcsine law
 //   F(u') = 1 - sqrt(s^2 - u'^2)/c        for u < u' <= s: uniform in sqrt(eb - ep')
 //
-// so F, the distribution function of u', inverts in closed form, and two uniform numbers make a
-// jump: -log(the first)/r, and F^-1(the second).
+// So F, the distribution function of u', has an inverse in closed form. Two uniform numbers give a
+// jump: the waiting time is -log(the first)/r, and u' is F^-1(the second).
 //
-// Domain: u in [0, 1], ends included; uniform numbers in (0, 1). Never a NaN, a u outside of
-// [0, 1], or a waiting time that is not positive and finite. At u = 1 the ball rests: the next u is
-// 0 for certain.
+// Domain: u in [0, 1], ends included; uniform numbers in (0, 1). Results are always numbers: u' in
+// [0, 1], and a positive and finite waiting time. At u = 1 the ball rests, and the next u is always
+// 0.
 //
 // Properties, each with the test that bears its name:
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
 //   3. DetailedBalance: the stationary law is uniform in u.
-//   4. LanesAreTheScalarDefinition, within a relative kJumpError.
+//   4. LanesAreTheScalarDefinition, within a relative error kJumpError.
 //   5. SameBitsOnEveryProcessor with fused multiply-add, and DoesNotDependOnWhoElseWalks.
 #ifndef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
 #define BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
@@ -40,20 +40,21 @@ namespace ballpiston {
 inline constexpr double kJumpError = 2e-15;  // 1e-15 measured
 
 struct Jump {
-  double waiting_time = 0;  // before it
-  double u = 0;             // after it
+  double waiting_time = 0;  // before the jump
+  double u = 0;             // after the jump
 };
 
-// One jump, by the C library: the definition, to rounding. u' grows with target_uniform.
+// One jump, computed with the C library: the definition, up to rounding. u' grows with
+// target_uniform.
 Jump JumpFrom(double u, double waiting_uniform, double target_uniform);
 
 // Many independent walkers, in step, in vector lanes: 100 million jumps a second on one core.
 //
 // Walker i is sample first + i of (seed, stream): its jump n (from 0) takes the words at positions
 // 4 + 2 n, for the waiting time, and 5 + 2 n, for the target, of the sequence of
-// CounterRandom(seed, stream, first + i). The first four are left to whoever draws the start.
+// CounterRandom(seed, stream, first + i). The first four words are reserved for the walker's start.
 //
-// Some thousand walkers stay in the processor's nearest cache. Not for sharing between threads.
+// About a thousand walkers fit into the first-level cache. Not thread-safe.
 class JumpWalkers {
  public:
   // Walkers start at u.
@@ -73,7 +74,7 @@ class JumpWalkers {
   uint64_t first_;
   size_t walkers_;
   uint64_t jumps_ = 0;
-  // By walker; then come walkers nobody sees, up to a whole number of groups.
+  // By walker; padded with unused walkers to a whole number of groups.
   std::vector<double> u_;
   std::vector<double> times_;
   std::vector<JumpWords> words_;  // by group, for two jumps

@@ -1,15 +1,16 @@
-// The elementary functions of a jump, in every lane of a vector. Included once for each
-// instruction set; elementwise and fused as written, so a lane's bits depend on its arguments
-// alone wherever multiply-add is fused.
+// The elementary functions of a jump, in every lane of a vector. Included once for each instruction
+// set. All operations are elementwise and fused as written. So on processors with fused
+// multiply-add a lane's bits depend only on its arguments.
 //
 //   UniformOf(words)       CounterRandom's uniform numbers
 //   MinusLog(x)            -log x         for x in [2^-53, 1)
 //   SineOfQuarterTurn(a)   sin a          for a in [0, pi/2]
 //   AngleOf(u, q)          atan2(u, q)    for u, q in [0, 1], not both 0
 //
-// Each is x + x^3 P(x^2) of an argument brought close to 0, P a minimax polynomial for the relative
-// error of the whole (Remez's exchange at 50 digits). That error is 2e-18, 5e-18 and 3e-18 with
-// rounded coefficients, so rounding decides: a few units in the last place.
+// Each of the last three is x + x^3 P(x^2) of an argument that was reduced to be close to 0. P is a
+// minimax polynomial for the relative error of the whole (Remez's exchange at 50 digits). This
+// error is 2e-18, 5e-18 and 3e-18 with rounded coefficients, so the rounding of operations
+// dominates: a few units in the last place.
 //
 // Logarithm. x = 2^e m with m in [sqrt(1/2), sqrt 2); -log x = -e log 2 + 2 atanh z,
 // z = (1 - m)/(1 + m), where 1 - m is exact. The two terms cancel by half at most.
@@ -18,10 +19,10 @@
 //     A = atan(u/q)                      for u < tan(pi/8) q
 //     A = pi/4 + atan((u - q)/(u + q))   between
 //     A = pi/2 - atan(q/u)               for q < tan(pi/8) u
-// One division serves all three. (By half of the angle, u/(sqrt(u^2 + q^2) + q), there are two
-// cases but one more root, which costs more.)
+// One division serves all three cases. (Half of the angle, u/(sqrt(u^2 + q^2) + q), has two cases
+// but needs one more square root, which costs more.)
 //
-// Highway's Log, Sin and Asin instead: a jump takes 1.25 times as long with AVX-512, 1.3 times with
+// With Highway's Log, Sin and Asin a jump takes 1.25 times as long on AVX-512 and 1.3 times on
 // AVX2, and its error is 1e-14.
 #if defined(BALLPISTON_CORE_MARKOV_JUMP_PROCESS_FUNCTIONS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_FUNCTIONS_INL_H_
@@ -39,8 +40,8 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// c0 + c1 x, c0 + ... + c3 x^3: polynomials are summed by pairs (Estrin), which makes shorter
-// chains of operations than Horner's scheme.
+// c0 + c1 x, and below c0 + ... + c3 x^3. Polynomials are summed by pairs (Estrin), because the
+// chains of operations are shorter than in Horner's scheme.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Linear(D d, V x, double c0, double c1) {
   return hn::MulAdd(hn::Set(d, c1), x, hn::Set(d, c0));
@@ -76,12 +77,12 @@ HWY_INLINE V UniformOf(D d, const uint64_t* words) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V MinusLog(D d, V x) {
   const hn::RebindToUnsigned<D> bits;
-  // What the bits of x exceed those of sqrt(1/2) by: e above the mantissa, in two's complement.
+  // `over` is the bits of x minus the bits of sqrt(1/2): e above the mantissa, in two's complement.
   const auto root_half = hn::Set(bits, uint64_t{0x3fe6a09e667f3bcd});
   const auto over = hn::Sub(hn::BitCast(bits, x), root_half);
   const auto mantissa = hn::And(over, hn::Set(bits, (uint64_t{1} << 52) - 1));
   const V m = hn::BitCast(d, hn::Add(mantissa, root_half));
-  // -e >= 0 into the last bits of 2^52, which then has it as its units.
+  // Puts -e >= 0 into the last bits of 2^52; the result is the number 2^52 - e.
   const auto minus_e = hn::ShiftRight<52>(hn::Sub(mantissa, over));
   const V magic = hn::Set(d, 0x1p52);
   const V e = hn::Sub(hn::BitCast(d, hn::Or(minus_e, hn::BitCast(bits, magic))), magic);

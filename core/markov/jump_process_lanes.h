@@ -7,7 +7,7 @@
 
 namespace ballpiston {
 
-// Walkers come in groups of so many: a whole number of vectors on every processor.
+// The size of a group of walkers: a whole number of vectors on every processor.
 inline constexpr size_t kJumpGroup = 32;
 
 // Words 4 block, ..., 4 block + 3 of the sequences of CounterRandom for samples first, first + 1,
@@ -18,8 +18,8 @@ struct JumpWords {
 void DrawJumpWords(uint64_t seed, uint64_t stream, uint64_t first, uint64_t block,
                    JumpWords& drawn);
 
-// Replaces the u of a group by those after a jump, and fills in the times waited. The uniform
-// numbers are those that CounterRandom makes of the words.
+// Replaces the u of a group by the u after a jump, and writes the waiting times. The uniform
+// numbers are those that CounterRandom computes from the words.
 void JumpInLanes(const uint64_t* waiting_words, const uint64_t* target_words, double* u,
                  double* waiting_times);
 

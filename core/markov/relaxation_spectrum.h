@@ -1,19 +1,20 @@
-// How the piston's energy relaxes where ball and piston rarely meet, by the generator's spectrum.
+// Relaxation of the piston's energy in the limit of rare collisions, from the generator's spectrum.
 //
 //   C(t) = <ep(0) ep(t)> - <ep>^2 = sum_k c_k^2 exp(-rate_k t),   c_k = <function_k, ep>
 //   int_0^inf C dt/C(0) = sum_k c_k^2/rate_k / C(0)               the integral time
 //   E[ep(t) | u at 0] = sum_k c_k function_k(u) exp(-rate_k t)
 //
-// in equilibrium, where <ep> = 1/6 and C(0) = 1/45; from the eigenfunctions of generator.h. The
-// spectral gap is the least rate above 0: how fast every distribution of energies is forgotten in
-// the end. What begins as 1 % of the energy's correlation decays with it; the most of it decays
-// faster, in the continuum.
+// in equilibrium, where <ep> = 1/6 and C(0) = 1/45. The eigenfunctions are those of generator.h.
+// The spectral gap is the least rate above 0, the rate of relaxation at long times. Only 1 % of the
+// initial energy correlation decays at this rate; most of it decays faster, in the continuum.
 //
-// Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. Errors are what a coarser discretisation differs by,
-// which is more than what the finer one is off. Properties, each with a test of its name:
+// Units: rates |dG_bp|/|G|, times |G|/|dG_bp|. A stated error is the difference from a coarser
+// discretisation, which is larger than the true error of the finer one. Properties, each with a
+// test of its name:
 //   1. GapAgreesBetweenDiscretisations to kSpectralGapError.
-//   2. DecaysOverThreeDecadesAsItsOwnGeneratorSays: semigroup and derivative at 0, which is
-//      -<h>/2 of the kernel's moments.
+//   2. DecaysOverThreeDecadesAsItsOwnGeneratorSays: the semigroup property, and the derivative at
+//   0,
+//      which is -<h>/2 of the kernel's moments.
 //   3. MeanEnergyStartsAtTheInitialEnergyAndForgetsIt.
 //
 // Immutable; safe to share between threads.
@@ -39,12 +40,12 @@ class RelaxationSpectrum {
  public:
   explicit RelaxationSpectrum(const Discretisation& discretisation);
 
-  // The one in use, made when it is first asked for (some 0.1 s).
+  // The instance in use. The first call computes it, in about 0.1 s.
   static const RelaxationSpectrum& Get();
 
   SpectralValue Gap() const;
-  // The isolated rates below the continuum that are told to 1e-8, ascending; the gap is the first.
-  // There are more: they accumulate at the continuum's bottom.
+  // The isolated rates below the continuum whose error is below 1e-8, ascending; the gap is the
+  // first. There are more isolated rates; they accumulate at the bottom of the continuum.
   std::vector<SpectralValue> IsolatedRates() const;
 
   // C(t)/C(0), t >= 0.

@@ -1,6 +1,7 @@
 // The ladder of models: the models that can answer, their costs and errors, and the choice.
 //
-// All refers to the estimate that the target names (experiment_kind.h: AimedEstimate). AUTO chooses
+// Costs and errors refer to the estimate that the target names (experiment_kind.h: AimedEstimate).
+// AUTO chooses
 // the cheapest model that is exact for this estimate, or whose error is known to be within the
 // tolerance: within half of it if that model samples. This is a closed form if there is one, else
 // the limit's cheapest model if its error allows it, else the billiard. Without a tolerance AUTO

@@ -7,18 +7,18 @@
 
 namespace ballpiston {
 
-// Of an engine, in seconds of processor time.
+// The speed of an engine, in seconds of processor time.
 struct EngineRate {
-  double wall_hit = 0;   // in lanes the ball's alone; of the reference, any event
-  double collision = 0;  // of ball and piston, in an orbit that goes on
+  double wall_hit = 0;   // a wall hit: in lanes, of the ball only; in the reference, any event
+  double collision = 0;  // of ball and piston, in an orbit that continues
   double sample = 0;     // an orbit's start and end
 };
 
 struct MachineRates {
   double first_point = 0;  // extra time of a job's first point, because caches are cold
-  double closed_form = 0;  // a point
-  double spectrum = 0;     // a point
-  // To store the result of such a point, on one thread beside those that compute.
+  double closed_form = 0;  // a point by a closed form
+  double spectrum = 0;     // a point by the spectrum
+  // Time to store the result of such a point, on one thread beside the computing threads.
   double stored_closed_form = 0;
   double stored_spectrum = 0;
   double jump = 0;  // a jump of the jump process, with its measurements

@@ -7,8 +7,8 @@
 namespace ballpiston {
 namespace {
 
-// Density proportional to t (lambda + t) on [0, delta]: a mixture of densities t and t^2, which
-// are those of the larger of two and of the largest of three uniform numbers.
+// Draws from the density proportional to t (lambda + t) on [0, delta], a mixture of the densities t
+// and t^2. These are the densities of the largest of two and of three uniform numbers.
 double ProposeDepth(const PairGeometry& geometry, CounterRandom& random) {
   const double linear = geometry.lambda() / 2, quadratic = geometry.delta() / 3;
   double largest = std::max(random.Uniform(), random.Uniform());
@@ -20,7 +20,8 @@ double ProposeDepth(const PairGeometry& geometry, CounterRandom& random) {
 }  // namespace
 
 Eigen::Vector2d UniformOnCollisionSurface(const PairGeometry& geometry, CounterRandom& random) {
-  // 1/(1/2 + s) grows with t, so its value at delta bounds it; at least half are accepted.
+  // 1/(1/2 + s) grows with t, so its value at delta is a bound. At least half of the proposals are
+  // accepted.
   const double smallest = 0.5 + CentreToArc(geometry.lambda(), geometry.delta());
   for (;;) {
     const double t = ProposeDepth(geometry, random);

@@ -1,8 +1,8 @@
-// Positions uniform on the collision surface dGamma_bp, the paper's eq. dGc1: ball and piston at
+// Positions uniform on the collision surface dGamma_bp, the paper's eq. dGc1: ball and piston have
 // the same x, in the part of the ball's cell that the piston can reach.
 //
-// The depth t = tip - x in [0, delta] has density proportional to the cell's half-height there, and
-// y is uniform within it.
+// The depth t = tip - x in [0, delta] has a density proportional to the cell's half-height at t,
+// and y is uniform over the cell's height at t.
 #ifndef BALLPISTON_CORE_SAMPLING_COLLISION_SURFACE_H_
 #define BALLPISTON_CORE_SAMPLING_COLLISION_SURFACE_H_
 
@@ -13,7 +13,7 @@
 
 namespace ballpiston {
 
-// The ball's position; the piston's is its x.
+// The ball's position. The piston's position is the ball's x.
 Eigen::Vector2d UniformOnCollisionSurface(const PairGeometry& geometry, CounterRandom& random);
 
 }  // namespace ballpiston

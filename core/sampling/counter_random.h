@@ -1,12 +1,12 @@
 // Uniform random numbers as a pure function of (seed, stream, sample, draw).
 //
 // Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4, part).
-// So a sample's numbers do not depend on who computes it, when, or what was computed before.
-//   seed    the user's.
-//   stream  tells apart what must be independent under one seed, e.g. the points of a grid.
+// So a sample's numbers do not depend on the machine, the time, or earlier computations.
+//   seed    the user's seed.
+//   stream  separates quantities that must be independent under one seed, e.g. points of a grid.
 //   sample  index of the sample within the stream.
-//   part    tells apart sequences of one sample, where it needs several.
-// One object is one sample's sequence of draws; not for sharing between threads.
+//   part    separates the sequences of one sample, if the sample needs several.
+// One object is one sequence of draws of a sample. Not thread-safe.
 #ifndef BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
 #define BALLPISTON_CORE_SAMPLING_COUNTER_RANDOM_H_
 

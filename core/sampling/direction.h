@@ -1,5 +1,6 @@
-// Directions, uniform on the unit circle, without trigonometric functions: a point uniform in the
-// unit disc, scaled to length 1. Only +, *, / and sqrt, so the same bits on every machine.
+// Directions uniform on the unit circle, without trigonometric functions: a point uniform in the
+// unit disc, scaled to length 1. Uses only +, *, / and sqrt, so the bits are the same on every
+// machine.
 #ifndef BALLPISTON_CORE_SAMPLING_DIRECTION_H_
 #define BALLPISTON_CORE_SAMPLING_DIRECTION_H_
 

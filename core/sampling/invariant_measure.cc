@@ -60,8 +60,8 @@ PairState DrawFromFlowMeasureAt(const PairGeometry& geometry, double epsilon,
 
 PairState DrawFromCollisionMeasure(const PairGeometry& geometry, CounterRandom& random) {
   const Eigen::Vector2d ball = UniformOnCollisionSurface(geometry, random);
-  // The cosine law: the normal component's square is uniform, the tangential part has a uniform
-  // direction in the plane spanned by (0, 1, 0) and (1, 0, 1)/sqrt(2).
+  // The cosine law: the square of the normal component is uniform, and the tangential part has a
+  // uniform direction in the plane spanned by (0, 1, 0) and (1, 0, 1)/sqrt(2).
   const double square = random.Uniform();
   const Eigen::Vector2d tangential = UniformDirection(random) * std::sqrt(1 - square);
   const double normal = std::sqrt(square);

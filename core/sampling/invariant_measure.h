@@ -13,7 +13,8 @@ namespace ballpiston {
 // From mu: anywhere in the flow's phase space.
 PairState DrawFromFlowMeasure(const PairGeometry& geometry, CounterRandom& random);
 
-// From mu at a piston energy in [0, 1/2]: anywhere, in any direction, with these speeds.
+// From mu at a piston energy in [0, 1/2]: positions and directions are uniform, and the energy
+// fixes the speeds.
 PairState DrawFromFlowMeasureAt(const PairGeometry& geometry, double epsilon,
                                 CounterRandom& random);
 

@@ -26,7 +26,7 @@ OutgoingLaw::OutgoingLaw(double epsilon, double exponent) : exponent_(exponent) 
 }
 
 double OutgoingLaw::Weight(double base) const {
-  // Whole exponents, the usual ones, with fewer operations.
+  // Most exponents are whole numbers, which need fewer operations.
   if (exponent_ == std::floor(exponent_)) {
     return IntegerPower(base, static_cast<uint64_t>(exponent_));
   }

@@ -1,10 +1,12 @@
 // The outgoing laws h^(n) of the paper's eq. falpha: after a ball-piston collision at fixed
 // energies, the ball's angle alpha and the sign sigma of the piston's velocity have density
 //   proportional to (sigma sqrt(ep) - sqrt(eb) cos alpha)_+^n,   eb = 1/2 - ep,
-// which is the paper's ingoing form seen backwards in time. n = 1 is the invariant law, n = 0 is
-// uniform on what separates. Any real n in [0, kMaxExponent].
+// which is the time reversal of the paper's ingoing form. n = 1 is the invariant law; n = 0 is
+// uniform over the velocities that separate ball and piston. n is any real number in [0,
+// kMaxExponent].
 //
-// Sampled exactly, by rejection against the uniform law; for n -> 1000 some 1 in 100 is accepted.
+// Sampling is exact, by rejection from the uniform law; for n -> 1000 about 1 in 100 proposals is
+// accepted.
 #ifndef BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
 #define BALLPISTON_CORE_SAMPLING_OUTGOING_LAW_H_
 

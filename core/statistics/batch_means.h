@@ -1,10 +1,10 @@
-// A ratio of two sums from a correlated series, with an honest error: batch means.
+// Batch means: the ratio of two sums from a correlated series, with a valid standard error.
 //
-// The series is cut into batches; each contributes the sums (numerator, denominator) over it, e.g.
-// (time elapsed, collisions counted). The ratio is that of the totals, its standard error follows
-// from the scatter of numerator - ratio * denominator between batches, which is free of bias if
-// batches are independent or long compared with the correlation time. Batches of unequal length
-// are weighted as they should be. Properties, each with a test of its name:
+// The series is divided into batches. Each batch contributes its sums (numerator, denominator),
+// e.g. (time elapsed, collisions counted). The ratio is that of the totals. Its standard error
+// follows from the scatter of numerator - ratio * denominator between batches. The error has no
+// bias if batches are independent, or long compared with the correlation time. Batches of unequal
+// length have the correct weights. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePass, to rounding.  2. MergeWithEmptyIsIdentity, bit for bit.
 //   3. ErrorOfIndependentTermsIsTheirs: batches of single independent terms give the usual error.
 #ifndef BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
@@ -28,7 +28,7 @@ struct BatchMeans {
 
   // Requires a batch and a denominator other than 0.
   std::optional<double> Ratio() const;
-  // Requires two batches as well.
+  // Requires at least two batches and a denominator other than 0.
   std::optional<double> StandardError() const;
 
   friend bool operator==(const BatchMeans&, const BatchMeans&) = default;

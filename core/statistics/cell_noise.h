@@ -1,12 +1,12 @@
 // The statistical noise of the count n of one cell, which has probability q, in N samples: the
 // moments of n log(n/mu), mu = N q. Their sums over all cells give the noise of a relative entropy.
 //
-// The sum over all cells is H = sum of h, h = n log(n/mu) - (n - mu). Its mean is that of the
-// binomial counts, exactly. Its variance is taken from independent Poisson counts, given that their
-// sum T is N: expand E(H | T) about N. The slope is that of E(H) in N, covariance/N; its curvature
-// c is that of E(H) plus 1/N. T has variance N, so
+// The sum over all cells is H = sum of h, h = n log(n/mu) - (n - mu). The mean of H is computed
+// from the binomial counts, exactly. The variance is that of independent Poisson counts, given that
+// their sum T is N. It follows from an expansion of E(H | T) about N. The slope is that of E(H) in
+// N, covariance/N; the curvature c is that of E(H) plus 1/N. T has variance N, so
 //   variance(H | T = N) = variance - covariance^2/N - (N c)^2/2.
-// With many samples a cell this is (cells - 1)/2, as of a chi-squared law.
+// With many samples per cell this tends to (cells - 1)/2, as for a chi-squared law.
 #ifndef BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
 #define BALLPISTON_CORE_STATISTICS_CELL_NOISE_H_
 

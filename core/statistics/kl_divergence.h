@@ -1,10 +1,10 @@
 // Coarse-grained relative entropy of a measured law to an exact one, the paper's eq. kld:
 //   D = sum over cells of p log(p/q),  p = counts/samples,  q = exact probability of the cell.
 //
-// N samples drawn from q itself have a D above 0: its mean, the noise floor, and its standard
-// deviation are computed for that N, cell by cell, not by the chi-squared law (cells - 1)/(2 N),
-// which holds above some ten samples a cell only. Natural logarithms. Properties, each with a test
-// of its name:
+// N samples drawn from q itself have a D above 0. The mean of this D (the noise floor) and its
+// standard deviation are computed for the given N, cell by cell. The chi-squared law,
+// (cells - 1)/(2 N), is not used, because it holds only above about ten samples per cell. Natural
+// logarithms. Properties, each with a test of its name:
 //   1. NoiseFloorIsTheMeanUnderTheExactLaw, to 1e-3 of itself at every N.
 //   2. ErrorsHoldForEqualLaws and ErrorsHoldForUnequalLaws.
 #ifndef BALLPISTON_CORE_STATISTICS_KL_DIVERGENCE_H_
@@ -19,9 +19,9 @@ namespace ballpiston {
 
 struct KlDivergence {
   double value = 0;
-  double noise_floor = 0;     // mean of `value`, were the measured law the exact one
-  double noise_error = 0;     // its standard deviation then
-  double standard_error = 0;  // of `value` about its mean, whatever the law; at least noise_error
+  double noise_floor = 0;     // mean of `value` if the measured law were equal to the exact law
+  double noise_error = 0;     // standard deviation of `value` in this case
+  double standard_error = 0;  // of `value`, for any measured law; at least noise_error
   int cells = 0;              // with a probability above 0
 };
 
@@ -33,16 +33,16 @@ struct DivergenceNoise {
 };
 DivergenceNoise NoiseOfDivergence(uint64_t samples, std::span<const double> probabilities);
 
-// One count for each probability; probabilities sum to 1. A count where the probability is 0 makes
-// the divergence infinite. Without samples all but `cells` is 0, here and below.
+// One count for each probability; probabilities sum to 1. If a cell of probability 0 has a count,
+// the divergence is infinite. Without samples all fields except `cells` are 0, here and below.
 KlDivergence RelativeEntropy(std::span<const uint64_t> counts,
                              std::span<const double> probabilities);
 
 // The divergence of the law over the bins of all rows from the uniform law.
 KlDivergence DivergenceFromUniform(std::span<const Histogram> rows);
 
-// The mean over samples of the divergence of each row's law to the uniform law over its bins: the
-// law given the row. Rows without samples count for nothing.
+// The divergence of each row's law from the uniform law over its bins, averaged over samples. This
+// is the divergence of the law given the row. Rows without samples have no weight.
 KlDivergence DivergenceWithinRows(std::span<const Histogram> rows);
 
 }  // namespace ballpiston

@@ -1,10 +1,10 @@
-// The Kolmogorov-Smirnov distance of a measured law to the uniform one: the largest difference
-// between the two distribution functions, looked for at the edges of the histogram's bins.
+// The Kolmogorov-Smirnov distance D of a measured law from the uniform law: the largest difference
+// between the two distribution functions at the edges of the histogram's bins.
 //
-// With N samples of the uniform law itself sqrt(N) D tends to the largest absolute value of a
-// Brownian bridge, of mean sqrt(pi/2) log 2; looked at in only m + 1 points that misses
-// 0.5826/sqrt(m), the constant -zeta(1/2)/sqrt(2 pi) of random walks. Property, with a test of its
-// name:
+// For N samples of the uniform law, sqrt(N) D tends to the maximum of the absolute value of a
+// Brownian bridge, with the mean sqrt(pi/2) log 2. The maximum over only m + 1 points is smaller by
+// 0.5826/sqrt(m); the constant is -zeta(1/2)/sqrt(2 pi), as for random walks. Property, with a test
+// of its name:
 //   1. NoiseFloorIsTheMeanDistanceOfUniformSamples.
 #ifndef BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
 #define BALLPISTON_CORE_STATISTICS_KOLMOGOROV_SMIRNOV_H_
@@ -16,12 +16,12 @@ namespace ballpiston {
 struct KolmogorovSmirnov {
   double distance = 0;
   double noise_floor = 0;     // the mean of `distance` for samples of the uniform law
-  double standard_error = 0;  // of the measured distribution function where it is farthest off,
+  double standard_error = 0;  // of the measured distribution function at the largest difference,
                               // for independent samples
 };
 
-// Of the law measured by `histogram` to the uniform one over all of its bins. Requires at least one
-// sample.
+// The distance of the law measured by `histogram` from the uniform law over all of its bins.
+// Requires at least one sample.
 KolmogorovSmirnov DistanceToUniform(const Histogram& histogram);
 
 }  // namespace ballpiston

@@ -1,4 +1,4 @@
-// The autocorrelation of a series by lag, estimated from a part of it that has a known mean of 0.
+// The autocorrelation by lag of a series with mean 0.
 #ifndef BALLPISTON_CORE_STATISTICS_LAG_PRODUCTS_H_
 #define BALLPISTON_CORE_STATISTICS_LAG_PRODUCTS_H_
 
@@ -7,7 +7,7 @@
 
 namespace ballpiston {
 
-// At lags 0 to `most`, the mean of x_k x_(k + lag) over all k. Each is free of bias where the
+// The mean of x_k x_(k + lag) over all k, for lags 0 to `most`. The means have no bias if the
 // series is stationary. Requires most < series.size().
 inline std::vector<double> LagProducts(const std::vector<double>& series, size_t most) {
   std::vector<double> means(most + 1);
@@ -19,9 +19,9 @@ inline std::vector<double> LagProducts(const std::vector<double>& series, size_t
   return means;
 }
 
-// The integral of the autocorrelation over lags from 0 on, up to each lag: half of the first, and
-// all of the others. Where the series holds integrals over steps of a continuous function, its
-// autocorrelation counts fully up to that lag, and falls to 0 over one more step.
+// The integral of the autocorrelation from lag 0 to each lag: half of the first product plus all
+// the others. If the series holds integrals of a continuous function over steps, the function's
+// autocorrelation counts fully up to the lag, and its weight falls to 0 over one more step.
 inline std::vector<double> IntegralsOf(const std::vector<double>& products) {
   std::vector<double> sums(products.size());
   double sum = -products[0] / 2;

@@ -1,7 +1,7 @@
 // The first four central moments of a sample, accumulated in one pass.
 //
-// Sums of powers of deviations from the running mean (Pebay's updates), so that neither a large
-// mean nor many samples cancel digits. Properties, each with a test of its name:
+// The sums are of powers of deviations from the running mean (Pebay's updates). So a large mean or
+// many samples cause no cancellation. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePass: merging parts gives the moments of the whole, to rounding.
 //   2. MergeWithEmptyIsIdentity: bit for bit, on either side.
 // Merging the same parts in the same order gives the same bits anywhere.
@@ -25,11 +25,11 @@ struct Moments {
 
   // Unbiased. Requires two samples.
   std::optional<double> Variance() const;
-  // Of the mean. Requires two samples.
+  // The standard error of the mean. Requires two samples.
   std::optional<double> StandardError() const;
   // Standard deviation over mean. Requires two samples and a mean other than 0.
   std::optional<double> CoefficientOfVariation() const;
-  // Of the coefficient of variation, to first order in 1/count (delta method).
+  // The standard error of CoefficientOfVariation, to first order in 1/count (delta method).
   std::optional<double> CoefficientOfVariationError() const;
 
   friend bool operator==(const Moments&, const Moments&) = default;

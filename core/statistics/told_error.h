@@ -21,7 +21,7 @@ inline constexpr double kEventsForAnError = 50;
 
 inline bool TellsItsError(double events) { return events >= kEventsForAnError; }
 
-// `error`, if so many events tell it.
+// `error`, if this number of events is enough for an error.
 inline std::optional<double> ToldError(double events, std::optional<double> error) {
   return TellsItsError(events) ? error : std::nullopt;
 }
