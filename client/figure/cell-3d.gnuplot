@@ -1,9 +1,9 @@
 # Draws cell-3d.svg. Change it as you like; run it with: gnuplot cell-3d.gnuplot
 #
 # The ball at (q1, q2) and the piston at q3 are one point of a three-dimensional billiard, seen here
-# from below. Its vertical walls stand over the arcs of the ball's cell; its floor and ceiling are
-# the piston's walls. The ball is left of the piston, so the slanted plane q1 = q3 cuts off the
-# lower end of the right tip: this is the collision surface.
+# from below. Its vertical walls stand on the arcs of the ball's cell; its floor and ceiling are the
+# piston's walls. The ball is left of the piston. Therefore the slanted plane q1 = q3, the collision
+# surface, cuts off the lower end of the right tip.
 # cell-3d.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -14,10 +14,10 @@ wall_colour = 0xc3cfe6
 floor_colour = 0xf4f4f4
 surface_colour = 0xc40a2e
 rim_colour = "#404040"
-highest = 1.1  # height over width of the drawing, at most
-lowest = 0.6   # at least
-steps = 48    # of an arc
-slices = 1     # of a wall, in height, so that the depth order is right
+highest = 1.1  # largest height of the drawing, in units of its width
+lowest = 0.6   # smallest height
+steps = 48    # per arc
+slices = 1     # per wall, in height; they make the depth order right
 
 # ---- The data ----
 stats "cell-3d.csv" using (rho = column("rho"), delta = column("delta"), \
@@ -28,19 +28,19 @@ high = 1 - low
 theta = atan(lambda)
 corner = pi/2 - 2*theta
 
-# Cells that are much higher or lower than wide are drawn with other heights.
+# If a cell is much higher or lower than wide, its heights are scaled.
 ratio = (high - low)/(2*tip)
 stretch = ratio > highest ? highest/ratio : ratio < lowest ? lowest/ratio : 1
 drawn(z) = low + stretch*(z - low)
 ceiling = drawn(high)
 
-# The wall's outline at part t of arc k; the arcs begin at the left tip and go counterclockwise.
+# The wall's outline at the fraction t of arc k. The arcs start at the left tip, counterclockwise.
 centre_x(k) = k == 0 || k == 3 ? -0.5 : 0.5
 centre_y(k) = k < 2 ? -0.5 : 0.5
 angle(k, t) = pi/2 + k*pi/2 - theta - corner*t
 x(k, t) = centre_x(k) + rho*cos(angle(k, t))
 y(k, t) = centre_y(k) + rho*sin(angle(k, t))
-bottom(x) = x > low ? drawn(x) : low   # of the wall: the floor, or the collision surface
+bottom(x) = x > low ? drawn(x) : low   # the wall's lower end: the floor, or the collision surface
 max(a, b) = a > b ? a : b
 point(x, y, z) = sprintf("%.6f,%.6f,%.6f,%d", x, y, z, shade)
 
@@ -65,7 +65,7 @@ do for [k=0:3] {
     }
   }
 }
-# Floor and collision surface, as strips between the lower arcs and the upper ones.
+# Floor and collision surface, as strips between the lower and the upper arcs.
 half(x) = 0.5 - sqrt(rho**2 - (0.5 - abs(x))**2)
 do for [part in "floor surface"] {
   shade = part eq "floor" ? floor_colour : surface_colour
@@ -84,8 +84,8 @@ do for [part in "floor surface"] {
 }
 set print
 
-# The rims that are seen: of the floor and the surface, of the ceiling over the right arcs, and
-# between the walls. As arrows they are drawn on top of the faces.
+# The visible edges: of the floor and the collision surface, of the ceiling over the right arcs, and
+# between the walls. They are drawn as arrows, because arrows are on top of the faces.
 set style arrow 1 nohead front lw 1.5 lc rgb rim_colour
 set style arrow 2 head filled size screen 0.015,18 front lw 1.5 lc rgb black
 do for [k=0:3] {

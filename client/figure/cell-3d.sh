@@ -4,7 +4,7 @@
 # sh cell-3d.sh
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.15}"
 
 into cell-3d.csv ballpiston analytic --rho "$rho" --delta "$delta" --format csv

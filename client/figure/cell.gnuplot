@@ -14,8 +14,8 @@ overlap_colour = "#c8c8c8"
 piston_cell_colour = "#e3ecfb"
 edge_colour = "#8c8c8c"
 arrow = 0.2       # length for a velocity of 1, in cells
-away = 0.045      # of a dimension line from what it measures
-left = -0.64      # the part of the plane that is drawn
+away = 0.045      # distance of a dimension line from the measured length
+left = -0.64      # the drawn part of the plane
 right = 1.22
 bottom = -0.66
 top = 0.64
@@ -26,7 +26,7 @@ stats start using (rho = column("rho"), delta = column("delta"), lambda = column
                    eta = column("eta"), ball_x = column("ball_x"), ball_y = column("ball_y"), \
                    ball_vx = column("ball_vx"), ball_vy = column("ball_vy"), \
                    piston_x = column("piston_x"), piston_vx = column("piston_vx"), 1) nooutput
-tip = 0.5 - lambda/2            # the overlap's left end; the right one is at 1 - tip
+tip = 0.5 - lambda/2            # the overlap's left end; its right end is at 1 - tip
 first = tip - delta             # the piston's leftmost position
 theta = atan(lambda)
 
@@ -77,8 +77,8 @@ do for [n=0:4] {
 set print
 
 # ---- The parameters ----
-set style arrow 1 heads size 0.022,18 filled front lw 1.3 lc rgb black # dimensions
-set style arrow 2 nohead front dt (5,4) lw 1 lc rgb edge_colour   # their ends
+set style arrow 1 heads size 0.022,18 filled front lw 1.3 lc rgb black # dimension lines
+set style arrow 2 nohead front dt (5,4) lw 1 lc rgb edge_colour   # extension lines
 
 # rho: from the centre of the lower left disc
 direction = pi/4
@@ -102,7 +102,7 @@ set arrow from tip,0 to tip,below - 0.02 arrowstyle 2
 set arrow from 1 - tip,0 to 1 - tip,below - 0.02 arrowstyle 2
 set label "λ" front at 0.5,below center offset 0,-0.9
 
-# delta: above it, at either end
+# delta: above the piston cell, at both ends
 above = eta/2 + away
 do for [side in "-1 1"] {
   s = side + 0
@@ -114,7 +114,7 @@ do for [side in "-1 1"] {
   set label "δ" front at (inner + outer)/2,above center offset 0,0.8
 }
 
-# eta: right of it
+# eta: right of the piston cell
 beside = 1 - first + away
 set arrow from beside,-eta/2 to beside,eta/2 arrowstyle 1
 set arrow from 1 - first,-eta/2 to beside + 0.02,-eta/2 arrowstyle 2

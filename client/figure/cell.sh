@@ -4,13 +4,13 @@
 # sh cell.sh
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.15}"
-: "${seed:=17}"                # its random start leaves the labels legible
+: "${seed:=17}"                # with this random start no arrow covers a label
 
 into cell.jsonl ballpiston trace --rho "$rho" --delta "$delta" --seed "$seed" --events 1
 
-# The first line of the trace has the geometry and the start of both bodies.
+# The first line of the trace contains the geometry and the start of both bodies.
 number() { sed -n '1s/.*"'"$1"'":\([^,}]*\).*/\1/p' cell.jsonl; }
 body() { sed -n '1{s/.*"'"$1"'":\[{\([^]]*\)}\].*/\1/; s/"[a-z]*"://g; p;}' cell.jsonl; }
 start() {

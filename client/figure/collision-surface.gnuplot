@@ -1,10 +1,10 @@
 # Draws collision-surface.svg. Change it as you like; run it with: gnuplot collision-surface.gnuplot
 #
-# Velocities (v1, v2, v3) of ball and piston are points of the unit sphere. Those that leave the
-# collision surface, with normal n = (-1, 0, 1)/sqrt 2, are the hemisphere above its tangent plane.
-# At the piston's energy epsilon they lie on two circles, v3 = sigma sqrt(2 epsilon): the parts
-# above the plane (green) contribute to the rate of collisions, the others (pale) do not.
-# collision-surface.sh has the command that writes the energy.
+# Velocities (v1, v2, v3) of ball and piston are points of the unit sphere. The outgoing velocities
+# of the collision surface, with normal n = (-1, 0, 1)/sqrt 2, are the hemisphere above its tangent
+# plane. At the piston's energy epsilon the velocities lie on two circles, v3 = sigma sqrt(2
+# epsilon). The parts above the plane (green) contribute to the rate of collisions, the other parts
+# (pale) do not. collision-surface.sh contains the command that writes the energy.
 
 # ---- Settings ----
 load "style.gnuplot"

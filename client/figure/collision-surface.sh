@@ -4,7 +4,7 @@
 # hand: sh collision-surface.sh.
 set -eu
 . ./figure.sh
-: "${epsilon:=0.125}"  # the piston's energy; below 1/4 two circles contribute, above it one
+: "${epsilon:=0.125}"  # the piston's energy; below 1/4 two circles contribute, above 1/4 one circle
 # The picture depends neither on rho nor on delta.
 : "${rho:=0.529561127988977}"
 : "${delta:=0.1}"

@@ -1,9 +1,9 @@
 # Draws conductivity.svg. Change it as you like; run it with:
 # gnuplot conductivity.gnuplot
 #
-# The conductivity over the static one, half of the exchange rate, by Green and Kubo's formula, with
+# The Green-Kubo conductivity, divided by the static conductivity (half of the exchange rate), with
 # one standard error. Left: the billiard against delta. Right: rings of N cells in the limit of rare
-# exchanges, against 1/N; the line is the value of the infinite gas, by Varadhan's formula.
+# exchanges, against 1/N. The line is the value of the infinite gas, from Varadhan's formula.
 # conductivity.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -19,7 +19,7 @@ exact_colour = "#b40426"
 is_ratio(_) = strcol("name") eq "conductivity_ratio"
 ratio(_) = is_ratio(0) ? column("value") : NaN
 correction(_) = is_ratio(0) ? 1000*(column("value") - 1) : NaN
-# A value without an error leaves that column empty.
+# The column of the error is empty if a value has no error.
 error(_) = strcol("standard_error") eq "" ? 0 : column("standard_error")
 stats rings using (is_ratio(0) ? limit = column("limit") : NaN) nooutput
 

@@ -4,7 +4,7 @@
 # sh conductivity.sh. Time on two cores: quick 3 s, default 50 s, full 5 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"        # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"        # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.05,0.1,0.15,0.2}"      # of the billiard
 : "${billiard_cells:=4}"             # in a ring, of the billiard
 : "${cells:=2,3,4,6,8,16,32}"        # in a ring, of the jump process, the limit delta -> 0

@@ -1,6 +1,7 @@
 # Functions that the figures' scripts share; each script reads this file: . ./figure.sh
 
-# The statistics: "quick" takes seconds, "default" minutes, "full" is what the paper has or better.
+# The number of samples: "quick" takes seconds, "default" minutes, "full" has the paper's number of
+# samples or more.
 : "${effort:=default}"
 case $effort in
   quick | default | full) ;;
@@ -19,9 +20,9 @@ by_effort() {
   esac
 }
 
-# Runs a command; if the command succeeds, keeps its output in a file: into FILE COMMAND. The output
-# first goes to a hidden file of this shell: the script of a client that was killed may still run in
-# the same folder.
+# Runs a command and, if it succeeds, keeps its output in a file: into FILE COMMAND. The output
+# first goes to a hidden file with a name of this shell alone, because the script of a killed client
+# may still run in the same folder.
 into() {
   file=$1
   part=.$1.$$
@@ -36,7 +37,7 @@ trap 'rm -f .*."$$"' EXIT
 draw() {
   if command -v gnuplot >/dev/null; then
     gnuplot "$1.gnuplot"
-    # gnuplot does not say that a disk is full.
+    # gnuplot does not report a full disk.
     if [ -s "$1.svg" ] && ! tail -n 2 "$1.svg" | grep -q "</svg>"; then
       echo "$1.svg is not complete: the disk may be full" >&2
       exit 1

@@ -1,9 +1,9 @@
 # Draws gas.svg. Change it as you like; run it with: gnuplot gas.gnuplot
 #
-# A configuration of the periodic gas of balls and pistons. Between the discs, each ball moves in a
-# cell of its own; each piston, a segment, moves through the overlap of two discs from one cell into
-# the next. An arrow is proportional to the velocity, its colour is the kinetic energy. The pistons of
-# the last column and row are those of the first, drawn again.
+# A configuration of the periodic gas of balls and pistons. Each ball moves in its cell between four
+# discs. Each piston, a segment, moves through the overlap of two discs from one cell into the next.
+# An arrow is proportional to the velocity; its colour shows the kinetic energy. The pistons of the
+# first column and row are drawn again at the last column and row.
 # gas.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -13,7 +13,7 @@ pistons = "gas-pistons.csv"
 geometry = "gas-geometry.csv"
 width = 960              # of the picture
 arrow = 0.13             # length for a thermal velocity, sqrt(T), in cells
-brightest = 4            # the energy, in units of T, above which colours do not change
+brightest = 4            # the colour is the same for all higher energies, in units of T
 disc_colour = "#dcdcdc"
 piston_cell_colour = "#efefef"
 cell_colour = "#ffffff"
@@ -53,7 +53,7 @@ set cbtics 1
 set colorbox user origin screen legend,0.15 size screen 0.02,0.62
 set label "energy/T" at screen legend,0.84 left
 
-# ---- The discs cover all but the balls' cells, whose outlines are these ----
+# ---- The outlines of the balls' cells; the discs cover the rest of the plane ----
 set angles degrees
 set object rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb disc_colour \
   fillstyle solid noborder
@@ -75,7 +75,7 @@ do for [i=0:columns-1] {
 }
 set print
 
-# A periodic gas has each piston of its first column or row at the other end, too.
+# Each piston of the first column or row is also drawn at the opposite end of the periodic gas.
 is_vertical(_) = strcol("vertical") eq "true"
 reach = lambda/2 + delta
 across(a, b) = is_vertical(0) ? a : b
@@ -86,7 +86,7 @@ x(copy) = column("x") + shift_x(copy)
 y(copy) = column("y") + shift_y(copy)
 cell_x(copy) = is_vertical(0) ? nearest(x(copy)) : x(copy)
 cell_y(copy) = is_vertical(0) ? y(copy) : nearest(y(copy))
-nearest(x) = floor(x) + 0.5  # edge of a cell; a piston is less than half a cell away from its own
+nearest(x) = floor(x) + 0.5  # edge of a cell; a piston is less than half a cell away from its edge
 energy(_) = column("energy")/temperature
 scale = arrow/sqrt(temperature)
 

@@ -3,7 +3,7 @@
 # Run by `ballpiston figure gas --out DIR`, whose flags replace these values, or by hand: sh gas.sh
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.15}"
 : "${cells:=6x4}"              # a lattice, NxM, or a chain, N
 : "${temperature:=1}"
@@ -12,7 +12,7 @@ set -eu
 into gas.jsonl ballpiston trace --rho "$rho" --delta "$delta" --cells "$cells" \
   --temperature "$temperature" --seed "$seed" --events 1
 
-# The first line of the trace has all bodies. `bodies balls` prints the balls' numbers as CSV.
+# The first line of the trace contains all bodies. `bodies balls` prints the balls' numbers as CSV.
 bodies() {
   echo "$2"
   sed -n '1{s/.*"'"$1"'":\[{\([^]]*\)}\].*/\1/; s/"[a-z]*"://g; s/},{/\n/g; p}' gas.jsonl

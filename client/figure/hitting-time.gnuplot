@@ -1,13 +1,14 @@
 # Draws hitting-time.svg. Change it as you like; run it with: gnuplot hitting-time.gnuplot
 #
-# A column for each energy of the piston. Above: the probability that ball and piston have not met
-# up to the time t after a collision, for several delta, and the exponential law (black). Below: its
-# difference from the exponential law, with one standard error, on an axis that is linear near 0
-# and logarithmic away from it. Time is in units of the conditional mean free time, so that the
-# exponential law is exp(-t). All points of a line are from the same hits, so neighbouring points
-# have nearly the same statistical error.
-# Steps: the piston reaches the cell once in its period (2 lambda + 4 delta)/u.
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# One column for each energy of the piston. Above: the probability that ball and piston have not
+# collided up to the time t after a collision, for several delta, and the exponential law (black).
+# Below: the difference from the exponential law, with one standard error, on an axis that is linear
+# near 0 and logarithmic elsewhere. Time is in units of the conditional mean free time, so that the
+# exponential law is exp(-t). All points of a line come from the same hits. Therefore neighbouring
+# points have nearly the same statistical error.
+# The lines have steps, because the piston reaches the cell once in its period (2 lambda + 4
+# delta)/u. Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the
+# points.
 # hitting-time.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -29,13 +30,13 @@ stats data using (note(0)) nooutput
 longest = STATS_max
 n = words(deltas)
 columns = words(energies)
-exponent = word(exponents, 1)  # if there are more, the picture shows the first
+exponent = word(exponents, 1)  # the picture shows only the first exponent
 
 of(i, j) = strcol("name") eq "survival" && strcol("exponent") eq exponent && \
            strcol("delta") eq word(deltas, i) && strcol("epsilon") eq word(energies, j)
 t(i, j) = of(i, j) ? -log(column("limit")) : NaN
 excess(_) = column("value") - column("limit")
-# If too few orbits have survived to measure the error, the error of the exponential law.
+# If too few orbits have survived to measure the error, the error of the exponential law is drawn.
 error(_) = strcol("standard_error") eq "" ? \
            sqrt(column("limit")*(1 - column("limit"))/column("samples")) : column("standard_error")
 stats data using (excess(0) - error(0)) nooutput

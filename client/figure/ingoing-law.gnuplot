@@ -1,9 +1,9 @@
 # Draws ingoing-law.svg. Change it as you like; run it with: gnuplot ingoing-law.gnuplot
 #
 # Densities of the ingoing angle alpha of first hits that start from the outgoing law h^(n), for
-# both directions sigma of the piston, over the law h^(1) of equilibrium (filled). A row for each
-# energy of the piston, a column for each delta. A band of one standard error surrounds each line.
-# The density of sigma = +1 vanishes if the piston is faster than the ball, epsilon >= 1/4.
+# both directions sigma of the piston, and the equilibrium law h^(1) (filled). One row for each
+# energy of the piston, one column for each delta. The band of a line is one standard error. The
+# density of sigma = +1 is zero if the piston is faster than the ball, epsilon >= 1/4.
 # ingoing-law.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -24,7 +24,7 @@ note(_) = (deltas = with(deltas, strcol("delta")), energies = with(energies, str
 stats data using (note(0)) nooutput
 columns = words(deltas)
 rows = words(energies)
-exponent = word(exponents, 1)  # if there are more, the picture shows the first
+exponent = word(exponents, 1)  # the picture shows only the first exponent
 
 width = columns < 3 ? 760 : 300*columns + 60
 height = row_height*rows + 120

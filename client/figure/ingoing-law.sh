@@ -4,21 +4,22 @@
 # sh ingoing-law.sh. Time on two cores: quick 1 s, default 10 s, full 1 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.325,0.175,0.0125}"                  # a column of panels for each
 : "${epsilon:=0.03125,0.125,0.25,0.375,0.46875}"  # energies of the piston, a row for each
 : "${exponent:=0}"                                # n of the outgoing law h^(n)
 : "${samples:=$(by_effort 20000 300000 1000000)}" # first hits in each panel
 : "${seed:=0}"
-# The histograms have 1000 bins for each sigma. So many neighbours make one bin of the picture:
-# fewer samples need wider bins, or their noise hides the deviation.
+# The histograms have 1000 bins for each sigma. This number of neighbouring bins makes one bin of
+# the picture. Fewer samples need wider bins; otherwise the noise hides the deviation.
 merged=$(by_effort 40 20 10)
 
 into ingoing-law-histograms.csv ballpiston run first-hit --rho "$rho" --delta "$delta" \
   --epsilon "$epsilon" --exponent "$exponent" --samples "$samples" --seed "$seed" --resume \
   --format csv-histograms
 
-# Every histogram with wider bins. Densities are means over the bin; error is the standard error.
+# Writes every histogram with the wider bins. Densities are means over a bin; `error` is the
+# standard error.
 merge() {
   echo "delta,epsilon,exponent,sigma,alpha,density,error,exact_density"
   awk -F, -v OFS=, -v merged="$merged" '

@@ -34,9 +34,9 @@ do for [i=1:n] {
   if (i > n - 2) { set xlabel "piston energy after, ε'" offset 0,0.3 } else { unset xlabel }
   if (i % 2 == 1) { set ylabel "W(ε, ε')/f(ε)" } else { unset ylabel }
   set yrange [0:highest/(0.5 - (energy(i) < 0.49 ? energy(i) : 0.49))]
-  # The label stands left of the curve that rises at 1/2 - epsilon, or right of it.
+  # The label is left or right of the curve that rises at 1/2 - epsilon.
   set label 1 "ε = ".word(energies, i) at graph energy(i) < 0.2 ? 0.35 : 0.85,0.9 center
-  # Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+  # Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
   plot exact using (of(i, column("outgoing"))):(positive(column("density"))) \
          with lines lw 2 lc rgb black, \
        measured using (of(i, column("outgoing"))): \

@@ -4,18 +4,18 @@
 # sh kernel.sh. By default it takes half a minute of one core.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"        # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"        # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.3}"                    # of the billiard; W depends neither on rho nor on delta
 : "${epsilon:=0.05,0.125,0.25,0.4}"  # the piston's energy before the collision, one panel each
-: "${seed:=0}"                       # of the first orbit; the next ones follow
+: "${seed:=0}"                       # of the first orbit; the next orbits have the next seeds
 orbits=$(by_effort 3 50 1000)
 events=20000                         # of each orbit
-window=0.0125                        # half width of the energies that count as epsilon
+window=0.0125                        # half width of the interval of energies around each epsilon
 bins=$(by_effort 8 20 40)
 
 into kernel.jsonl ballpiston analytic --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
   --outgoing-epsilon 0.001:0.499:499 --format jsonl
-# Each energy, its total rate f, and its kernel, one a line.
+# One line for each energy: the energy, its total rate f, and its kernel.
 kernels() {
   sed 's/.*"energies":\[//; s/{"epsilon"/\n&/g' kernel.jsonl |
     sed -n 's/^{"epsilon":\([^,]*\),.*"f":\([^,]*\),.*"kernel":\[\([^]]*\)\].*/\1,\2,\3/p'
@@ -43,8 +43,9 @@ collisions() {
 }
 into kernel-collisions.csv collisions
 
-# Histograms in bins of equal width of the outgoing u = sqrt(2 epsilon), whose density is finite at
-# 0. The bins end a window before the largest outgoing energy, 1/2 - epsilon, where W diverges.
+# Histograms with bins of equal width in u = sqrt(2 epsilon) after the collision, because the
+# density of u is finite at 0. The bins end one window below the largest outgoing energy, 1/2 -
+# epsilon, where W diverges.
 histograms() {
   echo "epsilon,outgoing,density,standard_error,count,samples"
   awk -F, -v window="$window" -v bins="$bins" '

@@ -1,9 +1,10 @@
 # Draws markov-test.svg. Change it as you like; run it with: gnuplot markov-test.gnuplot
 #
-# The relative entropy of the ingoing law of first hits to the equilibrium law h^(1), minus its
-# noise floor, with one standard error, against delta. A panel for each outgoing law h^(n); a colour
-# for each energy of the piston. The vertical axis is linear near 0 and logarithmic away from it: noise
-# makes values near the floor negative. Lines join the points of one energy.
+# The relative entropy of the ingoing law of first hits with respect to the equilibrium law h^(1),
+# minus its noise floor, with one standard error, against delta. One panel for each outgoing law
+# h^(n), one colour for each energy of the piston. The vertical axis is linear near 0, because noise
+# makes values near the floor negative, and logarithmic elsewhere. Lines join the points of one
+# energy.
 # markov-test.sh lists the commands that write the data, and explains markov-test-decay.csv,
 # markov-test-fit.csv and markov-test-maxima.csv.
 
@@ -32,7 +33,7 @@ lowest = STATS_min_y
 stats data using (column("excess") + column("standard_error")) nooutput
 highest = STATS_max
 
-# Linear below some two standard errors of the smallest noise, logarithmic above.
+# The axis is linear below about two standard errors of the smallest noise, logarithmic above.
 scaled(y) = asinh(y/(2*noise))/log(10)
 of(i, n) = strcol("epsilon") eq word(energies, i) && strcol("exponent") eq n ? \
            scaled(column("excess")) : NaN

@@ -4,7 +4,7 @@
 # sh markov-test.sh. Time on two cores: quick 5 s, default 1 min, full 45 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=$(by_effort 0.1:0.325:16:log 0.03:0.325:44:log 0.03:0.325:44:log)}"
 : "${epsilon:=0.03125,0.125,0.25,0.375,0.46875}"  # energies of the piston
 : "${exponent:=0,1,5,10}"                         # n of the outgoing law h^(n)
@@ -15,8 +15,8 @@ synthetic=$(by_effort 20 200 200)  # repetitions that calibrate a probability
 into markov-test.csv ballpiston run first-hit --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
   --exponent "$exponent" --samples "$samples" --seed "$seed" --resume --format csv
 
-# The relative entropy minus its noise floor, with its standard error. Where the two laws are equal,
-# the standard error is that of the floor.
+# The relative entropy minus its noise floor, with its standard error. If the two laws are equal,
+# the standard error is the error of the floor.
 excess() {
   echo "delta,epsilon,exponent,excess,standard_error"
   awk -F, -v OFS=, '
@@ -29,9 +29,9 @@ excess() {
 }
 into markov-test-excess.csv excess
 
-# Does the excess decay differently when the piston is slower than the ball, epsilon < 1/4? Means of
-# the excess over the deltas of each octave below the largest delta, and their ratio to the mean of
-# the first octave, if that mean is above 3 standard errors.
+# Does the excess decay differently if the piston is slower than the ball, epsilon < 1/4? The table
+# has the mean excess over the deltas of each octave below the largest delta. It also has the ratio
+# to the mean of the first octave, if that mean is above 3 standard errors.
 decay() {
   echo "epsilon,exponent,lower_delta,upper_delta,points,mean_excess,standard_error,ratio,\
 ratio_error"
@@ -48,7 +48,7 @@ ratio_error"
     }
     END {
       for (i = 2; i <= NR; i++) {
-        # The factor keeps a delta that rounding has moved across the border in its octave.
+        # With the factor a delta at the border of two octaves stays in its octave despite rounding.
         octave = int(log(largest/delta[i])/log(2)*(1 - 1e-9))
         if (octave > last) last = octave
         ++count[of[i], octave]
@@ -77,19 +77,20 @@ into markov-test-decay.csv decay
 # In which variable x does the excess E(delta) oscillate? The models are the power law
 # E = A delta^b and E = A delta^b exp(c cos(omega x + phase)), with x = delta, log(delta), 1/delta.
 # The exponential function equals 1 + c cos(...) for small c, keeps E positive, and makes log E
-# linear in all parameters but omega, which is scanned: from 1.5 cycles over the data to one cycle
-# in three points, the same for every x. The fit has the points whose excess is above 3 standard
-# errors, n = 1 excepted: that is the equilibrium law.
+# linear in all parameters but omega. omega is scanned, for every x in the same range: from 1.5
+# cycles over the data to one cycle in three points. The fit uses the points whose excess is above 3
+# standard errors, without n = 1, which is the equilibrium law.
 #
-# No such model is exact, so every log E has, beside its statistical error, a common error
-# `model_error`, which makes chi^2 of the best oscillating model equal to its degrees of freedom.
-# All models have the same errors, so their chi^2 can be compared.
-#   false_alarm  probability that the scan finds a relative gain in chi^2 as large as here in
-#                data of the plain power law
-#   p_value      probability that this model, if it is the true one, fits worse than the best of
-#                the models by as much as here
-# Both are shares of synthetic data sets with a fixed seed, so 0 means less than 1/synthetic.
-#   transform    the p for which x = delta^-p fits best, the logarithm at p = 0, with the range of
+# None of these models is exact. Therefore every log E has, beside its statistical error, a common
+# error `model_error`, which makes chi^2 of the best oscillating model equal to its degrees of
+# freedom. All models have the same errors, so that their chi^2 can be compared.
+#   false_alarm  probability that the scan finds as large a relative gain in chi^2 in data of the
+#                plain power law
+#   p_value      probability that this model, if it is true, fits worse than the best model by as
+#                much as here
+# Both probabilities are shares of synthetic data sets with a fixed seed: 0 means less than
+# 1/synthetic.
+#   transform    the p for which x = delta^-p fits best (p = 0 is the logarithm), with the range of
 #                all p whose chi^2 is at most 4 larger
 # In rows with the exponent "all", chi^2 is summed over the exponents.
 fit() {
@@ -131,8 +132,8 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       for (i = 1; i <= n; i++) u1[i] -= d*u0[i]
       normalise(u1)
     }
-    # Orthonormal vectors C and S of an oscillation for x = delta^-p and every frequency, from
-    # place `at` on.
+    # Stores the orthonormal vectors C and S of an oscillation for x = delta^-p and every frequency,
+    # from the index `at` on.
     function oscillations(p, at,  i, m, lowest, highest, x, d) {
       lowest = highest = x_of(l[1], p)
       for (i = 1; i <= n; i++) {
@@ -205,7 +206,7 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       for (i = 1; i <= k; i++) beta[i] = M[i, k + 1]
       b_error = sqrt(M[2, k + 3])
     }
-    # The p with the least chi_of, and the range of those that are at most 4 larger.
+    # The p with the smallest chi_of, and the range of all p whose chi_of is at most 4 larger.
     function p_of(k) { return -2 + k/8 }
     function find_transform(  k, least) {
       least = 1e300
@@ -266,7 +267,7 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
       }
       find_transform()
 
-      # Truth -1 is the power law, the others are the oscillating models.
+      # The truth -1 is the power law; the other truths are the oscillating models.
       for (v = 0; v < 3; v++) alarms[v] = worse[v] = 0
       for (t = -1; t < 3; t++) {
         for (r = 0; r < synthetic; r++) {
@@ -337,10 +338,10 @@ chi_squared,degrees_of_freedom,gain,false_alarm,p_value,transform,transform_low,
 }
 into markov-test-fit.csv fit
 
-# The maxima of the excess from the largest delta down, without a model: their spacings are constant
-# in log(delta) or in 1/delta if the oscillation is periodic there. A maximum counts if on either
-# side the excess is lower by 15 percent and by 3 standard errors before it is higher again. Its
-# place is that of the parabola of log E through three points.
+# The maxima of the excess from the largest delta down, without a model. Their spacings in
+# log(delta) or in 1/delta are constant if the oscillation is periodic in that variable. A maximum
+# counts if on both sides the excess falls by 15 percent and by 3 standard errors before it is
+# higher again. The position is the maximum of the parabola of log E through three points.
 maxima() {
   echo "epsilon,exponent,delta,spacing_of_log_delta,spacing_of_inverse_delta"
   awk -F, -v OFS=, '

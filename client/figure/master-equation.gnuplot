@@ -1,11 +1,12 @@
 # Draws master-equation.svg. Change it as you like; run it with: gnuplot master-equation.gnuplot
 #
-# Densities of the piston's energy at several times after a start at one energy: by the billiard and
-# by the sampled jump process (points), and by the master equation (black steps). Below each: their
-# ratio to the master equation, with one standard error. Two rows of panels for each start.
-# The peak is the bin of the start. It has the orbits without an exchange yet; its share of all
-# orbits by the master equation is above the panel.
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# Densities of the piston's energy at several times after a start at one energy: from the billiard
+# and the sampled jump process (points), and from the master equation (black steps). Below each
+# panel: the ratio to the master equation, with one standard error. Two rows of panels for each
+# start energy.
+# The peak is the bin of the start energy: it contains the orbits without an exchange. Its share of
+# all orbits, from the master equation, is above the panel.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 # master-equation.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -32,7 +33,7 @@ highest = STATS_max
 n = words(series)
 first_series = word(series, 1)
 title_of(i) = word(series, i)[1:6] eq "markov" ? "jump process" : "δ = ".word(series, i)[10:*]
-# Points of the series stand side by side in their bin.
+# The points of the series are side by side in their bin.
 place(i) = column("lower") + (i - 0.5)/n*(column("upper") - column("lower"))
 here(e, t) = strcol("epsilon") eq e && strcol("time") eq t
 of(i, e, t) = name(0) eq word(series, i) && here(e, t) ? place(i) : NaN
@@ -87,7 +88,7 @@ do for [s=1:words(starts)] {
            with points pt 7 ps 0.3 lc rgb colour(i), \
          data using "lower":(exact(start, time)) with steps lw 1 lc rgb black
 
-    # ---- Its ratio to the master equation ----
+    # ---- The ratio to the master equation ----
     set tmargin screen from_top(66.0 + row*panel_height + 198.0)
     set bmargin screen from_top(66.0 + row*panel_height + 290.0)
     unset title

@@ -4,14 +4,14 @@
 # hand: sh master-equation.sh. Time on two cores: quick 1 s, default 10 s, full 2 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.2,0.05}"         # of the billiard; the lines are the limit delta -> 0
 : "${epsilon:=0.0625}"         # energies of the piston at the start; two rows of panels for each
 : "${samples:=$(by_effort 20000 1000000 10000000)}"  # orbits of each delta, and of the jump process
 : "${seed:=0}"
 
-# In units of the mean free time the times and the law of the jump process are the same at every
-# delta, so one delta is enough for the jump process.
+# In units of the mean free time, the times and the law of the jump process are the same at every
+# delta. Therefore one delta is enough for the jump process.
 law() {
   ballpiston run energy-relaxation --rho "$rho" --epsilon "$epsilon" --samples "$samples" \
     --seed "$seed" --resume --format csv-histograms "$@"
@@ -21,8 +21,8 @@ into master-equation-markov.csv law --delta "${delta%%[,:]*}" --model markov
 
 into master-equation-times.csv ballpiston analytic --rho "$rho" --delta "$delta" --format csv
 
-# All laws in one table, with times in units of the mean free time. The error is binomial; of a bin
-# without an orbit it is that of the exact law.
+# All laws in one table, with times in units of the mean free time. The error is binomial. A bin
+# without an orbit has the binomial error of the exact law.
 laws() {
   echo "model,delta,epsilon,time,lower,upper,density,error,exact,ratio,ratio_error"
   awk -F, -v OFS=, '

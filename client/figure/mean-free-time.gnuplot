@@ -1,7 +1,8 @@
 # Draws mean-free-time.svg. Change it as you like; run it with: gnuplot mean-free-time.gnuplot
 #
 # Conditional collision rates, measured at several delta and scaled by the mean free time, collapse
-# on one curve, tau_bp/tau(epsilon) = phi(epsilon). Inset: the collision rate 1/tau_bp by delta.
+# onto one curve, tau_bp/tau(epsilon) = phi(epsilon). Inset: the collision rate 1/tau_bp against
+# delta.
 # mean-free-time.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -14,7 +15,7 @@ phi = "mean-free-time-phi.csv"      # exact phi(epsilon)
 rate = "mean-free-time-rate.csv"    # exact tau_bp(delta)
 colours = "#3b4cc0 #1b9e77 #d95f02 #b40426 #7570b3 #66a61e #e6ab02 #a6761d"  # one for each delta
 exact_colour = "black"
-margin = 0.7  # of the inset's axis, beside the smallest and the largest delta, as a factor
+margin = 0.7  # of the inset's axis: the factor below the smallest and above the largest delta
 
 # ---- The data ----
 
@@ -22,7 +23,7 @@ margin = 0.7  # of the inset's axis, beside the smallest and the largest delta, 
 conditional = "mean_free_time_conditional"
 unconditional = "mean_free_time_ball_piston"
 
-# Every delta as the data spell it, and its exact mean free time.
+# Every delta as it is written in the data, and its exact mean free time.
 deltas = ""
 taus = ""
 note(_) = (deltas = deltas." ".strcol("delta"), \
@@ -45,7 +46,7 @@ low(scale) = rate_of(scale) - error_of(scale)
 set multiplot
 
 # ---- The main panel: measured rates, and the exact curve on top of them ----
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 set xrange [0:0.5]
 set yrange [*<0.86:1.46<*]
 set xtics 0.1

@@ -15,7 +15,7 @@ ball_colour = red
 piston_colour = blue
 reach_colour = "#e3ecfb"
 disc_colour = "#dcdcdc"
-shown_time = 25     # of the path and the positions, which would otherwise be too dense
+shown_time = 25     # of the path and the positions; longer curves would be too dense
 
 # ---- The data ----
 stats "orbit-geometry.csv" using (rho = column("rho"), delta = column("delta"), \

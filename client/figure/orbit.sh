@@ -4,14 +4,14 @@
 # sh orbit.sh
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
-: "${delta:=0.3}"              # large, so that ball and piston meet often
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
+: "${delta:=0.3}"              # large, so that ball and piston collide often
 : "${seed:=0}"
 : "${events:=200}"             # of the orbit
 
 into orbit.jsonl ballpiston trace --rho "$rho" --delta "$delta" --seed "$seed" --events "$events"
 
-# The geometry and the start are in the first line, an event is in each other line.
+# The first line contains the geometry and the start; every other line is an event.
 number() { sed -n '1s/.*"'"$1"'":\([^,}]*\).*/\1/p' orbit.jsonl; }
 geometry() {
   echo "rho,delta,lambda,tip"

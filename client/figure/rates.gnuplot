@@ -1,13 +1,14 @@
 # Draws rates.svg. Change it as you like; run it with: gnuplot rates.gnuplot
 #
-# The probability P(t) of at least one event in a window of length t, over t and over the exact
+# The probability P(t) of at least one event in a window of length t, divided by t and by the exact
 # rate, with one standard error, against t in units of the mean free time. As t tends to 0 the ratio
-# tends to 1. The dashed line is a Poisson process of the same rate.
+# tends to 1. The dashed line is a Poisson process with the same rate.
 #   a  all events: ball-piston, ball-wall and piston-wall
 #   b  ball-piston events
 #   c  ball-piston events given the piston's energy
-# One orbit gives the values of a line, so neighbouring points have the same statistical error.
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# All values of a line come from the same orbits. Therefore neighbouring points have nearly the same
+# statistical error.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 # rates.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -15,7 +16,7 @@ load "style.gnuplot"
 measured = "rates.csv"
 set terminal svg size 1200,500 enhanced font font background rgb "white"
 set output "rates.svg"
-aside = 1.12  # c: factor between the times at which points of successive energies stand
+aside = 1.12  # c: the points of successive energies are shifted in time by this factor
 
 # ---- The data ----
 energies = ""

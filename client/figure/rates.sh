@@ -4,15 +4,15 @@
 # sh rates.sh. Time on two cores: quick 3 s, default 25 s, full 4 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"             # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"             # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.2}"
 : "${epsilon:=0.05,0.15,0.25,0.35,0.45}"  # energies of the piston, of the conditional rates
 : "${seed:=0}"                            # of the first orbit; the next orbits have the next seeds
 orbits=$(by_effort 5 5 20)
 events=$(by_effort 40000 400000 1000000)  # of each orbit
 batches=8         # of each orbit; their scatter gives the standard errors
-half_width=0.02   # a conditional rate is that of all energies within epsilon +- half_width
-energies=20       # at which the exact conditional rate is averaged over that interval
+half_width=0.02   # a conditional rate is the rate at all energies within epsilon +- half_width
+energies=20       # the exact conditional rate is averaged over this number of energies
 least=0.0001      # the windows' lengths, in units of the mean free time
 per_decade=4
 lengths=17
@@ -27,8 +27,8 @@ intervals() {
 }
 into rates-intervals.csv intervals
 
-# In equilibrium u = sqrt(2 epsilon) is uniform, so these energies, evenly spaced in u, all have the
-# same weight. `analytic` keeps their order.
+# In equilibrium u = sqrt(2 epsilon) is uniform. Therefore these energies, evenly spaced in u, have
+# equal weights. `analytic` keeps their order.
 list=$(awk -F, -v n="$energies" '{
     for (i = 0; i < n; i++) {
       u = sqrt(2*$2) + (i + 0.5)*(sqrt(2*$3) - sqrt(2*$2))/n
@@ -50,9 +50,9 @@ trace() {
 
 # A window of length t that begins at a uniformly random time of an orbit contains an event with the
 # probability P(t), the sum of min(gap, t) over the gaps between events, divided by the sum of the
-# gaps. The piston's energy is constant during a gap between ball-piston events, so the gaps of one
-# energy give the conditional probability. The rate is P(t)/t; its standard error is that of a ratio
-# of sums over batches. All t have the same gaps, so their errors are not independent.
+# gaps. The piston's energy is constant during a gap between ball-piston events. Therefore the gaps
+# of one energy give the conditional probability. The rate is P(t)/t; its standard error is the
+# error of a ratio of sums over batches. All t use the same gaps: their errors are not independent.
 rates() {
   echo "kind,epsilon,t,rate,standard_error,exact"
   trace | awk -v orbits="$orbits" -v events="$events" -v batches="$batches" \

@@ -1,10 +1,10 @@
 # Draws relative-entropy.svg. Change it as you like; run it with:
 # gnuplot relative-entropy.gnuplot
 #
-# The relative entropy of the ingoing law of first hits to the equilibrium law h^(1), against delta,
-# from four outgoing laws h^(n), at several energies of the piston, with one standard error. Lines
-# are noise floors, the mean that samples from h^(1) itself would give. Below epsilon = 1/4 the
-# histograms have twice as many cells, so the floor is twice as high.
+# The relative entropy of the ingoing law of first hits with respect to the equilibrium law h^(1),
+# against delta, for four outgoing laws h^(n) and several energies of the piston, with one standard
+# error. Lines are noise floors: the mean for samples drawn from h^(1). Below epsilon = 1/4 the
+# histograms have twice as many bins, and the floor is twice as high.
 # relative-entropy.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -13,7 +13,7 @@ set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "relative-entropy.svg"
 measured = "relative-entropy.csv"
 exponents = "0 1 5 10"  # one panel each
-aside = 1.025  # factor between the deltas at which points of successive energies stand
+aside = 1.025  # the points of successive energies are shifted in delta by this factor
 
 # ---- The data ----
 set datafile missing NaN  # joins lines across rows of other energies

@@ -4,10 +4,10 @@
 # hand: sh relative-entropy.sh. Time on two cores: quick 3 s, default 1 min, full 10 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"  # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"  # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=$(by_effort 0.1:0.325:5:log 0.0125:0.325:14:log 0.0125:0.325:14:log)}"
 : "${epsilon:=0.03125,0.125,0.25,0.375,0.46875}"  # energies of the piston
-# First hits of each point, in full the paper's number; the noise floor falls as 1/samples.
+# First hits of each point; --full has the paper's number. The noise floor falls as 1/samples.
 : "${samples:=$(by_effort 30000 100000 1000000)}"
 : "${seed:=0}"
 

@@ -1,13 +1,13 @@
 # Draws relaxation.svg. Change it as you like; run it with: gnuplot relaxation.gnuplot
 #
 # Time is in units of the mean free time between ball-piston collisions. Points are means over
-# orbits of the billiard with one standard error, lines the limit delta -> 0 by the jump process's
-# spectrum.
-#   a  mean energy of the piston from several starts; it tends to 1/6
+# orbits of the billiard, with one standard error. Lines are the limit delta -> 0, from the spectrum
+# of the jump process.
+#   a  mean energy of the piston from several start energies; it tends to 1/6
 #   b  autocorrelation of the piston's energy in equilibrium
-#   c  the difference of a from the limit, from the lowest and the highest start
+#   c  the difference of a from the limit, for the lowest and the highest start energy
 #   d  the difference of b from the limit
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 # relaxation.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -18,7 +18,7 @@ times = "relaxation-times.csv"
 set terminal svg size 1080,840 enhanced font font background rgb "white"
 set output "relaxation.svg"
 least = 1e-5        # b: the axis begins here
-from_highest = 0.1  # c: points from the highest start stand this much to the right of the others
+from_highest = 0.1  # c: shift of the points of the highest start energy to the right
 
 # ---- The data ----
 deltas = ""

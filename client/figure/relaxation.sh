@@ -4,13 +4,13 @@
 # sh relaxation.sh. Time on two cores: quick 2 s, default 25 s, full 4 min.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"         # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"         # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.2,0.1,0.05}"            # of the billiard; the lines are the limit delta -> 0
 : "${epsilon:=0.01,0.125,0.375,0.49}" # energies of the piston at the start
 : "${samples:=$(by_effort 20000 200000 2000000)}"  # orbits from each start, and in equilibrium
 : "${seed:=0}"
 
-# With --epsilon the answer is the mean energy, without it the autocorrelation of the energy.
+# With --epsilon the result is the mean energy, without --epsilon the autocorrelation of the energy.
 relax() {
   ballpiston run energy-relaxation --rho "$rho" --delta "$delta" --model billiard \
     --samples "$samples" --seed "$seed" --resume --format csv-curves "$@"

@@ -1,10 +1,10 @@
 # Draws spectrum.svg. Change it as you like; run it with: gnuplot spectrum.gnuplot
 #
-# Above, the relaxation rates of the jump process: isolated ones (lines), which accumulate at the
-# bottom of a continuum, the values of the total rate f(epsilon) of jumps. Rates above the continuum
-# are not drawn. Below, the autocorrelation of the piston's energy, measured in the billiard, and
-# its limit for rare collisions, whose slope becomes that of the smallest rate. The billiard's tail
-# comes from slow pistons.
+# Above: the relaxation rates of the jump process. Isolated rates (lines) accumulate at the bottom
+# of a continuum, which consists of the values of the total rate f(epsilon) of jumps. Rates above
+# the continuum are not drawn. Below: the autocorrelation of the piston's energy, measured in the
+# billiard, and its limit for rare collisions, which finally decays at the smallest rate. The
+# billiard's tail comes from slow pistons.
 # spectrum.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -15,8 +15,8 @@ rates = "spectrum.csv"
 total = "spectrum-rate.csv"
 measured = "spectrum-billiard.csv"
 continuum_colour = "#e3ecfb"
-lowest = 5e-4      # correlation that is shown
-labelled = 3       # of the isolated rates; the next ones are too close
+lowest = 5e-4      # the smallest correlation on the axis
+labelled = 3       # number of isolated rates with a label; the next rates are too close
 
 # ---- The data ----
 # Every delta, and its mean free time.

@@ -4,7 +4,7 @@
 # sh spectrum.sh. By default it takes half a minute of two cores.
 set -eu
 . ./figure.sh
-: "${rho:=0.529561127988977}"   # the paper's, (sqrt(33) - 2)/(5 sqrt(2))
+: "${rho:=0.529561127988977}"   # the paper's value, (sqrt(33) - 2)/(5 sqrt(2))
 : "${delta:=0.3,0.2,0.1}"       # of the billiard; the spectrum is that of the limit delta -> 0
 : "${samples:=$(by_effort 20000 500000 20000000)}"  # orbits
 : "${seed:=0}"

@@ -1,18 +1,18 @@
 # Draws speed-accuracy.svg. Change it as you like; run it with: gnuplot speed-accuracy.gnuplot
 #
-# Work-precision diagrams of every method, from speed-accuracy.csv, which the program
-# method_comparison writes (speed-accuracy.sh has the command).
+# Work-precision diagrams of every method, from speed-accuracy.csv. The program method_comparison
+# writes this file (speed-accuracy.sh contains the command).
 #   a, b  relative error of the conditional mean free time, against time and against wall hits
 #   c     error of the ingoing law of first hits, as a Kullback-Leibler divergence
 #   d     wall hits until an orbit leaves the high-precision orbit, against the time of a hit
 #   e     relative error of the energy's relaxation time, by the billiard and by the limit
-#         delta -> 0, for the largest delta whose bias of the limit is resolved (at most two)
+#         delta -> 0, for the largest deltas (at most two) that resolve the bias of the limit
 #   f     relative error of the heat current of a gas of one cell between two reservoirs
 # A line is the expected error, the root of sigma^2 + bias^2. sigma is the statistical error
 # of a run. bias is the deviation of the method's longest run if it exceeds three statistical
 # errors, else 0. An error bar is one standard error of the error. Single precision and the
-# reference with 64 bits are drawn in d alone: their other lines would almost coincide with those of
-# double precision.
+# reference with 64 bits are drawn only in d: in the other panels their lines would almost coincide
+# with the lines of double precision.
 # Panels without data are left out.
 
 # ---- Settings ----
@@ -32,11 +32,11 @@ orbit_titles = titles." 'lanes, single' 'reference, single' '64 bits'"
 orbit_colours = method_colours." #56b4e9 #e69f00 #cc79a7"
 
 delta_colours = "#440154 #2a788e"
-fewest_samples = 64   # errors estimated from fewer are mostly chance themselves: not drawn
-fewest_orbits = 256   # likewise, in e
-label_at = 1.5        # a label stands right of the end of its line, by this factor
-room = 150            # for the labels, right of the longest run, as a factor
-line_of_text = 0.062  # as a part of an axis
+fewest_samples = 64   # errors from fewer samples are too uncertain and are not drawn
+fewest_orbits = 256   # the same for e
+label_at = 1.5        # a label is right of the end of its line, by this factor
+room = 150            # space for the labels, right of the longest run, as a factor
+line_of_text = 0.062  # height of a line of text, as a share of an axis
 
 # ---- Functions ----
 min(x, y) = x < y ? x : y
@@ -53,8 +53,8 @@ duration(s) = s < 0.9995e-6 ? in(s/1e-9, "ns") : s < 0.9995e-3 ? in(s/1e-6, "µs
               s < 0.9995 ? in(s/1e-3, "ms") : in(s, "s")
 in(count, unit) = sprintf(count < 9.95 ? "%.1f " : "%.0f ", count).unit
 
-# Labels that do not overlap. The labels should be at the heights y[1] ... y[m]; label(r) is the
-# r-th from above, and spread(r) is its height, at least one line of text below the label before.
+# Labels that do not overlap. y[1] ... y[m] are the wanted heights of the labels. label(r) is the
+# r-th label from above. spread(r) is its height, at least one line of text below the label r - 1.
 rank(j) = 1 + sum [k=1:m] (y[k] > y[j] || (y[k] == y[j] && k < j))
 label(r) = sum [j=1:m] (rank(j) == r ? j : 0)
 spread(r) = r == 1 ? y[label(1)] : min(y[label(r)], spread(r - 1)/gap)
@@ -64,7 +64,7 @@ gap_of(low, high) = (high/low)**line_of_text
 quantity(q) = strcol("quantity") eq q
 has(list, item) = strstrt(list." ", " ".item." ") > 0
 
-# Curves, each a method at a time step (as method@step).
+# The curves. Each curve is a method at a time step, written as method@step.
 curves = ""
 deltas = ""
 gas_delta = ""
@@ -92,7 +92,7 @@ drawn(i) = style(i) > 0 && style(i) <= words(methods)
 in_curve(i, x) = word(curves, i) eq name(0) ? x : NaN
 shown(x) = column("samples") >= fewest_samples ? x : NaN
 
-array work[n]    # of the longest run of each curve; 0: no run
+array work[n]    # work of the longest run of each curve; 0: no run
 array hits[n]
 array value[n]
 array error[n]
@@ -147,8 +147,9 @@ do for [panel in has_gas ? "a b c f" : "a b c"] {
   stats data using (of_panel(shown(positive(column(by))))) name "work" nooutput
   stats data using (of_panel(shown(positive(column("own_error"))))) name "chance" nooutput
   highest = chance_max
-  # Against time each line has a name. Against hits, all methods without a bias have one line: its
-  # name stands at the end of the vector lanes, or of another method if there are no lanes.
+  # Against time each line has a name. Against hits, all methods without a bias have the same line.
+  # Its name is at the end of the line of the vector lanes, or of another method if there are no
+  # lanes.
   by_hits = by eq "wall_hits"
   common = 0
   do for [i=1:n] {
@@ -211,7 +212,7 @@ do for [panel in has_gas ? "a b c f" : "a b c"] {
 unset label 1
 
 # ---- d: single orbits ----
-# The longest runs alone: the cost of a hit and the horizon do not depend on the number of orbits.
+# Only the longest runs: the cost of a hit and the horizon do not depend on the number of orbits.
 panel = "d"
 unset logscale
 set xrange [*:*]
@@ -245,7 +246,7 @@ set title "{/:Bold d}  single orbits" offset 0,-0.5
 set xlabel "time of a wall hit / ns" offset 0,0.4
 set ylabel "wall hits until the orbit is wrong" offset 0.5,0
 set arrow 1 from graph 0,first 0 to graph 1,first 0 nohead lw 1 lc rgb grey
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 plot for [i=1:n] $orbits using (of_curve(i, column("x"))):(column("y") - column("error")): \
        (0):(2*column("error")) with vectors nohead lw 1.2 lc rgb colour(i), \
      for [i=1:n] $orbits using (of_curve(i, column("x"))):"y" \
@@ -258,8 +259,8 @@ plot for [i=1:n] $orbits using (of_curve(i, column("x"))):(column("y") - column(
 unset arrow 1
 
 # ---- e: relaxation times ----
-# The rows limit-floor give for each delta the bias of the limit, or an upper bound of it, and the
-# work at which the billiard is as exact.
+# For each delta the rows limit-floor contain the bias of the limit, or an upper bound of it, and
+# the work at which the billiard has the same error.
 d = words(deltas)
 if (d > 0) {
   panel = "e"
@@ -301,7 +302,7 @@ if (d > 0) {
   lowest = 0.3*chance_min
   highest = 3*chance_max
 
-  # The labels at the right: of each delta the billiard and the limit.
+  # The labels at the right: the billiard and the limit for each delta.
   c_max = words(chosen)
   array y[2*c_max]
   array last_error[c_max]

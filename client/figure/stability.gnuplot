@@ -1,9 +1,9 @@
 # Draws stability.svg. Change it as you like; run it with: gnuplot stability.gnuplot
 #
-# Failures per 100 starts of every method (columns) in every situation (rows). Counted together are
-# escapes, negative times, loops, hits after which the ball still flies inward, missed and phantom
+# Failures per 100 starts of every method (columns) in every situation (rows). Failures are escapes,
+# negative times, loops, hits after which the ball still flies into the wall, missed and phantom
 # hits of the piston, and pistons beyond their walls. One start can fail several times. A cell is
-# empty where a method was not run.
+# empty if the method was not run in the situation.
 # stability.sh lists the commands that write the data.
 
 # ---- Settings ----
@@ -16,8 +16,8 @@ naive = "'nearest root' 'nearest root, no threshold' 'approaching disc' 'unit sp
 'fixed steps of 1e-3'"
 methods = engines." ".naive
 row_height = 25      # in pixels
-left = 415           # width of the rows' names
-top = 190            # height of the columns' names
+left = 415           # width of the names of the rows
+top = 190            # height of the names of the columns
 cell_font = ",12"
 name_font = ",13"
 
@@ -26,13 +26,13 @@ column_of(m) = sum [k=1:words(methods)] (word(methods, k) eq m ? k : 0)
 sections = 0
 section = ""
 rows = 0
-# A section has a line for its name above its rows.
+# Each section has a line with its name above its rows.
 note(_) = (sections = sections + (strcol("section") eq section ? 0 : 1), \
            section = strcol("section"), rows = column("row"), 1)
 stats data using (note(0)) nooutput
 lines = rows + sections
 
-# The lines of rows and of sections' names, from above.
+# The lines of the rows and of the names of sections, from above.
 array line[rows]
 array name[rows]
 array first_of[rows]   # the section's name, if the row is its first

@@ -1,12 +1,12 @@
 # Failures of all engines and of naive methods in the situations where methods fail
 #
 # Run by `ballpiston figure stability --out DIR`, or by hand: sh stability.sh. It needs no server:
-# the program `stability` counts. With --full it takes some ten minutes of one core, else it runs a
-# thousandth of the starts.
+# the program `stability` counts the failures. With --full it takes about ten minutes on one core,
+# else it runs a thousandth of the starts.
 set -eu
 . ./figure.sh
 
-# Its progress, on standard error, is only for a terminal.
+# The program's progress is shown only if standard error is a terminal.
 count() {
   quick=$(by_effort --quick --quick "")
   if [ -t 2 ]; then
@@ -18,8 +18,8 @@ count() {
 }
 into stability.md count
 
-# The tables "All counts" of stability.md, separated by tabs because names have commas, with the sum
-# of all kinds of failures. A case stands only in the first row of its block.
+# The tables "All counts" of stability.md with the sum of all kinds of failures. Tabs separate the
+# cells, because names contain commas. Only the first row of a block contains the case.
 counts() {
   printf 'section\trow\tcase\tmethod\tstarts\tfailures\n'
   awk -F ' *[|] *' '

@@ -4,7 +4,7 @@ set datafile separator comma
 set datafile columnheaders
 font = "Helvetica,Arial,sans-serif,18"
 
-# Colours that are dark enough on white and that colour-blind readers can tell apart.
+# Colours that are dark enough on white and that colour-blind readers can distinguish.
 blue = "#3b4cc0"
 green = "#1b9e77"
 orange = "#d95f02"

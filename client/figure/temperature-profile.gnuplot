@@ -1,8 +1,8 @@
 # Draws temperature-profile.svg. Change it as you like; run it with:
 # gnuplot temperature-profile.gnuplot
 #
-# Temperatures of balls and pistons along chains of N cells between two reservoirs, against x/N, by
-# the jump process (the limit delta -> 0) and by the billiard. Where the conductivity grows as
+# Temperatures of balls and pistons along chains of N cells between two reservoirs, against x/N,
+# from the jump process (the limit delta -> 0) and from the billiard. If the conductivity grows as
 # sqrt(T), T^(3/2) falls linearly. Lower panel: the difference from that line.
 # temperature-profile.sh lists the commands that write the data.
 
@@ -11,7 +11,7 @@ load "style.gnuplot"
 set terminal svg size 960,840 enhanced font font background rgb "white"
 set output "temperature-profile.svg"
 measured(model) = "temperature-profile-".model.".csv"
-aside = 0.007  # by how much the billiard's points are moved to the right, so that both are seen
+aside = 0.007  # shift of the billiard's points to the right, so that all points are visible
 
 # ---- The data ----
 
@@ -30,7 +30,7 @@ at(i, model, piston) = of(i, piston) ? part(0) + (model eq "billiard" ? aside : 
 error(_) = strcol("standard_error") eq "" ? 0 : column("standard_error")
 temperature(_) = column("value")
 excess(_) = column("value") - line(part(0))
-# Filled points are those of the jump process; balls are round, pistons square.
+# Points of the jump process are filled. Balls are round, pistons square.
 shape(model, piston) = (piston ? 4 : 6) + (model eq "markov" ? 1 : 0)
 size(piston) = piston ? 0.62 : 0.7
 
@@ -61,7 +61,7 @@ plot x < 0 || x > 1 ? NaN : line(x) with lines lw 2 lc rgb black title "linear T
      NaN with points pt 4 ps 0.75 lw 1.3 lc rgb "#606060" title "pistons, billiard"
 
 # ---- The difference, with one standard error ----
-# Error bars are drawn as vectors: gnuplot leaves white rings between its own and their points.
+# Error bars are drawn as vectors: the error bars of gnuplot leave white rings around the points.
 set tmargin screen 0.43
 set bmargin screen 0.105
 set format x "%g"

@@ -19,7 +19,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using Cells = std::vector<std::string>;
 
-// The numbers of a message are its columns, in the proto's order.
+// Each number field of a message is a column, in the proto's order.
 std::vector<const FieldDescriptor*> Columns(const google::protobuf::Descriptor& descriptor) {
   std::vector<const FieldDescriptor*> columns;
   for (int i = 0; i < descriptor.field_count(); ++i) {

@@ -1,13 +1,15 @@
 // Prints the closed forms.
 //
-//   table   for each (rho, delta) its quantities, then a row for each epsilon and for each beta and
+//   table   for each (rho, delta) its quantities, then a row for each epsilon, each beta and each
 //           temperature
-//   json    {"points": [PairAnalytics, ...]};   jsonl: one of them a line
-//   csv     for each pair one row for each epsilon, then one for each beta and temperature (one row
-//           if there is none of them), columns named as in the proto, cells empty where a row has
-//           no such value; the kernel is in the other formats only
+//   json    {"points": [PairAnalytics, ...]}
+//   jsonl   one PairAnalytics per line
+//   csv     for each (rho, delta) one row for each epsilon, then one row for each beta and each
+//           temperature; a single row if none of these is given. The columns have the proto's
+//           names. A cell is empty if its row has no such value. CSV does not contain the kernel.
 //
-// All numbers read back as the same double, but in the table: 15 significant digits.
+// The table has 15 significant digits. In the other formats all numbers read back as the same
+// double.
 #ifndef BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_
 #define BALLPISTON_CLIENT_OUTPUT_ANALYTIC_OUTPUT_H_
 
@@ -19,7 +21,7 @@
 
 namespace ballpiston::client {
 
-// `outgoing_epsilon` as in the request: the energies at which the kernel was evaluated.
+// `outgoing_epsilon`: the request's energies, at which the kernel was evaluated.
 void PrintAnalytics(const v1::EvaluatePairsResponse& response,
                     const std::vector<double>& outgoing_epsilon, Format format, std::ostream& out);
 

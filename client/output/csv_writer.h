@@ -1,5 +1,5 @@
-// Results as CSV: a header, then one row for each estimate, for each bin of the histograms, or for
-// each point of the curves (result_writer.h has the columns).
+// Results as CSV: a header, then one row for each estimate, each bin of the histograms, or each
+// point of the curves. result_writer.h lists the columns.
 #ifndef BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
 #define BALLPISTON_CLIENT_OUTPUT_CSV_WRITER_H_
 
@@ -10,7 +10,7 @@
 
 namespace ballpiston::client {
 
-// `out` has to outlive the writers.
+// `out` must outlive the writers.
 std::unique_ptr<ResultWriter> NewEstimateCsvWriter(std::ostream& out);
 std::unique_ptr<ResultWriter> NewHistogramCsvWriter(std::ostream& out);
 std::unique_ptr<ResultWriter> NewCurveCsvWriter(std::ostream& out);

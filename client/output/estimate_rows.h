@@ -1,4 +1,4 @@
-// The estimates of a point as rows of a table, and the fields of a row that may be absent.
+// The estimates of a point as rows of a table, and the optional fields of a row.
 #ifndef BALLPISTON_CLIENT_OUTPUT_ESTIMATE_ROWS_H_
 #define BALLPISTON_CLIENT_OUTPUT_ESTIMATE_ROWS_H_
 
@@ -9,7 +9,7 @@
 
 namespace ballpiston::client {
 
-// The estimates in their order, then the divergence and its noise floor where they exist.
+// The estimates in their order, then the divergence and its noise floor if the point has them.
 inline std::vector<v1::Estimate> EstimatesOf(const v1::PointResult& point) {
   std::vector<v1::Estimate> rows(point.estimates().begin(), point.estimates().end());
   if (!point.has_kl_divergence()) return rows;
@@ -24,7 +24,7 @@ inline std::vector<v1::Estimate> EstimatesOf(const v1::PointResult& point) {
   return rows;
 }
 
-// A field of an estimate that may be absent.
+// An optional field of an estimate.
 struct Field {
   bool (v1::Estimate::*is_there)() const;
   double (v1::Estimate::*value)() const;

@@ -32,7 +32,7 @@ std::vector<std::string> CellsOf(const v1::EnsembleJob& job) {
           TimeText(job.has_end_time(), job.end_time())};
 }
 
-// "expires in 3 days", "expires in 5 hours": the time that is left, rounded down.
+// "expires in 3 days", "expires in 5 hours": the remaining time, rounded down.
 std::string ExpiryText(absl::Duration left) {
   const double hours = std::floor(absl::ToDoubleHours(left));
   if (hours < 1) return "expires within an hour";
@@ -40,7 +40,7 @@ std::string ExpiryText(absl::Duration left) {
   return absl::StrCat("expires in ", Counted(std::floor(hours / 24), "day"));
 }
 
-// The cell of the column results; empty if the results are kept for more than a week.
+// The cell in the column `results`; empty if the results are kept for more than a week.
 std::string ResultsText(const v1::EnsembleJob& job, absl::Time now) {
   constexpr absl::Duration kSoon = absl::Hours(7 * 24);
   if (job.results_expired()) return "expired";

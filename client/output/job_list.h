@@ -1,7 +1,7 @@
-// Prints jobs: a table, {"jobs": [...]}, one job a line, or CSV. The table has a column for the
-// principal if there is more than one, a column for the priority if any job has one other than 0,
-// and a column for results if any are pinned, have expired or will expire within a week. CSV always
-// has these columns.
+// Prints jobs as a table, as {"jobs": [...]}, as one job per line, or as CSV. The table has a
+// column for the principal if the jobs have different principals, a column for the priority if a
+// priority is not 0, and a column for the results if some results are pinned, have expired or will
+// expire within a week. CSV always has these columns.
 #ifndef BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 #define BALLPISTON_CLIENT_OUTPUT_JOB_LIST_H_
 
@@ -14,11 +14,11 @@
 
 namespace ballpiston::client {
 
-// `now`: the table shows how long results are still kept.
+// The table shows how long results are still kept, counted from `now`.
 void PrintJobs(const std::vector<v1::EnsembleJob>& jobs, absl::Time now, Format format,
                std::ostream& out);
 
-// The view to request: with grids if the format shows them.
+// The view to request: it includes the grids if the format shows them.
 v1::ListEnsembleJobsRequest::View JobViewFor(Format format);
 
 }  // namespace ballpiston::client

@@ -1,6 +1,7 @@
-// Messages as JSON: the proto's own field names, one line, and plain fields printed even where they
-// have their default value, so that no column ever vanishes. Doubles read back as the same double.
-// 64-bit integers are strings, as proto JSON has it. The same message gives the same bytes.
+// Messages as JSON, one line each, with the proto's field names. Plain fields are printed even if
+// they have their default value, so that all messages have the same columns. Doubles read back as
+// the same double. 64-bit integers are strings, as in proto JSON. The same message gives the same
+// bytes.
 #ifndef BALLPISTON_CLIENT_OUTPUT_JSON_H_
 #define BALLPISTON_CLIENT_OUTPUT_JSON_H_
 
@@ -15,13 +16,13 @@ namespace ballpiston::client {
 
 std::string Json(const google::protobuf::Message& message);
 
-// One message a line.
+// One message per line.
 template <typename Messages>
 void PrintJsonLines(const Messages& messages, std::ostream& out) {
   for (const auto& message : messages) out << Json(message) << '\n';
 }
 
-// {"key": [...]}, one message a line.
+// {"key": [...]}, one message per line.
 template <typename Messages>
 void PrintJsonDocument(absl::string_view key, const Messages& messages, std::ostream& out) {
   out << "{\"" << key << "\": [";

@@ -1,9 +1,10 @@
-// Why which model answers, below a table: each reason once, however many points share it.
+// Prints, below a table, the reason why each model was chosen. Each reason is printed once, even if
+// several points share it.
 //
 //   closed-form: exact                                          one reason for all points
 //
-//   markov (rho 0.53, delta 0.0125): off by 1.2e-03             several: with the first point
-//   billiard (rho 0.53, delta 0.1 and 2 more points): ...       of each
+//   markov (rho 0.53, delta 0.0125): off by 1.2e-03             several reasons: each with its
+//   billiard (rho 0.53, delta 0.1 and 2 more points): ...       first point
 #ifndef BALLPISTON_CLIENT_OUTPUT_MODEL_REASONS_H_
 #define BALLPISTON_CLIENT_OUTPUT_MODEL_REASONS_H_
 
@@ -17,16 +18,16 @@
 
 namespace ballpiston::client {
 
-// As users write it; "none" if no model answers.
+// The model's name on the command line; "none" if no model can be used.
 std::string ModelName(v1::EnsembleSpec::Model model);
 
 class ModelReasons {
  public:
-  // Nothing if there is no reason: the model was asked for.
+  // Adds nothing if there is no reason: then the user chose the model.
   void Add(const v1::PointParameters& parameters, v1::EnsembleSpec::Model model,
            const std::string& reason);
 
-  // In the order of their first points.
+  // Prints the reasons in the order of their first points.
   void Print(std::ostream& out) const;
 
  private:

@@ -12,11 +12,12 @@ namespace {
 
 constexpr double kWholeBelow = 1e15;
 
-// Outside these a number is written with an exponent.
+// A number outside these limits is written with an exponent.
 constexpr double kSmallest = 1e-4;
 constexpr double kLargest = 1e7;
 
-// Digits before rounding may carry (0.0996 -> 0.100): harmless, one digit more than needed.
+// The exponent before rounding. Rounding may carry (0.0996 -> 0.100): then the text has one digit
+// more than needed, which does no harm.
 int DecimalExponent(double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); }
 
 std::string Significant(double x) { return absl::StrFormat("%.6g", x); }
@@ -29,7 +30,7 @@ std::string Scientific(double x, int last_digit) {
   return absl::StrFormat("%.*e", std::max(0, DecimalExponent(x) - last_digit), x);
 }
 
-// `last_digit` is the power of ten of the last digit shown.
+// `last_digit` is the power of ten of the last printed digit.
 std::string RoundedAt(double x, int last_digit, bool scientific) {
   return scientific ? Scientific(x, last_digit) : Fixed(x, std::max(0, -last_digit));
 }

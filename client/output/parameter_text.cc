@@ -21,7 +21,7 @@ std::string ShapeOf(const Point& point, Digits) { return point.cells(); }
 
 struct OptionalParameter {
   const char* name;
-  std::string (*text)(const Point& point, Digits digits);  // empty if it is absent
+  std::string (*text)(const Point& point, Digits digits);  // empty if the point lacks it
   int (v1::Grid::*size)() const;                           // of the grid's list
   bool in_every_csv = false;
 };
@@ -68,7 +68,7 @@ std::string ParameterText(const v1::PointParameters& parameters) {
 ParameterColumns::ParameterColumns(const v1::Grid& grid) {
   for (size_t i = 0; i < kOptionalParameters; ++i) {
     const OptionalParameter& parameter = kOptional[i];
-    // A copy, because GCC 12's sanitizer of bounds misreads a call through the array's element.
+    // A copy, because the bounds sanitizer of GCC 12 wrongly rejects a call through the array.
     const auto size = parameter.size;
     shown_[i] = parameter.in_every_csv || (grid.*size)() > 0;
   }

@@ -13,11 +13,11 @@ namespace ballpiston::client {
 // epsilon, exponent, cells, temperature, hot, cold.
 inline constexpr size_t kOptionalParameters = 6;
 
-// rho 0.53, delta 0.2, epsilon 0.25, exponent 1; ten digits each.
+// "rho 0.53, delta 0.2, epsilon 0.25, exponent 1", with ten digits each.
 std::string ParameterText(const v1::PointParameters& parameters);
 
-// For CSV: rho, delta, epsilon and exponent in every file; cells, temperature, hot and cold if the
-// question's grid has them. Exact; empty if absent.
+// The parameters in CSV: rho, delta, epsilon and exponent in every file; cells, temperature, hot
+// and cold if the specification's grid has them. Numbers are exact; absent parameters are empty.
 class ParameterColumns {
  public:
   explicit ParameterColumns(const v1::Grid& grid);
@@ -29,10 +29,11 @@ class ParameterColumns {
   std::array<bool, kOptionalParameters> shown_;
 };
 
-// For tables: rho, delta and each other parameter that some point has; ten digits each.
+// The parameters in tables: rho, delta, and every other parameter that at least one point has, with
+// ten digits each.
 class ParametersShown {
  public:
-  void Include(const v1::PointParameters& parameters);  // what it has is shown from now on
+  void Include(const v1::PointParameters& parameters);  // adds this point's parameters
   std::vector<std::string> Titles() const;
   std::vector<std::string> Cells(const v1::PointParameters& parameters) const;
 

@@ -66,13 +66,13 @@ std::string BudgetText(const google::protobuf::Duration& budget) {
   return absl::StrFormat("budget %.6g s", seconds);
 }
 
-// Empty if nothing was said: the server has its own default.
+// Empty if the user gave no target: the server then uses its default.
 std::string TargetText(const v1::Target& target) {
   Cells texts;
   if (!target.estimate().empty()) texts.push_back(absl::StrCat("estimate ", target.estimate()));
-  if (target.has_samples()) texts.push_back(absl::StrCat(target.samples(), " samples a point"));
+  if (target.has_samples()) texts.push_back(absl::StrCat(target.samples(), " samples per point"));
   if (target.has_collisions()) {
-    texts.push_back(absl::StrCat(target.collisions(), " collisions a point"));
+    texts.push_back(absl::StrCat(target.collisions(), " collisions per point"));
   }
   if (target.has_tolerance()) {
     texts.push_back(absl::StrFormat("tolerance %.6g", target.tolerance()));
@@ -88,7 +88,7 @@ std::string Heading(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobRespo
   return absl::StrCat(absl::StrJoin(texts, ", "), "  (work of one core, relative errors)");
 }
 
-// In full as long as that can be read at a glance; 4.1e+08 then.
+// Large counts are shortened: 4.1e+08.
 std::string SampleCountText(double count) {
   constexpr double kReadable = 1e7;
   return count < kReadable ? absl::StrFormat("%.0f", count) : absl::StrFormat("%.1e", count);

@@ -1,19 +1,18 @@
-// Prints a plan: the ladder of models for each point of a question.
+// Prints a plan: the ladder of models for each point of a specification.
 //
-//   table   for each point its ladder, cheapest model first, a mark at the one that would answer,
-//   and
-//           why; for more than kMostLadders points one row each, of the model that would answer;
-//           then the cost of all
+//   table   for each point its models, cheapest first, with a mark at the chosen model and the
+//           reason for the choice. With more than kMostLadders points: one row per point, with the
+//           chosen model. Then the cost of all points.
 //   json    the response
-//   jsonl   one point a line
-//   csv     a row for each point and model:
+//   jsonl   one point per line
+//   csv     one row for each point and model:
 //           rho,delta,epsilon,exponent,model,chosen,answers,samples,work,statistical_error,
-//           model_error,reason; after exponent the other parameters of the question
+//           model_error,reason; after exponent the other parameters of the specification
 //           (parameter_text.h)
 //
-// Work is in seconds of one core's time (a table gives its units), errors are relative. What is not
-// known stays empty. In CSV the chosen model's reason tells first why it is chosen, then, after a
-// semicolon, what its error is known from.
+// Work is in seconds of one core (a table prints the units). Errors are relative. Unknown values
+// are empty. In CSV the reason of the chosen model has two parts: why it was chosen and, after a
+// semicolon, the source of its error.
 #ifndef BALLPISTON_CLIENT_OUTPUT_PLAN_OUTPUT_H_
 #define BALLPISTON_CLIENT_OUTPUT_PLAN_OUTPUT_H_
 
@@ -25,9 +24,9 @@
 
 namespace ballpiston::client {
 
-inline constexpr int kMostLadders = 8;  // that a table shows in full
+inline constexpr int kMostLadders = 8;  // for more points a table has one row per point
 
-// `spec` is what was asked: for a table's heading and the columns of CSV.
+// `spec` is the planned specification. It sets the heading of a table and the columns of CSV.
 void PrintPlan(const v1::EnsembleSpec& spec, const v1::PlanEnsembleJobResponse& plan, Format format,
                std::ostream& out);
 

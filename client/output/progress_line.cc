@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kWidestBar = 30;
 constexpr size_t kNarrowestBar = 6;
 
-// [####----], `width` characters in all.
+// [####----], `width` characters wide.
 std::string Bar(double fraction, size_t width) {
   const size_t inside = width - 2;
   const double filled = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(inside);
@@ -30,7 +30,7 @@ std::string Rate(double rate) {
       " samples/s");
 }
 
-// With the closed forms' short names: tau_ball_piston for mean_free_time_ball_piston.
+// Uses the short names of the closed forms: tau_ball_piston for mean_free_time_ball_piston.
 std::string Estimate(const v1::Estimate& estimate) {
   std::optional<double> error;
   if (estimate.has_standard_error()) error = estimate.standard_error();

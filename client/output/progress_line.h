@@ -11,8 +11,8 @@
 
 namespace ballpiston::client {
 
-// At most `width` characters. What comes last in the line is left out first if it does not fit; the
-// bar takes what the text leaves.
+// At most `width` characters. If the text is too long, its last parts are left out. The bar fills
+// the rest of the line.
 //   [######--------] 12/177 points  1.2e6 samples/s  0:35 left  tau_conditional 21.63 +- 0.12
 std::string ProgressLine(const ProgressMeter& meter,
                          const std::optional<v1::PointResult>& point_in_work, size_t width);

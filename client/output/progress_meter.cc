@@ -10,7 +10,8 @@ double ProgressMeter::FractionOf(const v1::JobProgress& progress) {
 
 void ProgressMeter::Update(const v1::JobProgress& progress, absl::Time now) {
   now_ = {progress, now};
-  // Fewer samples than at first: a server died after its last checkpoint. Start again.
+  // Fewer samples than at first: a server died and lost the samples since its last checkpoint. The
+  // means start again.
   if (!first_ || progress.samples() < first_->progress.samples()) first_ = now_;
 }
 

@@ -1,7 +1,8 @@
-// How fast a job advances and how long it still takes, from the snapshots seen so far.
+// The speed of a job and its remaining time, from the snapshots received so far.
 //
-// Rates are means since the first snapshot of this watch: a job that ran before, or lost the work
-// since its last checkpoints with a server, does not distort them. Time is passed in.
+// Rates are means since the first snapshot of this watch. They start again if a server died and
+// lost the work since its last checkpoint. Therefore work before the watch and lost work do not
+// distort them. The caller passes the time.
 #ifndef BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
 #define BALLPISTON_CLIENT_OUTPUT_PROGRESS_METER_H_
 
@@ -17,9 +18,9 @@ class ProgressMeter {
   void Update(const v1::JobProgress& progress, absl::Time now);
 
   const v1::JobProgress& progress() const { return now_.progress; }
-  // The share of the work done: the server's prediction, else the share of finished points.
+  // The share of the work that is done: predicted by the server, else the share of finished points.
   double Fraction() const { return FractionOf(now_.progress); }
-  // Empty until something was done during the watch.
+  // Empty until the job has computed samples during the watch.
   std::optional<double> SamplesPerSecond() const;
   std::optional<absl::Duration> TimeLeft() const;
 

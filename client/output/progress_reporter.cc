@@ -64,7 +64,7 @@ void ProgressReporter::OnDisconnect(const absl::Status&, absl::Duration pause) {
   const std::lock_guard lock(mutex_);
   if (style_ != ProgressStyle::kBar) return;
   err_ << kClearLine
-       << absl::StrFormat("connection lost, trying again in %.1f s", absl::ToDoubleSeconds(pause))
+       << absl::StrFormat("connection lost, retrying in %.1f s", absl::ToDoubleSeconds(pause))
        << std::flush;
   drawn_ = true;
 }
@@ -82,7 +82,7 @@ void ProgressReporter::Note(absl::string_view text) {
   WriteLines(text);
 }
 
-// The lock is not released. Another thread may hold it while it writes to a stopped terminal.
+// Does not release the lock. Another thread may hold it while it writes to a stopped terminal.
 void ProgressReporter::Farewell(absl::string_view text) {
   if (mutex_.try_lock_for(std::chrono::milliseconds(100))) WriteLines(text);
 }
@@ -90,8 +90,8 @@ void ProgressReporter::Farewell(absl::string_view text) {
 void ProgressReporter::Show(const v1::StatisticsSnapshot& changes) {
   if (style_ == ProgressStyle::kJson) WriteJson(changes, "");
   if (style_ != ProgressStyle::kBar) return;
-  // Some terminals wrap after the last column, and terminals show ^C for each press. The line
-  // leaves room for both, so that it can still be cleared.
+  // Some terminals wrap after the last column, and terminals print ^C for each Ctrl-C. The free
+  // columns prevent a second line, which could not be cleared.
   constexpr size_t kFreeColumns = 5;
   err_ << '\r'
        << ProgressLine(meter_, point_, std::max(TerminalWidth(), kFreeColumns + 1) - kFreeColumns)
@@ -99,7 +99,7 @@ void ProgressReporter::Show(const v1::StatisticsSnapshot& changes) {
   drawn_ = true;
 }
 
-// The server sends unfinished points newest first, and finished ones in the order of finishing.
+// The server sends unfinished points newest first, and finished points in the order of finishing.
 void ProgressReporter::WriteJson(const v1::StatisticsSnapshot& changes, absl::string_view note) {
   v1::WatchProgress line;
   line.set_job(job_.name());

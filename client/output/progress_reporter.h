@@ -1,9 +1,10 @@
 // Shows the progress of a watched job on standard error.
 //
-//   bar   one line, redrawn: bar, points, samples a second, time left, and the running estimate of
+//   bar   one line, redrawn: bar, points, samples per second, time left, and the current estimate
+//   of
 //         the point that changed last
-//   json  one v1.WatchProgress per line, with the points that changed: unfinished ones first, the
-//         newest of each kind first
+//   json  one v1.WatchProgress per line, with the points that changed: the unfinished points first,
+//         then the finished points; within each group the newest first
 //   none  only notes
 //
 // Thread-safe: the thread that handles Ctrl-C calls Farewell while another thread redraws the bar.
@@ -28,7 +29,7 @@ enum class ProgressStyle { kAuto, kBar, kJson, kNone };
 
 class ProgressReporter {
  public:
-  // kAuto is a bar if standard error is a terminal, else none. `name` is the job's; `err` has to
+  // kAuto is kBar if standard error is a terminal, else kNone. `name` is the job's name. `err` must
   // outlive the reporter.
   ProgressReporter(ProgressStyle style, std::ostream& err, absl::string_view name);
 
@@ -38,7 +39,7 @@ class ProgressReporter {
   void OnEnd();  // the watch is over; only notes follow
   // Lines for the user that are not progress; every style shows them.
   void Note(absl::string_view text);
-  // The last words before the program ends: clears the bar, which is not drawn again.
+  // Clears the bar and prints the last message before the program ends. The bar is not drawn again.
   void Farewell(absl::string_view text);
 
  private:
@@ -50,8 +51,8 @@ class ProgressReporter {
   std::ostream& err_;
   std::timed_mutex mutex_;
   v1::EnsembleJob job_;
-  bool named_ = false;  // the job
-  bool drawn_ = false;  // a line that has no end yet
+  bool named_ = false;  // the first OnJob has run
+  bool drawn_ = false;  // the cursor is at the end of a line that must be cleared
   ProgressMeter meter_;
   std::optional<v1::PointResult> point_;
 };

@@ -53,11 +53,11 @@ class JsonWriter : public ResultWriter {
   bool first_ = true;
 };
 
-// Columns that a table has only if some estimate has them.
+// Columns that a table has only if at least one estimate has the value.
 struct ExtraColumn {
   const char* title;
   Field field;
-  // In the places of the estimate beside it; an error has its own two digits.
+  // An error is printed with two digits; another value ends at the estimate's decimal place.
   bool is_error;
 };
 constexpr ExtraColumn kExtraColumns[] = {{"model_error", kModelError, true},
@@ -70,7 +70,7 @@ std::string ExtraCell(const ExtraColumn& column, const v1::Estimate& row) {
   return column.is_error ? TwoDigits(*x) : Measured(row.value(), kError.Of(row), x).exact;
 }
 
-// Keeps the rows until the end, when the columns' widths are known.
+// Keeps the rows until the end, when the widths of the columns are known.
 class TableWriter : public ResultWriter {
  public:
   explicit TableWriter(std::ostream& out) : out_(out) {}

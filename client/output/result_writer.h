@@ -1,23 +1,22 @@
 // Prints the results of a job, point by point, in one of the formats.
 //
 //   table   a heading with experiment and model, then one row for each point and estimate
-//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult; one point a
-//           line
-//   jsonl   one point a line
+//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult, one point per line
+//   jsonl   one point per line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
-//           model_error,noise_floor,limit; after exponent the other parameters of the question
+//           model_error,noise_floor,limit; after exponent the other parameters of the grid
 //           (parameter_text.h)
 //   csv-histograms  the same first columns up to samples, then name,sigma,time,lower,upper,count,
 //           density,exact_density; one row for each bin
 //   csv-curves  the same first columns up to samples, then name,time,position,value,
 //           standard_error,limit; one row for each point of a curve
 //
-// In tables and CSV a Kullback-Leibler divergence becomes two rows of its own, kl_divergence and
-// kl_noise_floor. What does not exist stays empty; a table has the columns model, model_error,
-// noise_floor and limit only where they tell something, and below it the reasons for the models
-// (model_reasons.h). A table has a line for each remark, below the estimates of its point; CSV has
-// no remarks. Tables and csv have neither histograms nor curves. The same points give the same
-// bytes.
+// In tables and CSV a Kullback-Leibler divergence has two separate rows, kl_divergence and
+// kl_noise_floor. Absent values are empty. A table has the column model only if the points have
+// different models, and model_error, noise_floor and limit only if an estimate has the value. Each
+// remark is a line below the estimates of its point, and the reasons for the models are below the
+// table (model_reasons.h). CSV has no remarks. Tables and csv have neither histograms nor curves.
+// The same points give the same bytes.
 #ifndef BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 #define BALLPISTON_CLIENT_OUTPUT_RESULT_WRITER_H_
 
@@ -39,10 +38,10 @@ class ResultWriter {
   virtual void End() = 0;  // once, after all points
 };
 
-// `out` has to outlive the writer.
+// `out` must outlive the writer.
 std::unique_ptr<ResultWriter> NewResultWriter(Format format, std::ostream& out);
 
-// What has to be fetched: with histograms and curves where the format shows them.
+// The view to request: it includes histograms and curves if the format shows them.
 v1::ListResultsRequest::View ViewFor(Format format);
 
 }  // namespace ballpiston::client

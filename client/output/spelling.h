@@ -1,4 +1,4 @@
-// The proto's enum values as users write them: FIRST_HIT is first-hit; first_hit is read as well.
+// The proto's enum values on the command line: FIRST_HIT is first-hit; first_hit is accepted too.
 #ifndef BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
 #define BALLPISTON_CLIENT_OUTPUT_SPELLING_H_
 
@@ -20,14 +20,14 @@ inline std::string SpellingOfName(absl::string_view enum_name) {
   return absl::StrReplaceAll(absl::AsciiStrToLower(enum_name), {{"_", "-"}});
 }
 
-// A value this version does not know is spelled as its number.
+// A value that this version does not know is printed as its number.
 template <typename Enum>
 std::string Spelling(Enum value) {
   const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>()->FindValueByNumber(value);
   return descriptor == nullptr ? std::to_string(value) : SpellingOfName(descriptor->name());
 }
 
-// Every value but the unspecified one.
+// All values except UNSPECIFIED.
 template <typename Enum>
 std::vector<std::string> Spellings() {
   const auto* descriptor = google::protobuf::GetEnumDescriptor<Enum>();

@@ -1,7 +1,7 @@
-// Standard output that remembers why it failed.
+// Standard output that stores why a write failed.
 //
-// A reader that goes away (`ballpiston result JOB | head`) is no error of the user's; a full disk
-// is one. std::cout cannot tell them apart afterwards.
+// If a reader closes the pipe (`ballpiston result JOB | head`), this is not an error; a full disk
+// is an error. std::cout cannot distinguish the two afterwards.
 #ifndef BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
 #define BALLPISTON_CLIENT_OUTPUT_STANDARD_OUTPUT_H_
 
@@ -34,7 +34,7 @@ class StandardOutput : public std::ostream {
  public:
   explicit StandardOutput(int descriptor = 1);
 
-  // Flushes. OK also if the reader went away.
+  // Flushes. OK also if the reader has closed the pipe.
   absl::Status Finish();
 
  private:

@@ -24,7 +24,7 @@ std::string BytesText(double bytes) {
   return absl::StrFormat("%.*f %s", unit > 0 && bytes < 9.95 ? 1 : 0, bytes, units[unit]);
 }
 
-// In full as long as that can be read at a glance.
+// Large counts are shortened.
 std::string CountText(double count) {
   return count < 1e7 ? ExactText(count) : absl::StrFormat("%.3g", count);
 }
@@ -39,7 +39,7 @@ std::string DayLimitText(double days) { return days == 0 ? "no limit" : Counted(
 
 std::string ByteLimitText(double limit) { return limit == 0 ? "no limit" : BytesText(limit); }
 
-// 490 million a second.
+// A time per operation as a rate per second: 490 million.
 std::string SpeedText(double seconds) {
   if (seconds <= 0) return "?";
   const double rate = 1 / seconds;
@@ -65,7 +65,7 @@ std::string Expiring(double jobs) {
 
 std::string Speed(const v1::ComputingRates& rates) {
   return absl::StrCat(SpeedText(rates.wall_hit()), " wall hits/s, ", SpeedText(rates.jump()),
-                      " jumps/s, a core");
+                      " jumps/s per core");
 }
 
 std::string SlurmText(const v1::SlurmStatus& slurm) {
@@ -95,20 +95,21 @@ void PrintServer(const v1::ServerStatus& status, absl::Time now, std::ostream& o
 }
 
 void PrintLimits(const v1::ServerLimits& limits, std::ostream& out) {
-  TextTable table({{"limit", kLeft}, {"all"}, {"a principal"}});
+  TextTable table({{"limit", kLeft}, {"total"}, {"per principal"}});
   table.AddRow({"active jobs", LimitText(limits.max_active_jobs()),
                 LimitText(limits.max_active_jobs_per_principal())});
-  table.AddRow({"their points", LimitText(limits.max_active_points()),
+  table.AddRow({"active points", LimitText(limits.max_active_points()),
                 LimitText(limits.max_active_points_per_principal())});
   table.AddRow(
       {"streams", LimitText(limits.max_streams()), LimitText(limits.max_streams_per_principal())});
   table.AddRow({"calls", "no limit", LimitText(limits.max_calls_per_principal())});
-  table.AddRow({"their bytes", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
+  table.AddRow(
+      {"bytes of calls", "no limit", ByteLimitText(limits.max_call_bytes_per_principal())});
   table.AddRow({"stored bytes", ByteLimitText(limits.max_store_bytes()),
                 ByteLimitText(limits.max_store_bytes_per_principal())});
   table.AddRow(
       {kProcessorTime, "no limit", TimeLimitText(limits.max_processor_seconds_per_principal())});
-  TextTable requests({{"limit", kLeft}, {"a job"}});
+  TextTable requests({{"limit", kLeft}, {"per job"}});
   requests.AddRow({"points", LimitText(limits.max_points_per_job())});
   requests.AddRow({"samples", LimitText(limits.max_samples_per_job())});
   requests.AddRow({"processor time", TimeLimitText(limits.max_seconds_per_job())});

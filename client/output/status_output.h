@@ -1,4 +1,4 @@
-// Prints what a server says of itself: a table, or the message as JSON.
+// Prints a server's status: a table, or the message as JSON.
 #ifndef BALLPISTON_CLIENT_OUTPUT_STATUS_OUTPUT_H_
 #define BALLPISTON_CLIENT_OUTPUT_STATUS_OUTPUT_H_
 
@@ -10,7 +10,8 @@
 
 namespace ballpiston::client {
 
-// `now` is for how long it has been up. Any format but a table is JSON.
+// The table shows the time since the server's start, counted from `now`. Every other format is
+// JSON.
 void PrintStatus(const v1::ServerStatus& status, absl::Time now, Format format, std::ostream& out);
 
 }  // namespace ballpiston::client

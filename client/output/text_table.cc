@@ -9,8 +9,8 @@
 namespace ballpiston::client {
 namespace {
 
-// Characters, not bytes: of a character in UTF-8 (µs) all bytes but the first begin with the
-// bits 10.
+// The number of characters, not of bytes. In UTF-8 all bytes of a character but the first begin
+// with the bits 10.
 size_t Width(const std::string& text) {
   return static_cast<size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));

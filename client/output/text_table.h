@@ -1,4 +1,4 @@
-// Aligned columns of text: the first row is the header; columns of numbers to the right.
+// Aligned columns of text. The first row is the header. Columns of numbers are aligned right.
 #ifndef BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
 #define BALLPISTON_CLIENT_OUTPUT_TEXT_TABLE_H_
 
@@ -21,13 +21,13 @@ class TextTable {
   void AddRow(std::vector<std::string> row);
   // A text across all columns; the columns' widths do not depend on it.
   void AddLine(std::string text);
-  // Each line indented by `indent` blanks; no blanks at a line's end.
+  // Indents each line by `indent` blanks. No line ends with blanks.
   void Print(std::ostream& out, size_t indent = 0) const;
 
  private:
   struct Row {
     std::vector<std::string> cells;
-    std::string line;  // if there are no cells
+    std::string line;  // used if there are no cells
   };
 
   std::string Line(const Row& row, size_t indent) const;

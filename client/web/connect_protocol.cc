@@ -25,7 +25,7 @@ constexpr size_t kPrefix = 5;  // flags and length
 constexpr char kEndFlag = 2;
 
 std::string CodeName(absl::StatusCode code) {
-  if (code == absl::StatusCode::kCancelled) return "canceled";  // the protocol has one l
+  if (code == absl::StatusCode::kCancelled) return "canceled";  // the protocol spells it with one l
   return absl::AsciiStrToLower(absl::StatusCodeToString(code));
 }
 
@@ -76,7 +76,7 @@ std::string Envelope(char flags, absl::string_view message) {
 
 }  // namespace
 
-// By the protocol's table of codes.
+// From the protocol's table of codes.
 int HttpStatus(absl::StatusCode code) {
   switch (code) {
     case absl::StatusCode::kOk:

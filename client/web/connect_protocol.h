@@ -1,10 +1,11 @@
-// The part of the Connect protocol (connectrpc.com/docs/protocol) that the gateway speaks: unary
+// The part of the Connect protocol (connectrpc.com/docs/protocol) that the gateway supports: unary
 // calls and server streams, in JSON, without compression.
 //
 // A unary call is a POST of JSON. Its answer is JSON; an error is an HTTP status above 399 and
 //   {"code": "not_found", "message": "...", "details": [{"type", "value", "debug"}]}
-// Each message of a stream, the request included, is in an envelope: a byte of flags and the length
-// as 4 bytes, big-endian. The last envelope has the flag 2 and holds {} or {"error": {...}}.
+// Each message of a stream, also the request, is in an envelope: a byte of flags, the length as 4
+// bytes, big-endian, and the JSON. The last envelope has the flag 2 and contains {} or
+// {"error": {...}}.
 #ifndef BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
 #define BALLPISTON_CLIENT_WEB_CONNECT_PROTOCOL_H_
 
@@ -27,7 +28,7 @@ std::string ErrorJson(const absl::Status& status);
 std::string Envelope(absl::string_view message);
 std::string EndOfStream(const absl::Status& status);
 
-// The message in an envelope that is all of `body`. INVALID_ARGUMENT if it is not.
+// The message in `body`, which must be exactly one envelope, else INVALID_ARGUMENT.
 absl::StatusOr<std::string> OpenEnvelope(absl::string_view body);
 
 }  // namespace ballpiston::client

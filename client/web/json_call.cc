@@ -51,7 +51,7 @@ absl::StatusOr<std::string> AnswerJson(const Descriptor* type, grpc::ByteBuffer&
   return absl::InternalError(absl::StrCat("the answer is not a ", type->full_name()));
 }
 
-// One call, one operation after the other. A method with a single answer is a stream of one.
+// One call with one operation at a time. A method with a single answer is a stream of one message.
 class BlockingCall {
  public:
   BlockingCall(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call) {
@@ -90,7 +90,7 @@ class BlockingCall {
   void Cancel() { context_.TryCancel(); }
 
  private:
-  // Until the operation in progress ends.
+  // Waits until the current operation ends.
   bool Wait() {
     void* tag = nullptr;
     bool done = false;
@@ -102,7 +102,7 @@ class BlockingCall {
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
 };
 
-// Ends the call before the server does. `status` is OK if the receiver wants no more answers.
+// Cancels the call. `status` is OK if the receiver wants no more answers.
 absl::Status End(BlockingCall& call, const absl::Status& status) {
   call.Cancel();
   call.Finish();

@@ -26,15 +26,16 @@ struct JsonCall {
 // API has no such method, or if its requests are a stream.
 const google::protobuf::MethodDescriptor* FindMethod(absl::string_view path);
 
-// The same call with a request id, if its request can have one and has none: so it may be repeated.
+// Adds a request id to the call, so that it can be retried, if the request has an empty field for
+// it.
 JsonCall WithRequestId(JsonCall call);
 
-// Receives each answer as JSON, in the form of `--format json`. False ends the call, whose status
-// is then OK.
+// Receives each answer as JSON, in the form of `--format json`. If it returns false, the call ends
+// with the status OK.
 using JsonReceiver = std::function<bool(const std::string& answer)>;
 
-// The server's error as error_text.h renders it; INVALID_ARGUMENT if the request is not JSON of the
-// method's request. Blocks. Safe to call from several threads.
+// Blocks. Returns the server's error with the text of error_text.h; INVALID_ARGUMENT if the request
+// is not JSON of the method's request message. Thread-safe.
 absl::Status CallWithJson(const std::shared_ptr<grpc::Channel>& channel, const JsonCall& call,
                           const JsonReceiver& receive);
 

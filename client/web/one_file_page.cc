@@ -7,7 +7,7 @@
 namespace ballpiston::client {
 namespace {
 
-// How a page refers to a file, and what encloses its content in the page itself.
+// The text with which a page refers to a file, and the tags around the content that replaces it.
 struct Reference {
   absl::string_view before, after;
   absl::string_view begin, end;

@@ -1,4 +1,4 @@
-// A page with its style sheets, scripts and data in one file, which needs neither a server nor a
+// A page with its style sheets, scripts and data in one file. The file needs neither a server nor a
 // network.
 #ifndef BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_
 #define BALLPISTON_CLIENT_WEB_ONE_FILE_PAGE_H_

@@ -10,7 +10,7 @@ namespace {
 
 constexpr char kScheme[] = "http://";
 
-// Takes a time that does not depend on where the texts differ.
+// Compares in a time that does not depend on the position of the first difference.
 bool AreEqual(absl::string_view a, absl::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -20,7 +20,7 @@ bool AreEqual(absl::string_view a, absl::string_view b) {
   return difference == 0;
 }
 
-// Browsers leave the usual port out.
+// Browsers omit the default port 80.
 std::string WithPort(const char* host, int port) {
   return port == 80 ? host : absl::StrCat(host, ":", port);
 }
@@ -49,9 +49,9 @@ absl::Status PageAccess::CheckToken(absl::string_view authorization) const {
   if (AreEqual(authorization, absl::StrCat("Bearer ", token_))) return absl::OkStatus();
   return absl::UnauthenticatedError(
       authorization.empty()
-          ? "the header Authorization: Bearer TOKEN is missing; the address that ballpiston web "
-            "printed has the token"
-          : "wrong token: each run of ballpiston web has a new one, in the address that it prints");
+          ? "the header Authorization: Bearer TOKEN is missing; the token is in the address that "
+            "ballpiston web printed"
+          : "wrong token: each run of ballpiston web prints an address with a new token");
 }
 
 std::string PageAccess::Url() const { return absl::StrCat(kScheme, address_, "/#token=", token_); }

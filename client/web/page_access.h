@@ -1,10 +1,11 @@
-// Access control of the page. Other programs of this machine can reach the same port, and so can
-// web pages of other sites in the user's browser.
+// Access control of the page. Other programs on this machine, and web pages of other sites in the
+// user's browser, can reach the same port. Three headers of a request are checked:
 //
-//   Host           has to be this page's own address: a foreign name that resolves to this machine
-//                  (DNS rebinding) is rejected
-//   Origin         if the browser sends one, it has to be this page's
-//   Authorization  Bearer TOKEN, on every call to the server; the page itself holds no secrets
+//   Host           must be this page's address. This rejects a foreign name that resolves to this
+//                  machine (DNS rebinding).
+//   Origin         must be this page's, if the browser sends it
+//   Authorization  must be Bearer TOKEN in every call to the server. The page's files contain no
+//                  secrets and need no token.
 #ifndef BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
 #define BALLPISTON_CLIENT_WEB_PAGE_ACCESS_H_
 

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Empty for a file that is no part of the page.
+// Empty if the file does not belong to the page.
 std::string TypeOf(const fs::path& file) {
   static const auto* const types =
       new std::map<std::string, std::string>{{".html", "text/html; charset=utf-8"},

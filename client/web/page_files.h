@@ -1,4 +1,4 @@
-// The files of the page, in share/ballpiston/web beside the folder of this program.
+// The files of the page, in share/ballpiston/web beside this program's folder.
 #ifndef BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
 #define BALLPISTON_CLIENT_WEB_PAGE_FILES_H_
 
@@ -14,7 +14,7 @@ struct PageFile {
   std::string content;
 };
 
-// By name, for instance index.html. FAILED_PRECONDITION if the page is not installed.
+// The files by name, for instance index.html. FAILED_PRECONDITION if the page is not installed.
 absl::StatusOr<std::map<std::string, PageFile>> ReadPageFiles();
 
 }  // namespace ballpiston::client

@@ -29,7 +29,7 @@ constexpr absl::Duration kUnaryTimeout = absl::Seconds(60);
 using httplib::Request;
 using httplib::Response;
 
-// The page loads and runs nothing from other sites, and no other page may show it in a frame.
+// The page loads nothing from other sites, and no other page may show it in a frame.
 const httplib::Headers& SafeHeaders() {
   static const auto* const headers = new httplib::Headers{
       {"Content-Security-Policy",
@@ -42,7 +42,7 @@ const httplib::Headers& SafeHeaders() {
   return *headers;
 }
 
-// Uses a content provider, because the library would compress a plain body, which is slow.
+// Uses a content provider: the library would compress a plain body, which is slow.
 void Respond(std::string content, const std::string& type, Response& response) {
   const auto body = std::make_shared<const std::string>(std::move(content));
   if (body->empty()) return response.set_content("", type);
@@ -66,7 +66,7 @@ bool HasType(const Request& request, const std::string& type) {
   return given == type || absl::StartsWith(given, type + ";");
 }
 
-// Connect-Timeout-Ms, if it is given.
+// The header Connect-Timeout-Ms; empty if the request lacks it.
 absl::StatusOr<std::optional<absl::Duration>> TimeoutOf(const Request& request) {
   const std::string text = request.get_header_value("Connect-Timeout-Ms");
   if (text.empty()) return std::nullopt;
@@ -88,7 +88,7 @@ class WebServer::Implementation {
     server_.set_write_timeout(kPatience);
     server_.set_keep_alive_max_count(kMostCallsPerConnection);
     server_.set_default_headers(SafeHeaders());
-    // By default two servers could share a port.
+    // The library's default would let two servers share a port.
     server_.set_socket_options([](socket_t socket) {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -166,12 +166,12 @@ class WebServer::Implementation {
     Respond(std::move(answer), kUnaryType, response);
   }
 
-  // Sends each answer as it arrives: the whole call is made while the response is written.
+  // Sends each answer as it arrives: the call runs while the response is written.
   void PassOnStream(JsonCall call, Response& response) const {
     const auto request = OpenEnvelope(call.request);
     response.set_chunked_content_provider(
         kStreamType, [this, request, call](size_t, httplib::DataSink& sink) mutable {
-          bool is_whole = true;  // so far
+          bool is_whole = true;  // false after a failed write
           const auto write = [&](const std::string& envelope) {
             is_whole =
                 is_whole && sink.is_writable() && sink.write(envelope.data(), envelope.size());
@@ -182,7 +182,7 @@ class WebServer::Implementation {
             call.request = *request;
             status = call_(call, [&](const std::string& json) { return write(Envelope(json)); });
           }
-          // A stream that lacks a message must not look complete.
+          // If a message could not be written, the stream must not look complete.
           if (!write(EndOfStream(status))) return false;
           sink.done();
           return true;

@@ -4,8 +4,8 @@
 //   GET  /                                 the page
 //   POST /ballpiston.v1.SERVICE/METHOD     a call, with the token (page_access.h)
 //
-// Each open stream takes one of kMostConnections threads. If its reader disconnects, the call ends
-// with the next message; a watch has a heartbeat at least.
+// Each open stream uses one of kMostConnections threads. If its reader disconnects, the call ends
+// at the next message. A watch sends heartbeats, so that there is always a next message.
 #ifndef BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 #define BALLPISTON_CLIENT_WEB_WEB_SERVER_H_
 
@@ -21,21 +21,21 @@
 namespace ballpiston::client {
 
 inline constexpr int kMostConnections = 32;
-inline constexpr size_t kMostRequestBytes = 4 << 20;  // as gRPC's own limit
+inline constexpr size_t kMostRequestBytes = 4 << 20;  // the same as gRPC's default limit
 
 class WebServer {
  public:
   using Call = std::function<absl::Status(const JsonCall&, const JsonReceiver&)>;
 
-  // `call` may be called from several threads.
+  // Several threads may use `call` at the same time.
   WebServer(std::map<std::string, PageFile> files, Call call);
   ~WebServer();
 
-  // `port` 0: any that is free. UNAVAILABLE if the port is not free.
+  // `port` 0 chooses a free port. UNAVAILABLE if the port is not free.
   absl::Status Bind(int port);
-  // The page's address with its token. After Bind.
+  // The page's address with its token. Call it after Bind.
   std::string Url() const;
-  void Serve();  // until the program ends
+  void Serve();  // returns only when the program ends
 
  private:
   class Implementation;

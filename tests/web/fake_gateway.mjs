@@ -1,4 +1,4 @@
-// Answers that a real server gives rarely or never: routes of a playwright page.
+// Answers that a real server gives rarely or never, as routes of a playwright page.
 export const EVIL =
   '<img src=x onerror="window.wasAttacked = true"><script>window.wasAttacked = true</script>';
 
@@ -21,7 +21,7 @@ export function fakeJob(number, more = {}) {
 
 const method = (name) => (url) => url.pathname === `/ballpiston.v1.${name}`;
 
-// Lists `jobs`, newest first as given, in pages as the request asks for.
+// Lists `jobs`, which are in the order newest first, in pages of the requested size.
 export async function listInstead(page, jobs) {
   await page.route(method('EnsembleService/ListEnsembleJobs'), async (route) => {
     const {page_size: size, page_token: token} = route.request().postDataJSON();
@@ -45,7 +45,7 @@ function envelope(flags, message) {
   return Buffer.concat([header, text]);
 }
 
-// A whole stream, which then ends.
+// A complete stream with its end.
 export async function streamInstead(page, name, messages) {
   const body = Buffer.concat([...messages.map((message) => envelope(0, message)), envelope(2, {})]);
   await page.route(method(name), (route) =>

@@ -21,7 +21,7 @@ const ARGUMENTS = [
   '--disable-sync',
 ];
 const PHONE = {width: 390, height: 800};
-const PATIENCE = 20000; // ms, until a condition has to hold
+const PATIENCE = 20000; // ms, the longest wait for a condition
 
 const PAIR = ['--rho', '0.5296', '--delta', '0.1'];
 const NEVER_ENDS = [
@@ -81,8 +81,8 @@ afterEach(async () => {
   assert.deepEqual(mistakes, []);
 });
 
-// `mistakes` are errors of the page's own scripts and of its content security policy. A failed
-// call does not count.
+// `mistakes` are errors of the page's own scripts and violations of its content security policy. A
+// failed call is not a mistake.
 async function newPage(options = {}) {
   await context?.close();
   context = await browser.newContext({viewport: {width: 1200, height: 900}, ...options});
@@ -97,7 +97,7 @@ async function newPage(options = {}) {
   });
 }
 
-// Opens the page as a user does, with the token; then the view.
+// Opens the page with the token, as a user does, and then the view.
 async function open(view = 'jobs', address = web.address) {
   await page.goto(address);
   await page.waitForURL((url) => !url.hash.includes('token'));
@@ -118,7 +118,7 @@ async function waitUntilChanged(read, before) {
   await assertSoon(async () => assert.notEqual(await read(), before));
 }
 
-// Repeats `check` in each frame of the page until it does not throw.
+// Repeats `check` in each frame of the page until it succeeds without an exception.
 async function assertSoon(check) {
   const end = Date.now() + PATIENCE;
   for (;;) {
@@ -162,7 +162,7 @@ async function tabTo(text, key = 'Tab') {
 }
 
 describe('The page', () => {
-  it('takes the token out of the address and asks nothing of other hosts', async () => {
+  it('removes the token from the address and sends no requests to other hosts', async () => {
     const hosts = new Set();
     page.on('request', (request) => hosts.add(new URL(request.url()).host));
     await open();
@@ -183,7 +183,7 @@ describe('The page', () => {
     await banner().waitFor({state: 'hidden'});
   });
 
-  it('gives nothing to the page of another origin', async () => {
+  it('rejects the page of another origin', async () => {
     const other = createServer((_, response) => response.end('<!doctype html>'));
     await new Promise((done) => other.listen(0, '127.0.0.1', done));
     try {
@@ -267,16 +267,16 @@ describe('Jobs', () => {
     await page.getByText('The job was cancelled').waitFor();
   });
 
-  it('show histograms over the exact law', async () => {
+  it('show histograms with the exact law', async () => {
     await open(firstHit);
     await page.getByText('Ingoing angle α, σ = −1').waitFor();
     await page.getByText('equilibrium law h⁽¹⁾, exact').first().waitFor();
     await page.getByText('Numbers').first().click();
     const rows = await page.locator('.chart').first().locator('tbody tr').allInnerTexts();
-    assert.equal(rows.length, 51); // 1000 bins, 20 together, and the upper edge
+    assert.equal(rows.length, 51); // 1000 bins in groups of 20, and the upper edge
   });
 
-  it('fill their histograms while they run', async () => {
+  it('show growing histograms while they run', async () => {
     const job = programs.run(
       'submit',
       'energy-relaxation',
@@ -299,7 +299,7 @@ describe('Jobs', () => {
     }
   });
 
-  it('say why they failed', async () => {
+  it('show the reason of a failure', async () => {
     const job = programs.run(
       'submit',
       'conditional-mean-free-time',
@@ -317,7 +317,7 @@ describe('Jobs', () => {
     await page.getByText(/The job failed: .*budget/).waitFor();
   });
 
-  it('say why they wait', async () => {
+  it('show the reason of a wait', async () => {
     const first = programs.run('submit', ...NEVER_ENDS);
     await answerInstead(page, 'EnsembleService/GetEnsembleJob', fakeJob(1, {state: 'QUEUED'}));
     await page.route(/WatchEnsembleJob/, () => {});
@@ -347,25 +347,25 @@ describe('Jobs', () => {
     await banner().filter({hasText: 'no such job'}).waitFor();
   });
 
-  it('answer the same question from the store', async () => {
+  it('with the same specification are answered from the store', async () => {
     await open(firstHit);
-    await page.getByRole('button', {name: 'Ask this again'}).click();
+    await page.getByRole('button', {name: 'Submit again'}).click();
     await page.getByText('Answered from the store').waitFor();
     assert.ok(page.url().includes(firstHit));
   });
 
-  it('are asked again if they were cancelled', async () => {
+  it('can be submitted again if they were cancelled', async () => {
     const job = programs.run('submit', ...NEVER_ENDS);
     cancel(job);
     await open(job);
-    await page.getByRole('button', {name: 'Ask this again'}).click();
+    await page.getByRole('button', {name: 'Submit again'}).click();
     await page.waitForURL((url) => !url.href.includes(job));
     await page.getByText('running').first().waitFor();
     cancel(new URL(page.url()).hash.slice(1));
     await page.getByText('The job was cancelled').waitFor();
   });
 
-  it('whose results expired have the command that computes them again', async () => {
+  it('with expired results show the command that computes them again', async () => {
     await answerInstead(
       page,
       'EnsembleService/GetEnsembleJob',
@@ -377,12 +377,12 @@ describe('Jobs', () => {
 });
 
 describe('When the server stops', () => {
-  it('the data stay on the page, and the watch goes on after a restart', async () => {
+  it('the data stay on the page, and the watch resumes after a restart', async () => {
     const job = programs.run('submit', ...NEVER_ENDS);
     await open(job);
     await page.getByText('Convergence of').waitFor();
     programs.stopServer();
-    await banner().filter({hasText: 'No answer; trying again'}).waitFor();
+    await banner().filter({hasText: 'No answer; retrying'}).waitFor();
     const value = page.locator('.estimates td').nth(1);
     assert.notEqual(await value.innerText(), '');
     await page.getByText('Numbers').first().click();
@@ -399,7 +399,7 @@ describe('When the server stops', () => {
     await open();
     await jobLink(firstHit).waitFor();
     programs.stopServer();
-    await banner().filter({hasText: 'No answer; trying again'}).waitFor();
+    await banner().filter({hasText: 'No answer; retrying'}).waitFor();
     assert.ok(await jobLink(firstHit).isVisible());
     programs.startServer();
     await banner().waitFor({state: 'hidden'});
@@ -410,7 +410,7 @@ describe('When the server stops', () => {
     await open('jobs', own.address);
     await jobLink(firstHit).waitFor();
     await own.stop();
-    await banner().filter({hasText: 'ballpiston web does not run'}).waitFor();
+    await banner().filter({hasText: 'ballpiston web no longer runs'}).waitFor();
     const next = await programs.web(new URL(own.address).port);
     await banner().filter({hasText: 'Open the whole address'}).waitFor();
     assert.ok(await jobLink(firstHit).isVisible());
@@ -462,7 +462,7 @@ describe('Keyboard, colours and width', () => {
     await page.getByRole('button', {name: 'Play'}).waitFor();
   });
 
-  it('a gas is traced, and a question out of range is reported', async () => {
+  it('a gas is traced, and a parameter out of range is reported', async () => {
     await open('orbit');
     await page.getByLabel('Cells').fill('3x2');
     await page.getByLabel('δ').fill('0.15');
@@ -543,7 +543,7 @@ describe('Accessibility rules', () => {
 
 // ---- Many jobs, many points
 
-// Longest task of the page's thread since observeTasks, in ms.
+// The longest task of the page's thread since observeTasks, in ms.
 const observeTasks = () =>
   page.evaluate(() => {
     window.longestTask = 0;
@@ -576,8 +576,8 @@ const heapMegabytes = async () => {
   return (await session.send('Runtime.getHeapUsage')).usedSize / 1e6;
 };
 
-// Times are printed, not asserted (README.md has what was measured). The page lays out no more rows
-// than the reader asked for.
+// Times are printed, not asserted; README.md has measured times. The tests check that the page lays
+// out only the rows that the reader requested.
 describe('Many', () => {
   it('10,000 jobs stay smooth', async (test) => {
     const COUNT = 10000;
@@ -627,7 +627,7 @@ describe('Many', () => {
       location.hash = name;
     }, job);
     await page.getByText('10,000 are shown').waitFor();
-    await page.getByText('6 of 100 lines, evenly spread').waitFor();
+    await page.getByText('6 of 100 lines, evenly selected').waitFor();
     const shown = Date.now() - begin;
     const frame = await longestFrame();
     test.diagnostic(

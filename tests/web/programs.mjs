@@ -1,5 +1,5 @@
-// The real programs, for tests of the page: a server with a store of its own, `ballpiston web`,
-// and the command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
+// The real programs, for tests of the page: a server with a separate store, `ballpiston web`, and
+// the command line. BALLPISTON_BIN is the folder with ballpiston and ballpistond.
 import {execFileSync, spawn} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -57,7 +57,8 @@ export class Programs {
     return execFileSync(program, words, options).trimEnd();
   }
 
-  // {address, stop()} of a `ballpiston web`; the address has the token. `port` 0: any.
+  // Starts `ballpiston web`. Returns {address, stop()}; the address contains the token. `port` 0
+  // chooses a free port.
   async web(port = 0) {
     const child = spawn(program, ['web', '--port', String(port)], {
       env: this.environment,

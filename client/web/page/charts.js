@@ -1,5 +1,5 @@
-// Charts on uPlot: points with error bars, exact lines, and steps, each with a legend, a line that
-// reads the values under the pointer, and its numbers as a table.
+// Charts drawn by uPlot: points with error bars, exact lines, and steps. Each chart has a legend, a
+// line with the values under the pointer, and a table of its numbers.
 //
 // A chart is given by
 //   {title, xLabel, yLabel, logX, fromZero, top, note, lines}; y above `top` is cut off
@@ -8,9 +8,9 @@
 //   kind    'measured' (symbols with error bars), 'exact' (a line), 'limit' (a dashed line), or
 //           'steps' (filled from 0; y[i] holds from x[i] to x[i + 1])
 //   colour  0, 1, ...: index of colour and symbol
-//   error   one standard error for each y; may be missing, as a whole or in parts
-//   stepped of a line: y[i] holds from x[i] to x[i + 1]
-//   shift   of symbols and error bars along x, for the middles of steps
+//   error   the standard error of each y; all or some may be missing
+//   stepped true for a line where y[i] holds from x[i] to x[i + 1]
+//   shift   moves symbols and error bars along x, to the middle of steps
 (function (ballpiston) {
   'use strict';
 
@@ -29,7 +29,7 @@
     getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const colourOf = (line) => styleOf(`--line-${line.colour % COLOURS}`);
 
-  // Symbols tell the lines apart where colours do not.
+  // Symbols distinguish lines for readers who cannot distinguish the colours.
   const SYMBOLS = [
     (c, x, y, r) => c.arc(x, y, r, 0, 2 * Math.PI),
     (c, x, y, r) => c.rect(x - r, y - r, 2 * r, 2 * r),
@@ -147,7 +147,7 @@
     };
   }
 
-  // Tick labels with as many digits as it takes to tell them apart.
+  // Tick labels with enough digits to be different.
   function tickTexts(u, ticks) {
     return ticks.map((tick) => (tick === null ? '' : tickText(tick)));
   }
@@ -158,7 +158,7 @@
     return String(Number(tick.toPrecision(10)));
   }
 
-  // Ticks of a log axis: 1, 2 and 5 of each decade, or 1 alone where there are many decades.
+  // Ticks of a log axis: 1, 2 and 5 of each decade, or only 1 if there are many decades.
   function logTicks(u, axis, min, max) {
     const digits = max / min > 1e3 ? [1] : [1, 2, 5];
     const ticks = [];
@@ -178,7 +178,7 @@
     return lines.length ? uPlot.join(lines.map((line) => [line.x, line.y])) : [[]];
   }
 
-  // Charts of the same shape keep their uPlot, and with it the zoom; else a new one is made.
+  // A chart of the same shape keeps its uPlot object and the zoom. Otherwise a new object is made.
   const shapeOf = (chart) =>
     JSON.stringify([
       chart.xLabel,
@@ -226,7 +226,7 @@
         valueText(values[0][i]),
         ...chart.lines.map((_, k) => withError(values[k + 1][i], errors[k].get(values[0][i]))),
       ]);
-    const caption = step === 1 ? chart.title : `${chart.title}: each ${step}th of the rows`;
+    const caption = step === 1 ? chart.title : `${chart.title}: every ${step}th row`;
     return ballpiston.table(caption, columns, rows, {class: 'compact'});
   }
 
@@ -260,7 +260,7 @@
       this.resizing.observe(this.plot);
     }
 
-    // Shows `chart`; draws only once the element is in the page and has a width.
+    // Shows `chart`. Draws it when the element is in the page and has a width.
     show(chart) {
       this.chart = chart;
       this.title.textContent = chart.title;

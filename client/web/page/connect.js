@@ -17,7 +17,8 @@
     'data_loss',
   ]);
 
-  // `code` is one of the protocol's, such as not_found. `isFinal`: a retry gives the same error.
+  // `code` is an error code of the protocol, such as not_found. `isFinal`: a retry gives the same
+  // error.
   class CallError extends Error {
     constructor(code, message) {
       super(message || code);
@@ -31,7 +32,7 @@
   function noAnswer() {
     return new CallError(
       'unavailable',
-      `no answer from ${location.host}: ballpiston web does not run there any more`,
+      `no answer from ${location.host}: ballpiston web no longer runs there`,
     );
   }
 
@@ -114,8 +115,8 @@
     return {isLast: (header[0] & LAST) !== 0, message};
   }
 
-  // The messages of a stream. Reads only as fast as the caller takes them, and the server then
-  // computes only as fast.
+  // The messages of a stream. Reads only as fast as the caller uses them. The server then also
+  // computes only at this speed.
   async function* stream(method, request, signal) {
     const response = await post(method, 'application/connect+json', envelope(request), signal);
     const reader = response.body.getReader();

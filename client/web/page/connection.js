@@ -1,5 +1,5 @@
-// The token, retries, and the banner that says why there is no answer. While the server does not
-// answer, the page keeps what it shows.
+// The token, retries, and the banner that says why the server does not answer. The page keeps its
+// content until the server answers again.
 (function (ballpiston) {
   'use strict';
 
@@ -9,8 +9,8 @@
 
   const token = () => sessionStorage.getItem(TOKEN) ?? '';
 
-  // Moves the token from the address #token=... into this tab's storage: then it is in no bookmark,
-  // and a reload keeps it. True if there was one.
+  // Moves the token from the address #token=... into this tab's storage: then bookmarks do not
+  // contain it, and a reload keeps it. Returns true if the address had a token.
   function takeToken() {
     const match = /^#token=([\w-]+)$/.exec(location.hash);
     if (!match) return false;
@@ -36,9 +36,9 @@
   const answered = () => say('');
   const failed = (error) => say(`${adviceFor(error)}The server says: ${error.message}`);
   const failedForNow = (error) =>
-    say(`No answer; trying again. The page may be out of date. Reason: ${error.message}`);
+    say(`No answer; retrying. The page may be out of date. Reason: ${error.message}`);
 
-  // Until `ms` have passed, or the browser is online again, or the signal is aborted.
+  // Waits until `ms` have passed, or the browser is online again, or the signal is aborted.
   function pause(ms, signal) {
     return new Promise((resolve) => {
       const timer = setTimeout(end, ms);
@@ -53,8 +53,8 @@
     });
   }
 
-  // Resolves when this tab is shown. A hidden tab asks for nothing: a browser keeps only six
-  // connections to the gateway, for all tabs.
+  // Resolves when this tab is visible. A hidden tab sends no requests: a browser keeps only six
+  // connections to the gateway, for all tabs together.
   function visible(signal) {
     return new Promise((resolve) => {
       function look() {
@@ -69,8 +69,8 @@
     });
   }
 
-  // Calls attempt(progress) until it succeeds or its error is final; progress() says that the
-  // server answers. Throws the final error, after the banner showed it.
+  // Calls attempt(progress) until it succeeds or its error is final. The attempt calls progress()
+  // when the server has answered. A final error is shown in the banner and thrown.
   async function keepTrying(attempt, signal) {
     let delay = FIRST_DELAY;
     const progress = () => {

@@ -1,9 +1,9 @@
-// Elements of the page, made from text. Strings become text nodes and are never parsed as HTML.
+// Makes elements of the page from text. Strings become text nodes and are never parsed as HTML.
 (function (ballpiston) {
   'use strict';
 
-  // An attribute that is a function is a listener: {onclick: f}. One that is false, null or
-  // undefined is left out; true gives an empty one.
+  // A function as an attribute's value is a listener: {onclick: f}. An attribute with the value
+  // false, null or undefined is left out; the value true makes an empty attribute.
   function element(tag, attributes = {}, ...children) {
     const made = document.createElement(tag);
     for (const [name, value] of Object.entries(attributes)) {
@@ -17,8 +17,8 @@
     return made;
   }
 
-  // Roles are explicit, because the style sheet lays rows out as grids, and some browsers drop the
-  // implied roles then.
+  // Roles are explicit, because the style sheet displays rows as grids: some browsers then drop the
+  // implied roles.
   // `columns`: [{label, number}]; `rows`: arrays of texts or nodes.
   function table(caption, columns, rows, attributes = {}) {
     const body = element('tbody', {role: 'rowgroup'});
@@ -65,7 +65,7 @@
     );
   }
 
-  // [[term, text or node], ...]; a term whose text is empty or missing is left out.
+  // `pairs`: [[term, text or node], ...]. A term without text is left out.
   function facts(pairs) {
     const list = element('dl', {class: 'facts'});
     for (const [term, text] of pairs) {
@@ -75,7 +75,7 @@
     return list;
   }
 
-  // A labelled choice. `options`: [{value, label}].
+  // A drop-down list with a label. `options`: [{value, label}].
   function choice(label, options, chosen, onChoose) {
     const select = element(
       'select',

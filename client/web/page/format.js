@@ -1,4 +1,4 @@
-// Numbers with their errors, times and names, as text.
+// Numbers with their errors, times and names as text.
 (function (ballpiston) {
   'use strict';
 
@@ -17,7 +17,7 @@
 
   const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 
-  // Digits after the decimal point at which `error` has ERROR_DIGITS digits.
+  // The number of decimal places with which `error` has ERROR_DIGITS digits.
   function decimals(error) {
     return ERROR_DIGITS - 1 - Math.floor(Math.log10(error));
   }
@@ -73,26 +73,26 @@
     return `${Number((seconds / 86400).toPrecision(3))} days`;
   }
 
-  // How long ago `date` was.
+  // The time since `date`.
   function ageText(date, now = Date.now()) {
     const age = (now - date) / 1000;
     if (Math.abs(age) < 2) return 'now';
     return age > 0 ? `${durationText(Math.floor(age))} ago` : `in ${durationText(-age)}`;
   }
 
-  // A <time> that says how long ago, with the whole time as its title.
+  // A <time> element with the time since then. Its title is the full date and time.
   function timeElement(time) {
     if (!time) return null;
     const date = new Date(time);
     return ballpiston.element('time', {datetime: time, title: wholeTime(time)}, ageText(date));
   }
 
-  // Made once: a new one for each time would take longer than all the rest of a long list.
+  // Made once: a new formatter for each time would take longer than the rest of a long list.
   const TIME_FORMAT = new Intl.DateTimeFormat('en-GB', {dateStyle: 'medium', timeStyle: 'medium'});
 
   const wholeTime = (time) => (time ? TIME_FORMAT.format(new Date(time)) : '');
 
-  // CONDITIONAL_MEAN_FREE_TIME or mean_free_time: in small letters, with spaces.
+  // CONDITIONAL_MEAN_FREE_TIME becomes "conditional mean free time".
   const words = (name) =>
     String(name ?? '')
       .toLowerCase()
@@ -100,7 +100,7 @@
 
   const symbolOf = (parameter) => SYMBOLS[parameter] ?? parameter;
 
-  // The parameters that are there, in the order of SYMBOLS.
+  // The parameters that the point has, in the order of SYMBOLS.
   function parameterPairs(parameters) {
     return Object.keys(SYMBOLS)
       .filter((name) => parameters?.[name] !== undefined)
@@ -116,7 +116,7 @@
       .join(', ');
   }
 
-  // For a command line in a POSIX shell.
+  // The text as one word of a POSIX shell.
   function shellWord(text) {
     return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
   }

@@ -1,12 +1,12 @@
-// One estimate of all points against a parameter of the grid, with the exact values as lines. The
-// reader chooses the estimate, the parameter, and whether to see values, ratios or z.
+// A chart of one estimate of all points against a parameter of the grid, with the exact values as
+// lines. The reader chooses the estimate, the parameter, and values, ratios or z.
 (function (ballpiston) {
   'use strict';
 
   const {element, choice, Chart, isNumber, words, symbolOf, parameterPairs, parameterText} =
     ballpiston;
 
-  const MOST_LINES = 6; // with colours and symbols of their own
+  const MOST_LINES = 6; // the number of different colours and symbols
   const MOST_WITHOUT_LOG = 30; // ratio of the largest to the smallest x
 
   const SHOWN = [
@@ -15,7 +15,7 @@
     {value: 'z', label: 'z, (value − exact)/error'},
   ];
 
-  // {parameter: set of its values}, of those with more than one value.
+  // {parameter: set of its values} for the parameters with more than one value.
   function varyingParameters(points) {
     const values = {};
     for (const point of points) {
@@ -43,7 +43,7 @@
     ...new Set(points.flatMap((point) => point.estimates.map((estimate) => estimate.name))),
   ];
 
-  // Groups of points whose parameters differ only in `axis`, by label.
+  // Groups of points whose parameters differ only in `axis`. The key is the group's label.
   function groups(points, axis) {
     const varying = varyingParameters(points);
     const grouped = new Map();
@@ -58,7 +58,7 @@
     return grouped;
   }
 
-  // At most MOST_LINES of the groups, evenly spread.
+  // At most MOST_LINES of the groups, evenly selected.
   function spread(grouped) {
     const entries = [...grouped];
     const step = Math.max(1, (entries.length - 1) / (MOST_LINES - 1));
@@ -67,7 +67,7 @@
       : Array.from({length: MOST_LINES}, (_, i) => entries[Math.round(i * step)]);
   }
 
-  // {value, error, exact} in the form that `shown` names; value null if there is none.
+  // {value, error, exact} in the form `shown`; value is null if the estimate lacks this form.
   function inForm(estimate, shown) {
     const {value, standard_error: error, exact, limit, z_score: z} = estimate ?? {};
     if (shown === 'z')
@@ -132,7 +132,7 @@
       this.chosen = {estimate: null, axis: null, shown: 'value'};
     }
 
-    // False, and nothing is shown, if there are fewer than two points along every parameter.
+    // Shows nothing and returns false if every parameter has fewer than two values.
     show(points) {
       this.points = points;
       const axes = axesOf(points);
@@ -143,7 +143,8 @@
       return true;
     }
 
-    // Makes the choices again only if there are others, so that an open one stays open.
+    // Makes the drop-down lists again only if their options changed, so that an open list stays
+    // open.
     offer(estimates, axes) {
       const offered = JSON.stringify([estimates, axes]);
       if (offered === this.offered) return;
@@ -186,9 +187,9 @@
         lines,
         logX: isWide(lines.flatMap((line) => line.x)),
         note: !hasValues
-          ? 'There is no exact value to compare with.'
+          ? 'No exact value is known.'
           : drawn.length < grouped.size
-            ? `${drawn.length} of ${grouped.size} lines, evenly spread`
+            ? `${drawn.length} of ${grouped.size} lines, evenly selected`
             : null,
       });
     }

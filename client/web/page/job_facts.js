@@ -14,7 +14,7 @@
     parameterText,
   } = ballpiston;
 
-  const MOST_VALUES = 12; // of a parameter in the table of the specification
+  const MOST_VALUES = 12; // more values of a parameter are shortened in the table
 
   const idOf = (job) => String(job.name).split('/').slice(1).join('/');
 
@@ -28,15 +28,15 @@
 
   function targetText(target) {
     const parts = [];
-    if (target?.samples !== undefined) parts.push(`${countText(target.samples)} samples a point`);
+    if (target?.samples !== undefined) parts.push(`${countText(target.samples)} samples per point`);
     if (target?.collisions !== undefined)
-      parts.push(`${countText(target.collisions)} collisions a point`);
+      parts.push(`${countText(target.collisions)} collisions per point`);
     if (target?.tolerance !== undefined)
       parts.push(`relative error ${parameterText(target.tolerance)}`);
     if (target?.budget)
-      parts.push(`at most ${durationText(parseFloat(target.budget))} of computing`);
+      parts.push(`at most ${durationText(parseFloat(target.budget))} of computing time`);
     if (target?.estimate) parts.push(`of ${words(target.estimate)}`);
-    return parts.join(', ') || '10,000 samples or collisions a point';
+    return parts.join(', ') || '10,000 samples or collisions per point';
   }
 
   const chosen = (name) => (/UNSPECIFIED$/.test(name ?? '') ? null : words(name));
@@ -53,7 +53,7 @@
     ]);
   }
 
-  // Without fields that have their defaults.
+  // The value without the fields that have their defaults.
   function shortened(value) {
     if (Array.isArray(value)) return value;
     if (typeof value !== 'object' || value === null) return value;
@@ -70,7 +70,7 @@
     );
   }
 
-  // To paste into a file for --spec.
+  // The specification as JSON, for a file that --spec reads.
   function specJson(spec) {
     return element(
       'details',

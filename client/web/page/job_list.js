@@ -1,5 +1,5 @@
-// #jobs: the jobs, newest first. The first page is asked for again every two seconds; more follow
-// on demand. Rows outside the window are not laid out (content-visibility in style.css).
+// #jobs: the jobs, newest first. The first page of the list is requested every two seconds, further
+// pages on demand. Rows outside the window are not laid out (content-visibility in style.css).
 (function (ballpiston) {
   'use strict';
 
@@ -8,7 +8,7 @@
 
   const PAGE = 100;
   const REFRESH = 2000; // ms
-  const MOST_CALLS = 20; // for one page: with filters a call may give no job although more follow
+  const MOST_CALLS = 20; // for one page: with a filter a call may return no job, but more follow
 
   const STATES = {
     QUEUED: 'waits',
@@ -41,10 +41,10 @@
     return element('span', {class: 'state', 'data-state': job.state}, stateText(job.state));
   }
 
-  // page.js reads it back; an id may have any characters.
+  // page.js decodes the address. An id may contain any characters.
   const addressOf = (job) => `#ensembleJobs/${encodeURIComponent(ballpiston.idOf(job))}`;
 
-  // Share of the work done; share of the points if the work is not known beforehand.
+  // The share of the work that is done; the share of finished points if the work is not known.
   function fractionOf(progress) {
     if (!progress?.points) return 0;
     return progress.fraction ?? progress.points_done / progress.points;
@@ -102,7 +102,7 @@
     ];
   }
 
-  // Rows by the name of their job, in the order of creation, newest first.
+  // The rows of jobs, by the job's name, newest job first.
   class Rows {
     constructor(body) {
       this.body = body;
@@ -131,8 +131,8 @@
       for (const job of jobs) this.put(job, null);
     }
 
-    // The first page again: new jobs come first, and those that are gone, or do not match the
-    // filter any more, leave. `isAll`: no job follows this page.
+    // Updates the rows from a new answer for the first page. Adds new jobs at the top. Removes jobs
+    // that were deleted or no longer match the filter. `isAll`: no job follows this page.
     refresh(jobs, isAll) {
       const names = new Set(jobs.map((job) => job.name));
       const oldest = jobs.at(-1)?.create_time ?? '';
@@ -163,7 +163,7 @@
     const state =
       {
         DRAINING: ' The server is stopping: it accepts no jobs.',
-        STORE_FAILING: ' The server’s disk refuses writes.',
+        STORE_FAILING: ' The server cannot write to its disk.',
       }[status.state] ?? '';
     const slurm = status.slurm?.problem ? ` Slurm: ${status.slurm.problem}.` : '';
     return (
@@ -212,7 +212,7 @@
       this.wake?.abort();
     }
 
-    // At least one job, unless there is none; at most about a page.
+    // One page of jobs. With a filter this can need several calls.
     async page(token) {
       const jobs = [];
       for (let calls = 0; calls < MOST_CALLS; ++calls) {
@@ -233,7 +233,7 @@
       return {jobs, token};
     }
 
-    // The token of the next page is kept from the first answer: later jobs do not move it.
+    // Keeps the first answer's token of the next page: later jobs do not change it.
     async refresh() {
       const filter = this.filter;
       const {jobs, token} = await this.page('');

@@ -1,6 +1,6 @@
-// #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX: a job as it runs. A watch brings its state,
-// the points that are computed, and each finished point; the page asks repeatedly for histograms
-// and curves of the point that it shows, until that point is finished.
+// #ensembleJobs/ID and #ensembleJobs/ID/results/INDEX: a job while it runs. A watch sends its
+// state, the running points, and each finished point. The page requests the histograms and curves
+// of the shown point repeatedly, until that point is finished.
 (function (ballpiston) {
   'use strict';
 
@@ -24,16 +24,16 @@
     shellWord,
   } = ballpiston;
 
-  const MOST_STEPS = 300; // of a point's convergence; then every second one is dropped
-  const ROWS = 200; // of points, at a time
-  const STATUS_EVERY = 2000; // ms, while the job waits
-  const DETAILS_EVERY = 1000; // ms, of an unfinished point
-  const SHARE_OF_DRAWING = 4; // pause between drawings, in times of the last drawing
+  const MOST_STEPS = 300; // of a point's convergence; then every second step is dropped
+  const ROWS = 200; // of points that one press of a button adds
+  const STATUS_EVERY = 2000; // ms between requests for the status, while the job waits
+  const DETAILS_EVERY = 1000; // ms between requests for the details of an unfinished point
+  const SHARE_OF_DRAWING = 4; // the pause after a drawing, in units of the drawing's duration
   const ENDED = new Set(['SUCCEEDED', 'FAILED', 'CANCELLED']);
 
-  // ---- What is known of a job
+  // ---- The known data of a job
 
-  // The estimates of a point after more and more samples.
+  // The estimates of a point at increasing numbers of samples.
   class Convergence {
     constructor() {
       this.steps = []; // points, in the order of samples
@@ -45,7 +45,7 @@
       if (this.steps.length > MOST_STEPS) this.steps = this.steps.filter((_, i) => i % 2 === 1);
     }
 
-    // Null if fewer than two steps were seen.
+    // Null if there are fewer than two steps.
     chart(name) {
       const steps = this.steps
         .map(({samples, estimates}) => ({
@@ -82,16 +82,16 @@
     }
   }
 
-  // Jobs that the server answered from its store. Only the answer of CreateEnsembleJob says this.
+  // Jobs that the server answered from its store. Only the answer to CreateEnsembleJob says this.
   const fromStore = new Set();
 
   class JobRecord {
     constructor() {
       this.job = null;
-      this.points = new Map(); // index: point; the newest of each
+      this.points = new Map(); // index: the newest data of the point
       this.finished = new Set();
       this.convergence = new Map();
-      this.newest = null; // index of the point that was computed last
+      this.newest = null; // index of the last updated point
     }
 
     takeJob(job) {
@@ -103,7 +103,7 @@
       const before = this.points.get(point.index);
       if (!isFinished && this.finished.has(point.index)) return;
       if (isFinished) this.finished.add(point.index);
-      // A watch leaves histograms and curves out; those that are known stay until newer ones come.
+      // A watch sends no histograms and curves. The known ones are kept until newer ones arrive.
       const {histograms, curves} = before ?? point;
       this.points.set(point.index, before?.detailed ? before : {...point, histograms, curves});
       if (!this.convergence.has(point.index)) this.convergence.set(point.index, new Convergence());
@@ -131,8 +131,8 @@
     switch (job.state) {
       case 'QUEUED':
         return (
-          'The job waits until a worker is free. Each user gets an even share of the workers. ' +
-          'Of the jobs of one user, those of higher priority go first. ' +
+          'The job waits until a worker is free. Each user gets an equal share of the workers. ' +
+          'A user’s jobs with a higher priority run first. ' +
           (status ? ballpiston.statusText(status) : '')
         );
       case 'FAILED':
@@ -141,7 +141,7 @@
         return 'The job was cancelled. Finished points are kept.';
       default:
         return status?.state === 'STORE_FAILING'
-          ? 'The server’s disk refuses writes. The job waits until results can be stored.'
+          ? 'The server cannot write to its disk. The job waits until results can be stored.'
           : '';
     }
   }
@@ -154,7 +154,7 @@
     const shown = [];
     if (job.answered_from_store) {
       shown.push(
-        element('p', {class: 'panel'}, 'Answered from the store: this question was asked before.'),
+        element('p', {class: 'panel'}, 'Answered from the store: the results were already there.'),
       );
     }
     if (job.results_expired) {
@@ -178,7 +178,7 @@
       this.state = element('span', {role: 'status'});
       this.why = element('p', {class: 'panel', hidden: true});
       this.notes = element('div');
-      this.ask = element('button', {type: 'button', onclick: onAsk, hidden: true}, 'Ask this again');
+      this.ask = element('button', {type: 'button', onclick: onAsk, hidden: true}, 'Submit again');
       this.facts = element('div');
       this.spec = element('div');
       this.element = element(
@@ -248,7 +248,7 @@
       this.element = element('div', {}, this.table, this.more);
     }
 
-    // Points beyond the first `count` have no row.
+    // Shows rows for the first `count` points.
     show(points, finished, shown) {
       Object.assign(this, {points, finished, shown});
       let next = this.body.firstChild;
@@ -357,7 +357,7 @@
       main.append(this.head.element, this.panel.element, this.gridSection);
     }
 
-    // `index` null: the point that is computed, or the first one.
+    // `index` null: the running point, or the first point.
     choose(index) {
       this.chosen = index;
       const result = index === null ? '' : `/results/${index}`;
@@ -390,7 +390,7 @@
       this.askForDetails(point);
     }
 
-    // Draws soon; later, if drawing takes long.
+    // Draws soon. Waits longer if drawing takes long.
     drawSoon() {
       if (this.drawing) return;
       this.drawing = true;
@@ -411,11 +411,11 @@
       return call('EnsembleService/GetResult', {name, ...request}, this.signal);
     }
 
-    // Histograms and curves so far.
+    // Requests the current histograms and curves of an unfinished point.
     async askForUnfinished(point) {
       if (this.asking || performance.now() < (this.nextDetails ?? 0)) return;
       this.asking = true;
-      // The point may be finished, or not begun: then the next snapshot tells more.
+      // The call fails if the point is finished or not begun. Then the next snapshot updates it.
       const now = await this.getResult(point.index, {unfinished: true}).catch(() => null);
       this.asking = false;
       this.nextDetails = performance.now() + DETAILS_EVERY;
@@ -426,7 +426,7 @@
       this.drawSoon();
     }
 
-    // Histograms and curves, which a watch leaves out.
+    // Requests histograms and curves, which a watch does not send.
     async askForDetails(point) {
       const {record} = this;
       if (point.detailed || record.job.results_expired) return;
@@ -441,13 +441,13 @@
         record.points.set(point.index, {...detailed, detailed: true});
         this.drawSoon();
       } catch (error) {
-        this.withoutDetails.add(point.index); // the banner says why, or another view is shown
+        this.withoutDetails.add(point.index); // the banner shows the error, or the view has changed
       } finally {
         if (this.asked === point.index) this.asked = null;
       }
     }
 
-    // One watch, until the job ended. Goes on where the last one stopped.
+    // One watch until the job's end. Resumes where the last watch stopped.
     async watch(progress) {
       const controller = whileVisible(this.signal);
       try {
@@ -467,13 +467,13 @@
       }
     }
 
-    // The same question: the server answers from its store, or computes.
+    // Submits the same specification: the server answers from its store, or computes.
     async askAgain() {
       this.head.ask.disabled = true;
       try {
         await this.create();
       } catch {
-        // The banner says why, or another view is shown.
+        // The banner shows the error, or the view has changed.
       } finally {
         this.head.ask.disabled = false;
       }
@@ -503,7 +503,7 @@
       }
     }
 
-    // A watch of an ended job sends the job last, so the page first asks for the job itself.
+    // A watch of an ended job sends the job last. Therefore the page first requests the job.
     async run() {
       const job = await keepTrying(
         () => call('EnsembleService/GetEnsembleJob', {name: this.name}, this.signal),

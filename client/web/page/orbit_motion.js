@@ -1,5 +1,5 @@
-// Where the balls and pistons of a trace are at a given time. Between its events a body flies
-// straight on.
+// The positions of the balls and pistons of a trace at a given time. Between its events a body
+// moves with constant velocity.
 (function (ballpiston) {
   'use strict';
 
@@ -15,9 +15,9 @@
       this.start = start;
       this.balls = start.balls.map(atStart);
       this.pistons = start.pistons.map(atStart);
-      this.events = []; // known and not yet reached, in the order of time
+      this.events = []; // known events that are not yet reached, in the order of time
       this.time = 0;
-      this.count = 0; // events that were reached
+      this.count = 0; // number of reached events
       this.hasEnded = false; // no event follows the known ones
     }
 
@@ -25,7 +25,7 @@
       this.events.push(...events);
     }
 
-    // Goes to `time`, at most to the last event that is known. Returns the events on the way.
+    // Advances to `time`, at most to the last known event. Returns the events on the way.
     advanceTo(time) {
       const reached = [];
       while (reached.length < this.events.length && this.events[reached.length].time <= time) {
@@ -38,7 +38,7 @@
       return reached;
     }
 
-    // The time of the next event of this kind that is known, or undefined.
+    // The time of the next known event of this kind, or undefined.
     timeOfNext(kind) {
       return this.events.find((event) => event.event === kind)?.time;
     }

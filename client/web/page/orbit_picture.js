@@ -1,5 +1,5 @@
-// Cells, balls and pistons on a canvas. The colour of a body shows its energy. Readers with the
-// usual colour vision deficiencies can also read the colour scale, cividis.
+// Cells, balls and pistons on a canvas. The colour of a body shows its energy, in the colour scale
+// cividis, which readers with colour vision deficiency can also read.
 (function (ballpiston) {
   'use strict';
 
@@ -11,7 +11,7 @@
     [200, 184, 102],
     [254, 232, 56],
   ];
-  const EDGE = 0.06; // around the cells
+  const EDGE = 0.06; // margin around the cells
   const BALL = 0.025; // radius of the picture of a ball, which is a point
   const TRAIL = 60; // corners of the pair's trail
 
@@ -21,7 +21,7 @@
     return a.map((value, i) => Math.round(value + share * (b[i] - value)));
   }
 
-  // `share` of the most energy shown, from 0 to 1.
+  // `share`: the energy as a share of mostEnergy, from 0 to 1.
   function colourOf(share) {
     const at = Math.min(Math.max(share, 0), 1) * (CIVIDIS.length - 1);
     const i = Math.min(Math.floor(at), CIVIDIS.length - 2);
@@ -41,12 +41,12 @@
       this.start = start;
       this.isPair = start.cells === undefined;
       this.shape = shapeOf(start.cells);
-      // A ball of the pair has at most 1/2. In a gas one ball in seven has more than 2 T.
+      // A ball of a pair has at most the energy 1/2. In a gas one ball in seven has more than 2 T.
       this.mostEnergy = this.isPair ? 0.5 : 2 * start.temperature;
       this.trail = [];
     }
 
-    // The part of the plane that is shown.
+    // The shown part of the plane.
     get bounds() {
       const {columns, rows} = this.shape;
       const way = 0.5 - this.start.tip + this.start.delta; // of a piston, to either side of an edge
@@ -67,7 +67,7 @@
       return (right - left) / (top - bottom);
     }
 
-    // Lengths of the plane from here on; y points up.
+    // Sets the canvas to the lengths of the plane, with y upwards.
     prepare() {
       const {left, right, bottom, top} = this.bounds;
       const {width, height} = this.canvas;
@@ -104,7 +104,7 @@
       motion.ballsNow().forEach((ball) => this.drawBall(c, ball));
     }
 
-    // The discs are one shape, so that they hide where they overlap.
+    // All discs are one shape, so that overlaps of discs have the same colour as the discs.
     drawDiscs(c) {
       const {columns, rows} = this.shape;
       c.beginPath();
@@ -132,7 +132,7 @@
       c.globalAlpha = 1;
     }
 
-    // A piston of a gas across its left or lower edge is also seen at the other edge.
+    // A piston that crosses the left or lower edge of a gas is drawn at the opposite edge too.
     drawPiston(c, piston) {
       const {columns, rows} = this.shape;
       this.drawSegment(c, piston, 0, 0);
@@ -159,7 +159,7 @@
       }
     }
 
-    // Thinner where there are many cells.
+    // Lines are thinner if there are many cells.
     get thickness() {
       return Math.min(1, this.scale / 150);
     }
@@ -175,7 +175,7 @@
     }
   }
 
-  // The scale of energies, as a strip.
+  // Draws the colour scale of the energies as a strip.
   function drawEnergyScale(canvas) {
     const c = canvas.getContext('2d');
     for (let x = 0; x < canvas.width; ++x) {

@@ -1,4 +1,4 @@
-// #orbit: one orbit of the reference billiard, from TraceOrbit, played as it is read.
+// #orbit: one orbit of the reference billiard, from TraceOrbit. The page plays it while it arrives.
 (function (ballpiston) {
   'use strict';
 
@@ -19,13 +19,13 @@
   const MOST_EXCHANGES = 200; // in the chart of energies
   const CHART_EVERY = 500; // ms
   const LONGEST_FRAME = 0.1; // seconds, so that an orbit does not jump after its tab was hidden
-  const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]; // units of time a second
+  const SPEEDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20]; // units of time per second
   const MOST_HEIGHT = 0.7; // of the window
 
   const FIELDS = [
     {name: 'rho', label: 'ρ, radius of the discs', value: '0.5296', step: 'any'},
     {name: 'delta', label: 'δ, reach of the piston', value: '0.2', step: 'any'},
-    {name: 'cells', label: 'Cells, N or NxM; empty: the pair', value: '', text: true},
+    {name: 'cells', label: 'Cells, N or NxM; empty: a pair', value: '', text: true},
     {name: 'temperature', label: 'Temperature of a gas', value: '1', step: 'any'},
     {name: 'seed', label: 'Seed', value: '0', step: '1'},
     {name: 'events', label: 'Events', value: '10000', step: '1'},
@@ -197,7 +197,7 @@
       this.speed = Math.min(Math.max(speed, 0), SPEEDS.length - 1);
       this.speedInput.value = this.speed;
       const shown = SPEEDS[this.speed];
-      this.speedText.textContent = `${shown} ${shown === 1 ? 'unit' : 'units'} of time a second`;
+      this.speedText.textContent = `${shown} ${shown === 1 ? 'unit' : 'units'} of time per second`;
       this.speedInput.setAttribute('aria-valuetext', this.speedText.textContent);
     }
 
@@ -217,12 +217,12 @@
       try {
         await keepTrying((progress) => this.read(request, progress, signal), signal);
       } catch (error) {
-        if (signal.aborted || error instanceof ballpiston.CallError) return; // the banner says it
+        if (signal.aborted || error instanceof ballpiston.CallError) return; // the banner shows it
         throw error;
       }
     }
 
-    // The same request gives the same events, so a retry passes over those that are known.
+    // The same request gives the same events: a retry skips the known events.
     async read(request, progress, signal) {
       let known = this.request === request ? this.motion.count + this.motion.events.length : 0;
       for await (const {start, events = []} of stream('TraceService/TraceOrbit', request, signal)) {
@@ -261,7 +261,7 @@
       this.drawChart();
     }
 
-    // The canvas has as many pixels as the screen, and the shape of what it shows.
+    // Gives the canvas the pixel density of the screen and the shape of the picture.
     fit() {
       if (!this.picture) return;
       const room = this.canvas.parentElement.clientWidth;
@@ -296,7 +296,7 @@
       this.onRoom?.();
     }
 
-    // Mean energies after an exchange, for the chart.
+    // Stores the mean energies after an exchange, for the chart.
     note(balls, pistons, time) {
       const mean = (bodies) => bodies.reduce((sum, body) => sum + body.energy, 0) / bodies.length;
       this.exchanges.push({time, ball: mean(balls), piston: mean(pistons)});

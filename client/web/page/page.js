@@ -1,4 +1,4 @@
-// Chooses the view from the fragment of the address, and the theme.
+// Selects the view from the fragment of the address, and sets the theme.
 (function (ballpiston) {
   'use strict';
 
@@ -9,7 +9,7 @@
 
   const main = () => document.getElementById('main');
 
-  // Empty for a fragment that is not encoded properly.
+  // Returns an empty text for a fragment that is not encoded correctly.
   function decoded(text) {
     try {
       return decodeURIComponent(text);

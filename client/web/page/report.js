@@ -21,7 +21,7 @@
     parametersText,
   } = ballpiston;
 
-  const MOST_PICTURED = 12; // points of a job with tables and pictures of their own
+  const MOST_PICTURED = 12; // points of a job with separate tables and pictures
   const MOST_ROWS = 1000; // of the table of all points
 
   const OUTCOMES = {
@@ -30,7 +30,7 @@
     CANCELLED: 'This job was cancelled',
   };
 
-  // Null if all is well.
+  // Null if the job succeeded.
   function outcomeText(job) {
     if (!(job.state in OUTCOMES)) return 'This job had not ended when the report was made.';
     const text = OUTCOMES[job.state];
@@ -63,7 +63,7 @@
     return table(caption, POINT_COLUMNS, cells, {class: 'rows points'});
   }
 
-  // Shown after it is in the page, because charts need their width.
+  // Call it when the section is in the page: charts need their width.
   function showPoint(section, point) {
     const view = new ResultView();
     section.append(
@@ -109,7 +109,7 @@
     jobs.forEach((entry) => showJob(main, entry));
   }
 
-  // Paper is light, and so are the charts on it.
+  // Draws the charts with the light theme for print.
   function printLight() {
     const root = document.documentElement;
     addEventListener('beforeprint', () => {

@@ -1,5 +1,5 @@
-// One point of a job: its estimates, histograms over the exact law, curves, and remarks. Charts and
-// tables are kept while the numbers change.
+// One point of a job: its estimates, histograms with the exact law, curves, and remarks. Charts and
+// tables are kept when their numbers change.
 (function (ballpiston) {
   'use strict';
 
@@ -40,11 +40,12 @@
   ];
 
   function modelErrorText(error) {
-    if (!isNumber(error)) return 'not known';
+    if (!isNumber(error)) return 'unknown';
     return error === 0 ? '0' : `${Number((100 * error).toPrecision(2))} %`;
   }
 
-  // The closed form; else the Markov limit; else the noise floor, the mean if two laws were equal.
+  // The closed form; else the Markov limit; else the noise floor, which is the mean of the estimate
+  // if the two laws are equal.
   function yardstick(estimate) {
     const {exact, limit, noise_floor: floor, standard_error: error} = estimate;
     if (isNumber(exact))
@@ -74,7 +75,7 @@
   function entropyText(kl) {
     if (!kl) return null;
     const noise = isNumber(kl.noise_floor)
-      ? `; if the laws were equal: ${withError(kl.noise_floor, kl.noise_error)}`
+      ? `; expected for equal laws: ${withError(kl.noise_floor, kl.noise_error)}`
       : '';
     return `${withError(kl.value, kl.standard_error)}${noise} (${countText(kl.cells)} cells)`;
   }
@@ -83,8 +84,8 @@
     if (!health) return null;
     const escapes =
       health.escapes > 0
-        ? `${countText(health.escapes)} orbits escaped: a defect`
-        : 'no orbit escaped';
+        ? `${countText(health.escapes)} orbits left the cell: a defect`
+        : 'no orbit left the cell';
     return (
       `${escapes}; largest relative error of the energy ` +
       `${Number((health.max_energy_error ?? 0).toPrecision(2))}`
@@ -121,7 +122,8 @@
     return sums;
   }
 
-  // How many bins to show as one, so that each is wide enough to see. Divides the number of bins.
+  // The number of bins that are shown as one, so that each is wide enough to see. A divisor of the
+  // number of bins.
   function mergedBins(bins) {
     if (bins < 2 * MOST_BINS) return 1;
     for (let size = 1; size <= bins; ++size) {
@@ -143,7 +145,8 @@
     piston_energy: 'master equation, the limit δ → 0',
   };
 
-  // The bin of the start holds most orbits at first. It is cut off, so that the others can be seen.
+  // At first most orbits are in the bin of their start. This bin is cut off, so that the others are
+  // visible.
   const MOST_OVER_SECOND = 4;
   function topOf(densities) {
     const [most, second] = [...densities].sort((a, b) => b - a);
@@ -154,7 +157,7 @@
     if (size > 1) return `${histogram.counts.length} bins, shown in groups of ${size}`;
     if (topOf(densities) === undefined) return null;
     const share = Math.max(...densities) * width;
-    return `The highest bin is cut off: it holds ${(100 * share).toFixed(1)} %.`;
+    return `The highest bin is cut off: it contains ${(100 * share).toFixed(1)} %.`;
   }
 
   function histogramTitle(histogram) {
@@ -164,7 +167,8 @@
     return name + sign + time;
   }
 
-  // Densities over `total`, the counts of this histogram and of that for the other sign.
+  // Densities relative to `total`: the counts of this histogram and of the histogram with the other
+  // sign.
   function histogramChart(histogram, total) {
     const expected = histogram.expected_probabilities ?? [];
     const bins = Math.max(histogram.counts.length, expected.length);
@@ -273,7 +277,7 @@
       this.charts = [];
     }
 
-    // `further`: charts to show before the histograms, as Chart takes them.
+    // `further`: more charts, shown before the histograms, in the form of Chart.
     show(point, further = []) {
       this.text.replaceChildren(
         estimateTable(point, `Estimates at ${parametersText(point.parameters)}`),
@@ -311,7 +315,7 @@
     {label: 'z', number: true},
   ];
 
-  // The cells of a point with its first estimate; `name` is the first cell.
+  // The cells of a point's row, with its first estimate. `name` is the first cell.
   function pointCells(point, name) {
     const first = point.estimates?.[0] ?? {};
     return [

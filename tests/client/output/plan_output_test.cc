@@ -88,8 +88,8 @@ TEST(PlanTable, NamesTheTarget) {
     return text.substr(0, text.find("  ("));
   };
   EXPECT_EQ(heading(""), "energy-relaxation, 0 points");
-  EXPECT_EQ(heading("samples: 1000000"), "energy-relaxation, 1000000 samples a point, 0 points");
-  EXPECT_EQ(heading("collisions: 5"), "energy-relaxation, 5 collisions a point, 0 points");
+  EXPECT_EQ(heading("samples: 1000000"), "energy-relaxation, 1000000 samples per point, 0 points");
+  EXPECT_EQ(heading("collisions: 5"), "energy-relaxation, 5 collisions per point, 0 points");
   EXPECT_EQ(heading("budget { nanos: 500000000 }"), "energy-relaxation, budget 0.5 s, 0 points");
 }
 

@@ -231,7 +231,7 @@ TEST(ProgressBar, ANoteClearsTheWholeBarFirst) {
 TEST(ProgressBar, ANoteClearsTheMessageOfALostConnection) {
   Reported report(ProgressStyle::kBar);
   report.reporter.OnDisconnect(absl::UnavailableError("gone"), absl::Seconds(1.5));
-  EXPECT_THAT(Screen(report.Text()), ElementsAre("connection lost, trying again in 1.5 s"));
+  EXPECT_THAT(Screen(report.Text()), ElementsAre("connection lost, retrying in 1.5 s"));
   report.reporter.Note("a");
   EXPECT_THAT(Screen(report.Text()), ElementsAre("a", ""));
 }

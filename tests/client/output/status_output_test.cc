@@ -50,7 +50,7 @@ you       alice, role submit
 jobs      3 queued, 1 running, 1024 in the store
 workers   1 of 2 busy
 computed  1.28e+09 samples in 5000 blocks, 1.5 h of processor time
-speed     500 million wall hits/s, 125 million jumps/s, a core
+speed     500 million wall hits/s, 125 million jumps/s per core
 streams   4
 store     68 KiB
 expiry    results of 12 jobs expire within a week
@@ -58,16 +58,16 @@ expiry    results of 12 jobs expire within a week
 principal  queued  running  streams  stored  stored bytes  processor time, 30 days
 alice           3        1        4    1000        59 KiB                    1.4 h
 
-limit                         all  a principal
-active jobs                 10000         1000
-their points                2e+07      5000000
-streams                      4096         2048
-calls                    no limit         1024
-their bytes              no limit      128 MiB
-stored bytes              2.0 GiB      512 MiB
-processor time, 30 days  no limit        4.2 d
+limit                       total  per principal
+active jobs                 10000           1000
+active points               2e+07        5000000
+streams                      4096           2048
+calls                    no limit           1024
+bytes of calls           no limit        128 MiB
+stored bytes              2.0 GiB        512 MiB
+processor time, 30 days  no limit          4.2 d
 
-limit             a job
+limit           per job
 points           100000
 samples           1e+15
 processor time    1.0 d
@@ -80,9 +80,9 @@ TEST(StatusOutput, ZeroMeansUnlimited) {
   v1::ServerStatus status = BusyServer();
   status.mutable_limits()->Clear();
   const std::string table = PrintedStatus(status);
-  EXPECT_THAT(table, HasSubstr("active jobs              no limit     no limit\n"));
-  EXPECT_THAT(table, HasSubstr("stored bytes             no limit     no limit\n"));
-  EXPECT_THAT(table, HasSubstr("processor time, 30 days  no limit     no limit\n"));
+  EXPECT_THAT(table, HasSubstr("active jobs              no limit       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("stored bytes             no limit       no limit\n"));
+  EXPECT_THAT(table, HasSubstr("processor time, 30 days  no limit       no limit\n"));
   EXPECT_THAT(table, HasSubstr("processor time  no limit\n"));
   EXPECT_THAT(table, HasSubstr("message         no limit\n"));
   EXPECT_THAT(table, HasSubstr("results kept    no limit\n"));
