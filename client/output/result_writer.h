@@ -1,7 +1,9 @@
 // Prints the results of a job, point by point, in one of the formats.
 //
 //   table   a heading with experiment and model, then one row for each point and estimate
-//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult, one point per line
+//   json    {"client_version": ..., "job": {...}, "points": [...]}, a v1::SavedResult; one point
+//   per
+//           line
 //   jsonl   one point per line
 //   csv     rho,delta,epsilon,exponent,model,samples,name,value,standard_error,exact,z_score,
 //           model_error,noise_floor,limit; after exponent the other parameters of the grid

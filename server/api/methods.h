@@ -1,4 +1,6 @@
-// The unary methods of the API, one file each. The protos have their contracts and errors.
+// The unary methods of the API, one row each. A row declares the function that executes the method
+// in a file of its own, and the method of its service. To add a method: its proto, a row, a file.
+// The protos have the contracts and errors.
 #ifndef BALLPISTON_SERVER_API_METHODS_H_
 #define BALLPISTON_SERVER_API_METHODS_H_
 
@@ -10,33 +12,35 @@
 #include "server/api/call.h"
 #include "server/api/service_context.h"
 
+// METHOD(name, request, response, least role, whether it waits for the disk)
+#define BALLPISTON_ENSEMBLE_METHODS(METHOD)                                                        \
+  METHOD(CreateEnsembleJob, v1::CreateEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)    \
+  METHOD(GetEnsembleJob, v1::GetEnsembleJobRequest, v1::EnsembleJob, Role::kRead, false)           \
+  METHOD(ListEnsembleJobs, v1::ListEnsembleJobsRequest, v1::ListEnsembleJobsResponse, Role::kRead, \
+         false)                                                                                    \
+  METHOD(CancelEnsembleJob, v1::CancelEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)    \
+  METHOD(PinEnsembleJob, v1::PinEnsembleJobRequest, v1::EnsembleJob, Role::kSubmit, true)          \
+  METHOD(DeleteEnsembleJob, v1::DeleteEnsembleJobRequest, google::protobuf::Empty, Role::kSubmit,  \
+         true)                                                                                     \
+  METHOD(PlanEnsembleJob, v1::PlanEnsembleJobRequest, v1::PlanEnsembleJobResponse, Role::kRead,    \
+         false)                                                                                    \
+  METHOD(ListResults, v1::ListResultsRequest, v1::ListResultsResponse, Role::kRead, false)         \
+  METHOD(GetResult, v1::GetResultRequest, v1::PointResult, Role::kRead, false)
+
+#define BALLPISTON_ANALYTIC_METHODS(METHOD) \
+  METHOD(EvaluatePairs, v1::EvaluatePairsRequest, v1::EvaluatePairsResponse, Role::kRead, false)
+
+#define BALLPISTON_SERVER_METHODS(METHOD) \
+  METHOD(GetServerStatus, v1::GetServerStatusRequest, v1::ServerStatus, Role::kRead, false)
+
 namespace ballpiston::server {
 
-absl::StatusOr<v1::EnsembleJob> CreateEnsembleJob(ServiceContext& service, const Call& call,
-                                                  const v1::CreateEnsembleJobRequest& request);
-absl::StatusOr<v1::EnsembleJob> GetEnsembleJob(ServiceContext& service, const Call& call,
-                                               const v1::GetEnsembleJobRequest& request);
-absl::StatusOr<v1::ListEnsembleJobsResponse> ListEnsembleJobs(
-    ServiceContext& service, const Call& call, const v1::ListEnsembleJobsRequest& request);
-absl::StatusOr<v1::EnsembleJob> CancelEnsembleJob(ServiceContext& service, const Call& call,
-                                                  const v1::CancelEnsembleJobRequest& request);
-absl::StatusOr<v1::EnsembleJob> PinEnsembleJob(ServiceContext& service, const Call& call,
-                                               const v1::PinEnsembleJobRequest& request);
-absl::StatusOr<google::protobuf::Empty> DeleteEnsembleJob(
-    ServiceContext& service, const Call& call, const v1::DeleteEnsembleJobRequest& request);
-absl::StatusOr<v1::ListResultsResponse> ListResults(ServiceContext& service, const Call& call,
-                                                    const v1::ListResultsRequest& request);
-absl::StatusOr<v1::PointResult> GetResult(ServiceContext& service, const Call& call,
-                                          const v1::GetResultRequest& request);
-
-absl::StatusOr<v1::PlanEnsembleJobResponse> PlanEnsembleJob(
-    ServiceContext& service, const Call& call, const v1::PlanEnsembleJobRequest& request);
-
-absl::StatusOr<v1::EvaluatePairsResponse> EvaluatePairs(ServiceContext& service, const Call& call,
-                                                        const v1::EvaluatePairsRequest& request);
-
-absl::StatusOr<v1::ServerStatus> GetServerStatus(ServiceContext& service, const Call& call,
-                                                 const v1::GetServerStatusRequest& request);
+#define BALLPISTON_DECLARE(name, Request, Response, role, writes) \
+  absl::StatusOr<Response> name(ServiceContext& service, const Call& call, const Request& request);
+BALLPISTON_ENSEMBLE_METHODS(BALLPISTON_DECLARE)
+BALLPISTON_ANALYTIC_METHODS(BALLPISTON_DECLARE)
+BALLPISTON_SERVER_METHODS(BALLPISTON_DECLARE)
+#undef BALLPISTON_DECLARE
 
 }  // namespace ballpiston::server
 

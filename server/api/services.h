@@ -7,44 +7,27 @@
 #include "ballpiston/v1/ensemble.grpc.pb.h"
 #include "ballpiston/v1/server.grpc.pb.h"
 #include "ballpiston/v1/trace.grpc.pb.h"
+#include "server/api/methods.h"
 #include "server/api/service_context.h"
+#include "server/api/unary_rpc.h"
 
 namespace ballpiston::server {
+
+#define BALLPISTON_SERVE(name, Request, Response, role, writes)                                \
+  grpc::ServerUnaryReactor* name(grpc::CallbackServerContext* context, const Request* request, \
+                                 Response* response) override {                                \
+    return RunUnary<Request, Response>(service_, context, {#name, role, writes}, request,      \
+                                       response, &server::name);                               \
+  }
 
 // `service` must outlive all services.
 class EnsembleService : public v1::EnsembleService::CallbackService {
  public:
   explicit EnsembleService(ServiceContext& service) : service_(service) {}
 
-  grpc::ServerUnaryReactor* CreateEnsembleJob(grpc::CallbackServerContext* context,
-                                              const v1::CreateEnsembleJobRequest* request,
-                                              v1::EnsembleJob* response) override;
-  grpc::ServerUnaryReactor* GetEnsembleJob(grpc::CallbackServerContext* context,
-                                           const v1::GetEnsembleJobRequest* request,
-                                           v1::EnsembleJob* response) override;
-  grpc::ServerUnaryReactor* ListEnsembleJobs(grpc::CallbackServerContext* context,
-                                             const v1::ListEnsembleJobsRequest* request,
-                                             v1::ListEnsembleJobsResponse* response) override;
-  grpc::ServerUnaryReactor* CancelEnsembleJob(grpc::CallbackServerContext* context,
-                                              const v1::CancelEnsembleJobRequest* request,
-                                              v1::EnsembleJob* response) override;
-  grpc::ServerUnaryReactor* PinEnsembleJob(grpc::CallbackServerContext* context,
-                                           const v1::PinEnsembleJobRequest* request,
-                                           v1::EnsembleJob* response) override;
-  grpc::ServerUnaryReactor* DeleteEnsembleJob(grpc::CallbackServerContext* context,
-                                              const v1::DeleteEnsembleJobRequest* request,
-                                              google::protobuf::Empty* response) override;
+  BALLPISTON_ENSEMBLE_METHODS(BALLPISTON_SERVE)
   grpc::ServerWriteReactor<v1::WatchEnsembleJobResponse>* WatchEnsembleJob(
       grpc::CallbackServerContext* context, const v1::WatchEnsembleJobRequest* request) override;
-  grpc::ServerUnaryReactor* PlanEnsembleJob(grpc::CallbackServerContext* context,
-                                            const v1::PlanEnsembleJobRequest* request,
-                                            v1::PlanEnsembleJobResponse* response) override;
-  grpc::ServerUnaryReactor* ListResults(grpc::CallbackServerContext* context,
-                                        const v1::ListResultsRequest* request,
-                                        v1::ListResultsResponse* response) override;
-  grpc::ServerUnaryReactor* GetResult(grpc::CallbackServerContext* context,
-                                      const v1::GetResultRequest* request,
-                                      v1::PointResult* response) override;
 
  private:
   ServiceContext& service_;
@@ -54,9 +37,7 @@ class AnalyticService : public v1::AnalyticService::CallbackService {
  public:
   explicit AnalyticService(ServiceContext& service) : service_(service) {}
 
-  grpc::ServerUnaryReactor* EvaluatePairs(grpc::CallbackServerContext* context,
-                                          const v1::EvaluatePairsRequest* request,
-                                          v1::EvaluatePairsResponse* response) override;
+  BALLPISTON_ANALYTIC_METHODS(BALLPISTON_SERVE)
 
  private:
   ServiceContext& service_;
@@ -77,13 +58,13 @@ class ServerService : public v1::ServerService::CallbackService {
  public:
   explicit ServerService(ServiceContext& service) : service_(service) {}
 
-  grpc::ServerUnaryReactor* GetServerStatus(grpc::CallbackServerContext* context,
-                                            const v1::GetServerStatusRequest* request,
-                                            v1::ServerStatus* response) override;
+  BALLPISTON_SERVER_METHODS(BALLPISTON_SERVE)
 
  private:
   ServiceContext& service_;
 };
+
+#undef BALLPISTON_SERVE
 
 }  // namespace ballpiston::server
 

@@ -33,7 +33,7 @@ class PrintResultTest : public ::testing::Test {
 
   absl::StatusOr<ExitCode> Print() {
     Terminal terminal{out_, err_};
-    return PrintResult(connection_, kJobName, Format::kJsonl, terminal);
+    return PrintResult(connection_, kJobName, options_, terminal);
   }
 
   FakeServer server_;
@@ -44,6 +44,7 @@ class PrintResultTest : public ::testing::Test {
                          .local = {},
                          .flags = "",
                          .security = {}};
+  Options options_{.format = Format::kJsonl};
   std::ostringstream out_, err_;
 };
 

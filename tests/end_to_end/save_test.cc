@@ -1,0 +1,67 @@
+// Results in files: saved in each format, and verified without the server.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/end_to_end/programs.h"
+
+namespace ballpiston {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Save : public ::testing::Test {
+ protected:
+  std::string File(const std::string& name) const { return folder_.path() + "/" + name; }
+  ProcessResult Verify(const std::string& name) const {
+    return RunProcess(ClientCommand(folder_, {"result", "--verify", File(name)}));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Save, AResultInEachFormat) {
+  const TestServer server;
+  const Words question = Joined({{"run"}, kQuickQuestion});
+  for (const char* name : {"a.json", "a.csv", "a.npz"}) {
+    const ProcessResult saved = server.Client(Joined({question, {"--save", File(name)}}));
+    ASSERT_THAT(saved, ExitsWith(0));
+    EXPECT_EQ(saved.out, File(name) + "\n");
+  }
+  const ProcessResult printed = server.Client(Joined({question, {"--format", "json"}}));
+  EXPECT_EQ(PointsOf(ReadFile(File("a.json"))), PointsOf(printed.out));
+  EXPECT_THAT(ReadFile(File("a.csv")), StartsWith("# ensembleJobs/"));
+  EXPECT_THAT(ReadFile(File("a.npz")), StartsWith("PK"));
+}
+
+TEST_F(Save, AFileIsVerifiedWithoutAServer) {
+  {
+    const TestServer server;
+    server.Client(Joined({{"run"}, kQuickQuestion, {"--save", File("a.json")}}));
+  }
+  const ProcessResult verified = Verify("a.json");
+  EXPECT_THAT(verified, ExitsWith(0));
+  EXPECT_THAT(verified.out, HasSubstr("everything is equal"));
+  std::string text = ReadFile(File("a.json"));
+  text.replace(text.find("\"seed\":\"7\""), 10, "\"seed\":\"8\"");
+  WriteFile(File("edited.json"), text);
+  const ProcessResult edited = Verify("edited.json");
+  EXPECT_THAT(edited, ExitsWith(4));
+  EXPECT_THAT(edited.err, HasSubstr("not what this engine computes"));
+  EXPECT_THAT(Verify("none.json"), ExitsWith(2));
+}
+
+TEST_F(Save, AnUnusableFileIsRejectedBeforeAJobIsMade) {
+  const TestServer server;
+  for (const std::string& path : {File("a.txt"), File("none/a.json"), folder_.path()}) {
+    const ProcessResult run = server.Client(Joined({{"run"}, kQuickQuestion, {"--save", path}}));
+    EXPECT_THAT(run, ExitsWith(2));
+    EXPECT_THAT(run.err, HasSubstr("--save: "));
+  }
+  EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
+}
+
+}  // namespace
+}  // namespace ballpiston
