@@ -31,9 +31,9 @@ TEST_F(Save, AResultInEachFormat) {
     EXPECT_EQ(saved.out, File(name) + "\n");
   }
   const ProcessResult printed = server.Client(Joined({question, {"--format", "json"}}));
-  EXPECT_EQ(PointsOf(ReadFile(File("a.json"))), PointsOf(printed.out));
-  EXPECT_THAT(ReadFile(File("a.csv")), StartsWith("# ensembleJobs/"));
-  EXPECT_THAT(ReadFile(File("a.npz")), StartsWith("PK"));
+  EXPECT_EQ(PointsOf(Contents(File("a.json"))), PointsOf(printed.out));
+  EXPECT_THAT(Contents(File("a.csv")), StartsWith("# ensembleJobs/"));
+  EXPECT_THAT(Contents(File("a.npz")), StartsWith("PK"));
 }
 
 TEST_F(Save, AFileIsVerifiedWithoutAServer) {
@@ -44,7 +44,7 @@ TEST_F(Save, AFileIsVerifiedWithoutAServer) {
   const ProcessResult verified = Verify("a.json");
   EXPECT_THAT(verified, ExitsWith(0));
   EXPECT_THAT(verified.out, HasSubstr("everything is equal"));
-  std::string text = ReadFile(File("a.json"));
+  std::string text = Contents(File("a.json"));
   text.replace(text.find("\"seed\":\"7\""), 10, "\"seed\":\"8\"");
   WriteFile(File("edited.json"), text);
   const ProcessResult edited = Verify("edited.json");

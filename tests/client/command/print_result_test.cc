@@ -33,7 +33,9 @@ class PrintResultTest : public ::testing::Test {
 
   absl::StatusOr<ExitCode> Print() {
     Terminal terminal{out_, err_};
-    return PrintResult(connection_, kJobName, options_, terminal);
+    Options options;
+    options.format = Format::kJsonl;
+    return PrintResult(connection_, kJobName, options, terminal);
   }
 
   FakeServer server_;
@@ -44,7 +46,6 @@ class PrintResultTest : public ::testing::Test {
                          .local = {},
                          .flags = "",
                          .security = {}};
-  Options options_{.format = Format::kJsonl};
   std::ostringstream out_, err_;
 };
 

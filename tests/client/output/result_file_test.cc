@@ -24,9 +24,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Key;
 using ::testing::StartsWith;
-using ::testing::UnorderedElementsAre;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 
@@ -175,13 +173,13 @@ TEST_F(NewFileTest, AppearsWhenItIsKept) {
     EXPECT_FALSE(std::filesystem::exists(Path()));
     EXPECT_OK(file.Keep());
   }
-  EXPECT_EQ(ReadFile(Path()), "whole");
+  EXPECT_EQ(Contents(Path()), "whole");
 }
 
 TEST_F(NewFileTest, WithoutKeepTheOldFileStays) {
   WriteFile(Path(), "old");
   { NewFile("--save", Path()).out() << "half"; }
-  EXPECT_EQ(ReadFile(Path()), "old");
+  EXPECT_EQ(Contents(Path()), "old");
   const std::filesystem::directory_iterator files(folder_.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }

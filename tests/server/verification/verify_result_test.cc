@@ -22,6 +22,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr auto kDiffers = absl::StatusCode::kDataLoss;
 constexpr double kNeverWhole = -1;
