@@ -92,11 +92,11 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
                   Names("grid.delta[0]", "bound of a ball-piston pair"),
                   Names("grid.delta[1]", "-1"), Names("grid.epsilon[0]", "[0, 0.5]"),
                   Names("grid.epsilon[1]", "-inf"), Names("grid.exponent[0]", "[0, 1000]"),
-                  Names("grid.exponent[1]", "1001"), Names("grid.cells", "takes none"),
-                  Names("grid.temperature", "has 3 values; first-hit takes none"),
+                  Names("grid.exponent[1]", "1001"), Names("grid.cells", "does not use this list"),
+                  Names("grid.temperature", "has 3 values; first-hit does not use this list"),
                   Names("grid.temperature[2]", "temperature is -1"),
-                  Names("grid.hot", "has 1 values; first-hit takes none"),
-                  Names("grid.cold", "has 2 values; first-hit takes none"),
+                  Names("grid.hot", "has 1 values; first-hit does not use this list"),
+                  Names("grid.cold", "has 2 values; first-hit does not use this list"),
                   Names("grid.cold[1]", "cold is 0"), Names("target", "more than one"),
                   Names("target.samples", "is 0"), Names("target.tolerance", "0 < tolerance < 1"),
                   Names("model", "markov"), Names("precision", "single")));
@@ -122,8 +122,8 @@ TEST(EnsembleSpec, ListsThatTheExperimentLacksOrDoesNotUseAreNamed) {
   EXPECT_THAT(Violations({.experiment = &kEquilibrium,
                           .grid = {{kDelta, {0.1}}, {kEpsilon, {0.1}}, {kExponent, {1}}}}),
               UnorderedElementsAre(Names("grid.rho", "needs at least one"),
-                                   Names("grid.epsilon", "takes none"),
-                                   Names("grid.exponent", "takes none")));
+                                   Names("grid.epsilon", "does not use this list"),
+                                   Names("grid.exponent", "does not use this list")));
 }
 
 TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
@@ -179,7 +179,7 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
                                                      Names("grid.epsilon[1]", "[0, 0.5]"),
                                                      Names("grid.epsilon[2]", "[0, 0.5]")));
   spec.grid = {{kRho, {0.55}}, {kDelta, {0.1}}, {kExponent, {1}}};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "takes none")));
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "does not use this list")));
 }
 
 // Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
@@ -211,7 +211,7 @@ TEST(EnsembleSpec, MarkovPropertyCountsCollisionsWithoutATolerance) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "tends to 0")));
   spec.target = {};
   spec.grid[kEpsilon] = {0.1};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "takes none")));
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "does not use this list")));
 }
 
 TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {

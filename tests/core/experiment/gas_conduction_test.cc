@@ -166,8 +166,9 @@ TEST(GasConduction, ReplicasThatAreCutShortGiveNoErrorsAndSayWhy) {
   ASSERT_EQ(summary.remarks.size(), 1u);
   EXPECT_THAT(
       summary.remarks[0],
-      AllOf(HasSubstr("replicas of 30000 cells in a row were followed for "),
-            HasSubstr(" of the time that a stationary state takes: no errors can be given")));
+      AllOf(HasSubstr("replicas of 30000 cells in a row ran for only "),
+            HasSubstr(
+                " of the time that a stationary state needs, so there are no standard errors")));
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_FALSE(estimate.standard_error) << estimate.name;
   }
@@ -228,9 +229,8 @@ TEST(GasConduction, AToleranceOfNoCurrentIsRejected) {
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), IsEmpty());
   spec.grid[kHot] = {2, 1};
-  EXPECT_THAT(
-      Violations(spec),
-      ElementsAre(Violates("target.tolerance", "the heat current is 0 where hot = cold = 1")));
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Violates("target.tolerance", "the heat current is 0 if hot = cold = 1")));
   spec.target = {.budget_seconds = 1};
   EXPECT_THAT(Violations(spec), IsEmpty());
 }

@@ -236,11 +236,12 @@ TEST(GasExperiment, AnotherExperimentsParametersAreRejected) {
   equilibrium.grid[kHot] = {2};
   equilibrium.grid[kEpsilon] = {0.1};
   conduction.grid[kTemperature] = {1};
-  EXPECT_THAT(Violations(equilibrium), testing::UnorderedElementsAre(
-                                           Violates("grid.hot", "gas-equilibrium takes none"),
-                                           Violates("grid.epsilon", "gas-equilibrium takes none")));
+  EXPECT_THAT(Violations(equilibrium),
+              testing::UnorderedElementsAre(
+                  Violates("grid.hot", "gas-equilibrium does not use this list"),
+                  Violates("grid.epsilon", "gas-equilibrium does not use this list")));
   EXPECT_THAT(Violations(conduction),
-              ElementsAre(Violates("grid.temperature", "gas-conduction takes none")));
+              ElementsAre(Violates("grid.temperature", "gas-conduction does not use this list")));
 }
 
 }  // namespace
