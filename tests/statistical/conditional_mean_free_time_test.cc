@@ -21,7 +21,7 @@ EnsembleSpec SpecOfReturns(double share, double epsilon, int64_t samples, uint64
 // A resting piston: the variance is infinite, but only just (its integral grows as the logarithm of
 // the sample's size), so the mean of 1e5 samples is within some percent of that of the volume which
 // is visited, and far from the limit of slow pistons, 14 times as large.
-TEST(ConditionalMeanFreeTime, OfARestingPistonHasNoErrorButTheRightMean) {
+TEST(ConditionalMeanFreeTime, OfARestingPistonHasTheCorrectMeanWithoutAnError) {
   const PointSummary summary = RunPoint(SpecOfReturns(0.2, 0, 100'000, 4));
   ASSERT_EQ(summary.estimates.size(), 1u);
   EXPECT_FALSE(summary.estimates[0].standard_error);
@@ -30,7 +30,7 @@ TEST(ConditionalMeanFreeTime, OfARestingPistonHasNoErrorButTheRightMean) {
 
 // A piston so slow that its round trips, which carry the mean, are not in the sample: 10,000
 // returns hold one of them or more with half of the seeds, 500 with 4 % of them.
-TEST(ConditionalMeanFreeTime, GivesNoErrorWhereLongReturnsAreNotSeen) {
+TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
   const PointSummary summary = RunPoint(SpecOfReturns(0.3, 1e-12, 500, 5));
   EXPECT_FALSE(summary.estimates[0].standard_error);
   EXPECT_LT(summary.estimates[0].value, 0.5 * *summary.estimates[0].exact);
@@ -40,7 +40,7 @@ TEST(ConditionalMeanFreeTime, GivesNoErrorWhereLongReturnsAreNotSeen) {
 // honest. Of 10,000 seeds 69.6 % were found within one and 95.3 % within two of it. Here 2,000,
 // with errors of 1.0 % and 0.47 %, four of them left for either side: 1.3e-4 false alarms in all.
 // An error stated 10 % too small would put 63.2 % within one and 92.8 % within two.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestWhereAToleranceStops) {
+TEST(ConditionalMeanFreeTime, ErrorsAreValidWhenAToleranceStops) {
   constexpr int kSeeds = 2000;
   double within_one = 0, within_two = 0;
   for (uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -57,7 +57,7 @@ TEST(ConditionalMeanFreeTime, ErrorsAreHonestWhereAToleranceStops) {
 }
 
 // As for the equilibrium; here samples are independent, so the variance is 1 but for the skewness.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestOverManySeeds) {
+TEST(ConditionalMeanFreeTime, ErrorsAreValidOverManySeeds) {
   Moments z;
   for (uint64_t seed = 0; seed < 200; ++seed) {
     z.Add(*RunPoint(SpecOfReturns(0.6, 0.125, 5000, seed)).estimates[0].ZScore());
@@ -68,7 +68,7 @@ TEST(ConditionalMeanFreeTime, ErrorsAreHonestOverManySeeds) {
 
 // With the fewest long returns that get an error, 50 to 60, skewness moves the z-scores: their
 // variance is some 1.2. Windows of 4 errors of 200 seeds: 6e-5 false alarms each.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestWithFewLongReturns) {
+TEST(ConditionalMeanFreeTime, ErrorsAreValidWithFewLongReturns) {
   for (const double epsilon : {1e-6, 0.5 - 1e-6}) {
     Moments z;
     for (uint64_t seed = 0; seed < 200; ++seed) {

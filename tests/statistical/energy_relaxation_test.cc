@@ -108,7 +108,7 @@ void Print(const Curve& curve) {
 
 // 2 million orbits, 80 million jumps. False alarms: 3e-5 for the curve, 33 * 6.8e-6 for the lags,
 // 6e-5 for the integral; 3e-4 in all.
-TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
+TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const Blocks blocks = RunInBlocks(512, 4096, 0);
   const PointSummary& summary = blocks.summary;
   const Curve& curve = summary.curves.front();
@@ -134,7 +134,7 @@ TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
 }
 
 // The same rates, twice. At lag 0 the energy is given.
-TEST(EnergyRelaxation, JumpProcessForgetsItsEnergyAsTheSpectrumSays) {
+TEST(EnergyRelaxation, MeanEnergyOfTheJumpProcessMatchesTheSpectrum) {
   for (const double epsilon : {0.01, 0.4}) {
     const Blocks blocks = RunInBlocks(128, 16384, 2, epsilon);
     const PointSummary& summary = blocks.summary;

@@ -139,7 +139,7 @@ double ZScoreOf(const BatchMeans& measured, double exact) {
 
 // Within 4 standard errors, each 0.07 to 0.3 % of the value: 16 comparisons, 6e-5 false alarms
 // each, one false alarm in 1000 choices of the seed.
-TEST(EnergyWindows, SampledTimesAreThoseOfTheWindow) {
+TEST(EnergyWindows, SampledTimesMatchTheExactTimesOfTheWindow) {
   for (size_t i = 0; i < kEnergyWindows.size(); ++i) {
     const WindowTimes exact = ExactTimes(kEnergyWindows[i]);
     const BatchMeans returns = SampledWindows().ReturnTimes(i);

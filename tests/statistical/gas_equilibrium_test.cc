@@ -83,7 +83,7 @@ class SquaresMeter : public CurrentMeter {
 
 // CarriedCurrent leaves these squares out, because their mean is known. To 0.3 % and 1.4 %; four
 // standard errors are exceeded in 6e-5 of all cases.
-TEST(CarriedCurrent, SquaresOfWhatExchangesCarryAreTheStaticConductivity) {
+TEST(CarriedCurrent, SquaredExchangesGiveTheStaticConductivity) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4");
   const double rate = GasExchangeRate(gas, 1), duration = 8 / rate;
   for (const auto& [engine, replicas] :

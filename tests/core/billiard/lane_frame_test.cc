@@ -14,7 +14,7 @@ namespace ballpiston {
 namespace {
 
 // Every wall hit of an orbit, so all discs and directions: there and back to some ulps.
-TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
+TEST(LaneFrame, ConversionToTheFrameAndBackIsTheIdentity) {
   for (const double rho : {0.501, kPaperRho, 0.7}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.3);
     CounterRandom random(1, 2, 3);
@@ -36,7 +36,7 @@ TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
 
 // Anywhere in the cell and in any direction: there and back, and the next wall hit is that of the
 // reference.
-TEST(LaneFrame, OfABallInTheCellLeadsToTheNextWall) {
+TEST(LaneFrame, BallInTheCellReachesTheNextWallOfTheReference) {
   for (const double rho : {0.501, kPaperRho, 0.7}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.3);
     for (uint64_t i = 0; i < 3000; ++i) {
@@ -62,7 +62,7 @@ TEST(LaneFrame, OfABallInTheCellLeadsToTheNextWall) {
 
 // Where two discs meet, a ball reflected by one may lie in the quadrant of the other by rounding.
 // To take it for a ball that leaves the other would be to let it fly through that disc.
-TEST(LaneFrame, OnATipIsThatOfTheDiscWhichTheBallLeaves) {
+TEST(LaneFrame, FrameOnATipIsThatOfTheDiscLeft) {
   for (const double rho : {0.5 + 1e-12, 0.501, kPaperRho, 0.7}) {
     const double tip = PairDeltaBound(rho);
     for (const double offset : {-1e-16, -1e-17, -0.0, 0.0, 1e-17, 1e-16}) {

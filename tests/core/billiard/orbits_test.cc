@@ -18,7 +18,7 @@
 namespace ballpiston {
 namespace {
 
-TEST(Orbits, EveryOrbitComesToItsEnd) {
+TEST(Orbits, EveryOrbitEnds) {
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
     for (const uint64_t orbits :
@@ -106,7 +106,7 @@ class WithTimeLimit : public NumberedOrbits {
 };
 
 // Where the piston comes: in either direction of the piston, at any phase.
-TEST(Orbits, ABallAtRestIsMetWhereItStands) {
+TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   const PairGeometry geometry = PaperGeometry(0.2);
   const double left = geometry.piston_left(), right = geometry.piston_right();
   for (const Engine engine : kEngines) {
@@ -132,7 +132,7 @@ TEST(Orbits, ABallAtRestIsMetWhereItStands) {
   }
 }
 
-TEST(Orbits, StopEndsThem) {
+TEST(Orbits, StopEndsOrbits) {
   const PairGeometry geometry = PaperGeometry(1e-7);
   for (const Engine engine : kEngines) {
     RecordedContacts recorded(geometry, 10, 1);
@@ -156,7 +156,7 @@ class RestingBall : public NumberedOrbits {
   PairGeometry geometry_;
 };
 
-TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
+TEST(Orbits, StopEndsAnOrbitOfARestingBall) {
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
     RestingBall source(geometry);
@@ -200,7 +200,7 @@ class UntilAnEscape : public RecordedContacts {
 };
 
 // In single precision the lanes cannot resolve a cell that nearly vanishes.
-TEST(Orbits, EscapesInLanesAreTold) {
+TEST(Orbits, EscapesInLanesAreReported) {
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
   UntilAnEscape single(geometry, 100'000, 20);
   EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.token()));
@@ -208,7 +208,7 @@ TEST(Orbits, EscapesInLanesAreTold) {
 }
 
 // A ball that never meets the piston at rest, of a source that always wants to go on.
-TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
+TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
   class GoesOn : public NumberedOrbits {
    public:
     PairState Start(uint64_t) override {
@@ -358,7 +358,7 @@ class DripFedOrbits : public OrbitSource {
 };
 
 // Lanes run empty and are filled again, many times over.
-TEST(Orbits, ASourceThatRunsDryChangesNoBits) {
+TEST(Orbits, AnIntermittentSourceGivesTheSameBits) {
   constexpr uint64_t kOrbits = 600;
   const PairGeometry geometry = *PairGeometry::Create(0.55, 0.05);
   for (const Engine engine : kEngines) {

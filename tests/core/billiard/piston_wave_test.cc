@@ -79,7 +79,7 @@ TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
 }
 
 // For slow balls nothing is left of the piston's phase; there is an answer all the same.
-TEST(PistonWave, FirstMeetingOfASlowBallIsInItsWay) {
+TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
   const PistonWave wave(PaperGeometry(0.01));
   for (uint64_t i = 0; i < 3000; ++i) {
     CounterRandom random(3, 4, i);
@@ -99,7 +99,7 @@ TEST(PistonWave, FirstMeetingOfASlowBallIsInItsWay) {
 }
 
 // The test before it is worth its time if it seldom says yes in vain.
-TEST(PistonWave, MayMeetSeldomSaysYesInVain) {
+TEST(PistonWave, MayMeetIsRarelyWrong) {
   const PistonWave wave(PaperGeometry(0.025));
   CounterRandom random(61, 0, 0);
   int meetings = 0, alarms = 0;
@@ -117,7 +117,7 @@ TEST(PistonWave, MayMeetSeldomSaysYesInVain) {
   EXPECT_LE(alarms, 1.01 * meetings);
 }
 
-TEST(PistonWave, FirstMeetingOfABallThatLeavesIsNone) {
+TEST(PistonWave, ABallThatLeavesHasNoMeeting) {
   const PistonWave wave(PaperGeometry(0.1));
   for (const double ux : {0.0, -1e-300, -1.0}) {
     EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, ux, 0.5));
@@ -126,7 +126,7 @@ TEST(PistonWave, FirstMeetingOfABallThatLeavesIsNone) {
   EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, 1e-300, 0.5));
 }
 
-TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
+TEST(PistonWave, ABallMeetsARestingPistonAtThePistonsPlace) {
   const PistonWave wave(PaperGeometry(0.1));
   const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};
   const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
@@ -135,7 +135,7 @@ TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
 }
 
 // The ball touches the piston and goes the same way, slower; the piston comes back.
-TEST(PistonWave, FirstMeetingOfABallAtRestIsWithThePistonOnItsWayBack) {
+TEST(PistonWave, AReturningPistonMeetsABallAtRest) {
   const PistonWave wave(PaperGeometry(0.1));
   const double stroke = wave.stroke();
   const Approach a = {.phase = 0.05, .ratio = 1e18, .x = 0.05, .ux = 1, .length = 0.3};

@@ -69,7 +69,7 @@ TEST(ReferenceFlow, PistonStaysRightOfBall) {
 
 // The wedge between tip and piston is where orbits get stuck: a zero-time event may follow another
 // only as long as a corner is worked off.
-TEST(ReferenceFlow, NoOrbitStandsStill) {
+TEST(ReferenceFlow, ZeroTimeEventsEnd) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 4));
     int standing = 0;
@@ -80,7 +80,7 @@ TEST(ReferenceFlow, NoOrbitStandsStill) {
   }
 }
 
-TEST(ReferenceFlow, TipsAimedAtLetNoBallThrough) {
+TEST(ReferenceFlow, BallsAimedAtTipsStayInTheCell) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     for (const double offset : {0.0, 1e-17, 1e-16, 1e-14, 1e-10, 1e-6, 1e-3}) {
       for (const double sign : {-1.0, 1.0}) {
@@ -164,7 +164,7 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
   EXPECT_GT(compared, 150);
 }
 
-TEST(ReferenceFlow, RestingPistonIsHitWhereItStands) {
+TEST(ReferenceFlow, BallHitsARestingPistonAtItsPlace) {
   ReferenceFlow flow(kPaperPair, {.position = {0, 0},
                                   .direction = {1, 0},
                                   .ball_speed = 1,
@@ -195,7 +195,7 @@ TEST(ReferenceFlow, RestingBallWaitsForThePiston) {
 }
 
 // At the left end of its way, within rounding, the piston comes no nearer.
-TEST(ReferenceFlow, RestingBallIsHitWhereThePistonTurns) {
+TEST(ReferenceFlow, PistonHitsARestingBallAtItsTurningPoint) {
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-9, 0.1);
   for (const double beyond : {0.0, 1e-26, 1e-18}) {
     ReferenceFlow flow(geometry, {.position = {geometry.piston_left() + beyond, 0},

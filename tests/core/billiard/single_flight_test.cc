@@ -283,7 +283,7 @@ Tally JudgeLanes(double unit, const PairGeometry& geometry,
   return tally;
 }
 
-TEST(SingleFlight, InLanesEndsWhereAndWhenTheReferenceDoes) {
+TEST(SingleFlight, LanesMatchTheReferenceInPlaceAndTime) {
   const std::vector<PairGeometry> geometries = GeometriesOfFlights();
   std::vector<std::vector<ReferenceFlight>> flights;
   Tally reference;

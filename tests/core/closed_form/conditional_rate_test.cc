@@ -67,7 +67,7 @@ TEST(ConditionalRate, ConditionalMeanFreeTimeIsTauOverPhi) {
 // A rare piston: at rest it is met if it stands within delta of the tip, delta/(lambda + 2 delta)
 // of the volume; a resting ball waits for the piston to go to its far wall and back, 2 (lambda + 2
 // delta) at speed 1. Both to first order in delta.
-TEST(ConditionalRate, AtRestOnlyWhatIsVisitedCounts) {
+TEST(ConditionalRate, AtRestOnlyTheVisitedPartCounts) {
   const double delta = 1e-6;
   const PairGeometry geometry = PaperGeometry(delta);
   const double tau = MeanFreeTimesOf(geometry).ball_piston, lambda = geometry.lambda();

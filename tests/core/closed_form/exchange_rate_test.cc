@@ -77,7 +77,7 @@ double CurrentBetween(double temperature, double difference) {
 
 // A gradient of one unit from cell to cell is a difference of 1/2 between a ball and the next
 // piston. Terms of second order in t/T = 0.01 are the tolerance.
-TEST(ExchangeRate, HalfOfItConductsBetweenUnequalTemperatures) {
+TEST(ExchangeRate, HalfTheRateIsTheStaticConductivity) {
   for (double temperature : {0.5, 2.0}) {
     const double difference = 0.01 * temperature;
     const double conducted = (CurrentBetween(temperature, difference) / difference) / 2;
@@ -126,7 +126,7 @@ TEST(ExchangeRate, AgreesWithReferenceGases) {
 // Eight balls between pistons at T = 2 and 1, in the limit of rare collisions. The conductivity
 // grows as sqrt(T), so the current J gives J N sqrt(T)/[(2/3) (2^1.5 - 1)] at T. The dynamic
 // correlations are smaller than the tolerance, 4 standard errors of the table or 3.3 %.
-TEST(ExchangeRate, HalfOfItIsTheConductivityOfAReferenceGas) {
+TEST(ExchangeRate, HalfTheRateMatchesTheConductivityOfAReferenceGas) {
   const ReferenceTable table("gas.csv");
   const size_t row = 1;
   const double hot = table.Input(row, "hot"), cold = table.Input(row, "cold");

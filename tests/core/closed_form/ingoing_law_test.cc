@@ -44,7 +44,7 @@ Quad Norm(double ep) {
   return OverTheCircle(ep, [](Quad, int) { return 1; });
 }
 
-TEST(IngoingLaw, AllowedIntervals) {
+TEST(IngoingLaw, PermittedIntervals) {
   for (double ep : kEnergies) {
     const IngoingLaw law(ep);
     for (int sigma : {1, -1}) {
@@ -88,7 +88,7 @@ TEST(IngoingLaw, NarrowBinIsDensityTimesWidth) {
   }
 }
 
-TEST(IngoingLaw, NothingOutsideOfTheAllowedInterval) {
+TEST(IngoingLaw, OnlyThePermittedIntervalCounts) {
   const IngoingLaw law(0.125);
   const double edge = law.AlphaMax(1);
   EXPECT_EQ(law.BinProbability(1, edge, M_PI), 0);
@@ -143,7 +143,7 @@ TEST(IngoingLaw, SignsContributeAsPrinted) {
   }
 }
 
-TEST(IngoingLaw, MeansAreThoseOfTheDensity) {
+TEST(IngoingLaw, MeansAreIntegralsOfTheDensity) {
   for (double ep : kEnergies) {
     const IngoingLaw law(ep);
     const Quad norm = Norm(ep);
@@ -155,7 +155,7 @@ TEST(IngoingLaw, MeansAreThoseOfTheDensity) {
   }
 }
 
-TEST(IngoingLaw, PistonAtRestIsHitAlikeOnBothSigns) {
+TEST(IngoingLaw, PistonAtRestGivesBothSignsEqually) {
   const IngoingLaw law(0);
   EXPECT_DOUBLE_EQ(law.AlphaMax(1), M_PI / 2);
   EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI / 2);
@@ -164,7 +164,7 @@ TEST(IngoingLaw, PistonAtRestIsHitAlikeOnBothSigns) {
   EXPECT_DOUBLE_EQ(law.MeanCosAlpha(), M_PI / 4);  // of (1/2) cos alpha on |alpha| < pi/2
 }
 
-TEST(IngoingLaw, BallAtRestHasNoDirection) {
+TEST(IngoingLaw, BallAtRestHasUniformAlpha) {
   const IngoingLaw law(0.5);
   EXPECT_EQ(law.AlphaMax(1), 0);
   EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI);

@@ -61,7 +61,7 @@ TEST(KernelDistribution, AccurateAtRandomEnergies) {
 }
 
 // There F is 1 less a root: an energy left that is wrong by an ulp of 1/2 would show as 1e-8.
-TEST(KernelDistribution, AccurateWhereTheBallIsLeftWithLittle) {
+TEST(KernelDistribution, AccurateWhereTheBallKeepsLittleEnergy) {
   std::mt19937_64 random(20240702);
   std::uniform_real_distribution<double> exponent(-17, -1);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -73,7 +73,7 @@ TEST(KernelDistribution, AccurateWhereTheBallIsLeftWithLittle) {
   }
 }
 
-TEST(KernelDistribution, IsOneRateForEveryWayToWriteIt) {
+TEST(KernelDistribution, RateEqualsThatOfKernelMoments) {
   for (const double ep : {0.0, 1e-300, 1e-9, 0.1, 0.2499999, 0.25, 0.3, 0.5}) {
     EXPECT_DOUBLE_EQ(KernelDistribution::OfPair(ep).CollisionRate(), PairCollisionRate(ep));
     EXPECT_DOUBLE_EQ(KernelDistribution(3, 6 * ep).CollisionRate(), CollisionRate(3, 6 * ep));

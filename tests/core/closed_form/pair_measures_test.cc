@@ -101,7 +101,7 @@ TEST(PairMeasures, PistonAtTheBoundHalvesTheCell) {
   }
 }
 
-TEST(PairMeasures, PistonWallAreaIsTheCellTwiceLessTheProjection) {
+TEST(PairMeasures, PistonWallAreaIsTwoCellsMinusTheProjection) {
   for (double rho : kRadii) {
     const PairMeasures m = Measures(GeometryOf(rho, 0.7 * PairDeltaBound(rho)));
     EXPECT_NEAR((m.area_piston_wall + m.area_ball_piston / sqrt2) / m.cell_area, 2,

@@ -53,7 +53,7 @@ TEST(ContactCurrents, AgreeWithTheirDefinition) {
   }
 }
 
-TEST(ContactCurrents, TableIsWithinItsErrorOfThem) {
+TEST(ContactCurrents, TableErrorIsWithinItsBound) {
   std::mt19937_64 random(1);
   std::gamma_distribution<double> of_a_ball(1), of_a_piston(0.5);
   for (const ContactCurrentsTable* table :

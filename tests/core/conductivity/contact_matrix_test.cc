@@ -169,7 +169,7 @@ TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
   }
 }
 
-TEST(ContactMatrix, IsSymmetricAndHasNoNegativeRate) {
+TEST(ContactMatrix, IsSymmetricAndPositiveSemidefinite) {
   for (const SiteDimensions d : kAllDimensions) {
     const Eigen::MatrixXd matrix = ContactMatrix(d, 10).elements();
     EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0);

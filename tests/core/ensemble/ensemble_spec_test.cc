@@ -110,7 +110,7 @@ TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
                                                   "lambda)/2 = 0.1683")));
 }
 
-TEST(EnsembleSpec, AbsurdGridsAreRefusedWithoutBeingExpanded) {
+TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
   EnsembleSpec spec = ValidFirstHit();
   spec.grid[kDelta].assign(1000, 0.01);
   spec.grid[kEpsilon].assign(1000, 0.1);
@@ -118,7 +118,7 @@ TEST(EnsembleSpec, AbsurdGridsAreRefusedWithoutBeingExpanded) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid", "2000000000 points")));
 }
 
-TEST(EnsembleSpec, ListsThatTheExperimentLacksOrDoesNotUseAreNamed) {
+TEST(EnsembleSpec, MissingAndUnusedListsAreNamed) {
   EXPECT_THAT(Violations({.experiment = &kEquilibrium,
                           .grid = {{kDelta, {0.1}}, {kEpsilon, {0.1}}, {kExponent, {1}}}}),
               UnorderedElementsAre(Names("grid.rho", "needs at least one"),
@@ -126,7 +126,7 @@ TEST(EnsembleSpec, ListsThatTheExperimentLacksOrDoesNotUseAreNamed) {
                                    Names("grid.exponent", "does not use this list")));
 }
 
-TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
+TEST(EnsembleSpec, TargetsInTheWrongUnitAreRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.collisions = 10};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.collisions", "use target.samples")));
@@ -139,7 +139,7 @@ TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
   }
 }
 
-TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
+TEST(EnsembleSpec, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.grid[kDelta] = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
@@ -152,7 +152,7 @@ TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
   EXPECT_THAT(Violations(spec), testing::IsEmpty());
 }
 
-TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {
+TEST(EnsembleSpec, UnreachableToleranceIsRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
@@ -183,7 +183,7 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
 }
 
 // Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
-TEST(EnsembleSpec, ToleranceOfARelaxationTimeThatIsNotToldIsRefused) {
+TEST(EnsembleSpec, ToleranceWithoutARelaxationTimeIsRejected) {
   EnsembleSpec spec = ValidRelaxation();
   spec.grid[kEpsilon] = {0.12, 0.121, 1.0 / 6, 0.199, 0.2};
   spec.target = {.samples = 100};
@@ -214,7 +214,7 @@ TEST(EnsembleSpec, MarkovPropertyCountsCollisionsWithoutATolerance) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "does not use this list")));
 }
 
-TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
+TEST(EnsembleSpec, UnsuitableModelsAreRejectedWithTheSuitableOnes) {
   const EnsembleSpec specs[] = {
       {.experiment = &kEquilibrium, .grid = {{kRho, {0.55}}, {kDelta, {0.1}}}},
       {.experiment = &kConditionalMeanFreeTime,
@@ -252,7 +252,7 @@ TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
               ElementsAre(Names("model", "permitted: auto, billiard, billiard_reference")));
 }
 
-TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
+TEST(EnsembleSpec, SinglePrecisionIsOnlyForTheLanes) {
   EnsembleSpec spec = ValidRelaxation();
   spec.precision = Precision::kSingle;
   for (const Model model : {Model::kAuto, Model::kBilliard}) {
@@ -266,7 +266,7 @@ TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
 }
 
 // Beyond them it is not known how far its numbers are off (billiard/single_precision.h).
-TEST(EnsembleSpec, SinglePrecisionIsRefusedWhereItWasNotMeasured) {
+TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision
     EnsembleSpec spec = {.experiment = experiment, .precision = Precision::kSingle};
@@ -285,7 +285,7 @@ TEST(EnsembleSpec, SinglePrecisionIsRefusedWhereItWasNotMeasured) {
   }
 }
 
-TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
+TEST(EnsembleSpec, BudgetIsPermittedAloneOrWithATolerance) {
   EnsembleSpec spec = ValidRelaxation();
   for (const double seconds : {1e-3, 1.0, kMaxBudgetSeconds}) {
     spec.target = {.budget_seconds = seconds};
@@ -305,7 +305,7 @@ TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target", "more than one kind")));
 }
 
-TEST(EnsembleSpec, VerifyStandsBesideAutoAlone) {
+TEST(EnsembleSpec, VerifyIsPermittedOnlyWithAuto) {
   EnsembleSpec spec = {.experiment = &kEquilibrium, .grid = {{kRho, {0.55}}, {kDelta, {0.1}}}};
   spec.verify = true;
   EXPECT_THAT(Violations(spec), IsEmpty());
@@ -316,7 +316,7 @@ TEST(EnsembleSpec, VerifyStandsBesideAutoAlone) {
 }
 
 // The closed form needs no variance.
-TEST(EnsembleSpec, ToleranceAtARestingPistonIsForTheClosedForm) {
+TEST(EnsembleSpec, ToleranceAtARestingPistonRequiresTheClosedForm) {
   EnsembleSpec spec = {.experiment = &kConditionalMeanFreeTime,
                        .grid = {{kRho, {0.55}}, {kDelta, {0.1}}, {kEpsilon, {0, 0.1}}},
                        .target = {.tolerance = 0.1}};
@@ -356,7 +356,7 @@ TEST(EnsembleSpec, EachExperimentPermitsTheNamesOfItsAims) {
   }
 }
 
-TEST(EnsembleSpec, AnUnknownEstimateIsRefusedWithThoseThatAreKnown) {
+TEST(EnsembleSpec, AnUnknownEstimateIsRejectedWithTheKnownNames) {
   EnsembleSpec spec = ValidGas();
   for (const char* name : {"conduct", "Conductivity", "temperature_ball"}) {
     spec.target.estimate = name;
@@ -374,7 +374,7 @@ TEST(EnsembleSpec, AnUnknownEstimateIsRefusedWithThoseThatAreKnown) {
   }
 }
 
-TEST(EnsembleSpec, AnEstimateThatTheModelCannotAnswerIsRefused) {
+TEST(EnsembleSpec, AnEstimateThatTheModelCannotAnswerIsRejected) {
   EnsembleSpec spec = ValidGas();
   spec.target.estimate = "conductivity";
   spec.model = Model::kClosedForm;

@@ -105,7 +105,7 @@ TEST(PointExperiment, SeedDecidesTheNumbers) {
   }
 }
 
-TEST(PointExperiment, ComputesWhatTheTargetAsksFor) {
+TEST(PointExperiment, ComputesTheRequestedSamples) {
   for (const EnsembleSpec& spec : OneOfEach()) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);

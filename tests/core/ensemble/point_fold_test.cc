@@ -91,7 +91,7 @@ TEST_F(ChunkFoldTest, AResumedChunkHasTheSameBits) {
   }
 }
 
-TEST_F(ChunkFoldTest, ARangeHasItsChunksAlone) {
+TEST_F(ChunkFoldTest, ARangeHasOnlyItsChunks) {
   ChunkFold fold(point_->plan(), {.chunk = 1}, 3);
   std::vector<ChunkResult> chunks;
   while (const auto block = fold.NextBlock()) {
@@ -113,7 +113,7 @@ TEST_F(ChunkFoldTest, ABlockCountsOnce) {
   EXPECT_EQ(fold.waiting(), 1u);
 }
 
-TEST_F(ChunkFoldTest, NoMoreBlocksAreHandedOutThanTheWindowHolds) {
+TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
   const auto endless = Point({.tolerance = 1e-5});
   ChunkFold fold(endless->plan(), {}, endless->plan().chunks());
   std::vector<Block> blocks;
@@ -212,7 +212,7 @@ TEST_F(PointFoldTest, FinishKeepsWhatIsMergedAndDropsWhatWaits) {
   EXPECT_FALSE(fold.Needs(3));
 }
 
-TEST_F(PointFoldTest, ALocalPointIsTheSame) {
+TEST_F(PointFoldTest, LocalPointMatchesTheFold) {
   LocalPoint local(*point_);
   for (const ComputedBlock& computed : blocks_) {
     ASSERT_EQ(local.NextBlock(), computed.block);

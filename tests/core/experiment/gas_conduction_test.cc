@@ -160,7 +160,7 @@ BlockResult SomeReplicas(const PointExperiment& point) {
 }
 
 // 30,000 cells in a row take 10^9 times as long as one cell, and there are 30,000 of them.
-TEST(GasConduction, ReplicasThatAreCutShortGiveNoErrorsAndSayWhy) {
+TEST(GasConduction, ShortenedReplicasGiveNoErrorsAndARemark) {
   const auto point = PointExperiment::Create(SpecBetween(3, 1, {.columns = 30'000}), 0);
   const PointSummary summary = point->Summarize(SomeReplicas(*point));
   ASSERT_EQ(summary.remarks.size(), 1u);
@@ -185,7 +185,7 @@ TEST(GasConduction, ReplicasThatAreLongEnoughGiveErrorsAndNoRemark) {
 }
 
 // The longest relaxation time grows as (N + 1)^2, until a replica is cut short.
-TEST(GasConduction, AReplicaIsFollowedForTheRelaxationTime) {
+TEST(GasConduction, DurationOfAReplicaGrowsWithTheRelaxationTime) {
   const auto exchanges_a_contact = [](int64_t columns) {
     const PointParameters point = PointAt(SpecBetween(3, 1, {.columns = columns}), 0);
     return kGasConduction.collisions(Model::kBilliard, point) / static_cast<double>(2 * columns);
@@ -224,7 +224,7 @@ TEST(GasConduction, TemperaturesHaveToBePositive) {
   }
 }
 
-TEST(GasConduction, AToleranceOfNoCurrentIsRejected) {
+TEST(GasConduction, AToleranceOfZeroCurrentIsRejected) {
   EnsembleSpec spec = SpecBetween(2, 1);
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), IsEmpty());

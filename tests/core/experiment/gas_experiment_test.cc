@@ -188,7 +188,7 @@ TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
   }
 }
 
-TEST(GasExperiment, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRejected) {
+TEST(GasExperiment, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   for (const ExperimentKind* kind : kGases) {
     EnsembleSpec spec = Valid(kind);
     spec.grid[kDelta] = {1e-160};
@@ -205,7 +205,7 @@ TEST(GasExperiment, SinglePrecisionIsRejected) {
   }
 }
 
-TEST(GasExperiment, CellsThatAreNoShapeAreRejected) {
+TEST(GasExperiment, CellsWithoutAShapeAreRejected) {
   for (const ExperimentKind* kind : kGases) {
     EnsembleSpec spec = Valid(kind);
     for (const double code : {0.0, -1.0, 0.5, 1e9, 1e300, std::nan(""), HUGE_VAL}) {

@@ -96,7 +96,7 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
 }
 
 // Each way to fail shows in its own estimate.
-TEST(MarkovPropertyStatistics, SeesWhatIsNotMarkov) {
+TEST(MarkovPropertyStatistics, DetectsDeviationsFromMarkov) {
   const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };
   const auto exponential = [](CounterRandom& random, double) { return Exponential(random); };
   const auto estimates = [](const BlockResult& counts) {

@@ -44,7 +44,7 @@ void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
   EXPECT_EQ(predicted.Events(), 1 + predicted.ball_wall + predicted.piston_wall);
 }
 
-TEST(PredictedHits, AreThoseOfOrbitsInEquilibrium) {
+TEST(PredictedHits, MatchOrbitsInEquilibrium) {
   for (const double rho : {0.501, kPaperRho, 0.65}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.6);
     for (const Engine engine : kEngines) {
@@ -59,7 +59,7 @@ TEST(PredictedHits, AreThoseOfOrbitsInEquilibrium) {
 }
 
 // From the law that is its own: exponent 1.
-TEST(PredictedHits, AreThoseOfReturnsAtAnEnergy) {
+TEST(PredictedHits, MatchReturnsAtAnEnergy) {
   const PairGeometry geometry = PaperGeometry(0.25);
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
     for (const Engine engine : kEngines) {

@@ -155,7 +155,7 @@ struct Observed {
 };
 
 // False alarms: 2e-4 a shape.
-TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
+TEST(CanonicalGas, PositionsMatchPlainRejection) {
   struct Case {
     const char* shape;
     GasEnds ends;
@@ -180,7 +180,7 @@ TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
   }
 }
 
-TEST(CanonicalGas, NoBallIsBeyondAPiston) {
+TEST(CanonicalGas, EveryBallIsOnItsSideOfThePistons) {
   for (const double rho : {0.5 + 1e-6, 0.52, 0.6, 0.7}) {
     for (const char* shape : {"1", "2", "50", "1x1", "1x7", "20x20"}) {
       for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {

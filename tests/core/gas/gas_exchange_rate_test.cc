@@ -102,7 +102,7 @@ TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
 }
 
 // A tube, long on one side and narrow on the other, is not the infinite lattice.
-TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
+TEST(GasExchangeRate, LongTubesDependOnTheirWidth) {
   for (const double z : {0.005, 0.02}) {
     for (int width = 1; width <= 5; ++width) {
       const double exact = oracle::TorusByStates(40, width, z);
@@ -117,7 +117,7 @@ TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
 }
 
 // The domain 0 <= z <= 0.02 covers all geometries.
-TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
+TEST(GasExchangeRate, DomainCoversEveryGeometry) {
   double largest = 0;
   for (double rho = 0.5001; rho < kMaxRho; rho += 0.005) {
     largest = std::fmax(largest, oracle::ChainByQuadrature(rho, GasDeltaBound(rho)).MeanFraction());
@@ -126,7 +126,7 @@ TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
   EXPECT_GT(largest, 0.01);
 }
 
-TEST(GasExchangeRate, ExceedsThePairsRateAsTheHeaderSays) {
+TEST(GasExchangeRate, ExceedsThePairsRateByTheStatedAmount) {
   const GasGeometry chain = GasOf(kPaperRho, 0.2, "3"), lattice = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_NEAR(InfiniteGasExchangeRate(chain, 1) / PairRate(chain), 1.0240, 5e-5);
   EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);

@@ -81,7 +81,7 @@ class JumpCurrentOf : public testing::TestWithParam<const char*> {};
 
 // After each of some exchanges. Values are some 0.1 for each contact, and the table is within 3e-4
 // of them; the rule's error is 1e-6.
-TEST_P(JumpCurrentOf, CurrentsAreThoseOfTheirDefinition) {
+TEST_P(JumpCurrentOf, CurrentsMatchTheirDefinition) {
   const GasGeometry gas = GasOf(kPaperRho, 0.1, GetParam());
   const GasState state = GasInEquilibrium(gas, 1, 5, 0);
   JumpCurrent current(gas, GasExchangeRate(gas, 1), state, 1);

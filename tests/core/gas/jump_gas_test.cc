@@ -77,7 +77,7 @@ double Exponential(double x) { return -std::expm1(-x); }
 // A ring of two cells, each ball with both pistons: four contacts with their own rates. The first
 // exchange comes at the sum of their rates, is each one's in proportion, and has the kernel's law.
 // False alarms: 1e-4 a row of energies.
-TEST(JumpGas, PairsAreTheJumpProcess) {
+TEST(JumpGas, PairsFollowTheJumpProcess) {
   const GasGeometry ring = GasOf(kPaperRho, 0.2, "2");
   struct Energies {
     double balls[2];
@@ -169,7 +169,7 @@ TEST(JumpGas, OutermostPistonsAreThermal) {
 }
 
 // Of a ring, which is isolated: an exchange rounds each energy.
-TEST(JumpGas, KeepsTheEnergy) {
+TEST(JumpGas, EnergyIsConserved) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4x4");
   const GasState start = GasInEquilibrium(gas, 1, 84, 0);
   GasMeter meter(gas, start);

@@ -86,7 +86,7 @@ TEST(LaneGas, AgreesWithTheReferenceAtThermalWalls) {
   }
 }
 
-TEST(LaneGas, EnergyStays) {
+TEST(LaneGas, EnergyIsConserved) {
   const GasGeometry gas = GasAtShare(0.529561127988977, 0.7, "6x5");
   const auto total = [](const Outcome& outcome) {
     double sum = 0;
@@ -149,7 +149,7 @@ TEST(LaneGas, BallsThatMeetPistonsInTipsStayInTheirCells) {
 }
 
 // A gas at rest but for one piston, which comes to a ball that rests where it can reach it.
-TEST(LaneGas, ABallAtRestIsMetWhereItStands) {
+TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const GasGeometry gas = GasOf(0.529561127988977, 0.15, "3");
   GasState state = GasInEquilibrium(gas, 1, 43, 0);
   for (GasBall& ball : state.balls) ball = {.position = {0, 0}};

@@ -56,7 +56,7 @@ PairState PairOf(const GasGeometry& gas, const GasState& state, double speed, in
 
 // All else rests: balls in the middle of their cells, pistons on their edges, where no ball comes.
 // An error of 1e-16 grows some threefold a wall hit, to some 1e-9 in 15.
-TEST(ReferenceGas, OneBallAndOnePistonAreThePair) {
+TEST(ReferenceGas, OneBallAndOnePistonMoveLikeThePair) {
   constexpr double kSpeed = 3.7, kTolerance = 1e-8;
   constexpr int kWallHits = 15;
   int exchanges = 0;
@@ -151,7 +151,7 @@ TEST(ReferenceGas, ReversedVelocitiesRetraceTheirWay) {
 }
 
 // Speeds carry an ulp from each exchange, at random.
-TEST(ReferenceGas, EnergyStays) {
+TEST(ReferenceGas, EnergyIsConserved) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "8x8");
   const GasState start = GasInEquilibrium(gas, 1, 73, 0);
   ReferenceGas moving = GasFrom(gas, start);
@@ -194,12 +194,12 @@ TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
   }
 }
 
-TEST(ReferenceGas, AGasAtRestHasNoEvents) {
+TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
 }
 
-TEST(ReferenceGas, ARestingPistonIsHitWhereItStands) {
+TEST(ReferenceGas, BallHitsARestingPistonAtItsPlace) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
        {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
@@ -218,7 +218,7 @@ TEST(ReferenceGas, ARestingPistonIsHitWhereItStands) {
   }
 }
 
-TEST(ReferenceGas, ABallAtRestInReachOfAPistonIsMet) {
+TEST(ReferenceGas, PistonMeetsABallAtRestWithinReach) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
        {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
@@ -242,7 +242,7 @@ TEST(ReferenceGas, ABallAtRestInReachOfAPistonIsMet) {
 }
 
 // At the end of its way, within rounding, the piston comes no nearer.
-TEST(ReferenceGas, ABallAtRestIsMetWhereThePistonTurns) {
+TEST(ReferenceGas, PistonMeetsABallAtRestAtItsTurningPoint) {
   const GasGeometry gas = GasAtShare(0.6, 0.3, "3");
   const PairState start = {.position = {0.5 - gas.reach(), 0},
                            .direction = {1, 0},

@@ -110,7 +110,7 @@ Eigen::VectorXd IsolatedRates(const Eigen::VectorXd& rates) {
 
 // The reference is extrapolated from 200, 400 and 800 cells. Its error is 2e-10 for the gap, and up
 // to ten times that for the next rates; their tolerance is 2e-8.
-TEST(Generator, IsolatedRatesAreThoseOfEnergyCells) {
+TEST(Generator, IsolatedRatesMatchEnergyCells) {
   const Eigen::VectorXd rates = IsolatedRates(InUse().rates());
   const Eigen::VectorXd cells = oracle::FromEnergyCells(
       200, [](const oracle::EnergyCells& of) { return IsolatedRates(of.Rates()); });
@@ -123,7 +123,7 @@ TEST(Generator, IsolatedRatesAreThoseOfEnergyCells) {
 }
 
 // Of the cells, which do not know the closed form.
-TEST(Generator, JumpRateIsWhatLeavesACell) {
+TEST(Generator, JumpRateMatchesTheRateOfLeavingACell) {
   constexpr Eigen::Index kCells = 64;
   const oracle::EnergyCells cells(kCells);
   for (Eigen::Index i = 0; i < kCells; ++i) {

@@ -103,7 +103,7 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   }
 }
 
-TEST(JumpProcess, ABallAtRestIsLeftByAPistonAtRest) {
+TEST(JumpProcess, BallAtRestStopsThePiston) {
   for (const double v : UniformNumbers()) EXPECT_EQ(JumpFrom(1, 0.5, v).u, 0);
 }
 
@@ -170,7 +170,7 @@ void ExpectLaneIsScalar(const Group& before, const Group& after, size_t i) {
   EXPECT_NEAR(after.waiting_times[i], jump.waiting_time, kJumpError * jump.waiting_time);
 }
 
-TEST(JumpProcess, LanesAreTheScalarDefinition) {
+TEST(JumpProcess, LanesMatchTheScalarDefinition) {
   const std::vector<double> us = Energies(), vs = UniformNumbers();
   ForEachTarget([&](int64_t) {
     size_t shift = 0;
@@ -231,7 +231,7 @@ std::vector<uint64_t> BitsAfter(int jumps, uint64_t first, std::vector<double> s
   return BitsOf(walkers);
 }
 
-TEST(JumpWalkers, DoesNotDependOnWhoElseWalks) {
+TEST(JumpWalkers, WalkersAreIndependentOfEachOther) {
   const std::vector<double> starts = Starts(100);
   const std::vector<uint64_t> all = BitsAfter(7, 5, starts);
   for (const size_t count : {1u, 2u, 31u, 32u, 33u, 64u, 99u}) {

@@ -18,7 +18,7 @@ using testing::Not;
 
 const Target kTargets[] = {{}, {.tolerance = 1e-6}, {.tolerance = 0.1}, {.budget_seconds = 1}};
 
-TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
+TEST(Ladder, AutoChoosesTheClosedFormIfThereIsOne) {
   for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     for (const Target& target : kTargets) {
       const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
@@ -29,7 +29,7 @@ TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
   }
 }
 
-TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
+TEST(Ladder, VerifyChoosesTheBilliardDespiteAClosedForm) {
   for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     EnsembleSpec spec = Asked(experiment, 0.1);
     spec.verify = true;
@@ -40,7 +40,7 @@ TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
 }
 
 // Measured laws are the billiard's: neither tolerance nor budget makes another model answer.
-TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
+TEST(Ladder, AutoChoosesTheBilliardIfNoCheaperModelAnswers) {
   for (const ExperimentKind* experiment : {&kFirstHit, &kMarkovProperty}) {
     for (const Target& target : kTargets) {
       if (experiment == &kMarkovProperty && target.tolerance) continue;
@@ -51,7 +51,7 @@ TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
   }
 }
 
-TEST(Ladder, WithoutAToleranceRelaxationIsTheBilliards) {
+TEST(Ladder, WithoutAToleranceRelaxationUsesTheBilliard) {
   for (const double delta : {0.3, 1e-4}) {
     for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
       EXPECT_EQ(Choice(Relaxation(delta, target), MayNotBeAsked)->model, Model::kBilliard);
@@ -61,7 +61,7 @@ TEST(Ladder, WithoutAToleranceRelaxationIsTheBilliards) {
 
 // Over deltas and tolerances of five decades each: a pilot is asked at most once, at the point's
 // place, and then what it says decides.
-TEST(Ladder, APilotIsAskedOnlyWhereItCanDecide) {
+TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
   int asked = 0, told_without = 0;
   for (double delta = 0.3; delta > 1e-5; delta /= 2) {
     for (double tolerance = 0.5; tolerance > 1e-6; tolerance /= 2) {
@@ -96,7 +96,7 @@ TEST(Ladder, APilotIsAskedOnlyWhereItCanDecide) {
 }
 
 // The three reasons for which none is asked.
-TEST(Ladder, WhyNoPilotIsAskedIsTold) {
+TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
   // The limit is 5 % off at delta = 0.2.
   EXPECT_THAT(Choice(Relaxation(0.2, {.tolerance = 0.01}), MayNotBeAsked)->reason,
               HasSubstr("beyond the tolerance"));
@@ -139,13 +139,13 @@ TEST(Ladder, APilotServesADecayToo) {
   EXPECT_EQ(pilots.asked().size(), 1u);
 }
 
-TEST(Ladder, APilotThatIsStoppedLeavesNoAnswer) {
+TEST(Ladder, WithoutThePilotsResultThereIsNoAnswer) {
   MadeUpPilots stopped(std::nullopt);
   EXPECT_FALSE(Choice(Relaxation(0.01, {.tolerance = 0.01}), stopped.source()));
   EXPECT_EQ(stopped.asked().size(), 1u);
 }
 
-TEST(Ladder, WithAToleranceEveryMachineChoosesAlike) {
+TEST(Ladder, WithAToleranceEveryMachineMakesTheSameChoice) {
   const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
   for (double delta = 0.3; delta > 1e-4; delta /= 1.7) {
     for (double tolerance = 0.5; tolerance > 1e-5; tolerance /= 3) {
@@ -162,7 +162,7 @@ TEST(Ladder, WithAToleranceEveryMachineChoosesAlike) {
 }
 
 // With a budget alone whatever comes nearest in that time.
-TEST(Ladder, BudgetTakesTheBilliardOnceItIsMoreExact) {
+TEST(Ladder, BudgetChoosesTheBilliardIfItsErrorIsSmaller) {
   double turn = 0;
   for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
     const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}), MayNotBeAsked);
@@ -183,7 +183,7 @@ TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
 }
 
 // Whichever is reached first.
-TEST(Ladder, BudgetBesideAToleranceTakesTheBilliardWhereItReachesThat) {
+TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
   const auto choice = [](double tolerance, double seconds) {
     const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
     return Choice(Relaxation(0.0125, target), MayNotBeAsked)->model;
@@ -194,7 +194,7 @@ TEST(Ladder, BudgetBesideAToleranceTakesTheBilliardWhereItReachesThat) {
 }
 
 // Where no relaxation time is told nothing is known of the limit's error in it.
-TEST(Ladder, AroundTheMeanEnergyRelaxationIsTheBilliards) {
+TEST(Ladder, AroundTheMeanEnergyRelaxationUsesTheBilliard) {
   for (const Target& target : {Target{}, Target{.budget_seconds = 1e-3}}) {
     EnsembleSpec spec = Relaxation(0.01, target);
     spec.grid[kEpsilon] = {0.15};
@@ -286,7 +286,7 @@ TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance)
   }
 }
 
-TEST(Ladder, WithoutAToleranceTheConductivityIsTheBilliards) {
+TEST(Ladder, WithoutAToleranceTheConductivityUsesTheBilliard) {
   for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
     const Answer answer = *Choice(Conductivity(1e-4, target), MayNotBeAsked);
     EXPECT_EQ(answer.model, Model::kBilliard);
@@ -298,7 +298,7 @@ TEST(Ladder, WithoutAToleranceTheConductivityIsTheBilliards) {
             Model::kBilliard);
 }
 
-TEST(Ladder, ThePlanIsThatOfTheNamedEstimate) {
+TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
   EnsembleSpec spec = Conductivity(0.01, {.tolerance = 0.05});
   const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
   EXPECT_FALSE(ladder.rungs[0].answers);
@@ -325,7 +325,7 @@ TEST(Ladder, ABudgetWeighsTheStatisticalErrorOfTheJumpProcess) {
   EXPECT_EQ(Choice(near_the_bound, MayNotBeAsked)->model, Model::kBilliard);
 }
 
-TEST(Ladder, ANamedModelAnswersWhateverItsError) {
+TEST(Ladder, ANamedModelAnswersWithAnyError) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     for (const Model model : kLadder) {
       if (!experiment->IsAnsweredBy(model)) continue;
@@ -345,7 +345,7 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
   }
 }
 
-TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
+TEST(Ladder, ListsEveryModelCheapestFirstWithReasons) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     MadeUpPilots none(std::nullopt);
     const EnsembleSpec spec = Asked(experiment, 0.05);
@@ -367,7 +367,7 @@ TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
   }
 }
 
-TEST(Ladder, SamplesAreWhatTheTargetTakes) {
+TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
   const auto rung = [](const EnsembleSpec& spec, Model model) {
     MadeUpPilots none(std::nullopt);
     const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
@@ -445,14 +445,14 @@ TEST(Ladder, SinglePrecisionHasAModelError) {
 }
 
 // Distances between laws tend to 0: a relative error of them says nothing.
-TEST(Ladder, SinglePrecisionsErrorIsUnknownWhereNoneIsRelative) {
+TEST(Ladder, SinglePrecisionsErrorIsUnknownWithoutARelativeError) {
   const EnsembleSpec spec = InSinglePrecision(Asked(&kMarkovProperty, 0.1));
   const Answer answer = *Choice(spec, MayNotBeAsked);
   EXPECT_FALSE(answer.model_error);
   EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
 }
 
-TEST(Ladder, SinglePrecisionDoesNotTouchOtherModels) {
+TEST(Ladder, SinglePrecisionAffectsOnlyTheLanes) {
   const Answer closed = *Choice(InSinglePrecision(Asked(&kEquilibrium, 0.1)), MayNotBeAsked);
   EXPECT_EQ(closed.model, Model::kClosedForm);
   EXPECT_EQ(closed.model_error, 0);
@@ -463,7 +463,7 @@ TEST(Ladder, SinglePrecisionDoesNotTouchOtherModels) {
   EXPECT_EQ(pilots.asked().size(), 1u);
 }
 
-TEST(Ladder, SinglePrecisionRefusesAToleranceBelowItsError) {
+TEST(Ladder, SinglePrecisionRejectsAToleranceBelowItsError) {
   for (const Model model : {Model::kAuto, Model::kBilliard}) {
     for (const ExperimentKind* experiment : {&kEnergyRelaxation, &kFirstHit}) {
       EnsembleSpec spec =
@@ -482,7 +482,7 @@ TEST(Ladder, SinglePrecisionRefusesAToleranceBelowItsError) {
   }
 }
 
-TEST(Ladder, ReducedModelsRefuseAToleranceBelowTheirError) {
+TEST(Ladder, ReducedModelsRejectAToleranceBelowTheirError) {
   const auto violations = [](const ExperimentKind* experiment, Model model, double tolerance,
                              double delta) {
     EnsembleSpec spec = Asked(experiment, delta, {.tolerance = tolerance});

@@ -28,7 +28,7 @@ TEST(CounterRandom, IsPhilox4x64) {
 }
 
 // A block is four words of the same sequence, also if words of the one before are left.
-TEST(CounterRandom, BlocksAreOfTheSameSequence) {
+TEST(CounterRandom, BlocksContinueTheSameSequence) {
   CounterRandom words(1, 2, 3), blocks(1, 2, 3);
   uint64_t block[CounterRandom::kBlock];
   EXPECT_EQ(blocks.Bits(), words.Bits());
@@ -59,7 +59,7 @@ TEST(CounterRandom, UniformIsUniformAndOpen) {
   EXPECT_NEAR(*moments.Variance(), 1.0 / 12, 5 * std::sqrt(1.0 / 180 / 1e6));
 }
 
-TEST(UniformDirection, HasLengthOneAndNoPreference) {
+TEST(UniformDirection, HasLengthOneAndIsIsotropic) {
   CounterRandom random(6, 0, 0);
   Moments cosine, cosine_of_double, cosine_of_quadruple;
   for (int i = 0; i < 1'000'000; ++i) {

@@ -73,7 +73,7 @@ TEST(StepFunction, IntegralIsExact) {
 
 // A value of 1 for a time 1, then 0: int_0^1 dt (1 - t) = 1/2 with a window of 1 or more, and
 // int_0^1 min(1/4, 1 - t) dt = 3/16 + 1/32 with one of 1/4.
-TEST(StepFunction, CorrelationOfAPulseIsAsByHand) {
+TEST(StepFunction, CorrelationOfAPulseMatchesHandCalculation) {
   StepFunction pulse(1);
   pulse.Add(1, 0);
   EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 1), 0.5);
@@ -123,7 +123,7 @@ TEST(StepFunction, SamplesAreTheValuesAtTheirTimes) {
   }
 }
 
-TEST(StepFunction, PiecesWithoutDurationAreNotSeen) {
+TEST(StepFunction, PiecesWithoutDurationHaveNoEffect) {
   StepFunction with(1), without(1);
   with.Add(0, -1), with.Add(0, 1);
   for (StepFunction* function : {&with, &without}) function->Add(2, 3);
