@@ -1,4 +1,4 @@
-// The constants of the conductivity, and gaps of closed chains, at refinements that take long.
+// The constants of the conductivity, and the gaps of chains, with slow refinements.
 #include "core/conductivity/conductivity.h"
 
 #include <gtest/gtest.h>

@@ -29,7 +29,7 @@ void ExpectExactMeans(const PointSummary& summary, int count) {
     if (const auto z = estimate.ZScore()) {
       EXPECT_LT(std::fabs(*z), 4.5) << estimate.name;
     } else {
-      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // where nothing scatters
+      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // a value without scatter
     }
   }
   EXPECT_EQ(compared, count);

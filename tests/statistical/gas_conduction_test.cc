@@ -47,8 +47,9 @@ double UnitOfRates(const GasGeometry& gas) {
   return std::sqrt(2 * std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
 }
 
-// The last digit printed is the least error of the reference's temperatures; their own standard
-// errors are not told, but their run was no shorter than this one. Four standard errors.
+// The error of the reference's temperatures is at least the last printed digit. Their standard
+// errors are unknown, but the reference's run was at least as long as this run. Four standard
+// errors.
 void ExpectTemperatures(const GasSamples& samples, const std::vector<double>& expected) {
   for (size_t body = 0; body < expected.size(); ++body) {
     const Moments& temperature = samples.temperatures[body];

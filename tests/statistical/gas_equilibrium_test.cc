@@ -69,7 +69,8 @@ TEST(JumpGas, KeepsTheGammaLaws) {
   ExpectGammaHalf(LastEnergies(samples, 4000, samples.last.size()));
 }
 
-// Twice the static conductivity, from the squares of what exchanges carry over half a cell.
+// Twice the static conductivity, from the squares of the energies that exchanges carry over half a
+// cell.
 class SquaresMeter : public CurrentMeter {
  public:
   explicit SquaresMeter(double& sum) : sum_(sum) {}
@@ -118,7 +119,7 @@ void ExpectEquilibriumBetweenEqualReservoirs(GasEngine engine, uint64_t replicas
   EXPECT_LT(StandardErrorsOff(samples.rate, InfiniteGasExchangeRate(gas, 1)), 4);
   const auto balls = static_cast<size_t>(gas.balls());
   for (size_t body = 0; body < samples.temperatures.size(); ++body) {
-    // Of an outermost piston the jump process knows the mean alone.
+    // For an outermost piston the jump process has only the mean.
     const Moments& temperature = samples.temperatures[body];
     if (temperature.m2 < 1e-6) continue;
     EXPECT_LT(StandardErrorsOff(temperature, 1), 4) << "body " << body;

@@ -1,5 +1,5 @@
-// The experiments with a gas, by long runs: against exact values, against independent programs
-// (tests/data/gas.csv), and their stated errors against those that are measured.
+// Long runs of the experiments with a gas. Compares them with exact values and with independent
+// programs (tests/data/gas.csv), and the stated errors with measured errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ GasGeometry GeometryAt(const EnsembleSpec& spec) {
   return GasGeometryOf(PointAt(spec, 0), GasEnds::kPeriodic);
 }
 
-// The relative error that the plan states for so many samples, over the one that a run measures.
+// The relative error that the plan states for this number of samples, over the measured error.
 double StatedOverMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& first = summary.estimates.front();
@@ -124,7 +124,7 @@ double Prefactor(double delta, const GasShape& shape) {
   return InfiniteGasExchangeRate(geometry, 1) * std::sqrt(2 * std::numbers::pi);
 }
 
-// Temperatures of the independent programs have no errors there; 0.004 is some four of theirs.
+// The table has no errors of the independent programs' temperatures; 0.004 is about four errors.
 TEST(GasExperiments, CurrentOfTheJumpProcessMatchesAnIndependentProgram) {
   const PointSummary two = RunPoint(Conduction(0.1, {2}, 1.5, 0.5, Model::kMarkov, 20'000));
   const double unit = Prefactor(0.1, {2});

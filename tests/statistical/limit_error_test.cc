@@ -30,21 +30,21 @@ class Dice {
   std::mt19937_64 engine_{2026};
 };
 
-// Outside the zone where no relaxation time is told.
+// An energy outside of the zone without a relaxation time.
 double SomeEnergy(Dice& dice) {
   double epsilon = dice.Between(0.01, 0.49);
   while (!HasRelaxationTime(epsilon)) epsilon = dice.Between(0.01, 0.49);
   return epsilon;
 }
 
-// A half of them near the ends, where tips are narrow and where the cell vanishes.
+// Half of the radii are near the ends, where tips are narrow and where the cell vanishes.
 double SomeRho(Dice& dice) {
   if (dice.Between(0, 1) < 0.5) return dice.Between(0.501, 0.705);
   if (dice.Between(0, 1) < 0.5) return 0.5 + dice.LogBetween(0.001, 0.1);
   return kMaxRho - dice.LogBetween(kMaxRho - 0.705, 0.1);
 }
 
-// Deltas where the difference is seen within a second.
+// Deltas at which the difference can be measured within a second.
 PointParameters SomePoint(Dice& dice) {
   const double rho = SomeRho(dice);
   const double bound = PairDeltaBound(rho);

@@ -1,4 +1,4 @@
-// Whether the tests of two samples say what they should: of one law little, of two laws much.
+// Tests of the two-sample tests: results are small for samples of one law, large for two laws.
 #include "tests/oracle/two_sample.h"
 
 #include <gtest/gtest.h>

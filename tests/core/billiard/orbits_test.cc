@@ -56,8 +56,8 @@ void ExpectNear(const Contact& first, const Contact& second, double tolerance) {
   EXPECT_NEAR(first.state.piston_velocity, second.state.piston_velocity, tolerance);
 }
 
-// Errors grow by some 2.5 at a wall hit on average, by more at grazing ones and at collisions: so
-// an orbit is compared up to its eighth wall hit.
+// Errors grow by a factor of about 2.5 at a wall hit on average, and by more at grazing hits and at
+// collisions. So an orbit is compared up to its eighth wall hit.
 TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   constexpr uint64_t kOrbits = 5000, kMostHits = 8;
   int compared = 0, at_once = 0, later = 0;
@@ -86,7 +86,7 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   EXPECT_GT(later, 100);
 }
 
-// The same pair for every orbit, of which the ends are told.
+// The same pair for every orbit. Records the ends of the orbits.
 class WithTimeLimit : public NumberedOrbits {
  public:
   WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
@@ -105,7 +105,7 @@ class WithTimeLimit : public NumberedOrbits {
   std::vector<std::vector<Contact>> ends_;
 };
 
-// Where the piston comes: in either direction of the piston, at any phase.
+// The ball is within the piston's reach; the piston moves in either direction, at any phase.
 TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   const PairGeometry geometry = PaperGeometry(0.2);
   const double left = geometry.piston_left(), right = geometry.piston_right();
@@ -140,7 +140,7 @@ TEST(Orbits, StopEndsOrbits) {
   }
 }
 
-// A ball that rests where the piston does not come: only the piston has events, for ever.
+// A ball that rests out of the piston's reach: only the piston has events, for ever.
 class RestingBall : public NumberedOrbits {
  public:
   explicit RestingBall(const PairGeometry& geometry) : geometry_(geometry) {}
@@ -207,7 +207,7 @@ TEST(Orbits, EscapesInLanesAreReported) {
   EXPECT_TRUE(single.token().stop_requested());
 }
 
-// A ball that never meets the piston at rest, of a source that always wants to go on.
+// A ball that never meets the resting piston, and a source that always continues.
 TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
   class GoesOn : public NumberedOrbits {
    public:
@@ -228,8 +228,8 @@ TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
   }
 }
 
-// Pairs that do not meet, or not in 1e9: the piston rests, or nearly, where the ball does not come;
-// the ball rests, or nearly, where the piston does not.
+// Pairs that do not meet within a time of 1e9: the piston is at rest, or nearly, out of the ball's
+// reach; or the ball is at rest, or nearly, out of the piston's reach.
 std::vector<PairState> PairsApart(const PairGeometry& geometry) {
   const Eigen::Vector2d slant = {0.6, 0.8};
   std::vector<PairState> pairs;
@@ -292,8 +292,8 @@ void ExpectSameBits(const Contact& first, const Contact& second) {
   EXPECT_EQ(first.piston_wall_hits, second.piston_wall_hits);
 }
 
-// Every orbit is as without a limit up to the first collision that comes too late, and ends there:
-// in all engines and vector widths.
+// In all engines and vector widths every orbit is the same as without a limit up to the first
+// collision after the limit, and ends there.
 TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   constexpr uint64_t kOrbits = 300;
   constexpr size_t kCollisions = 6;
@@ -327,7 +327,7 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   }
 }
 
-// Gives few orbits at a time, at times none, and pauses at every opportunity.
+// Supplies few orbits at a time, sometimes none, and pauses at every opportunity.
 class DripFedOrbits : public OrbitSource {
  public:
   DripFedOrbits(NumberedOrbits& orbits, uint64_t count) : orbits_(orbits), count_(count) {}

@@ -29,7 +29,7 @@ std::optional<PistonWave::Meeting> FirstMeeting(const PistonWave& wave, const Ap
   return wave.FirstMeeting(a.phase, a.ratio, a.x, a.ux, a.length);
 }
 
-// The piston is nowhere left of the ball before `way`, up to rounding.
+// The piston is right of the ball until `way`, up to rounding.
 void ExpectApartBefore(const PistonWave& wave, const Approach& a, double way) {
   constexpr int kPlaces = 500;
   for (int i = 0; i < kPlaces; ++i) {
@@ -39,7 +39,7 @@ void ExpectApartBefore(const PistonWave& wave, const Approach& a, double way) {
   }
 }
 
-// Starts apart, or touching and parting.
+// Starts apart, or touching and moving apart.
 Approach Drawn(const PistonWave& wave, CounterRandom& random) {
   const double angle = 2 * M_PI * random.Uniform();
   Approach a = {.phase = 2 * wave.stroke() * random.Uniform(),
@@ -78,7 +78,8 @@ TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
   EXPECT_GT(none, 500);
 }
 
-// For slow balls nothing is left of the piston's phase; there is an answer all the same.
+// For slow balls the piston's phase has no correct digit, but FirstMeeting must still have an
+// answer.
 TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
   const PistonWave wave(PaperGeometry(0.01));
   for (uint64_t i = 0; i < 3000; ++i) {
@@ -98,7 +99,7 @@ TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
   }
 }
 
-// The test before it is worth its time if it seldom says yes in vain.
+// MayMeet saves time only if it rarely returns true without a meeting.
 TEST(PistonWave, MayMeetIsRarelyWrong) {
   const PistonWave wave(PaperGeometry(0.025));
   CounterRandom random(61, 0, 0);
@@ -134,7 +135,7 @@ TEST(PistonWave, ABallMeetsARestingPistonAtThePistonsPlace) {
   EXPECT_NEAR(meeting->way, 0.27 / 0.5, 1e-15);
 }
 
-// The ball touches the piston and goes the same way, slower; the piston comes back.
+// The ball touches the piston and moves in the same direction, slower. The piston comes back.
 TEST(PistonWave, AReturningPistonMeetsABallAtRest) {
   const PistonWave wave(PaperGeometry(0.1));
   const double stroke = wave.stroke();

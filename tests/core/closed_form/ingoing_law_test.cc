@@ -66,7 +66,7 @@ TEST(IngoingLaw, BinProbabilityIsTheIntegralOfTheDensity) {
         const double a1 = a0 + (edge - a0) * unit(random);
         const Quad exact =
             oracle::Integrate([&](Quad a) { return Weight(ep, sigma, a); }, a0, a1) / norm;
-        // The oracle counts the true edge, the law its rounding: see the header.
+        // The oracle uses the exact edge, the law the rounded edge: see the header.
         const double from_edge = std::min(edge - std::abs((a0 + a1) / 2), edge);
         const double tolerance =
             kIngoingLawRelativeError + (edge > 0 ? 1e-15 * edge / from_edge : 0);
@@ -149,7 +149,8 @@ TEST(IngoingLaw, MeansAreIntegralsOfTheDensity) {
     const Quad norm = Norm(ep);
     const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return Cos(a); }) / norm;
     const Quad sign = OverTheCircle(ep, [](Quad, int sigma) { return sigma; }) / norm;
-    // Absolute: both integrals cancel where they are small, the library's closed forms do not.
+    // An absolute error, because both integrals cancel where they are small. The closed forms do
+    // not.
     EXPECT_NEAR(law.MeanCosAlpha(), static_cast<double>(cosine), 1e-14) << ep;
     EXPECT_NEAR(law.MeanSigma(), static_cast<double>(sign), 1e-14) << ep;
   }

@@ -56,7 +56,7 @@ TEST(Kernel, AccurateWhereTheBallKeepsLittleEnergy) {
     const double printed = KernelAsPrinted(0.5 - ep, ep, out, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));
   }
-  EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails
+  EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
   const double below = std::nextafter(0.25, 0.0);
   EXPECT_LE(RelativeError(PairKernel(below, below),
                           KernelOverSigns(Quad{1} / 2 - Quad{below}, below, below)),

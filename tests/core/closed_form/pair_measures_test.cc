@@ -34,7 +34,7 @@ double ErrorOfMeasures(double rho, double delta) {
   return WorstError(Measures(GeometryOf(rho, delta)), oracle::MeasuresByQuadrature(rho, delta));
 }
 
-// The oracle is itself checked: where the printed formulas keep their digits, they agree.
+// A check of the oracle: it agrees with the printed formulas where these keep their digits.
 TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
   for (double rho : {0.51, kPaperRho, 0.6, 0.69}) {
     const double delta = 0.3 * PairDeltaBound(rho);

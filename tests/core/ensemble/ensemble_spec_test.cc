@@ -104,7 +104,7 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
 
 TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
   EnsembleSpec spec = ValidFirstHit();
-  spec.grid[kDelta] = {0.2};  // legal at 0.55, not at 0.6, where the bound is 0.1683
+  spec.grid[kDelta] = {0.2};  // valid at rho = 0.55; at 0.6 the bound is 0.1683
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]",
                                                   "rho = 0.6: 0 < delta <= (1 - "
                                                   "lambda)/2 = 0.1683")));
@@ -265,7 +265,7 @@ TEST(EnsembleSpec, SinglePrecisionIsOnlyForTheLanes) {
   }
 }
 
-// Beyond them it is not known how far its numbers are off (billiard/single_precision.h).
+// Outside of this domain the errors of single precision are unknown (billiard/single_precision.h).
 TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision

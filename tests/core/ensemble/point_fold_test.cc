@@ -120,7 +120,7 @@ TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
   while (const auto block = fold.NextBlock()) blocks.push_back(*block);
   EXPECT_EQ(blocks.size(), ChunkFold::kWindow);
   fold.Add(blocks[1], blocks_[1].result);
-  EXPECT_FALSE(fold.NextBlock());  // the first one is still out
+  EXPECT_FALSE(fold.NextBlock());  // the first block is not yet computed
   fold.Add(blocks[0], blocks_[0].result);
   EXPECT_TRUE(fold.NextBlock());
   EXPECT_TRUE(fold.NextBlock());
@@ -223,7 +223,7 @@ TEST_F(PointFoldTest, LocalPointMatchesTheFold) {
   EXPECT_EQ(local.Merged(), *FoldPoint(*point_));
 }
 
-// It is reached within a chunk; the fold goes on to the chunk's end.
+// The tolerance is reached within a chunk; the fold continues to the chunk's end.
 TEST_F(PointFoldTest, AToleranceIsJudgedAtTheEndsOfChunks) {
   const auto point = Point({.tolerance = 0.1});
   const uint64_t samples = FoldPoint(*point)->samples;

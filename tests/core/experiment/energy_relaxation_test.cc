@@ -38,7 +38,7 @@ TEST(EnergyRelaxation, OrbitsLastAsLongAsTheMeasurement) {
   EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1)), kOriginTimes + kWindowTimes);
 }
 
-// Of an orbit that stays at its energy: the curve is flat, and the integral the window times it.
+// The orbit keeps its energy: the curve is flat, and the integral is the window times this value.
 TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
   constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
   const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
@@ -74,7 +74,7 @@ TEST(EnergyRelaxation, CorrelationsOfOneJumpMatchHandCalculation) {
               1e-9 * tau);
 }
 
-// Followed by hand with the reference flow, at the times of the curve.
+// The test follows an orbit with the reference flow, at the times of the curve.
 TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
     const PointParameters point = PaperPoint(0.2, epsilon);
@@ -143,7 +143,7 @@ TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
   }
 }
 
-// Around 1/6 a ratio to epsilon - 1/6 says nothing, the integral does.
+// Around 1/6 the ratio to epsilon - 1/6 has no meaning, but the integral does.
 TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
   for (const std::optional<double> epsilon :
        {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
@@ -167,7 +167,7 @@ TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
   }
 }
 
-// What lies beyond the window is the spectrum's to tell, and little.
+// The spectrum gives the part beyond the window, which is small.
 TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
   for (const double delta : {0.2, 0.01}) {
     for (const std::optional<double> epsilon :

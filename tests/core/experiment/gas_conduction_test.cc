@@ -1,4 +1,4 @@
-// The experiment `gas-conduction`: estimates, profile, cut-short replicas, bad input.
+// The experiment `gas-conduction`: estimates, profile, shortened replicas, invalid input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,8 +100,8 @@ TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
   }
 }
 
-// At most 128 columns stand alone. Of a longer gas some share a place, the last ones fewer; its
-// inner pistons are in no place.
+// Up to 128 columns have separate places. In a longer gas several columns share a place, the last
+// place has fewer columns, and inner pistons have no place.
 TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
   const auto places = [](const GasShape& shape) {
     const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
@@ -184,7 +184,7 @@ TEST(GasConduction, ReplicasThatAreLongEnoughGiveErrorsAndNoRemark) {
   for (const CurvePoint& place : summary.curves[0].points) EXPECT_TRUE(place.standard_error);
 }
 
-// The longest relaxation time grows as (N + 1)^2, until a replica is cut short.
+// The longest relaxation time grows as (N + 1)^2, until replicas are shortened.
 TEST(GasConduction, DurationOfAReplicaGrowsWithTheRelaxationTime) {
   const auto exchanges_a_contact = [](int64_t columns) {
     const PointParameters point = PointAt(SpecBetween(3, 1, {.columns = columns}), 0);

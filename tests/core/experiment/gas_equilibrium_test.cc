@@ -122,8 +122,8 @@ TEST(GasEquilibrium, ConductivityIsMeasuredUpTo5000Contacts) {
   }
 }
 
-// Half of the exchange rate, times a factor that the shape alone decides. core/conductivity tests
-// the factor.
+// The conductivity is half of the exchange rate, times a factor that depends only on the shape. The
+// tests of core/conductivity check the factor.
 TEST(GasEquilibrium, TheSpectrumGivesTheConductivity) {
   for (const auto& [shape, correction] :
        {std::pair(GasShape{5}, kChainCorrection), {GasShape{4, 3, true}, kLatticeCorrection}}) {
@@ -195,7 +195,7 @@ TEST(GasEquilibrium, ExpectedProbabilitiesMatchTheThermalLaws) {
   }
 }
 
-// Balls of another temperature than the stated one are noticed in the law of their speeds.
+// If the balls have another temperature than the stated one, the law of their speeds shows it.
 TEST(GasEquilibrium, AnotherLawGivesADivergenceAboveTheNoise) {
   BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
   const PointSummary before = Summarized(SpecAt(1), merged);

@@ -1,4 +1,4 @@
-// What both experiments with a gas have in common, by every model that samples.
+// The common properties of both experiments with a gas, by every model that samples.
 #include "core/experiment/gas_experiment.h"
 
 #include <gmock/gmock.h>
@@ -150,8 +150,8 @@ TEST(GasExperiment, AResumedFoldHasTheSameBits) {
   }
 }
 
-// A histogram has no more counts than the samples' own number says: the server checks that when it
-// reads a checkpoint.
+// A histogram has at most CountsOfASample() counts for each sample. The server checks this bound
+// when it reads a checkpoint.
 TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
   for (const EnsembleSpec& spec : OneOfEach(12)) {
     const auto point = PointExperiment::Create(spec, 0);

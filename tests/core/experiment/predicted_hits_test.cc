@@ -35,8 +35,8 @@ class CountedReturns : public ReturnOrbits {
   Counted counted;
 };
 
-// Exact means, as the paper's measures are: 5 standard errors, 6e-7 false alarms each. Starts in
-// contact: what is counted between two collisions is what comes before the second.
+// The predictions are exact means: 5 standard errors, 6e-7 false alarms each. An orbit starts in
+// contact, and its hits before the second collision are counted.
 void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
   EXPECT_NEAR(counted.ball_wall.mean, predicted.ball_wall, 5 * *counted.ball_wall.StandardError());
   EXPECT_NEAR(counted.piston_wall.mean, predicted.piston_wall,
@@ -58,7 +58,7 @@ TEST(PredictedHits, MatchOrbitsInEquilibrium) {
   }
 }
 
-// From the law that is its own: exponent 1.
+// Starts are from the invariant law, exponent 1.
 TEST(PredictedHits, MatchReturnsAtAnEnergy) {
   const PairGeometry geometry = PaperGeometry(0.25);
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {

@@ -21,7 +21,7 @@ namespace {
 
 double PairRate(const GasGeometry& gas) { return ExchangeRate(Measures(gas.pair()), 1); }
 
-// How far two rates differ, relatively. Oracles in double add the rounding of some 1e5 operations.
+// Relative difference of two rates. Oracles in double add the rounding of some 1e5 operations.
 constexpr double kOracleError = 2e-14;
 void ExpectSameRate(double rate, double exact) {
   EXPECT_NEAR(rate / exact, 1, kGasExchangeRateRelativeError + kOracleError);
@@ -68,7 +68,7 @@ TEST(GasExchangeRate, TheSmallestTorusInClosedForm) {
     ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
 }
 
-// F is 1 where no piston takes anything from a cell.
+// F is 1 if no piston takes area from a cell.
 TEST(GasExchangeRate, WithoutCrowdingTheFactorIsOne) {
   for (const char* shape : {"1", "2", "1000000", "1x1", "2x3", "9x7", "1000x1000", "1x1000000"}) {
     ExpectSameRate(CrowdingFactor(ShapeNamed(shape), 0), 1);
@@ -77,8 +77,8 @@ TEST(GasExchangeRate, WithoutCrowdingTheFactorIsOne) {
   ExpectSameRate(InfiniteCrowdingFactor(true, 0), 1);
 }
 
-// What a finite gas adds falls by a factor of at least ten from one size to the next, down to the
-// error of the infinite lattice.
+// The difference between a finite and the infinite gas falls by a factor of at least ten from one
+// size to the next, down to the error of the infinite lattice.
 TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
   for (const double z : {0.005, 0.02}) {
     for (const bool is_lattice : {false, true}) {

@@ -196,7 +196,7 @@ TEST(GasGeometry, SeenFromIsTheInverseOfSeenToward) {
   }
 }
 
-// Turned, not mirrored: what is 90 degrees to the left stays there.
+// The view is turned, not mirrored: a vector 90 degrees to the left stays 90 degrees to the left.
 TEST(GasGeometry, EveryPistonLiesOnTheRightAfterTurning) {
   const Eigen::Vector2d pistons[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   for (const Direction direction : kDirections) {

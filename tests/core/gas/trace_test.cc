@@ -92,7 +92,7 @@ TEST(Trace, GasTraceMatchesTheReferenceGas) {
   }
 }
 
-// The pistons of a cell are on its four sides, where the gas does not close on itself.
+// The pistons of a cell are on its four sides, up to the periodic boundary.
 TEST(Trace, BallAndPistonExchangeAtTheSamePlace) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));
@@ -143,7 +143,7 @@ TEST(Trace, EveryEventConservesEnergy) {
   }
 }
 
-// And the energy before an event is that after the last one.
+// Also checks that the energy before an event is that after the previous event.
 TEST(Trace, BodiesFlyStraightBetweenTheirEvents) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));

@@ -59,7 +59,7 @@ TEST(PairGeometry, DeltaExactlyAtTheBoundIsAccepted) {
     const double bound = PairDeltaBound(rho);
     ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(rho, bound));
     EXPECT_EQ(g.piston_left(), 0);
-    // Rounded up by a user, it stands for the bound.
+    // A value that a user has rounded up counts as the bound.
     ASSERT_OK_AND_ASSIGN(const PairGeometry rounded,
                          PairGeometry::Create(rho, bound * (1 + 9e-13)));
     EXPECT_EQ(rounded.delta(), bound);

@@ -38,7 +38,7 @@ TEST(RelaxationSpectrum, GapAgreesBetweenDiscretisations) {
   }
 }
 
-// A coarser discretisation's difference is more than what the finer one is off: by the finest.
+// A stated error is larger than the true error, measured with the finest discretisation.
 TEST(RelaxationSpectrum, StatedErrorsAreUpperBounds) {
   constexpr double kRounding = 1e-14;
   const RelaxationSpectrum coarse({.degree = 6, .levels = 3});
@@ -125,7 +125,7 @@ TEST(RelaxationSpectrum, AutocorrelationIsASumOfDecaysNoSlowerThanTheGap) {
     EXPECT_LE(before * before, now * before_that * (1 + 1e-12));  // convex in its logarithm
     before_that = before, before = now;
   }
-  // In the end the gap's own.
+  // At long times the rate is the gap.
   EXPECT_NEAR(std::log(before_that / before) / 0.5, gap, 1e-4);
 }
 
@@ -168,7 +168,7 @@ TEST(RelaxationSpectrum, MeanEnergyRelaxesFromTheInitialEnergy) {
   }
 }
 
-// From below it rises to 1/6 and from above it falls to it, in the end with the gap.
+// From below the mean energy rises to 1/6, from above it falls to 1/6; at long times with the gap.
 TEST(RelaxationSpectrum, MeanEnergyEndsWithTheGap) {
   for (const double epsilon : {0.01, 0.4}) {
     const auto off = [&](double t) {

@@ -39,7 +39,7 @@ TEST(Ladder, VerifyChoosesTheBilliardDespiteAClosedForm) {
   }
 }
 
-// Measured laws are the billiard's: neither tolerance nor budget makes another model answer.
+// Only the billiard measures laws: neither a tolerance nor a budget makes another model answer.
 TEST(Ladder, AutoChoosesTheBilliardIfNoCheaperModelAnswers) {
   for (const ExperimentKind* experiment : {&kFirstHit, &kMarkovProperty}) {
     for (const Target& target : kTargets) {
@@ -59,8 +59,8 @@ TEST(Ladder, WithoutAToleranceRelaxationUsesTheBilliard) {
   }
 }
 
-// Over deltas and tolerances of five decades each: a pilot is asked at most once, at the point's
-// place, and then what it says decides.
+// Deltas and tolerances over five decades each: a pilot is used at most once, at the point's place,
+// and then its result decides.
 TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
   int asked = 0, told_without = 0;
   for (double delta = 0.3; delta > 1e-5; delta /= 2) {
@@ -95,7 +95,7 @@ TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
   EXPECT_GT(told_without, 100);
 }
 
-// The three reasons for which none is asked.
+// The three reasons for using no pilot.
 TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
   // The limit is 5 % off at delta = 0.2.
   EXPECT_THAT(Choice(Relaxation(0.2, {.tolerance = 0.01}), MayNotBeAsked)->reason,
@@ -124,8 +124,8 @@ TEST(Ladder, OnePilotServesAllSmallerDeltas) {
   }
 }
 
-// From an energy far from both ends the error scales as in equilibrium; a piston that rests is out
-// of reach at every delta.
+// From an energy far from both ends the error scales as in equilibrium. For a resting piston the
+// limit does not apply at any delta.
 TEST(Ladder, APilotServesADecayToo) {
   MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.01});
   EnsembleSpec spec = Relaxation(0.0125, {.tolerance = 0.02});
@@ -161,7 +161,7 @@ TEST(Ladder, WithAToleranceEveryMachineMakesTheSameChoice) {
   }
 }
 
-// With a budget alone whatever comes nearest in that time.
+// With a budget alone AUTO chooses the model with the smallest error within the budget.
 TEST(Ladder, BudgetChoosesTheBilliardIfItsErrorIsSmaller) {
   double turn = 0;
   for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
@@ -182,7 +182,7 @@ TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
   EXPECT_EQ(BudgetOfAPoint(spec, 4), 8);
 }
 
-// Whichever is reached first.
+// The point ends with the tolerance or the budget, whichever is reached first.
 TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
   const auto choice = [](double tolerance, double seconds) {
     const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
@@ -193,7 +193,7 @@ TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
   EXPECT_EQ(choice(1e-5, 1e5), Model::kBilliard);
 }
 
-// Where no relaxation time is told nothing is known of the limit's error in it.
+// Without a relaxation time the limit's error is unknown.
 TEST(Ladder, AroundTheMeanEnergyRelaxationUsesTheBilliard) {
   for (const Target& target : {Target{}, Target{.budget_seconds = 1e-3}}) {
     EnsembleSpec spec = Relaxation(0.01, target);
@@ -207,8 +207,8 @@ TEST(Ladder, AroundTheMeanEnergyRelaxationUsesTheBilliard) {
   }
 }
 
-// One that was not run yet is predicted, and what it takes is part of the answer's work; but where
-// another point of the grid runs it.
+// The result of a pilot that has not run is predicted, and its cost is part of the answer's work,
+// unless another point of the grid runs the pilot.
 TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   const EnsembleSpec spec = Relaxation(0.001, {.tolerance = 0.01});
   MadeUpPilots none(std::nullopt);
@@ -339,7 +339,7 @@ TEST(Ladder, ANamedModelAnswersWithAnyError) {
       } else if (AimOf(spec).limit_error != nullptr) {
         EXPECT_EQ(answer.model_error, AimOf(spec).limit_error->expected(PointAt(spec, 0)));
       } else {
-        EXPECT_FALSE(answer.model_error);  // nobody knows
+        EXPECT_FALSE(answer.model_error);  // unknown
       }
     }
   }
@@ -417,7 +417,7 @@ EnsembleSpec InSinglePrecision(EnsembleSpec spec) {
   return spec;
 }
 
-// Whoever chose the billiard, and why: in single precision it is not exact.
+// In single precision the billiard is not exact, for every reason of its choice.
 TEST(Ladder, SinglePrecisionHasAModelError) {
   EnsembleSpec verified = InSinglePrecision(Asked(&kEquilibrium, 0.1));
   verified.verify = true;
@@ -444,7 +444,7 @@ TEST(Ladder, SinglePrecisionHasAModelError) {
   }
 }
 
-// Distances between laws tend to 0: a relative error of them says nothing.
+// Distances between laws tend to 0, so their relative error has no meaning.
 TEST(Ladder, SinglePrecisionsErrorIsUnknownWithoutARelativeError) {
   const EnsembleSpec spec = InSinglePrecision(Asked(&kMarkovProperty, 0.1));
   const Answer answer = *Choice(spec, MayNotBeAsked);
@@ -502,10 +502,10 @@ TEST(Ladder, ReducedModelsRejectAToleranceBelowTheirError) {
   EXPECT_TRUE(violations(&kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
   for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
     EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1e-5, 0.2).empty());
-    // What samples cannot be told to more than the most of them allow.
+    // The largest permitted number of samples limits the tolerance of a model that samples.
     EXPECT_EQ(violations(&kEnergyRelaxation, model, 1e-9, 0.2).size(), 1u);
   }
-  // The worst point of the grid counts; and without a tolerance nothing.
+  // The worst point of the grid counts. Without a tolerance there is no violation.
   EnsembleSpec spec = Relaxation(0.01, {.tolerance = 0.01});
   spec.model = Model::kSpectrum;
   EXPECT_TRUE(ToleranceViolations(spec).empty());

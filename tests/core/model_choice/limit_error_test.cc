@@ -72,8 +72,8 @@ TEST(LimitError, PilotsAreAtDeltasWithCheapCollisions) {
   EXPECT_EQ(PilotPlaceFor(PaperPoint(0.3)).epsilon, std::nullopt);
 }
 
-// From the energy of a slow partner the limit need not be near at the pilot's delta, nor the error
-// fall in proportion from there: then the pilot is made at the point itself.
+// From an energy at which a body is slow, the limit may not apply at the pilot's delta, and the
+// error may not fall in proportion to delta. Then the pilot is at the point itself.
 TEST(LimitError, PilotsFromAnEnergyAreAtDeltasWithSmallErrors) {
   EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).delta, PilotPlaceFor(PaperPoint(1e-3)).delta);
   EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).epsilon, 0.1);
@@ -87,12 +87,12 @@ TEST(LimitError, BoundIsTheDifferenceAndTwoErrorsScaledWithDelta) {
   const PilotPlace place = {.rho = kPaperRho, .delta = 0.1};
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.1)), 0.04);
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.001)), 0.0004);
-  // Never less than is expected: a pilot that found nothing has not shown that there is nothing.
+  // The bound is at least the expected error, also if a pilot finds no difference by chance.
   const Pilot lucky = {.difference = 0, .standard_error = 1e-9};
   EXPECT_EQ(LimitErrorBound(lucky, place, PaperPoint(0.05)), ExpectedLimitError(PaperPoint(0.05)));
 }
 
-// What is expected to be found, scaled from the pilot's place, covers what is expected at smaller
+// The expected result of a pilot, scaled from its place, covers the expected error at smaller
 // deltas: the bound's proportion to delta is on the safe side.
 TEST(LimitError, BoundCoversTheExpectedErrorAtSmallerDeltas) {
   const PilotPlace place = PilotPlaceFor(PaperPoint(1e-6));
@@ -104,7 +104,7 @@ TEST(LimitError, BoundCoversTheExpectedErrorAtSmallerDeltas) {
   }
 }
 
-// At the largest delta, where a pilot takes least; from an energy, as its orbits are the shorter.
+// At the largest delta, where a pilot costs least; from an energy, because such orbits are shorter.
 TEST(LimitError, PilotIsAFunctionOfItsPlace) {
   const PilotPlace place = {.rho = kPaperRho, .delta = PairDeltaBound(kPaperRho), .epsilon = 0.01};
   const auto run = [&] {

@@ -29,7 +29,7 @@ Measured ErrorMeasured(const EnsembleSpec& spec) {
           static_cast<double>(summary.samples)};
 }
 
-// Errors of some thousand samples are themselves known to a few percent.
+// The errors from some thousand samples are accurate to a few percent.
 void ExpectWithinAFactor(double factor, const EnsembleSpec& spec) {
   ASSERT_TRUE(Violations(spec).empty());
   const PointParameters point = PointAt(spec, 0);

@@ -27,7 +27,8 @@ TEST(CounterRandom, IsPhilox4x64) {
   EXPECT_EQ(random.Bits(), 0x7e68b68aec7ba23bu);
 }
 
-// A block is four words of the same sequence, also if words of the one before are left.
+// A block is the next four words of the same sequence, also if words of the previous block are
+// unused.
 TEST(CounterRandom, BlocksContinueTheSameSequence) {
   CounterRandom words(1, 2, 3), blocks(1, 2, 3);
   uint64_t block[CounterRandom::kBlock];

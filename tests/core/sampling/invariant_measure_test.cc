@@ -40,8 +40,8 @@ TEST(FlowMeasure, PistonsPositionsAreUniformOnTheVolume) {
   EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
 }
 
-// At given energies positions are those of mu, directions those of the circle, and the piston comes
-// as often as it goes.
+// At given energies positions have the law of mu, directions are uniform, and both signs of the
+// piston's velocity are equally frequent.
 TEST(FlowMeasure, AtAnEnergyPositionsAndDirectionsAreUniform) {
   const PairMeasures measures = Measures(kPaperPair);
   const double left_share =

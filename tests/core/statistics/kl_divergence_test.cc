@@ -136,7 +136,7 @@ TEST(KlDivergence, NoiseMatchesSamplesFromTheLaw) {
   }
 }
 
-// 1e8 samples in 2000 cells: what the series in samples a cell leaves out is below 1e-4.
+// 1e8 samples in 2000 cells: the error of the series in 1/(samples a cell) is below 1e-4.
 TEST(KlDivergence, NoiseTendsToThatOfChiSquared) {
   for (const size_t cells : {1000u, 2000u}) {
     const std::vector<double> probabilities = SteepLaw(cells);
