@@ -339,7 +339,7 @@ class LaneOrbits : public OrbitRun {
     return contact;
   }
 
-  // The orbit leaves the lane; Meet tells its source.
+  // The orbit leaves the lane; Meet reports the contact to the source.
   void Report(size_t lane, const Contact& contact) {
     pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
     meetings_.push_back({orbit_[lane].orbit, contact});

@@ -223,9 +223,9 @@ TEST(EnergyRelaxation, EnginesAgree) {
   }
 }
 
-// The master equation's solution, at energies from where an expansion in eigenfunctions alone was
-// wrong by percents in some bins: relative entropies of 3 million walks within 4.5 errors, a false
-// alarm in 12,000 seeds.
+// The master equation's solution, from initial energies at which an expansion only in
+// eigenfunctions had errors of percents in some bins: relative entropies of 3 million walks
+// within 4.5 errors, a false alarm in 12,000 seeds.
 TEST(EnergyRelaxation, LawsOfManyWalksSolveTheMasterEquation) {
   for (const double epsilon : {0.1, 0.4}) {
     const PointParameters point = PaperPoint(0.1, epsilon);

@@ -1,5 +1,5 @@
-// Gases between a hot and a cold reservoir, against an independent plain program: heat currents of
-// tests/data/gas.csv, from where the numbers and their standard errors are copied.
+// Compares gases between a hot and a cold reservoir with an independent plain program. The heat
+// currents and their standard errors are copied from tests/data/gas.csv.
 #include <gtest/gtest.h>
 
 #include <cmath>

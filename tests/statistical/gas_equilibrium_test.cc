@@ -33,9 +33,9 @@ void ExpectGammaHalf(const std::vector<double>& energies) {
 
 class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, const char*>> {};
 
-// The mean over the canonical ensemble, of many replicas. The rate is off by four standard errors,
-// 0.2 % to 0.6 % each, in 6e-5 of all cases; the energies of all bodies at the end are independent.
-// Together 2e-4 false alarms each.
+// The mean over the canonical ensemble, from many replicas. The rate differs by four standard
+// errors, of 0.2 % to 0.6 % each, in 6e-5 of all cases; the final energies of all bodies are
+// independent. Together 2e-4 false alarms each.
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   const auto& [engine, shape] = GetParam();
   const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);

@@ -62,7 +62,7 @@ TEST(LaneFrame, BallInTheCellReachesTheNextWallOfTheReference) {
 
 // Where two discs meet, rounding may put a ball that one disc has reflected into the quadrant of
 // the other disc. If the frame were that of the other disc, the ball would fly through that disc.
-TEST(LaneFrame, FrameOnATipIsThatOfTheDiscLeft) {
+TEST(LaneFrame, FrameOnATipBelongsToTheDiscThatTheBallLeaves) {
   for (const double rho : {0.5 + 1e-12, 0.501, kPaperRho, 0.7}) {
     const double tip = PairDeltaBound(rho);
     for (const double offset : {-1e-16, -1e-17, -0.0, 0.0, 1e-17, 1e-16}) {

@@ -131,7 +131,7 @@ TEST(PairMeasures, RareCollisionsSeeAWedge) {
   }
 }
 
-TEST(PairMeasures, CellAreaIsThatOfMeasures) {
+TEST(PairMeasures, CellAreaMatchesMeasures) {
   for (double rho : kRadii) {
     EXPECT_EQ(CellArea(rho), Measures(GeometryOf(rho, 0.5 * PairDeltaBound(rho))).cell_area);
   }

@@ -70,7 +70,7 @@ TEST(Conductivity, BoundFallsWithDegreeAndCluster) {
   }
 }
 
-// A unit of the published last digit: the value here is -0.0003725 (see kSpheresCorrection).
+// A unit of the published last digit: the value here is -0.0003725 (see kSphereChainCorrection).
 TEST(Conductivity, SpheresHaveThePublishedValue) {
   const ConductivityRatio spheres =
       RefineConductivity(EqualSitesChain(3), QuickPlan(EqualSitesChain(3)));

@@ -36,7 +36,7 @@ auto Names(const std::string& field, const std::string& text) {
                Field(&FieldViolation::description, HasSubstr(text)));
 }
 
-TEST(EnsembleSpec, ValidOnesHaveNoViolations) {
+TEST(EnsembleSpec, ValidSpecsHaveNoViolations) {
   EXPECT_THAT(Violations(ValidFirstHit()), IsEmpty());
   EXPECT_THAT(Violations({.experiment = &kEquilibrium,
                           .grid = {{kRho, {0.6}}, {kDelta, {PairDeltaBound(0.6)}}}}),
@@ -54,7 +54,7 @@ TEST(EnsembleSpec, GridIsTheProductWithRhoOutermost) {
             (PointParameters{{kRho, 0.6}, {kDelta, 0.1}, {kEpsilon, 0.5}, {kExponent, 5}}));
 }
 
-TEST(EnsembleSpec, OnePointOfItHasItsShareOfABudget) {
+TEST(EnsembleSpec, OnePointSpecHasItsShareOfTheBudget) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.budget_seconds = 6};
   spec.seed = 5;

@@ -201,7 +201,7 @@ TEST_F(PointFoldTest, TheFirstBlocksOfAChunkCountOnce) {
   EXPECT_EQ(fold.Merged(), chunks_[0].result);
 }
 
-TEST_F(PointFoldTest, FinishKeepsWhatIsMergedAndDropsWhatWaits) {
+TEST_F(PointFoldTest, FinishKeepsMergedChunksAndDropsWaitingChunks) {
   PointFold fold(*point_);
   fold.Add(chunks_[0]);
   fold.Add(chunks_[2]);

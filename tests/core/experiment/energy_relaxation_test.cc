@@ -168,7 +168,7 @@ TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
 }
 
 // The spectrum gives the part beyond the window, which is small.
-TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
+TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
   for (const double delta : {0.2, 0.01}) {
     for (const std::optional<double> epsilon :
          {std::optional<double>(), std::optional(0.01), std::optional(0.4)}) {

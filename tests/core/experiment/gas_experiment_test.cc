@@ -102,7 +102,7 @@ TEST(GasExperiment, BlocksComputedTogetherEqualThoseComputedAlone) {
   }
 }
 
-TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
+TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
   for (const EnsembleSpec& spec : OneOfEach(12)) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);

@@ -204,8 +204,8 @@ double GammaOne(double x) { return -std::expm1(-x); }
 double GammaHalf(double x) { return std::erf(std::sqrt(x)); }
 double UniformOnCircle(double angle) { return 0.5 + angle / (2 * std::numbers::pi); }
 
-// Each distance exceeds 2.3 in 5e-5 of all cases; the sign of a piston's velocity is off by four
-// standard errors in 6e-5.
+// Each distance exceeds 2.3 in 5e-5 of all cases; the share of positive piston velocities differs
+// by four standard errors in 6e-5.
 TEST(CanonicalGas, EnergiesHaveTheirGammaLaws) {
   for (const double temperature : {1e-3, 1.0, 40.0}) {
     const GasGeometry gas = CrowdedGas("200x100");

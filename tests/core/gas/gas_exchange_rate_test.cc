@@ -41,7 +41,7 @@ TEST(GasExchangeRate, RingsAreTracesOfTheirTransferOperator) {
   }
 }
 
-TEST(GasExchangeRate, TheTemperatureIsAFactorSqrtT) {
+TEST(GasExchangeRate, RateScalesWithTheRootOfTheTemperature) {
   for (const char* shape : {"3", "3x2"}) {
     const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
     EXPECT_DOUBLE_EQ(GasExchangeRate(gas, 6.25), 2.5 * GasExchangeRate(gas, 1));
@@ -63,7 +63,7 @@ TEST(GasExchangeRate, ToriCountEveryConfiguration) {
 }
 
 // A piston has one cell on both of its sides: Z = 1 - 4 z.
-TEST(GasExchangeRate, TheSmallestTorusInClosedForm) {
+TEST(GasExchangeRate, TheSmallestTorusHasAClosedForm) {
   for (const double z : {0.0, 1e-3, 0.02})
     ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
 }

@@ -114,7 +114,7 @@ TEST(GasMeter, CountsAndAverages) {
   EXPECT_EQ(meter.Energy(0), 3);
 }
 
-TEST(GasMeter, EnergyThatCrossesTheColumnsIsNotCarriedAlongX) {
+TEST(GasMeter, ExchangesAlongYCarryNoEnergyAlongX) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   GasMeter meter(gas, GasInEquilibrium(gas, 1, 92, 0));
   meter.Begin(0);

@@ -22,7 +22,7 @@ std::string Message(double rho, double delta) {
   return std::string(geometry.status().message());
 }
 
-TEST(PairGeometry, DerivedLengthsAreThoseOfTheCell) {
+TEST(PairGeometry, DerivedLengthsMatchTheCell) {
   ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(kPaperRho, 0.175));
   EXPECT_EQ(g.rho(), kPaperRho);
   EXPECT_EQ(g.delta(), 0.175);

@@ -129,7 +129,7 @@ TEST(RelaxationSpectrum, AutocorrelationIsASumOfDecaysNoSlowerThanTheGap) {
   EXPECT_NEAR(std::log(before_that / before) / 0.5, gap, 1e-4);
 }
 
-TEST(RelaxationSpectrum, IntegralsAreThoseOfTheCurves) {
+TEST(RelaxationSpectrum, IntegralsMatchTheCurves) {
   for (const double window : {0.3, 4.0, 32.0}) {
     EXPECT_NEAR(Spectrum().CorrelationTime(window).value,
                 IntegralOver(window, [](double t) { return Spectrum().Autocorrelation(t).value; }),

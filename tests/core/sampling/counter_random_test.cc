@@ -39,7 +39,7 @@ TEST(CounterRandom, BlocksContinueTheSameSequence) {
   EXPECT_EQ(blocks.Bits(), words.Bits());
 }
 
-TEST(CounterRandom, DependsOnSeedStreamAndSampleAlone) {
+TEST(CounterRandom, DependsOnlyOnSeedStreamAndSample) {
   EXPECT_EQ(Draws(1, 2, 3), Draws(1, 2, 3));
   const std::set<std::vector<uint64_t>> distinct = {Draws(1, 2, 3), Draws(2, 2, 3), Draws(1, 3, 3),
                                                     Draws(1, 2, 4), Draws(2, 1, 3)};
