@@ -110,8 +110,7 @@ TEST(LaneGas, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
 
 // The piston moves ahead of the ball. Both reach the tip at the same time, to within some ulps.
 // There the walls and the piston are closer to the ball than its rounding; the ball must stay in
-// the cell.
-// Returns the number of exchanges.
+// the cell. Returns the number of exchanges.
 uint64_t MeetInTheTip(const GasGeometry& gas, CounterRandom& random) {
   constexpr double kWay = 0.01;
   const double slope = gas.pair().lambda() * (2 * random.Uniform() - 1);
