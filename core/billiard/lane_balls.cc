@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace ballpiston {
 namespace HWY_NAMESPACE {
 
-// Several vectors, each in its stage of a flight: while one aims, the one kLag before it takes the
-// root, and the one 2 kLag before it turns.
+// Several vectors, each in a stage of a flight: while a vector is in Aim, the vector kLag before it
+// is in FindRoot, and the vector 2 kLag before it is in Turn.
 template <typename T>
 class LaneBalls {
  public:
@@ -25,7 +25,7 @@ class LaneBalls {
 
   static size_t Count() { return kVectors * Width(); }
 
-  // Repeats the last one if there are fewer than Count().
+  // Repeats the last start if there are fewer than Count().
   void Begin(std::span<const LaneFrame> starts) {
     for (size_t i = 0; i < Count(); ++i) {
       const LaneFrame& frame = starts[std::min(i, starts.size() - 1)];
@@ -61,7 +61,7 @@ class LaneBalls {
 
   static size_t Width() { return hn::Lanes(hn::ScalableTag<T>()); }
 
-  // One flight of each vector, from one that is about to aim in vector 2 kLag on.
+  // One flight of each vector; begins when vector 2 kLag is about to enter Aim.
   HWY_INLINE void FlyOn(const FlightConstants<T>& k) {
     _Pragma("GCC unroll 16") for (size_t i = 0; i < kVectors; ++i) {
       TurnOf(k, i);

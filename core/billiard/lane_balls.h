@@ -20,7 +20,7 @@ struct LaneHit {
 // Flies each ball to its next `hits` hits, in double or in single precision. `recorded` has
 // n * starts.size() elements, where n divides `hits`. Every (hits/n)-th hit of a ball is recorded;
 // the j-th record of ball i is recorded[i * n + j]. With n = hits all hits are recorded, with n = 1
-// the last one, with n = 0 none.
+// the last hit, with n = 0 no hit.
 void FlyLaneBalls(const PairGeometry& geometry, std::span<const LaneFrame> starts, uint64_t hits,
                   std::span<LaneHit> recorded);
 void FlyLaneBallsSingle(const PairGeometry& geometry, std::span<const LaneFrame> starts,

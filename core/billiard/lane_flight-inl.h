@@ -17,8 +17,8 @@
 // In the frame of the disc (1, 1) the cell lies toward (-, -), so the frame turns by 180 degrees:
 //   (h, e) becomes -(h cos + e sin, e cos - h sin).
 // In the frame of the disc (1, 0) it lies toward (-, +), so the frame turns by 90 degrees: the same
-// formula with (e, -h) in place of (h, e). So with x = u_x and y = u_y if (1, 1) is hit, else both
-// 0,
+// formula with (e, -h) in place of (h, e). Let x = u_x and y = u_y if (1, 1) is hit, else x = y =
+// 0. Then
 //   n = h - x,   h2 = e + y,   c' = c + e - n,   f' = f1 + y,
 //   h' = -(h2 cos - n sin),   e' = n cos + h2 sin:
 // which uses additions instead of a choice between two cases.

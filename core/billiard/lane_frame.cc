@@ -5,13 +5,13 @@
 namespace ballpiston {
 namespace {
 
-// A ball this near to a tip may be across it by rounding: by ulps, by the root of an ulp if it
-// grazes, by 1e-4 in single precision.
+// Rounding may put a ball this near to a tip on the other side of it: by ulps, by the root of an
+// ulp if it grazes, by 1e-4 in single precision.
 constexpr double kOnATip = 1e-3;
 
-// Which disc the ball leaves: the mirrors that bring the cell, seen from that disc's centre, into
-// the first quadrant. It is the disc of the ball's quadrant, unless rounding put a ball on a tip to
-// the other side of it: there it is the one that the ball does not fly into.
+// Returns the mirrors for the disc that the ball leaves: they bring the cell, seen from that disc's
+// centre, into the first quadrant. This is the disc of the ball's quadrant, unless rounding has put
+// a ball on a tip on the wrong side. At a tip it is the disc that the ball does not fly into.
 Eigen::Vector2d MirrorsOfDisc(const Eigen::Vector2d& position, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d quadrant = {position.x() > 0 ? -1 : 1, position.y() > 0 ? -1 : 1};
   const auto leaves = [&](const Eigen::Vector2d& m) {

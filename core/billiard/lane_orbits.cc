@@ -26,20 +26,20 @@ namespace ballpiston {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The lanes fly in bursts of some flights each (lane_burst-inl.h). After the burst the engine looks
-// at the flights that began or ended there, resolves the contacts it finds, and gives the lanes
-// their next orbits. So contacts and starts come in batches, and the flights have no branch to wait
-// for. The state behind a contact is a ball anywhere in the cell (FrameOfBall): the lanes take it
-// as it is.
+// The lanes fly in bursts of some flights each (lane_burst-inl.h). After a burst the engine
+// examines the flights that began or ended in the piston's reach, resolves the contacts that it
+// finds, and gives the lanes their next orbits. So contacts and starts come in batches, and the
+// flights have no branches. After a contact the ball may be anywhere in the cell (FrameOfBall); the
+// lanes accept such a state.
 //
-// An orbit enters at the beginning of a burst, and every burst has as many flights: so what is
-// rounded at the end of a burst is rounded at the same flights of the orbit, whatever its lane.
+// An orbit enters at the beginning of a burst, and every burst has the same number of flights. So
+// the rounding at the end of a burst occurs at the same flights of the orbit in every lane.
 //
-// Fewer vectors would hardly take less time, so all fly even if few lanes have orbits.
+// Fewer vectors would hardly take less time, so all vectors fly even if few lanes have orbits.
 constexpr int kBurstsBetweenLooks = 512;  // between two calls of Pause; about 0.2 ms
 
-// A ball slower than this counts as at rest. The lanes give it this speed, and a contact counts
-// only on the first part of its path: there the piston has come to the ball.
+// A ball slower than this counts as at rest. The lanes give the ball this speed, and a contact
+// counts only on the first part of its path, because there the piston has come to the ball.
 constexpr double kAtRest = 1e-18;
 constexpr double kLongestPathAtRest = 1e-9;
 
@@ -134,8 +134,8 @@ class LaneOrbits : public OrbitRun {
     if (!meetings_.empty()) Refill();
   }
 
-  // The arc that has the right tip is in reach where it is near to that tip: a < 0, and b tells on
-  // which side it is.
+  // Only the arcs at the right tip can be in the piston's reach. The ball is on such an arc if a <
+  // 0; b tells on which side of the arc the tip is.
   void Fly() {
     const auto reach = [edge = constants_.edge](const Balls<T>& balls) HWY_ATTR {
       const TipsInReach tips = TipsOf(balls, edge);
@@ -145,8 +145,8 @@ class LaneOrbits : public OrbitRun {
     ++bursts_;
   }
 
-  // The lanes' next burst begins where they are. Paths begin at 0: sums of short paths have little
-  // rounding.
+  // Makes the last slots the start of the next burst. Paths begin at 0 again, because sums of short
+  // paths have little rounding.
   void EndBurst() {
     const D d;
     for (size_t v = 0; v < kVectors; ++v) {
@@ -194,7 +194,7 @@ class LaneOrbits : public OrbitRun {
     return hn::MulAdd(hn::Load(D(), piston.ratio), path, hn::Load(D(), piston.phase));
   }
 
-  // ---- what happened in a burst ----
+  // ---- events of a burst ----
 
   void LookAtFlights() {
     if (HWY_UNLIKELY(left_cell_)) {
@@ -234,7 +234,7 @@ class LaneOrbits : public OrbitRun {
     }
   }
 
-  // Keeps of the listed flights those lanes in which `test` finds something. The list is compacted
+  // Keeps, of the listed flights, the lanes in which `test` finds a contact. The list is compacted
   // without a branch, because that branch would often be mispredicted.
   template <typename Test>
   HWY_INLINE void Keep(const Test& test) {
@@ -247,8 +247,8 @@ class LaneOrbits : public OrbitRun {
     listed_end_ = kept;
   }
 
-  // A test before MayHaveMet, of less work: the piston turned at its left wall, or began or ended
-  // so near to it that it may have touched a ball in the tip.
+  // A cheaper test before MayHaveMet: the piston turned at its left wall, or began or ended so near
+  // to it that it may have touched a ball in the tip.
   HWY_INLINE uint32_t PistonMayBeNear(size_t t) const {
     const D d;
     const Pistons& piston = pistons_[t % kVectors];
@@ -310,7 +310,7 @@ class LaneOrbits : public OrbitRun {
     return (beyond | turned) & (in_reach_[t] | in_reach_[t + kVectors]) & piston.lanes;
   }
 
-  // How far the balls are to the right of the piston's left wall, plus kSlack; scaled.
+  // The distance of the balls to the right of the piston's left wall, plus kSlack; scaled.
   HWY_INLINE V Depth(const Balls<T>& balls) const {
     const D d;
     const V h = hn::Load(d, balls.h), e = hn::Load(d, balls.e), c = hn::Load(d, balls.c),
@@ -339,14 +339,14 @@ class LaneOrbits : public OrbitRun {
     return contact;
   }
 
-  // The orbit leaves the lane; Meet tells its source.
+  // The orbit leaves the lane; Meet reports the contact to the source.
   void Report(size_t lane, const Contact& contact) {
     pistons_[VectorOf(lane)].lanes &= ~(uint32_t{1} << InVector(lane));
     meetings_.push_back({orbit_[lane].orbit, contact});
     met_.push_back(lane);
   }
 
-  // Where ball and piston of the lane meet in flight t, if they do.
+  // The contact of ball and piston of the lane in flight t, if they meet.
   std::optional<Contact> FindContact(size_t t, size_t lane) const {
     const size_t i = InVector(lane);
     const Pistons& piston = pistons_[VectorOf(lane)];
@@ -391,9 +391,9 @@ class LaneOrbits : public OrbitRun {
 
   // ---- between bursts ----
 
-  // Tells the source which orbits have left the lanes, and gives the lanes new orbits. An orbit
-  // that starts outside of the cell leaves at once. If there are very many of those, the next call
-  // of Refill tells the source of the last ones.
+  // Reports the orbits that have left the lanes to the source, and gives the lanes new orbits. An
+  // orbit that starts outside of the cell leaves at once. If there are very many such orbits, the
+  // next call of Refill reports the last of them.
   void Refill() {
     for (int round = 0; round == 0 || (round < kMostRounds && !meetings_.empty()); ++round) {
       Meet();
@@ -492,7 +492,7 @@ class LaneOrbits : public OrbitRun {
   };
   FlightOfLanes listed_[kMostSteps];
   FlightOfLanes* listed_end_ = listed_;
-  bool left_cell_ = false;  // some ball in that burst
+  bool left_cell_ = false;  // whether a ball left its cell in that burst
   uint64_t bursts_ = 0;
   std::vector<LaneOrbit> orbit_;  // by lane
   std::vector<size_t> idle_;      // lanes without an orbit

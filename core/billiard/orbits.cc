@@ -8,7 +8,7 @@
 namespace ballpiston {
 namespace {
 
-constexpr uint64_t kEventsBetweenLooks = 4096;  // some 0.2 ms: to look costs nothing
+constexpr uint64_t kEventsBetweenLooks = 4096;  // about 0.2 ms, so a call of Pause costs nothing
 
 // One orbit after the other.
 class ReferenceOrbits : public OrbitRun {

@@ -23,10 +23,10 @@
 // The standard errors of the shares assume independent hits, although hits of one ball are
 // correlated; in the first four rows of the shares double precision differs as much.
 //
-// Less precise runs show no difference: mean free times at rho = 0.7, delta =
-// 1e-3 (2.6e-3 +- 1.4e-3); the narrow tips of rho = 1/2 + 1e-9, 0.501 and 0.53 (5e-4 +- 3e-4 at
-// delta's bound, 1e-3 +- 1e-3 at a tenth of it, 7e-3 at a hundredth); means of cos alpha and sigma
-// (0.03 to 0.4 % at the bound); relaxation times against double precision (0.3 to 2 %).
+// Less precise runs show no difference: mean free times at rho = 0.7, delta = 1e-3 (2.6e-3 +-
+// 1.4e-3); the narrow tips of rho = 1/2 + 1e-9, 0.501 and 0.53 (5e-4 +- 3e-4 at delta's bound,
+// 1e-3 +- 1e-3 at a tenth of it, 7e-3 at a hundredth); means of cos alpha and sigma (0.03 to 0.4 %
+// at the bound); relaxation times compared with double precision (0.3 to 2 %).
 //
 // At 1/sqrt 2 - rho = 1e-4 and delta = 1.4e-5 a run of a few seconds did not end within four
 // minutes; at 1e-5 orbits leave the cell.

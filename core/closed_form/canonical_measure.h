@@ -12,7 +12,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. DensityIntegratesToOne.
-//   2. AveragesAreThoseOfTheMoments: integrals of kernel_moments.h over P.
+//   2. AveragesEqualIntegralsOfTheMoments: integrals of kernel_moments.h over P.
 //   3. AveragesSatisfyTheIdentities of eq. nucanavg.
 //
 // Pure functions: safe from any thread.

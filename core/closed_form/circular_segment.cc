@@ -5,7 +5,7 @@
 namespace ballpiston {
 
 double AngleMinusSine(double angle) {
-  // Above one the difference loses less than a factor seven; below, the series
+  // Above 1 the difference loses less than a factor of seven in accuracy. Below, the series
   //   x - sin x = x^3/6 (1 - x^2/(4 5) (1 - x^2/(6 7) (...)))
   // is cut at x^21/21!, 1e-18 of the leading term.
   if (angle > 1) return angle - std::sin(angle);

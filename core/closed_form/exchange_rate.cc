@@ -1,12 +1,13 @@
-// Why half of the exchange rate conducts. Let a ball have temperature T + t/2 and a piston T - t/2.
-// To first order in t their canonical density is multiplied by 1 + t (eb - ep)/(2 T^2), up to a
-// constant. The mean of the current j over it is
+// Why the static conductivity is half of the exchange rate. Let a ball have temperature T + t/2 and
+// a piston T - t/2. To first order in t their canonical density is multiplied by
+// 1 + t (eb - ep)/(2 T^2), up to a constant. The mean of the current j over this density is
 //
 //   <j> = t <(eb - ep) j>/(2 T^2) = t <f>,
 //
-// by eq. nucanavg, and because <j> = 0 at t = 0. So a contact conducts <f>: heat per unit of time
-// and of temperature difference. A ball's centre and the next piston are half a cell apart, so
-// where the temperature falls by g from cell to cell, t = g/2 and the current is (<f>/2) g.
+// by eq. nucanavg, and because <j> = 0 at t = 0. So the thermal conductance of a contact is <f>:
+// heat per unit of time and of temperature difference. A ball's centre and the next piston are half
+// a cell apart. So if the temperature falls by g from cell to cell, t = g/2, and the current is
+// (<f>/2) g.
 
 #include "core/closed_form/exchange_rate.h"
 

@@ -2,21 +2,22 @@
 //
 // Density. If c > p then cos A = sigma p/c, and
 //     c cos alpha - sigma p = c (cos alpha - cos A) = 2 c sin((A + alpha)/2) sin((A - alpha)/2),
-// a product that keeps its digits where it vanishes. If c <= p only sigma = -1 is left, A = pi, and
+// a product that keeps its digits where it vanishes. If c <= p, only sigma = -1 occurs, A = pi, and
 //     c cos alpha + p = (p - c) + c (cos alpha - cos pi),
-// the same with p - c added, itself (ep - eb)/(p + c).
+// the same product plus p - c = (ep - eb)/(p + c).
 //
 // Bins. Around the middle m of a bin of half-width w,
 //     int (c cos alpha - sigma p) = 2 c cos(m) sin(w) - 2 sigma p w
 //                                 = 2 w (c cos m - sigma p) - 2 c cos(m) (w - sin w),
-// the density at the middle times the width, less a correction of third order. Where cos m > 0 the
-// correction is at most half of the first term (attained by the whole circle, m = 0, w = A = pi);
-// elsewhere it adds to it.
+// the density at the middle times the width, minus a correction of third order. For cos m > 0 the
+// correction is at most half of the first term (for the whole circle, m = 0, w = A = pi); else it
+// has the same sign as the first term.
 //
 // Means. Over both signs, the integrals of cos(alpha) times the density are c (A + sin A cos A) -
-// 2 sigma p sin A; the two A add up to pi and their sines are equal, so the p terms go and the sum
-// is pi c. Likewise the integrals of the density are 2 (c sin A - sigma p A), their difference
-// -2 pi p. (If c <= p the one integral gives the same.) With N = 4 pi f both follow.
+// 2 sigma p sin A. The two A add up to pi and their sines are equal, so the p terms cancel and the
+// sum is pi c. Likewise the integrals of the density are 2 (c sin A - sigma p A), with the
+// difference -2 pi p. (If c <= p, the single integral gives the same.) With N = 4 pi f both means
+// follow.
 #include "core/closed_form/ingoing_law.h"
 
 #include <algorithm>

@@ -18,10 +18,10 @@
 // Properties, each with the test that bears its name:
 //   1. BinProbabilityIsTheIntegralOfTheDensity, without cancellation on narrow bins and next to
 //      AlphaMax.
-//   2. NothingOutsideOfTheAllowedInterval counts in a bin that reaches beyond it.
+//   2. OnlyThePermittedIntervalCounts, also in a bin that reaches beyond it.
 //   3. ProbabilitiesSumToOne over sigma, and to SigmaProbability over a partition of alpha.
-//   4. MeansAreThoseOfTheDensity: MeanCosAlpha = sqrt(eb)/(4 f), MeanSigma = -sqrt(ep)/(2 f).
-//   5. PistonAtRestIsHitAlikeOnBothSigns (ep = 0), BallAtRestHasNoDirection (ep = 1/2).
+//   4. MeansAreIntegralsOfTheDensity: MeanCosAlpha = sqrt(eb)/(4 f), MeanSigma = -sqrt(ep)/(2 f).
+//   5. PistonAtRestGivesBothSignsEqually (ep = 0), BallAtRestHasUniformAlpha (ep = 1/2).
 //   6. ContinuousWhereBallAndPistonAreEquallyFast (ep = 1/4).
 //
 // The error bound of a bin is relative and treats AlphaMax, a double, as exact. On a bin of width w

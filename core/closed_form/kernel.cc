@@ -7,7 +7,7 @@
 namespace ballpiston {
 namespace {
 
-// `rest` is eb - ep_out, what the ball keeps beyond its new partner's old energy.
+// `rest` is eb - ep_out: the ball's energy after the collision minus the piston's energy before it.
 double KernelWithRest(double ep, double ep_out, double rest) {
   if (rest <= 0) return 0;
   // max(sqrt ep_out, sqrt ep)/sqrt(ep_out), without 0/0 when both vanish.
@@ -15,8 +15,8 @@ double KernelWithRest(double ep, double ep_out, double rest) {
   return ratio / (2 * std::numbers::pi * std::sqrt(rest));
 }
 
-// 1/2 - ep - ep_out. Both steps are exact where the result is small, except that 1/2 - larger can
-// drop the last bit of a number below 1/4; that bit is put back.
+// 1/2 - ep - ep_out. Both steps are exact if the result is small, except that 1/2 - larger can lose
+// the last bit of a number below 1/4; this bit is added again.
 double PairRest(double ep, double ep_out) {
   const double larger = std::max(ep, ep_out);
   const double smaller = std::min(ep, ep_out);

@@ -1,9 +1,9 @@
-// Forms that keep their digits.
+// Forms without loss of digits.
 //
 // Angle. arcsin sqrt(x/eb) is atan2(sqrt x, sqrt(eb - x)), whose slope is finite at x = eb.
 //
-// Above ep. The two terms of 1 - sqrt(eb - ep_out)/(p + q) cancel where ep and ep_out are small
-// beside eb; with q - sqrt(eb - ep_out) = (ep_out - ep)/(q + sqrt(eb - ep_out)) the numerator is a
+// Above ep. The two terms of 1 - sqrt(eb - ep_out)/(p + q) cancel if ep and ep_out are much smaller
+// than eb. With q - sqrt(eb - ep_out) = (ep_out - ep)/(q + sqrt(eb - ep_out)) the numerator is a
 // sum of positive terms,
 //     p + (ep_out - ep)/(q + sqrt(eb - ep_out)) .
 // This needs eb > ep; otherwise ep_out <= eb <= ep.

@@ -14,7 +14,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. AccurateAtRandomEnergies: relative error of F and of the rate below
-//      kKernelDistributionRelativeError; and AccurateWhereTheBallIsLeftWithLittle.
+//      kKernelDistributionRelativeError; and AccurateWhereTheBallKeepsLittleEnergy.
 //   2. RisesFromZeroToOne: F reaches 1 at ep_out = eb, and falls nowhere except by rounding.
 //   3. SlopeIsTheKernelOverItsRate.
 //   4. DetailedBalanceOfCollisions: in equilibrium, collisions that take the piston's energy from

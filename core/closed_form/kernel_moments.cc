@@ -1,27 +1,28 @@
-// Forms that keep their digits.
+// Forms without loss of digits.
 //
 // Angle. With d = eb - ep the paper's arcsin sqrt(ep/eb) is atan2(sqrt ep, sqrt d). The arcsine has
-// infinite slope at ep = eb and there turns the rounding of ep/eb into half of the digits.
+// infinite slope at ep = eb, where the rounding of ep/eb would cost half of the digits.
 //
 // h. Its quadratic 3/8 eb^2 - eb ep + ep^2 is (ep - eb/2)^2 + eb^2/8, a sum of squares. Of the
-// other terms the only negative one, -(45/8) ep (eb - 2 ep) sqrt(d), stays below a fifth of the
-// sum of the rest, so nothing cancels.
+// other terms only -(45/8) ep (eb - 2 ep) sqrt(d) is negative. Its size is below a fifth of the sum
+// of the others, so there is no cancellation.
 //
 // j. With E = eb + ep and y = ep/E, j = E^(3/2) J(y), where for y < 1/2
 //     6 pi J = (4 - 11 y) sqrt(1 - 2 y) + 3 (1 - 3 y) sqrt(y) atan2(sqrt y, sqrt(1 - 2 y)) .
-// J has one zero, y0 = 0.3508..., a simple one, near which this sum loses digits as 1/|y - y0|. For
-// |y - y0| < kWindow it is replaced by its Taylor polynomial
+// J has one simple zero, y0 = 0.3508..., near which this sum loses digits as 1/|y - y0|. For
+// |y - y0| < kWindow the sum is replaced by its Taylor polynomial
 //     J = t (J1 + J2 t + ... + J10 t^9),   t = y - y0,
-// which makes the relative error that of t. So t has to be formed without rounding y:
+// whose relative error is that of t. So t must be computed without rounding y:
 //     at total energy 1/2     t = 2 ep - y0
 //     in general              t = (ep - r0 eb)(1 - y0)/E,   r0 = y0/(1 - y0),
-// y0 and r0 as unevaluated sums of two doubles, the product r0 eb fused. Outside of the window
-// the sum is right to 4e-15 (measured, at the window's edge); inside, the first term left out is
-// 1e-17 of J1 (the nearest singularity, y = 1/2, is 0.149 away, nineteen windows).
+// with y0 and r0 as unevaluated sums of two doubles, and a fused product r0 eb. Outside of the
+// window the error of the sum is 4e-15 (measured at the window's edge). Inside, the first omitted
+// term is 1e-17 of J1 (the nearest singularity, y = 1/2, is at a distance of 0.149, nineteen
+// windows).
 //
 // y0 is the root of J to 60 digits; J1...J10 are Taylor coefficients of J there, by numerical
-// differentiation at 60 digits (mpmath's findroot and taylor), rounded to double. The tests repeat
-// neither: they compare with the printed formula in quadruple precision.
+// differentiation at 60 digits (mpmath's findroot and taylor), rounded to double. The tests do not
+// use them: they compare with the printed formula in quadruple precision.
 #include "core/closed_form/kernel_moments.h"
 
 #include <cmath>
@@ -43,7 +44,8 @@ constexpr double kCurrentTaylor[] = {  // J10 first
     -0.63880987628306893337, -0.27919700083435280982, 0.0062672804074613188138,
     -0.58359652745716563051};
 
-// A split of the energy, with the differences that its rounded members no longer tell.
+// A division of the total energy, with differences that cannot be computed from the rounded
+// energies.
 struct EnergySplit {
   double eb;
   double ep;

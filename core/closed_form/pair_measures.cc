@@ -7,15 +7,15 @@
 //     y(t) = t (t + lambda)/(1/2 + s) .
 //
 // Area. The chord from (0, 0) to (t, y) has length c = hypot(t, y) and subtends D at the disc's
-// centre. What lies between axis and arc is the triangle t y/2 less the segment S between arc and
-// chord. Both halves of the cell:
+// centre. The area between axis and arc is the triangle t y/2 minus the segment S between arc and
+// chord. For both halves of the cell:
 //     P(t) = t y - 2 S .
-// S is at most half of the triangle (at lambda = 0, where y = t^2), so nothing cancels. P(delta) is
-// the projection of the collision surface, which is tilted by 45 degrees: |dG_bp| = sqrt(2) P.
-// At t = b = (1 - lambda)/2 one meets the cell's upper tip, so y = b by symmetry, and P(b) is half
-// of the cell: cell = 2 P(b).
+// S is at most half of the triangle (at lambda = 0, where y = t^2), so there is no cancellation.
+// P(delta) is the projection of the collision surface, which is tilted by 45 degrees:
+// |dG_bp| = sqrt(2) P. At t = b = (1 - lambda)/2 the arc ends at the cell's upper tip, so y = b by
+// symmetry, and P(b) is half of the cell: cell = 2 P(b).
 //
-// Volume. For each of the piston's positions, the cell less what lies behind the piston:
+// Volume. For each of the piston's positions, the cell minus the part behind the piston:
 //     |G| = (lambda + 2 delta) cell - Q,   Q = int_0^delta P(t) dt .
 // Exchanging the integrals, Q is the moment of that region about the piston's leftmost position,
 // 2 int y(t) (delta - t) dt. The triangle (area delta y/2, centroid 2 delta/3) gives
@@ -26,11 +26,12 @@
 //
 // Ball-wall area. A position of the piston at depth t hides an arc of angle D(t) on each of two
 // discs, and 4 rho D(b) is the cell's perimeter. By parts, int D dt = t D - int t dD; as the arc's
-// angle to the vertical grows by dD, t + lambda/2 = rho sin and 1/2 - y = rho cos of it, so that
-// int t dD = y - lambda D/2. What is left of (lambda + 2 delta) 4 rho D(b):
+// angle to the vertical grows by dD, t + lambda/2 = rho sin and 1/2 - y = rho cos of this angle, so
+// int t dD = y - lambda D/2. The remaining part of (lambda + 2 delta) 4 rho D(b) is
 //     |dG_bw| = rho [ (lambda + 2 delta)(4 D(b) - D) + 2 y ] .
 //
-// Piston-wall area. Whole cell at the right end, cell less P at the left: |dG_pw| = 2 cell - P.
+// Piston-wall area. The whole cell at the right end, and the cell minus P at the left end:
+// |dG_pw| = 2 cell - P.
 #include "core/closed_form/pair_measures.h"
 
 #include <cmath>

@@ -19,7 +19,7 @@
 //      AccurateAtTheBound (of delta), AccurateAtTheSmallestRadius (rho -> 1/2): relative error
 //      below kPairMeasuresRelativeError.
 //   2. PistonAtTheBoundHalvesTheCell: |dG_bp|/sqrt(2) = cell/2 at delta = (1 - lambda)/2.
-//   3. PistonWallAreaIsTheCellTwiceLessTheProjection: |dG_pw| + |dG_bp|/sqrt(2) = 2 cell.
+//   3. PistonWallAreaIsTwoCellsMinusTheProjection: |dG_pw| + |dG_bp|/sqrt(2) = 2 cell.
 //   4. VolumeGrowsByThePistonWallArea: d|G|/d delta = |dG_pw|.
 //   5. RareCollisionsSeeAWedge: |dG_bp| = sqrt(2) lambda delta^2 as delta -> 0.
 //

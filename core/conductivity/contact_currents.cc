@@ -10,7 +10,7 @@ namespace {
 
 using Values = TestFunction::Values;
 
-constexpr double kLargestRoot = 6;  // of a total energy; in equilibrium one in 10^15 is larger
+constexpr double kLargestRoot = 6;  // of the total energy; exceeded once in 10^15 in equilibrium
 constexpr size_t kRoots = 97;
 constexpr size_t kPlaces = 49;  // on each side of equal speeds
 
@@ -60,7 +60,7 @@ class Changes {
   Values piston_;
 };
 
-// Where a value stands between nodes: the first of four, and their weights.
+// The interpolation of a value between nodes: the first of four nodes, and their weights.
 struct Stencil {
   Stencil(double at, size_t count)
       : first(static_cast<size_t>(
@@ -83,7 +83,7 @@ ContactCurrents ContactCurrentsOf(const TestFunction& f, double ball_energy, dou
   const double s = std::sqrt(2 * ball_energy), w = std::sqrt(2 * piston_energy);
   const Changes changes(f, ball_energy, piston_energy);
   ContactCurrents sum;
-  // The mean over a quarter of the circle is that over all of it.
+  // The mean over a quarter of the circle is equal to that over the whole circle.
   if (s == 0) {
     changes.AddTo(sum, 0, w / 2);
     return sum;

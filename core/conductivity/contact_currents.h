@@ -14,7 +14,7 @@
 //
 // Units: those of contact_matrix.h. Domain: energies of at least 0, not both 0. Error of the table:
 // kContactCurrentsError. Properties, each with the test that bears its name:
-//   1. AgreeWithTheirDefinition.  2. TableIsWithinItsErrorOfThem.  3. TableTakesEveryEnergy.
+//   1. AgreeWithTheirDefinition.  2. TableErrorIsWithinItsBound.  3. TableTakesEveryEnergy.
 //
 // Uses only +, -, *, / and sqrt, so the bits are the same everywhere. Immutable; safe to share
 // between threads.

@@ -14,7 +14,7 @@
 //
 //   M(f, g) = (1/(4 sqrt(pi))) < (f' - f)/r (g' - g)/r >,   t of shape 2, y of shape 3/2:
 //
-// the factor t y = r^2 goes into the laws, and Gauss's quadrature is exact.
+// The factor t y = r^2 is included in the laws, and Gauss's quadrature is exact.
 namespace ballpiston {
 namespace {
 

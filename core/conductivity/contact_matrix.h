@@ -14,7 +14,7 @@
 // rate is kContactRate. Domain: 1 <= d_a, d_b <= 100, 1 <= degree <= 40.
 // Error: kContactMatrixError. Properties, each with the test that bears its name:
 //   1. AgreesWithAnIndependentQuadrature.  2. ConservesTheEnergyOfThePair.
-//   3. IsSymmetricAndHasNoNegativeRate.  4. SwappedSitesSwapTheIndices.
+//   3. IsSymmetricAndPositiveSemidefinite.  4. SwappedSitesSwapTheIndices.
 //   5. HighDegreesAreExactToRounding.
 //
 // Immutable; safe to share between threads.

@@ -24,13 +24,13 @@ Monomial EnvironmentOf(const Monomial& monomial, const Factor& f, const SiteCont
   return rest;
 }
 
-// Whether a translation takes the one site to the other. Where none does, the environment holds no
+// Whether a translation maps one site to the other. If there is none, the environment contains no
 // function of the basis, and would only cost time.
 bool AreOfOneKind(Site a, Site b, int period) {
   return (a.x - b.x) % period == 0 && (a.y - b.y) % period == 0;
 }
 
-// By the degree that they leave to the contact.
+// All environments, by the degree that remains for the contact.
 std::vector<std::vector<Monomial>> AllEnvironments(const SiteLattice& lattice,
                                                    const SiteContact& contact,
                                                    const ClusterBasis& basis) {
@@ -61,7 +61,7 @@ Monomial WithPair(const Monomial& rest, const SiteContact& contact, int i, int j
   return monomial;
 }
 
-// Row 0 is not that of the constant, which has none, but of p_1(e_a).
+// Row 0 is that of p_1(e_a), because the constant has no row.
 int RowOf(int i, int j) { return ContactMatrix::Row(i, j) - 1; }
 Eigen::Index RowsOf(size_t degree) { return ContactMatrix::Rows(static_cast<int>(degree)) - 1; }
 

@@ -33,7 +33,7 @@ Eigen::VectorXd GammaPolynomials(double shape, int degree, double x) {
   return p;
 }
 
-// The weights by Christoffel's formula: the eigenvectors would give the small ones less exactly.
+// The weights are from Christoffel's formula, because eigenvectors give small weights less exactly.
 GammaQuadrature GammaNodes(double shape, int count) {
   GammaQuadrature rule = {EigenvaluesOfRecurrence(shape, count), Eigen::VectorXd(count)};
   for (int i = 0; i < count; ++i) {

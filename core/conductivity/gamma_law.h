@@ -4,7 +4,7 @@
 // alpha = shape - 1.
 //
 // Domain: shape > 0, degree and nodes 1 to 100. Properties, each with the test that bears its name:
-//   1. QuadratureIsExactToTwiceItsNodes, to kGammaQuadratureError.
+//   1. QuadratureIsExactBelowTwiceItsNodes, to kGammaQuadratureError.
 //   2. PolynomialsAreOrthonormal.
 #ifndef BALLPISTON_CORE_CONDUCTIVITY_GAMMA_LAW_H_
 #define BALLPISTON_CORE_CONDUCTIVITY_GAMMA_LAW_H_

@@ -7,7 +7,7 @@
 namespace ballpiston {
 namespace {
 
-// With n over its last value, which keeps the system well scaled.
+// n is divided by its last value, so that the system is well scaled.
 double FittedLimit(absl::Span<const double> at, absl::Span<const double> values, double power) {
   const auto size = static_cast<Eigen::Index>(at.size());
   Eigen::MatrixXd terms = Eigen::MatrixXd::Ones(size, size);

@@ -39,12 +39,13 @@ struct Target {
   bool IsOpenEnded() const { return tolerance || budget_seconds; }
 };
 
-// The use of the random numbers. A pilot shares none with the job for which it runs.
+// The use of the random numbers. A pilot and the job for which it runs have different random
+// numbers.
 enum class Purpose { kAnswer, kPilot };
 
 struct EnsembleSpec {
   const ExperimentKind* experiment = nullptr;
-  Grid grid = {};  // lists that the experiment needs have values; lists that it does not use, none
+  Grid grid = {};  // lists that the experiment needs have values; all others are empty
   Target target = {};
   uint64_t seed = 0;
   Model model = Model::kAuto;

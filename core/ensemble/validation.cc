@@ -1,4 +1,4 @@
-// Everything that can be wrong with a specification, field by field.
+// Finds all errors of a specification, field by field.
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -24,8 +24,8 @@ void CheckUse(const ExperimentKind& experiment, const Parameter& parameter, size
               Found& found) {
   const ParameterUse* use = UseOf(experiment, parameter);
   if (use == nullptr && size != 0) {
-    found.push_back({ListOf(parameter),
-                     absl::StrCat("has ", size, " values; ", experiment.name, " takes none")});
+    found.push_back({ListOf(parameter), absl::StrCat("has ", size, " values; ", experiment.name,
+                                                     " does not use this list")});
   }
   if (use != nullptr && use->needed && size == 0) {
     found.push_back({ListOf(parameter),
@@ -60,7 +60,7 @@ void CheckEachValue(const Parameter& parameter, const std::vector<double>& value
 }
 
 void CheckValues(const EnsembleSpec& spec, Found& found) {
-  if (HasTooManyPoints(spec.grid)) return;  // said already
+  if (HasTooManyPoints(spec.grid)) return;  // already reported
   for (const Parameter* parameter : kParameters) {
     CheckEachValue(*parameter, spec.grid[*parameter], found);
   }
@@ -112,7 +112,7 @@ std::string NamesOf(std::span<const Model> models) {
                       }));
 }
 
-// A model that answers no estimate of the experiment is a violation of the field `model` alone.
+// If the model answers no estimate of the experiment, only the field `model` is a violation.
 void CheckEstimate(const EnsembleSpec& spec, Found& found) {
   const ExperimentKind& experiment = *spec.experiment;
   const AimedEstimate* const aim = experiment.FindAim(spec.target.estimate);
@@ -138,7 +138,7 @@ void CheckBudget(const Target& target, Found& found) {
   }
   if (target.samples || target.collisions) {
     found.push_back({"target.budget",
-                     "stands beside a number of samples or collisions; "
+                     "is set together with a number of samples or collisions; "
                      "permitted: alone, or with a tolerance"});
   }
 }

@@ -1,6 +1,6 @@
 // The mean return time to the ball-piston collision surface at fixed energies, started from the
-// invariant law (the paper's eq. taubpmftep). Exact at every delta, so it tests the billiard, not
-// the limit. Moments: [0] return time.
+// invariant law (the paper's eq. taubpmftep). The closed form is exact at every delta, so this is a
+// test of the billiard, not of the limit. Moments: [0] return time.
 #include <memory>
 
 #include "core/closed_form/conditional_rate.h"

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-// Time origins of the curve lie so many lags apart: half a mean free time, in which the energy
-// forgets most, so that more of them would say little more.
+// The distance of the curve's time origins, in lags: half a mean free time. In this time the energy
+// loses most of its correlation, so more origins would add little information.
 constexpr size_t kLagsBetweenOrigins = 2;
 
 // The error of a mean over orbits, if there are enough of them.
@@ -74,8 +74,8 @@ std::vector<double> EnergyRelaxation::Measure(const StepFunction& energy) const 
   return values;
 }
 
-// Mean over the time origins. Of a fixed size, so that the compiler makes vector operations of it:
-// these products are most of what a sample of the jump process costs.
+// Mean over the time origins. The array has a fixed size, so that the compiler can vectorise it:
+// these products are most of the cost of a sample of the jump process.
 EnergyRelaxation::ByLag EnergyRelaxation::Autocorrelation(const StepFunction& energy) const {
   constexpr size_t kSteps = static_cast<size_t>((kLags - 1) * kOriginTimes / kWindowTimes);
   std::vector<double> samples = energy.Samples(Lag(1), kSteps + kLags - 1);

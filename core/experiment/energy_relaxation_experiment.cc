@@ -1,5 +1,5 @@
-// energy-relaxation: how the piston's energy relaxes (energy_relaxation.h), by the billiard, by the
-// jump process of its limit, or by that process's spectrum.
+// The experiment energy-relaxation (energy_relaxation.h), by the billiard, by the jump process of
+// its limit, or by the spectrum of the jump process.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,7 +36,7 @@ class OrbitMeasurements {
     values_[orbit] = relaxation_.Measure(energy);
   }
 
-  // Those that were set.
+  // The result of all orbits with measurements.
   BlockResult Result() const {
     BlockResult result = relaxation_.Empty();
     for (const std::vector<double>& values : values_) {
@@ -80,7 +80,7 @@ class RelaxingOrbits {
       return AfterContact::kEnd;
     }
     if (!contact.expired) {
-      // The piston leaves with what was the ball's normal component.
+      // After the collision the piston has the ball's normal velocity component.
       const double v = contact.state.ball_speed * contact.state.direction.x();
       energy->Add(contact.time, v * v / 2);
       health_.max_energy_error = std::max(health_.max_energy_error, EnergyError(contact.state));
@@ -263,16 +263,16 @@ double ErrorOfAnOrbit(Model, const PointParameters& point) {
   return point.Find(kEpsilon) ? ErrorOfDecay(point) : 1.25;
 }
 
-// Finds a tolerance at energies where the estimate passes through 0, so a relative error has no
-// meaning.
+// Finds a tolerance at energies where the estimate passes through 0, because a relative error has
+// no meaning there.
 void CheckToleranceOfDecay(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   const std::vector<double>& energies = spec.grid[kEpsilon];
   for (size_t i = 0; i < energies.size(); ++i) {
     if (HasRelaxationTime(energies[i])) continue;
     found.push_back({absl::StrFormat("grid.epsilon[%d]", i),
                      absl::StrCat("is ", NumberText(energies[i]),
-                                  ", from where the mean energy has no relaxation time; permitted "
-                                  "with a tolerance: [0, ",
+                                  ", where there is no relaxation time; permitted with a "
+                                  "tolerance: [0, ",
                                   kNoDecayFrom, "] or [", kNoDecayTo, ", 0.5]")});
   }
 }

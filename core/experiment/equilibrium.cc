@@ -1,8 +1,8 @@
 // The pair in equilibrium: mean times between collisions of ball and piston, ball and wall, piston
 // and wall (the paper's eqs. taubpmft and tauwall).
 //
-// A block is many orbits of a few collisions, each started from the return map's invariant measure,
-// so nothing has to be burnt in, and orbits are independent; each is one batch of the batch means:
+// A block is many orbits of a few collisions. Each orbit starts from the return map's invariant
+// measure. So orbits need no relaxation and are independent. Each is one batch of the batch means:
 //   [0] (time, ball-piston collisions)  [1] (time, ball-wall hits)  [2] (time, piston-wall hits).
 #include <algorithm>
 #include <cstdint>
@@ -28,7 +28,7 @@ namespace {
 // variance 1.35.
 constexpr double kEventsPerCollision = 0.1;
 
-// About so many orbits are in a block that has as many collisions: enough batches for an error.
+// About this many orbits are in a block, if it has as many collisions: enough batches for an error.
 constexpr uint64_t kOrbitsPerBlock = 256;
 
 Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size_t index,
@@ -41,7 +41,7 @@ Estimate MeanFreeTime(absl::string_view between, const BlockResult& merged, size
           .exact = exact};
 }
 
-// Ball-piston, ball-wall, piston-wall: an orbit each.
+// Three batch means, ball-piston, ball-wall and piston-wall, with one batch an orbit.
 BlockResult EmptyCounts() {
   BlockResult counts;
   counts.batch_means.resize(3);

@@ -11,11 +11,11 @@
 namespace ballpiston {
 namespace {
 
-constexpr double kLeastSpeed = 1e-12;  // of a partner at rest, so that nothing is infinite
+constexpr double kLeastSpeed = 1e-12;  // used for a body at rest, to avoid infinities
 
 double Square(double x) { return x * x; }
 
-// The lengths and times that the bound is made of.
+// The lengths and times in the bound.
 struct Scales {
   explicit Scales(const PairGeometry& pair)
       : geometry(pair), tau(MeanFreeTimesOf(pair).ball_piston), x(pair.stroke() / tau) {}
@@ -24,7 +24,7 @@ struct Scales {
 
   PairGeometry geometry;
   double tau;
-  double x;  // the piston's way at speed 1, in mean free times
+  double x;  // the length of the piston's interval over the mean free time
 };
 
 // Collisions that repeat while the ball is in a narrow tip.

@@ -1,11 +1,12 @@
-// The paper's numerical test of the Markov property: start uniform on the collision surface with
-// an outgoing law h^(n), and record the ingoing (alpha, sigma) of the first ball-piston collision.
+// The paper's numerical test of the Markov property: orbits start uniformly on the collision
+// surface with an outgoing law h^(n); the ingoing (alpha, sigma) of the first ball-piston collision
+// is recorded.
 //
 // Moments: [0] hit time, [1] cos(alpha), [2] sigma. Histograms of alpha, 1000 bins over the
-// interval allowed to each sign of the piston's velocity: [0] sigma = -1, [1] sigma = +1 (only for
-// epsilon < 1/4). Their relative entropy to h^(1) is the paper's eq. kld. The last histogram is
-// that of hit times (hit_time_law.h). For n = 1 everything is stationary at every delta, and the
-// exact values are given.
+// interval permitted for each sign of the piston's velocity: [0] sigma = -1, [1] sigma = +1 (only
+// for epsilon < 1/4). Their relative entropy with respect to h^(1) is the paper's eq. kld. The last
+// histogram is that of hit times (hit_time_law.h). For n = 1 the process is stationary at every
+// delta, and the result has the exact values.
 #include <memory>
 #include <span>
 #include <utility>
@@ -59,7 +60,7 @@ Estimate MeanCosAlpha(const Moments& moments) {
           .standard_error = ToldError(samples, moments.StandardError())};
 }
 
-// Of +1 and -1; where only -1 is possible, it is that.
+// The mean of sigma = +1 or -1. It does not fluctuate if only -1 is possible.
 Estimate MeanSigma(const Moments& moments, bool fluctuates) {
   const double of_both_signs =
       static_cast<double>(moments.count) * (1 - moments.mean * moments.mean);

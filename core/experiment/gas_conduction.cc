@@ -1,13 +1,13 @@
 // A gas between two reservoirs: the heat current, the temperatures along it, and the conductivity.
 //
-// Each replica starts from the local equilibrium in which T^(3/2) falls linearly, as it does where
-// the conductivity grows as sqrt T, relaxes for some of the longest relaxation times, which grow as
-// N^2, and is measured for some more. Replicas are independent, so their scatter gives the errors.
-// A replica runs at mean temperature 1: all of the gas scales.
+// Each replica starts from a local equilibrium in which T^(3/2) falls linearly, as in a gas whose
+// conductivity grows as sqrt T. The replica relaxes for some of the longest relaxation times, which
+// grow as N^2, and is then measured for some more. Replicas are independent, so their scatter gives
+// the errors. A replica runs at mean temperature 1, and its results are scaled.
 //
 //   conductivity = J N sqrt(T)/[(2/3)(hot^(3/2) - cold^(3/2))],  T = (hot + cold)/2
 //
-// is that at T of N cells in a row whose conductivity grows as sqrt T.
+// This is the conductivity at T of N cells in a row, if the conductivity grows as sqrt T.
 //   batch means, a replica each  [0] energy carried through all contacts along x; these times
 //   duration
 //                                [1] exchanges, contacts times duration
@@ -40,17 +40,20 @@ namespace {
 constexpr double kRelaxTimes = 4;
 constexpr double kMeasureTimes = 12;
 
-// A replica with more work than this, some minutes in lanes, is cut short before it is stationary.
+// A replica with more work than this, some minutes in lanes, is shortened. It is then not
+// stationary.
 constexpr double kMostEvents = 0x1p37;
 
-constexpr int64_t kMostColumnsApart = 128;  // of the profile; beyond, neighbours share a place
+constexpr int64_t kMostColumnsApart =
+    128;  // of the profile; in a longer gas, columns share a place
 
 double MeanTemperature(const PointParameters& point) { return (point[kHot] + point[kCold]) / 2; }
 
-// pi^2 D/N^2 is the slowest rate, with the diffusivity D = conductivity/heat capacity: half of the
-// exchange rate over 3/2 for each cell of a chain, 2 of a lattice. It is slowest at the cold end,
-// and taken there. A reservoir colder than a tenth of the mean temperature counts as a tenth: only
-// the last 1 % of the gas is colder than that, because T^(3/2) is linear.
+// The slowest rate is pi^2 D/N^2, with the diffusivity D = conductivity/heat capacity. The
+// conductivity is half of the exchange rate; the heat capacity per cell is 3/2 in a chain and 2 in
+// a lattice. D is smallest at the cold end, whose value is used. A reservoir colder than a tenth of
+// the mean temperature counts as a tenth: only the last 1 % of the gas is colder than that, because
+// T^(3/2) is linear.
 double RelaxationTime(const GasGeometry& geometry, double cold) {
   constexpr double kColdest = 0.1;
   const double length = static_cast<double>(geometry.shape().columns) + 1;
@@ -74,8 +77,8 @@ struct Place {
   std::vector<size_t> bodies = {};
 };
 
-// Balls stand at the middles of cells, pistons between them. Of a long gas, some columns share a
-// place, and of the pistons there are the outermost ones alone.
+// Balls are at the middles of cells, pistons between cells. In a long gas several columns share a
+// place, and only the outermost pistons have a place.
 std::vector<Place> PlacesOf(const GasGeometry& geometry) {
   const int64_t columns = geometry.shape().columns;
   const int64_t each = (columns + kMostColumnsApart - 1) / kMostColumnsApart;
@@ -115,7 +118,7 @@ class GasConduction : public GasExperiment {
   }
 
   void Measure(const GasMeter& meter, BlockResult& result) const override {
-    // Each ball has a contact on its left and one on its right.
+    // Each ball has one contact on its left and one on its right.
     const double contacts_along_x = 2 * static_cast<double>(geometry().balls());
     result.batch_means[0].Add(meter.carried(), contacts_along_x * meter.duration());
     AddMeans(meter, 1, result);
@@ -151,8 +154,8 @@ class GasConduction : public GasExperiment {
     summary.curves.push_back(Profile(merged));
     if (times().share < 1) {
       summary.remarks.push_back(absl::StrFormat(
-          "replicas of %.0f cells in a row were followed for %.2g of the time that a stationary "
-          "state takes: no errors can be given",
+          "replicas of %.0f cells in a row ran for only %.2g of the time that a stationary state "
+          "needs, so there are no standard errors",
           Columns(), times().share));
     }
     return summary;
@@ -190,7 +193,7 @@ class GasConduction : public GasExperiment {
     return curve;
   }
 
-  double temperature_;  // the mean; all else is in its units
+  double temperature_;  // the mean; all other temperatures are in units of it
   double hot_;
   double cold_;
   std::vector<Place> places_;
@@ -227,8 +230,8 @@ void CheckConductionTolerance(const EnsembleSpec& spec, std::vector<FieldViolati
     for (const double cold : spec.grid[kCold]) {
       if (hot != cold) continue;
       found.push_back({"target.tolerance",
-                       absl::StrFormat("is relative, and the heat current is 0 where hot = cold = "
-                                       "%s; permitted there: samples, collisions or a budget",
+                       absl::StrFormat("is relative, but the heat current is 0 if hot = cold = %s; "
+                                       "permitted in this case: samples, collisions or a budget",
                                        NumberText(hot))});
       return;
     }
@@ -245,9 +248,9 @@ double ExchangesOfAConductionSample(Model model, const PointParameters& point) {
          TimesAt(model, point).measure;
 }
 
-// The current's fluctuations in local equilibrium, 2 kappa T^2/(N t), over the current itself.
-// kappa T^2 grows as T^(5/2), whose mean over the gas is taken by Simpson's rule. Measured errors
-// are up to 15 % larger.
+// The root of the current's variance in local equilibrium, 2 kappa T^2/(N t), over the current.
+// kappa T^2 grows as T^(5/2); Simpson's rule gives its mean over the gas. Measured errors are up to
+// 15 % larger.
 double ErrorOfGasConduction(Model model, const PointParameters& point) {
   const GasGeometry geometry = OpenGasOf(point);
   const double temperature = MeanTemperature(point);

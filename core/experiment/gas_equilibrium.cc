@@ -1,10 +1,10 @@
-// A periodic gas in equilibrium: how often a ball and a piston exchange energy, the temperatures of
-// balls and pistons, the laws of their speeds, and the conductivity by Green and Kubo's formula.
-// The spectrum answers it in the limit of rare exchanges.
+// A periodic gas in equilibrium: the rate at which a ball and a piston exchange energy, the
+// temperatures of balls and pistons, the laws of their speeds, and the conductivity by Green and
+// Kubo's formula. The model `spectrum` gives the conductivity in the limit of rare exchanges.
 //
-// Each replica starts from the canonical ensemble, so nothing has to be burnt in, and its energy
-// fluctuates as it should. It is followed for a fixed time, at most 8 mean times between
-// exchanges of a contact, 16 by the jump process. Half of that time is the window of the current's
+// Each replica starts from the canonical ensemble, so it needs no relaxation, and its energy has
+// the canonical fluctuations. It runs for a fixed time, at most 8 mean times between exchanges of a
+// contact (16 by the jump process). Half of that time is the window of the current's
 // autocorrelation. A replica runs at temperature 1, and its results are scaled.
 //   batch means, a replica each  [0] exchanges, contacts times duration
 //                                [1] sum of the balls' mean energies, balls  [2] twice the pistons'
@@ -41,7 +41,7 @@ namespace ballpiston {
 namespace {
 
 constexpr size_t kSpeedBins = 120;
-constexpr double kMostSpeed = 6;  // beyond it one in 10^8 of a ball's speeds, in the last bin
+constexpr double kMostSpeed = 6;  // one in 10^8 of a ball's speeds is larger, in the last bin
 
 // Replicas of gases with more contacts are too short to measure the conductivity. A smaller gas has
 // nearly the same conductivity.
@@ -51,8 +51,8 @@ bool MeasuresConductivity(const GasGeometry& geometry) {
 }
 
 // The mean number of exchanges of each contact in a replica. It is small in gases of many contacts,
-// where the energy fluctuates little and starts cost most. The jump process has a longer window,
-// because its scatter is smaller than what a shorter window leaves out.
+// because there the energy fluctuates little and starts cost most. The jump process has a longer
+// window, because its scatter is smaller than the bias of a shorter window.
 double ExchangesOf(Model model, const GasGeometry& geometry) {
   const double most = model == Model::kMarkov ? 16 : 8;
   const double share =
@@ -70,7 +70,7 @@ GasTimes TimesInEquilibrium(Model model, const GasGeometry& geometry) {
 
 std::vector<Histogram> EmptySpeeds() { return {2, Histogram::OfBins(0, kMostSpeed, kSpeedBins)}; }
 
-// Exact probabilities of the bins, of a law that is 1 - tail(speed) below a speed.
+// Exact probabilities of the bins of a law with the distribution function 1 - tail(speed).
 std::vector<double> SpeedProbabilities(double (*tail)(double)) {
   const Histogram bins = EmptySpeeds()[0];
   std::vector<double> probabilities;
@@ -175,7 +175,8 @@ class GasEquilibrium : public GasExperiment {
     for (size_t i = 0; i < kWindow; ++i) moments[kFirstLag + i].Add(current.autocorrelation[i + 1]);
   }
 
-  // At the gas's temperature, these are times, conductivities and currents squared of a cell.
+  // Scales at the gas's temperature: of times, of conductivities, and of squared currents of a
+  // cell.
   double Step() const { return times().measure / kCurrentSteps / std::sqrt(temperature_); }
   double ConductivityScale() const { return std::sqrt(temperature_); }
   double AutocorrelationScale() const { return temperature_ * temperature_ * temperature_; }
@@ -188,7 +189,7 @@ class GasEquilibrium : public GasExperiment {
     return InUnitsOf(ConductivityScale(), kConductivity, merged);
   }
 
-  // The limit beside it is that of the infinite gas.
+  // The limit in the estimate is that of the infinite gas.
   Estimate InUnitsOf(double scale, const char* name, const BlockResult& merged) const {
     const Moments& measured = merged.moments[kFirstWindow + kWindow];
     return {.name = name,
@@ -220,8 +221,7 @@ class GasEquilibrium : public GasExperiment {
     if (!MeasuresConductivity(geometry())) {
       summary.remarks.push_back(
           absl::StrFormat("the conductivity is not measured in gases of more than %d contacts; "
-                          "that of a smaller gas "
-                          "is nearly the same",
+                          "a smaller gas has nearly the same conductivity",
                           kMostContacts));
       return;
     }
@@ -230,8 +230,8 @@ class GasEquilibrium : public GasExperiment {
         aims_at_conductivity_, summary);
     summary.curves = {RatioByWindow(merged), Autocorrelation(merged)};
     summary.remarks.push_back(absl::StrFormat(
-        "the conductivity counts the current's correlations up to a time of %.3g, %.2g mean times "
-        "between exchanges of a ball and a piston",
+        "the conductivity includes the current's correlations up to a time of %.3g, %.2g mean "
+        "times between exchanges of a ball and a piston",
         kWindow * Step(), ExchangesOf(answer().model, geometry()) * kWindow / kCurrentSteps));
   }
 
@@ -307,8 +307,8 @@ std::unique_ptr<PointExperiment> CreateGasEquilibrium(const EnsembleSpec& spec,
   return std::make_unique<ComputedAnswer>(spec, point, std::move(summary));
 }
 
-// The current of the jump process costs twice as much as its exchanges; that of the billiard next
-// to nothing.
+// The current of the jump process costs twice as much as its exchanges; the billiard's current
+// costs almost nothing.
 SampleWork WorkOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   SampleWork work = WorkOfReplica(model, geometry, TimesInEquilibrium(model, geometry).Total());
@@ -321,16 +321,17 @@ double ExchangesOfASample(Model model, const PointParameters& point) {
   return static_cast<double>(geometry.contacts()) * ExchangesOf(model, geometry);
 }
 
-// Exchanges that come by chance, and the energy of the replica, whose root is in the rate.
+// The error has two parts: the random number of exchanges, and the energy of the replica, whose
+// root determines the rate.
 double ErrorOfGasEquilibrium(Model model, const PointParameters& point) {
   const GasGeometry geometry = PeriodicGasOf(point);
   const auto freedom = static_cast<double>(2 * geometry.balls() + geometry.pistons());
   return std::sqrt(1.3 / ExchangesOfASample(model, point) + 0.5 / freedom);
 }
 
-// Measured. From four cells on they hardly depend on the number of cells, because the error of a
-// correlation is its scale, however many cells add to it. The jump process measures its correction
-// alone, and has none in one column.
+// Measured errors. From four cells on they hardly depend on the number of cells, because the error
+// of a correlation is proportional to its scale for any number of cells. The jump process measures
+// only the correction, which is 0 in one column.
 double ErrorOfConductivity(Model model, const PointParameters& point) {
   const GasShape shape = ShapeOf(point[kCells]);
   if (model != Model::kMarkov) return shape.is_lattice ? 2 : 2.5;
@@ -339,9 +340,9 @@ double ErrorOfConductivity(Model model, const PointParameters& point) {
   return shape.rows > 1 ? 0.0005 : 0.001;
 }
 
-// How far the spectrum, which has the conductivity of the infinite gas, is from a gas of so many
-// columns in the limit. Bounds of the measured differences (docs/conductivity.md); in one column no
-// correlation lowers the conductivity.
+// The relative difference between the infinite gas, whose conductivity the spectrum gives, and a
+// gas of this many columns in the limit. The values are bounds of measured differences
+// (docs/conductivity.md). In one column no correlation lowers the conductivity.
 double ErrorOfSize(const GasGeometry& geometry) {
   constexpr double kOfColumns[] = {0.0018, 5e-4, 2e-4, 7e-5};
   constexpr double kOfMoreColumns = 1e-5;

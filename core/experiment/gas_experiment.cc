@@ -17,8 +17,8 @@
 namespace ballpiston {
 namespace {
 
-// A block whose replicas are being computed. Their meters are kept until all are done, so that they
-// are measured in their order.
+// A block whose replicas are being computed. The meters are kept until all replicas are done, so
+// that results are added in the order of the replicas.
 struct OpenBlock {
   Block block;
   std::vector<std::unique_ptr<GasMeter>> meters = {};  // of the replicas that have been started
@@ -26,7 +26,7 @@ struct OpenBlock {
   uint64_t done = 0;
 };
 
-// Several replicas at a time, of several blocks where these are small, so that the lanes are full.
+// Computes several replicas at a time, of several blocks if these are small, to fill the lanes.
 class GasBlocks : public BlockRun {
  public:
   GasBlocks(const GasExperiment& experiment, BlockQueue& queue)
@@ -140,8 +140,8 @@ class GasBlocks : public BlockRun {
   bool is_measuring_ = false;
 };
 
-// Hits of the outermost pistons at their thermal walls in a unit of time at temperature 1: every
-// second of their turns.
+// Hits of the outermost pistons at their thermal walls per unit of time at temperature 1: every
+// second of their wall hits.
 double ThermalHitsOf(const GasGeometry& geometry, const HitRates& rates) {
   if (geometry.ends() == GasEnds::kPeriodic) return 0;
   return static_cast<double>(geometry.shape().rows) * rates.of_a_piston;

@@ -27,7 +27,8 @@ std::vector<std::vector<double>> IngoingBinProbabilities(const IngoingLaw& law) 
 }
 
 void CountIngoing(const Return& hit, std::span<Histogram> histograms) {
-  // With epsilon >= 1/4 an approaching piston always moves to the left; rounding may not add a law.
+  // With epsilon >= 1/4 an approaching piston always moves to the left. If rounding says otherwise,
+  // the hit still counts as sigma = -1.
   const size_t index = hit.sigma > 0 && histograms.size() > 1 ? 1 : 0;
   histograms[index].Add(Atan2(hit.direction.y(), hit.direction.x()));
 }

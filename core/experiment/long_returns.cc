@@ -11,18 +11,19 @@
 namespace ballpiston {
 namespace {
 
-// The time that a long return takes, if the piston is the slow one: to its far wall and back.
+// The time of a long return if the piston is slow: its path to the far wall and back.
 double PistonsRoundTrip(const PairGeometry& geometry, double epsilon) {
   return 2 * geometry.stroke() / std::sqrt(2 * epsilon);
 }
 
-// If the ball is: mean time between crossings of the line that the piston reaches, pi A/(v eta).
+// The time of a long return if the ball is slow: the mean time between its crossings of the line
+// that the piston reaches, pi A/(v eta).
 double BallsRoundTrip(const PairGeometry& geometry, double epsilon) {
   const PairMeasures measures = Measures(geometry);
   return std::numbers::pi * measures.cell_area / (std::sqrt(1 - 2 * epsilon) * measures.eta);
 }
 
-// Long returns make up for what the mean has beyond that of a resting partner.
+// The part of the mean that exceeds the mean with the slow body at rest is due to long returns.
 double PerSample(double mean, double mean_at_rest, double round_trip) {
   return std::max(mean - mean_at_rest, 0.0) / round_trip;
 }

@@ -1,15 +1,15 @@
-// Whether the billiard's energy exchanges are a Markov jump process, beyond the first hit: the laws
-// of waiting time and of the energy after it, given the energy before, and what they remember of
-// the exchange before last (markov_property_statistics.h).
+// Tests whether the billiard's energy exchanges are a Markov jump process, beyond the first hit. It
+// measures the laws of the waiting time and of the energy after it, given the energy before, and
+// their memory of the previous exchange (markov_property_statistics.h).
 //
-// A block is many orbits of kExchangesPerOrbit collisions, each started from the return map's
-// invariant measure, so that every exchange is one of equilibrium.
+// A block is many orbits of kExchangesPerOrbit collisions. Each orbit starts from the return map's
+// invariant measure, so all exchanges are in equilibrium.
 //
 // At a given delta the billiard differs from the limit for two reasons. Ball and piston cannot meet
 // again at once, and a piston at speed u passes the collision surface periodically, with period
 // 2 (lambda + 2 delta)/u. This affects a fraction of order delta^2/u of its hits. Every octave of u
-// adds as much to the Kolmogorov-Smirnov distance, down to u of order delta^2, where the return law
-// is not exponential at all. In measurements the distance falls as delta^2 log(1/delta).
+// adds the same amount to the Kolmogorov-Smirnov distance, down to u of order delta^2, where the
+// return law is not exponential at all. In measurements the distance falls as delta^2 log(1/delta).
 #include "core/experiment/markov_property.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ double RateUnit(const PairGeometry& geometry) {
   return WithoutLastBits(4 / MeanFreeTimesOf(geometry).ball_piston);
 }
 
-// Rounding may leave more than the pair has.
+// Rounding may give more than the pair's energy of 1/2.
 double PistonEnergy(double velocity) { return std::min(velocity * velocity / 2, 0.5); }
 
 // A block's collisions, over orbits that start at numbers first, first + length, ...
@@ -71,7 +71,7 @@ class ExchangeOrbits {
     }
     const PairState& state = contact.state;
     orbit.health.max_energy_error = std::max(orbit.health.max_energy_error, EnergyError(state));
-    // The piston leaves with the ball's component.
+    // After the collision the piston has the ball's normal velocity component.
     exchanges_[index * kExchangesPerOrbit + orbit.exchanges++] = {
         .waiting_time = contact.time * rate_unit_,
         .energy = PistonEnergy(state.ball_speed * state.direction.x())};
@@ -104,12 +104,12 @@ class ExchangeOrbits {
   RandomStream random_;
   uint64_t first_;
   double rate_unit_;
-  std::vector<Exchange> exchanges_;  // each orbit's after those of the orbit before
+  std::vector<Exchange> exchanges_;  // of all orbits, one orbit after the other
   std::vector<Orbit> orbits_;
 };
 
-// Energies just after a collision, of orbits first, first + length, ...; from a stream of their
-// own, because the walkers use the stream of the samples.
+// Energies just after a collision, of orbits first, first + length, ... They have their own stream,
+// because the walkers use the stream of the samples.
 std::vector<double> StartsAfterCollisions(const PairGeometry& geometry, const RandomStream& random,
                                           uint64_t first, uint64_t orbits) {
   constexpr uint64_t kStartsStream = 0x9e3779b97f4a7c15;
@@ -122,7 +122,7 @@ std::vector<double> StartsAfterCollisions(const PairGeometry& geometry, const Ra
   return u;
 }
 
-// By orbit, the walkers' exchanges; the last orbit may have fewer.
+// The walkers' exchanges, by orbit. The last orbit may have fewer exchanges.
 std::vector<Exchange> Walk(JumpWalkers& walkers, uint64_t exchanges) {
   std::vector<Exchange> all(walkers.u().size() * kExchangesPerOrbit);
   for (uint64_t n = 0; n < std::min(exchanges, kExchangesPerOrbit); ++n) {
@@ -151,7 +151,7 @@ BlockResult WalkExchanges(const PairGeometry& geometry, const RandomStream& rand
   return result;
 }
 
-// By billiard, billiard_reference, or, as its own control, markov.
+// By billiard, billiard_reference, or markov, which is a control.
 class MarkovPropertyExperiment : public PointExperiment {
  public:
   MarkovPropertyExperiment(const EnsembleSpec& spec, const PointParameters& point)
@@ -204,8 +204,8 @@ double ErrorOfWhatTendsToZero(Model, const PointParameters&) {
 
 void CheckToleranceOfWhatTendsToZero(const EnsembleSpec& spec, std::vector<FieldViolation>& found) {
   found.push_back({"target.tolerance",
-                   absl::StrCat("is relative, and ", spec.experiment->name,
-                                " measures what tends to 0; permitted: collisions, budget")});
+                   absl::StrCat("is relative, but the first estimate of ", spec.experiment->name,
+                                " tends to 0; permitted: collisions, budget")});
 }
 
 constexpr Model kModelsOfMarkovProperty[] = {Model::kMarkov, Model::kBilliard,

@@ -83,7 +83,7 @@ void CountOrbit(double energy, std::span<const Exchange> exchanges, BlockResult&
   double energy_before = 0, waiting_before = 0;
   for (size_t k = 0; k < exchanges.size(); ++k) {
     const auto law = KernelDistribution::OfPair(energy);
-    // T is looked at in bins of 2^-10: that it has no relative accuracy near 0 does not matter.
+    // T is counted in bins of 2^-10, so its relative accuracy near 0 does not matter.
     const double waiting = 1 - Exp(-law.CollisionRate() * exchanges[k].waiting_time);
     const double outcome = law.Below(exchanges[k].energy);
     counts.histograms[0].Add(waiting);

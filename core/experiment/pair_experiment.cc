@@ -76,7 +76,7 @@ void CheckDeltas(const Grid& grid, DeltaValidation validate, std::vector<FieldVi
   if (range.IsEmpty()) return;
   const std::vector<double>& deltas = grid[kDelta];
   for (size_t i = 0; i < deltas.size(); ++i) {
-    if (!ValidateSomeDelta(deltas[i]).ok()) continue;  // said already
+    if (!ValidateSomeDelta(deltas[i]).ok()) continue;  // already reported
     if (const auto wrong = WrongDelta(range.smallest, range.largest, deltas[i], validate)) {
       found.push_back({absl::StrFormat("grid.delta[%d]", i), *wrong});
     }

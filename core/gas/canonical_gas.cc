@@ -67,7 +67,7 @@ class PlaceSampler {
     return wrong;
   }
 
-  // Returns the balls that see something that has been drawn again.
+  // Returns the balls that were drawn again, or that see a piston that was.
   std::vector<int64_t> DrawAgain(const std::vector<Event>& events) const {
     std::vector<int64_t> suspects;
     for (const Event& event : events) {
@@ -103,7 +103,7 @@ GasState DrawGas(const GasGeometry& geometry, const TemperatureProfile& temperat
   PlaceSampler(geometry, random, state).Draw();
   for (size_t i = 0; i < state.balls.size(); ++i) {
     const int64_t column = static_cast<int64_t>(i) % geometry.shape().columns;
-    // In two dimensions the flux law is that of the speed.
+    // In two dimensions the speed has the flux law.
     state.balls[i].speed = DrawFluxSpeed(temperature.At(static_cast<double>(column) + 0.5), random);
     state.balls[i].direction = UniformDirection(random);
   }

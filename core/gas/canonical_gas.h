@@ -6,10 +6,10 @@
 // canonical ensemble, which is invariant under the gas's flow.
 //
 // Positions are drawn by partial rejection sampling: draw all balls and pistons; then draw again,
-// all at once, every ball and piston that are on the wrong sides of each other; repeat until there
-// are none. Two such violations that share a ball or a piston exclude each other, because the parts
-// of a cell that its pistons cut off do not overlap. In this case the method is exact (Guo, Jerrum,
-// Liu 2017). Properties, each with the test that bears its name:
+// all at once, every ball and piston that are on the wrong sides of each other; repeat until no
+// such pair is left. Two such pairs that share a ball or a piston exclude each other, because the
+// parts of a cell that its pistons cut off do not overlap. In this case the method is exact (Guo,
+// Jerrum, Liu 2017). Properties, each with the test that bears its name:
 //   1. PistonsHaveTheirExactLaw: in rings of one and of two cells, and in a lattice.
 //   2. EnergiesHaveTheirGammaLaws.
 #ifndef BALLPISTON_CORE_GAS_CANONICAL_GAS_H_

@@ -12,7 +12,7 @@
 //
 // Properties, each with the test that bears its name:
 //   1. StepsHoldTheWholeCurrent.  2. CountsProductsOfDifferentExchanges.
-//   3. SquaresOfWhatExchangesCarryAreTheStaticConductivity.
+//   3. SquaredExchangesGiveTheStaticConductivity.
 #ifndef BALLPISTON_CORE_GAS_CURRENT_METER_H_
 #define BALLPISTON_CORE_GAS_CURRENT_METER_H_
 

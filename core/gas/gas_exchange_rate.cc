@@ -1,10 +1,11 @@
 // Derivation. Divide a cell's free area by the cell's area, and let each piston's offset be
-// uniform. A piston cuts the part a of the cell on one of its sides, or b on the other; a and b are
-// never both above 0, and both have the mean z. So the configuration integral is the mean of
+// uniform. A piston cuts off the part a of the cell on one of its sides, or the part b on the
+// other; a and b are never both above 0, and both have the mean z. So the configuration integral is
+// the mean of
 //     product over cells of (1 - sum over its pistons of the parts).
-// Multiplied out, each cell chooses one of its pistons, with the weight -z, or none, and no piston
-// is chosen by two cells. In a contact the ball stands on its piston: that cell has made its
-// choice, and the rest is what the derivative by z leaves. With n directions and N cells
+// In the expanded product each cell chooses one of its pistons, with the weight -z, or no piston,
+// and no piston is chosen by two cells. In a contact the ball is at its piston: the choice of this
+// cell is fixed, which corresponds to the derivative by z. With n directions and N cells
 //     F = -(1/(n N)) d log Z/dz .
 //
 // Chain. On functions of the offset of a piston the product is an operator of rank two, with the
@@ -12,10 +13,11 @@
 // With s = r1 - r2 = sqrt(1 - 4 z) and q = r2/r1 this gives
 //     F = (1 - q^(2N-1))/(s r1 (1 + q^(2N))) .
 //
-// Lattice. Cells choose one after the other, down a column and then to the right: a transfer matrix
-// over which of a column's pistons the column before it has chosen. What goes round a torus of N x
-// M the shorter way contributes as z^N: beyond kWidest cells it is the infinite gas, to 1e-13. The
-// derivative is that of a complex step, which loses no digits.
+// Lattice. Cells choose one after the other, along a column and then to the right. The state of the
+// transfer matrix is the set of a column's pistons that the previous column has chosen. On a torus
+// of N x M cells, N <= M, the finite size contributes z^N: beyond kWidest cells the torus is equal
+// to the infinite gas, to 1e-13. The derivative is computed by a complex step, which loses no
+// digits.
 #include "core/gas/gas_exchange_rate.h"
 
 #include <algorithm>
@@ -42,7 +44,7 @@ class Columns {
   Columns(int rows, double z)
       : rows_(rows), minus_z_(-z, -kStep), weights_(size_t{4} << rows), next_(weights_.size()) {}
 
-  // Begins where the column before has chosen these pistons, a bit for each row.
+  // Begins with the set of pistons that the previous column has chosen, a bit for each row.
   void BeginWith(size_t chosen) {
     std::fill(weights_.begin(), weights_.end(), Weight(0));
     weights_[At(chosen, 0)] = 1;

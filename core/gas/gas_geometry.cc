@@ -16,7 +16,7 @@ int64_t GasGeometry::pistons() const {
   return edges_ * shape_.rows + (shape_.is_lattice ? balls() : 0);
 }
 
-// The edge on the left of column c is edge c; the one below row r is edge r.
+// The edge on the left of column c is edge c; the edge below row r is edge r.
 int64_t GasGeometry::PistonOf(int64_t ball, Direction direction) const {
   const int64_t column = ball % shape_.columns, row = ball / shape_.columns;
   const int64_t vertical = edges_ * shape_.rows;

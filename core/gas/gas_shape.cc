@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t kRowUnit = int64_t{1} << 20;  // more than the columns of any shape
 
-// Digits alone: no sign, no blanks.
+// Accepts only digits, without a sign and without blanks.
 bool ParseCount(absl::string_view text, int64_t& count) {
   for (const char c : text) {
     if (!absl::ascii_isdigit(static_cast<unsigned char>(c))) return false;

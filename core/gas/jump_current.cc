@@ -86,7 +86,7 @@ void JumpCurrent::SetTerm(double term, Body& body) {
   body.term = term;
 }
 
-// The first of its directions is to the right, and the one opposite in the middle of the list.
+// The ball's first direction is to the right; the opposite direction is in the middle of the list.
 void JumpCurrent::FindBallTerm(size_t ball) {
   const Contact& right = contacts_[ball * directions_];
   const Contact& left = contacts_[ball * directions_ + directions_ / 2];

@@ -22,7 +22,7 @@
 // pistons. A gas of one column has no current.
 //
 // Properties, each with the test that bears its name:
-//   1. CurrentsAreThoseOfTheirDefinition.  2. TheJumpProcessConductsAsTheSpectrumSays.
+//   1. CurrentsMatchTheirDefinition.  2. ConductivityOfTheJumpProcessMatchesTheSpectrum.
 #ifndef BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
 #define BALLPISTON_CORE_GAS_JUMP_CURRENT_H_
 

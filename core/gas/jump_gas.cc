@@ -11,8 +11,8 @@
 namespace ballpiston {
 namespace {
 
-// A ball proposes an exchange to each of its pistons at the rate of the mean of (v1)+ over its
-// angle, v/pi; a piston to each of its two balls at that of (-v3)+ over its sign, v/2.
+// A ball proposes an exchange to each of its pistons at a rate equal to the mean of (v1)+ over its
+// angle, v/pi. A piston proposes to each of its two balls at the mean of (-v3)+ over its sign, v/2.
 constexpr double kBallsRatePerPiston = 1 / std::numbers::pi;
 constexpr double kPistonsRate = 2 * 0.5;
 
@@ -38,8 +38,8 @@ JumpGas::JumpGas(const GasGeometry& geometry, double density, const GasState& st
   FindNext();
 }
 
-// An outermost piston proposes to one ball, at the rate of the mean of (-v3)+. Returns the speed at
-// which a piston with two balls proposes as often.
+// An outermost piston proposes to one ball, at a rate equal to the mean of (-v3)+. Returns the
+// speed at which a piston with two balls has the same rate of proposals.
 double JumpGas::SpeedOfOutermost(int64_t piston) const {
   return std::sqrt(walls_.TemperatureAt(piston) / (2 * std::numbers::pi)) / kPistonsRate;
 }
@@ -48,7 +48,8 @@ double JumpGas::RatePerSpeed(size_t body) const {
   return body < balls_ ? geometry_.directions() * kBallsRatePerPiston : kPistonsRate;
 }
 
-// Repeated now and then: `rate_` collects rounding, and the fastest bodies become slower.
+// Called again from time to time, because `rate_` accumulates rounding errors, and because the
+// fastest bodies become slower.
 void JumpGas::FindRates() {
   rate_ = kinds_[0].largest = kinds_[1].largest = 0;
   for (size_t body = 0; body < speeds_.size(); ++body) {
@@ -60,8 +61,8 @@ void JumpGas::FindRates() {
   FindPlaces();
 }
 
-// Places are allotted as if each body were as fast as the fastest of its kind. Words drawn ahead
-// are still uniform, because nothing has looked at them.
+// Places are allotted as if each body were as fast as the fastest of its kind. Words drawn in
+// advance are still uniform, because they have not been used.
 void JumpGas::FindPlaces() {
   auto& [balls, pistons] = kinds_;
   const double of_a_ball = RatePerSpeed(0) * balls.largest;
@@ -116,7 +117,7 @@ double JumpGas::DrawWait() {
   return waits_[used_waits_++];
 }
 
-// The lowest bits of the word that chose the body are unused so far: they choose the contact.
+// The lowest bits of the word that chose the body choose the contact; they are still unused.
 void JumpGas::FindProposal() {
   for (;;) {
     if (used_attempts_ == kJumpDraws) DrawAttempts();
@@ -142,8 +143,8 @@ void JumpGas::Propose(size_t body, uint64_t bits) {
   Decide();
 }
 
-// v1 has the density v1 over the angles with v1 > 0, so the other component is uniform. The piston
-// moves either way.
+// The angles with v1 > 0 have the weight v1, so the other component is uniform. The piston's
+// velocity has either sign.
 void JumpGas::ByBall(int64_t ball, uint64_t bits) {
   const double speed = speeds_[static_cast<size_t>(ball)];
   const int way = static_cast<int>(bits >> 1) & (geometry_.directions() - 1);  // of 2 or 4
@@ -160,7 +161,7 @@ void JumpGas::ByBall(int64_t ball, uint64_t bits) {
   if (walls_.Has(piston)) next_.v3 = DrawThermalVelocity(walls_.TemperatureAt(piston), random_);
 }
 
-// The piston comes toward the ball; an outermost one with the flux law.
+// The piston moves toward the ball. An outermost piston has a speed from the flux law.
 void JumpGas::ByPiston(int64_t piston, uint64_t bits) {
   const Direction direction = geometry_.DirectionTo(piston);
   Direction side = (bits & 1) != 0 ? direction : Opposite(direction);

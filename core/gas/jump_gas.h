@@ -15,7 +15,7 @@
 // Units are those of the billiard: a contact at given energies has the rate `density` <(v1 - v3)+>;
 // its mean at temperature T is density sqrt(T/pi).
 // Properties, each with the test that bears its name:
-//   1. PairsAreTheJumpProcess.  2. KeepsTheGammaLaws.  3. EqualReservoirsAreAnEquilibrium.
+//   1. PairsFollowTheJumpProcess.  2. KeepsTheGammaLaws.  3. EqualReservoirsAreAnEquilibrium.
 #ifndef BALLPISTON_CORE_GAS_JUMP_GAS_H_
 #define BALLPISTON_CORE_GAS_JUMP_GAS_H_
 

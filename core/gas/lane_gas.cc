@@ -12,12 +12,12 @@
 namespace ballpiston {
 namespace {
 
-// A ball slower than this counts as at rest. It flies at this speed, and so never anywhere.
+// A ball slower than this counts as at rest. It gets this speed, at which it never reaches a wall.
 constexpr double kAtRest = 1e-18;
 
-// A window takes some time of its own for each ball, as long as this number of balls' flights one
-// by one; and flights behind an exchange are lost and flown again, one by one. So the time is least
-// where a ball flies ahead the root of this number times the flights between two of its exchanges.
+// The fixed cost of a window for each ball, in units of a single ball's flight. Flights after an
+// exchange are discarded and computed again, ball by ball. So the total time is least if a ball
+// flies ahead the root of (this number times the flights between two of its exchanges).
 constexpr double kFlightsOfAWindow = 8;
 constexpr double kMostFlightsInAWindow = 64;
 constexpr size_t kFlightsTogether = 12;
@@ -64,7 +64,7 @@ void LaneGas::FindPistons() {
   }
 }
 
-// For the mean energy of the balls; the results do not depend on it.
+// Chooses the window for the mean energy of the balls. The results do not depend on the window.
 void LaneGas::ChooseWindow(double exchange_rate) {
   double energy = 0;
   for (const BallInTime& ball : gas_.balls) energy += ball.speed * ball.speed / 2;
@@ -128,7 +128,7 @@ void LaneGas::FlyAll() {
   }
 }
 
-// From their last places.
+// Flies these balls again, from their states in from_.
 void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
   orders_.clear();
   double flights = 0;
@@ -141,7 +141,7 @@ void LaneGas::FlyAgain(std::span<const uint32_t> balls) {
   FlyOrders(static_cast<size_t>(std::min(flights + 1, double{kMostFlightsAhead})));
 }
 
-// Until all have arrived.
+// Flies until all balls have arrived.
 void LaneGas::FlyOrders(size_t flights) {
   for (bool is_first = true; !orders_.empty(); is_first = false) {
     size_t kept = 0;

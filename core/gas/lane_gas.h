@@ -10,7 +10,8 @@
 // numbers do not depend on the number of replicas or on the windows.
 // Properties, each with the test that bears its name:
 //   1. AgreesWithTheReferenceEventByEvent, until the rounding errors have grown.
-//   2. ManyShortCallsGiveTheBitsOfOne.  3. ReplicasDoNotDependOnTheirNeighbours.  4. EnergyStays.
+//   2. ManyShortCallsGiveTheBitsOfOneCall.  3. ReplicasDoNotDependOnTheirNeighbours.
+//   4. EnergyIsConserved.
 //   5. BallsThatMeetPistonsInTipsStayInTheirCells.
 #ifndef BALLPISTON_CORE_GAS_LANE_GAS_H_
 #define BALLPISTON_CORE_GAS_LANE_GAS_H_

@@ -87,7 +87,7 @@ class FlightsAhead {
         return tips.above | tips.below;
       });
     }
-    // The cell's right is along x of the frame where a and b are equal.
+    // The cell's right is along x of the frame if a and b are equal.
     return FlyWatched([edge = gas_.edge](const Balls<double>& balls) HWY_ATTR {
       const TipsInReach tips = TipsOf(balls, edge);
       return tips.below ^ (balls.ab & (tips.below ^ tips.above));
@@ -141,8 +141,9 @@ class FlightsAhead {
     }
   }
 
-  // Whether ball and piston meet in a flight from `place` on, toward one of the frame's axes. What
-  // was before the piston's last change has been done; so nothing here depends on when it is asked.
+  // Whether ball and piston meet in a flight from `place` on, toward one of the frame's axes.
+  // Events before the piston's last change are done already, so the result does not depend on the
+  // time of the call.
   HWY_INLINE void Compare(double place, double velocity, double length, double start,
                           uint32_t toward, size_t lane, const Balls<double>& from,
                           FlightOrder& order) const {
@@ -232,13 +233,13 @@ GasInTime::GasInTime(const GasGeometry& g)
 
 namespace {
 
-// In a tip a ball may be on both walls, or beyond them by rounding. Reflects the ball there until
-// it flies into neither of them; returns whether it was reflected.
+// In a tip a ball may be on both walls, or beyond them by rounding. Reflects the ball until it
+// flies away from both walls. Returns true if the ball was reflected.
 bool ReflectOnWalls(const CellWalls<double>& walls, Eigen::Vector2d& position,
                     Eigen::Vector2d& direction) {
-  // The ways between a few hits in a tip add up to less; it is far below kReachSlack.
+  // The paths between a few hits in a tip add up to less than this, which is far below kReachSlack.
   constexpr double kOnAWall = 1e-14;
-  constexpr int kMostHits = 10'000;  // where walls are nearly parallel
+  constexpr int kMostHits = 10'000;  // many hits if the walls are nearly parallel
   int last_disc = kNoDisc;
   double way = 0;
   for (int i = 0; i < kMostHits; ++i) {

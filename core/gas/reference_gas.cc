@@ -139,8 +139,8 @@ void ReferenceGas::LookAgain(int64_t number) {
   Schedule(number);
 }
 
-// Before either of the two hits a wall; also where they meet as the piston turns, because it may
-// never come nearer to a ball at rest.
+// The time of a contact before ball or piston hits a wall. A contact at the moment when the piston
+// turns counts, because the piston may never come nearer to a ball at rest.
 double ReferenceGas::ContactTime(const Ball& ball, Direction direction,
                                  const Piston& piston) const {
   const double sign = SignOf(direction), now = std::max(ball.time, piston.time);

@@ -4,8 +4,8 @@
 //
 // A body is moved only at its own events: its time is that of its last wall hit or exchange.
 // Properties, each with a test of its name:
-//   1. OneBallAndOnePistonAreThePair.  2. ReversedVelocitiesRetraceTheirWay.
-//   3. EnergyStays.
+//   1. OneBallAndOnePistonMoveLikeThePair.  2. ReversedVelocitiesRetraceTheirWay.
+//   3. EnergyIsConserved.
 //
 // Times are in cells over unit speed. One object is one gas. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_REFERENCE_GAS_H_

@@ -11,9 +11,9 @@
 // gas it is 1/exchange rate (gas_exchange_rate.h).
 //
 // Properties, each with a test of its name:
-//   1. OfThePairIsTheReferenceFlow.  2. OfAGasIsTheReferenceGas.
+//   1. PairTraceMatchesTheReferenceFlow.  2. GasTraceMatchesTheReferenceGas.
 //   3. EveryEventConservesEnergy.    4. BodiesFlyStraightBetweenTheirEvents.
-//   5. FreeTimesAreThoseOfTheSameKindAndBodies.
+//   5. FreeTimesCountFromTheSameKindAndBodies.
 //
 // Units: lengths are cells, masses 1. One object is one orbit. Not thread-safe.
 #ifndef BALLPISTON_CORE_GAS_TRACE_H_

@@ -49,7 +49,7 @@ absl::Status ValidatePairDelta(double rho, double delta) {
 
 absl::Status ValidateGasDelta(double rho, double delta) {
   return ValidateDelta(rho, delta, GasDeltaBound(rho), "rho/sqrt(2) - lambda/2",
-                       "the bound of a gas, in which pistons must not overlap");
+                       "the bound of a gas, where no two pistons may overlap");
 }
 
 absl::Status ValidateSomeDelta(double delta) {

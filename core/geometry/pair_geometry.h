@@ -9,8 +9,7 @@
 // piston reaches the cell's middle. In a gas pistons must not overlap; this gives the paper's bound
 // rho/sqrt(2) - lambda/2 (eq. x1x2x3 and the footnote before it).
 //
-// Lengths are in cells. All members are accurate to a few ulps for every rho and delta in the
-// domain.
+// Lengths are in cells. All members are accurate to a few ulps over the whole domain.
 // Immutable, so safe to share between threads.
 #ifndef BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_
 #define BALLPISTON_CORE_GEOMETRY_PAIR_GEOMETRY_H_

@@ -18,13 +18,13 @@ constexpr int kSetUpNodes = 16;
 // From u = 1 all jumps go to u' = 0; this u avoids the division by 0.
 constexpr double kFastest = 1 - 1e-12;
 
-// A rate, and what it leaves after the time t of the law: exp(-rate t).
+// A rate, and exp(-rate t), the part that remains after the time t of the law.
 struct Decay {
   Decay(double rate, double t) : rate(rate), left(std::exp(-rate * t)) {}
   double rate, left;
 };
 
-// Below this difference of two rates times t a series is used, because differences cancel.
+// If two rates differ by less than this over t, a series is used, because the difference cancels.
 constexpr double kClose = 1e-2;
 
 // int_0^t exp(-a s - b (t - s)) ds
@@ -34,7 +34,7 @@ double TwoStages(const Decay& a, const Decay& b, double t) {
   return (b.left - a.left) / (a.rate - b.rate);
 }
 
-// The same over the durations of three stages. The series leaves out 4e-6 of itself.
+// The integral over the durations of three stages. The relative error of the series is 4e-6.
 double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double t) {
   const auto [least, most] =
       std::minmax({a, b, c}, [](const Decay& x, const Decay& y) { return x.rate < y.rate; });
@@ -47,7 +47,7 @@ double ThreeStages(const Decay& a, const Decay& b, const Decay& c, double t) {
   return (TwoStages(least, middle, t) - TwoStages(middle, most, t)) / (most.rate - least.rate);
 }
 
-// phi, of v = s sin(phi); what lies beyond s cannot be reached.
+// phi in v = s sin(phi); pi/2 for v > s, which no jump reaches.
 double Angle(double v, double s) { return v < s ? std::asin(v / s) : std::numbers::pi / 2; }
 
 std::vector<double> MiddleRates(size_t bins) {
@@ -117,7 +117,7 @@ std::vector<double> EnergyLaw::Probabilities(const Start& start, double t) const
   return law;
 }
 
-// With u' = s sin(phi), K du' = max(u, u') dphi but for its prefactor; its kink is at u' = u.
+// With u' = s sin(phi), K du' = max(u, u') dphi times a constant; its kink is at u' = u.
 void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   const double s = std::sqrt(1 - u * u);
   const Decay start(JumpRate(u), t);
@@ -133,8 +133,8 @@ void EnergyLaw::AddOneJump(double u, double t, std::vector<double>& law) const {
   }
 }
 
-// Integrates over the place w after the first jump, as above. The mass that comes from w to a bin
-// has a root at the w from which the bin's upper edge is the farthest that can be reached.
+// Integrates over the place w after the first jump, as above. The mass that jumps from w into a bin
+// has a square-root singularity at the w from which the bin's upper edge is just reached.
 void EnergyLaw::AddTwoJumps(double u, double t, std::vector<double>& law) const {
   const double s = std::sqrt(1 - u * u);
   const Decay start(JumpRate(u), t);

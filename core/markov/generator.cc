@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kGrading = 0.15;  // each element's length over its outer neighbour's
+constexpr double kGrading = 0.15;  // ratio of neighbouring element lengths, toward an end
 constexpr int kNodes = 30;
 
 // Graded towards both ends of [0, pi/4], and mirrored.

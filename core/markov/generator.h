@@ -61,11 +61,11 @@ class Generator {
   // Eigenvalues of -L, ascending; the first is 0 up to rounding.
   const Eigen::VectorXd& rates() const { return rates_; }
 
-  // Coefficients of a function of u by eigenfunction, orthonormal in du on [0, 1]. `function` may
-  // have kinks at 0, 1/sqrt(2) and 1, not elsewhere.
+  // Coefficients of a function of u in the eigenfunctions, which are orthonormal in du on [0, 1].
+  // `function` may have kinks only at 0, 1/sqrt(2) and 1.
   Eigen::VectorXd Coefficients(const std::function<double(double)>& function) const;
 
-  // Those of a unit mass at u in [0, 1]: <coefficients, At(u)> is the function's value there.
+  // Coefficients of a unit mass at u in [0, 1]: <coefficients, At(u)> is the function's value at u.
   Eigen::VectorXd At(double u) const;
 
   // int K(u, u') function_k(u') du' for each eigenfunction k.

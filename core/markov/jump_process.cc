@@ -1,8 +1,8 @@
-// Digits. Nothing cancels: 1 - 2 u^2 is fused, s^2 = (1 - u)(1 + u), and beyond u, with
+// Accuracy. No step cancels: 1 - 2 u^2 is fused, s^2 = (1 - u)(1 + u), and for u' > u, with
 // w = c v - u A in [0, q],
 //     s^2 - (q - w)^2 = u^2 + w (2 q - w).
-// w itself loses digits where it is small beside u A, by no more than rounding of u^2: u A <= 2 u^2
-// where that happens.
+// w loses digits if it is much smaller than u A. The loss is at most a rounding of u^2, because
+// then u A <= 2 u^2.
 #include "core/markov/jump_process.h"
 
 #include <algorithm>

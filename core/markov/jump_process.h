@@ -23,8 +23,8 @@
 //   1. InvertsTheDistributionOfW: u' is the exact quantile within a relative kJumpError.
 //   2. WaitsWithTheRateOfCollisions, within a relative kJumpError.
 //   3. DetailedBalance: the stationary law is uniform in u.
-//   4. LanesAreTheScalarDefinition, within a relative error kJumpError.
-//   5. SameBitsOnEveryProcessor with fused multiply-add, and DoesNotDependOnWhoElseWalks.
+//   4. LanesMatchTheScalarDefinition, within a relative error kJumpError.
+//   5. SameBitsOnEveryProcessor with fused multiply-add, and WalkersAreIndependentOfEachOther.
 #ifndef BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
 #define BALLPISTON_CORE_MARKOV_JUMP_PROCESS_H_
 

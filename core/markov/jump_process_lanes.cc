@@ -19,8 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kJumpGroup>;
 using V = hn::Vec<D>;
 
-// Of one vector, as in JumpFrom; the square root is taken of whichever of the two squares it is.
-// At u = 0 the lower one is never it, and may be a NaN.
+// The targets of one vector, as in JumpFrom. One of the two squares is selected before the square
+// root. At u = 0 the lower square is never selected, and may be a NaN.
 HWY_INLINE V Target(V u, V q, V low, V c, V v) {
   const D d;
   const V one = hn::Set(d, 1.0), g = hn::Mul(c, v);
@@ -53,9 +53,10 @@ void JumpGroup(const uint64_t* HWY_RESTRICT waiting_words,
   }
 }
 
-// Philox one sample after the other. Its products of 64 by 64 bits have no vector instruction: out
-// of four products of 32 bits they take as long with AVX-512, twice as long with AVX2. It is here
-// because instructions that come with AVX2 (mulx) save a fifth of its time.
+// Philox, one sample after the other. Its products of 64 by 64 bits have no vector instruction.
+// Made of four products of 32 bits they would take as long with AVX-512, and twice as long with
+// AVX2. The function is in this file because an instruction of the AVX2 target (mulx) saves a fifth
+// of its time.
 void DrawGroup(uint64_t seed, uint64_t stream, uint64_t first, uint64_t block, JumpWords& drawn) {
   const r123::Philox4x64::key_type key = {{seed, stream}};
   for (size_t i = 0; i < kJumpGroup; ++i) {

@@ -10,7 +10,7 @@ constexpr double kTold = 1e-8;
 
 double SquareRootOfTwice(double epsilon) { return std::sqrt(2 * epsilon); }
 
-// int_0^window exp(-rate t) dt; the limit as rate -> 0 is not asked for.
+// int_0^window exp(-rate t) dt, for rates above 0.
 Eigen::ArrayXd Integrals(const Eigen::ArrayXd& rates, double window) {
   if (std::isinf(window)) return 1 / rates;
   return -(-rates * window).unaryExpr([](double x) { return std::expm1(x); }) / rates;

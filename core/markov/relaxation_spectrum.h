@@ -12,10 +12,9 @@
 // discretisation, which is larger than the true error of the finer one. Properties, each with a
 // test of its name:
 //   1. GapAgreesBetweenDiscretisations to kSpectralGapError.
-//   2. DecaysOverThreeDecadesAsItsOwnGeneratorSays: the semigroup property, and the derivative at
-//   0,
-//      which is -<h>/2 of the kernel's moments.
-//   3. MeanEnergyStartsAtTheInitialEnergyAndForgetsIt.
+//   2. AutocorrelationSatisfiesSemigroupAndInitialSlope: the initial slope is
+//      -<h>/2 of the kernel's moments.
+//   3. MeanEnergyRelaxesFromTheInitialEnergy.
 //
 // Immutable; safe to share between threads.
 #ifndef BALLPISTON_CORE_MARKOV_RELAXATION_SPECTRUM_H_

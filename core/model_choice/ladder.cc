@@ -25,7 +25,7 @@ constexpr absl::string_view kInSinglePrecision = "in single precision; ";
 
 std::string Rounded(double x) { return absl::StrFormat("%.2g", x); }
 
-// Not below x: two digits are 4.8 % below what they round, at most.
+// Not below x: rounding to two digits lowers a number by at most 4.8 %.
 std::string RoundedUp(double x) { return Rounded(1.05 * x); }
 
 // One point's question.
@@ -98,7 +98,7 @@ class Question {
   Machine machine_;
 };
 
-// ---- which model ----
+// ---- the choice of the model ----
 
 // The costs of a pilot and of the billiard itself, in wall hits. They are not in seconds, so that
 // every machine makes the same choice.
@@ -130,7 +130,7 @@ std::string WithoutAPilot(const Question& question) {
   }
   if (HitsOf(question.point(), question.SamplesFor(tolerance)) <
       HitsOf(PointOf(place), static_cast<double>(kPilotOrbits))) {
-    return "it reaches the tolerance sooner than a pilot would establish the limit's error";
+    return "the billiard reaches the tolerance before a pilot would establish the limit's error";
   }
   return "";
 }
@@ -178,8 +178,8 @@ Answer ByBudget(const Question& question) {
   const double billiard = question.ErrorInBudget(Model::kBilliard) +
                           question.ErrorOfPrecision(Model::kBilliard).value_or(0);
   const std::string compared =
-      absl::StrCat("the billiard's error after this budget is some ", Rounded(billiard),
-                   ", the limit's up to ", Rounded(limit));
+      absl::StrCat("the billiard's error with this budget is about ", Rounded(billiard),
+                   ", the limit's error at most ", Rounded(limit));
   const double enough = question.target().tolerance.value_or(0);
   if (billiard <= std::max(limit, enough)) return Billiard(question, compared);
   return {question.ModelOfLimit(), compared, bound};
@@ -187,20 +187,21 @@ Answer ByBudget(const Question& question) {
 
 std::optional<Answer> AnswerNearTheLimit(const Question& question, const PilotSource& pilots) {
   if (!question.HasLimitError()) {
-    return Billiard(question, "the limit's error is not known there");
+    return Billiard(question, "the limit's error is not known at this point");
   }
   if (!question.HasRelativeError()) {
     return Billiard(question,
-                    "the value has no relative error there, so the limit's error cannot be judged");
+                    "the first estimate has no relative error at this point, so the limit's error "
+                    "cannot be judged");
   }
   if (question.target().budget_seconds) return ByBudget(question);
   if (question.target().tolerance) return ByTolerance(question, pilots);
-  return Billiard(question, "without a tolerance the limit's error cannot be weighed");
+  return Billiard(question, "without a tolerance the limit's error cannot be judged");
 }
 
 std::string NothingCheaper(const Question& question) {
   if (!question.aim().IsAnsweredBy(Model::kMarkov)) {
-    return absl::StrCat("nothing cheaper answers ", question.subject());
+    return absl::StrCat("no cheaper model answers ", question.subject());
   }
   return absl::StrCat("the limit's error is not known for ", question.subject());
 }
@@ -209,7 +210,7 @@ std::optional<Answer> AutoAnswer(const Question& question, const PilotSource& pi
   const bool verify = question.spec().verify;
   if (question.aim().HasClosedForm()) {
     if (!verify) return Answer{Model::kClosedForm, "exact at every delta, no sampling", 0.0};
-    return Billiard(question, "asked to verify the closed form");
+    return Billiard(question, "verify is set, so the closed form is not used");
   }
   if (question.HasLimit()) return AnswerNearTheLimit(question, pilots);
   return Billiard(question, NothingCheaper(question));
@@ -225,8 +226,9 @@ Answer ExplicitAnswer(const Question& question) {
 // ---- all rungs ----
 
 std::string CannotAnswer(Model model, const Question& question) {
-  return absl::StrCat("there is no ", model == Model::kClosedForm ? "closed form" : "answer by it",
-                      " for ", question.subject());
+  return absl::StrCat(
+      model == Model::kClosedForm ? "there is no closed form for " : "this model does not answer ",
+      question.subject());
 }
 
 void PredictWithoutSamples(const Machine& machine, Rung& rung) {
@@ -257,14 +259,13 @@ void SetLimitError(const Question& question, const PilotSource& pilots, Rung& ru
   rung.reason = "the limit delta -> 0";
   if (!question.HasLimitError()) return;
   rung.model_error = question.ExpectedLimitError();
-  rung.reason =
-      "the limit delta -> 0; its error is expected to be at most this, by scaling with delta";
+  rung.reason = "the limit delta -> 0; the model error is an expected upper bound";
   if (!question.HasPilots()) return;
   const PilotPlace place = PilotPlaceFor(question.point());
   if (const std::optional<Pilot> pilot = pilots(place)) {
     rung.model_error = LimitErrorBound(*pilot, place, question.point());
-    rung.reason =
-        absl::StrCat("the limit delta -> 0; its error is at most this, ", FoundBy(*pilot, place));
+    rung.reason = absl::StrCat("the limit delta -> 0; the model error is an upper bound, ",
+                               FoundBy(*pilot, place));
   }
 }
 
@@ -340,8 +341,8 @@ Ladder LadderFor(const EnsembleSpec& spec, const PointParameters& point, const M
 
 namespace {
 
-// The largest model error of any point, where a pilot can check it. For a model that samples, at
-// least its statistical error with the largest permitted number of samples.
+// The largest model error of any point, if a pilot can check it. For a model that samples, at least
+// the statistical error of the largest permitted number of samples.
 double LeastTolerance(const EnsembleSpec& spec) {
   if (IsAnsweredByClosedForm(spec)) return kClosedFormError;
   double least = 0;

@@ -1,12 +1,11 @@
 // The ladder of models: the models that can answer, their costs and errors, and the choice.
 //
 // Costs and errors refer to the estimate that the target names (experiment_kind.h: AimedEstimate).
-// AUTO chooses
-// the cheapest model that is exact for this estimate, or whose error is known to be within the
-// tolerance: within half of it if that model samples. This is a closed form if there is one, else
-// the limit's cheapest model if its error allows it, else the billiard. Without a tolerance AUTO
-// chooses only an exact model. With a budget alone it chooses the model with the smallest error
-// that can be reached within the budget.
+// AUTO chooses the cheapest model that is exact for this estimate, or whose error is known to be
+// within the tolerance (within half of it if the model samples). This is a closed form if there is
+// one, else the limit's cheapest model if its error permits, else the billiard. Without a tolerance
+// AUTO chooses only an exact model. With a budget alone AUTO chooses the model with the smallest
+// error that can be reached within the budget.
 #ifndef BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 #define BALLPISTON_CORE_MODEL_CHOICE_LADDER_H_
 

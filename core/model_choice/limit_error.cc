@@ -11,7 +11,7 @@
 namespace ballpiston {
 namespace {
 
-// Fraction of delta's bound. There a collision takes some 250 wall hits, and a pilot some 2 s.
+// Fraction of delta's bound. At this delta a collision takes about 250 wall hits, and a pilot 2 s.
 constexpr double kPilotsShareOfTheBound = 0.3;
 // A relative error above this does not fall with delta: it belongs to an energy at which the slower
 // of ball and piston takes as long as the window. Near the energies without a relaxation time the

@@ -6,7 +6,7 @@
 // bias if batches are independent, or long compared with the correlation time. Batches of unequal
 // length have the correct weights. Properties, each with a test of its name:
 //   1. MergeEqualsSinglePass, to rounding.  2. MergeWithEmptyIsIdentity, bit for bit.
-//   3. ErrorOfIndependentTermsIsTheirs: batches of single independent terms give the usual error.
+//   3. ErrorOfIndependentTermsIsTheUsualOne, for batches of single independent terms.
 #ifndef BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
 #define BALLPISTON_CORE_STATISTICS_BATCH_MEANS_H_
 

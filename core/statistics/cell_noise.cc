@@ -8,7 +8,7 @@
 namespace ballpiston {
 namespace {
 
-// Expected counts from which on series in 1/mu are exact to 1e-4.
+// For expected counts of at least this number, series in 1/mu are exact to 1e-4.
 constexpr double kManyCounts = 100;
 
 double Information(double n, double mu) { return n == 0 ? 0 : n * Log(n / mu); }
@@ -16,7 +16,7 @@ double Information(double n, double mu) { return n == 0 ? 0 : n * Log(n / mu); }
 // log(1 - q), q <= 1/2.
 double LogOfRest(double q) { return q < 1e-4 ? -q * (1 + q * (0.5 + q / 3)) : Log(1 - q); }
 
-// Beyond it a count of that mean has a probability below 1e-17.
+// A count of mean mu is larger than this with a probability below 1e-17.
 double LargestCount(double mu) { return mu + 9 * std::sqrt(mu) + 30; }
 
 // Calls f(n, probability of n) for n = 0 ... last, where p(n + 1) = p(n) ratio(n).
@@ -29,7 +29,7 @@ void ForEachCount(double none, double last, Ratio ratio, F f) {
   }
 }
 
-// E[n log(n/mu)] of the binomial law. Counts those in the cell or those outside, whichever is
+// E[n log(n/mu)] of the binomial law. Sums over the count in the cell or outside, whichever is
 // rarer.
 double MeanOfFewCounts(double samples, double q) {
   const double rarer = std::min(q, 1 - q), odds = rarer / (1 - rarer);
@@ -42,7 +42,7 @@ double MeanOfFewCounts(double samples, double q) {
   return mean;
 }
 
-// The same from log(1 + x) = x - x^2/2 + ..., n = mu (1 + x), and the law's central moments.
+// MeanOfFewCounts from log(1 + x) = x - x^2/2 + ..., n = mu (1 + x), and the law's central moments.
 double MeanOfManyCounts(double samples, double q) {
   const double mu = samples * q, p = 1 - q;
   const double m2 = mu * p, m3 = m2 * (1 - 2 * q), m4 = 3 * m2 * m2 + m2 * (1 - 6 * q * p);

@@ -44,7 +44,7 @@ struct Sums {
                        .noise_floor = noise.mean / samples,
                        .noise_error = std::sqrt(noise.VarianceOfSum(samples)) / samples,
                        .cells = cells};
-    // The variance of log(p/q) over the samples, less what noise makes of it.
+    // The variance of log(p/q) over the samples, minus the part that is noise.
     const double scatter = (squared_information - noise.squared) / samples - Square(kl.value);
     kl.standard_error = std::sqrt(Square(kl.noise_error) + std::max(scatter, 0.0) / samples);
     return kl;

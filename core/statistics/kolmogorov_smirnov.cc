@@ -23,7 +23,7 @@ KolmogorovSmirnov DistanceToUniform(const Histogram& histogram) {
     const double distance = std::fabs(measured - static_cast<double>(bin + 1) / bins);
     if (distance <= result.distance) continue;
     result.distance = distance;
-    // Half a sample more on either side: no error is 0.
+    // Half a sample is added on either side, so that the error is never 0.
     const double share = (static_cast<double>(below) + 0.5) / (samples + 1);
     result.standard_error = std::sqrt(share * (1 - share) / samples);
   }

@@ -36,7 +36,7 @@ size_t FirstSampleFrom(double time, double step, size_t count) {
 
 }  // namespace
 
-// Counts the jumps between two samples, then sums: without a branch that depends on when they are.
+// Counts the jumps between two samples, then sums. This avoids a branch that depends on the times.
 std::vector<double> StepFunction::Samples(double step, size_t count) const {
   std::vector<uint32_t> jumps(count + 1);
   for (size_t i = 1; i < times_.size(); ++i) {
@@ -59,8 +59,8 @@ double StepFunction::Integral(double mean, double end) const {
   return sum;
 }
 
-// The inner integral is a continuous function of t, linear between those t at which either end of
-// its window passes a jump.
+// The inner integral is a continuous function of t. It is linear between the times t at which an
+// end of its window passes a jump.
 double StepFunction::CorrelationIntegral(double mean, double origins, double window) const {
   size_t near = 0, far = 0;
   while (End(far) <= window) ++far;

@@ -1,4 +1,4 @@
-// Geometries for tests. They have to be valid.
+// Geometries for tests. Their parameters must be valid.
 #ifndef BALLPISTON_TESTS_CORE_GEOMETRIES_H_
 #define BALLPISTON_TESTS_CORE_GEOMETRIES_H_
 

@@ -8,8 +8,8 @@
 //                               - A(m, sqrt(1 - b^2)))/(sqrt(2) pi),   m = min(a, b),
 //   A(m, c) = int_0^min(m, c) sqrt(c^2 - x^2) dx
 //
-// Rows sum to the rate at which a cell is left, whatever the closed form of that says. Errors fall
-// as 1/n^2, what remains after one extrapolation as 1/n^3.
+// Rows sum to the rate at which a cell is left, without use of its closed form. Errors fall as
+// 1/n^2, and after one extrapolation as 1/n^3.
 #ifndef BALLPISTON_TESTS_ORACLE_ENERGY_CELLS_H_
 #define BALLPISTON_TESTS_ORACLE_ENERGY_CELLS_H_
 
@@ -52,7 +52,7 @@ class EnergyCells {
   // int_0^inf <ep(0) ep(t)> - <ep>^2 dt over its value at t = 0, which is 1/45.
   double CorrelationTime() const {
     const double n = static_cast<double>(energy_.size());
-    // The stationary law is taken out of the kernel of L.
+    // Makes the matrix invertible on the stationary law, the kernel of L.
     const Eigen::MatrixXd invertible = minus_l_.array() + 1 / n;
     return 45 * energy_.dot(invertible.partialPivLu().solve(energy_)) / n;
   }
@@ -80,7 +80,7 @@ class EnergyCells {
   Eigen::VectorXd leaving_;
 };
 
-// What `value` of the cells tends to, from n, 2 n and 4 n of them, at errors 1/n^2 and 1/n^3.
+// The limit of `value` for many cells, from n, 2 n and 4 n cells, with errors 1/n^2 and 1/n^3.
 template <typename Function>
 auto FromEnergyCells(Eigen::Index n, Function value) {
   using Value = decltype(value(EnergyCells(n)));

@@ -1,5 +1,5 @@
 // One flight of the ball alone from disc to disc, in numbers of any precision, by the definition:
-// every disc is asked, the nearest one counts. To judge faster flights by.
+// the nearest of all discs that the ray hits. Faster flights are compared with it.
 #ifndef BALLPISTON_TESTS_ORACLE_EXACT_FLIGHT_H_
 #define BALLPISTON_TESTS_ORACLE_EXACT_FLIGHT_H_
 
@@ -23,10 +23,10 @@ inline Eigen::Vector2d DiscCentre(int disc) {
 
 template <typename Real>
 struct ExactFlight {
-  // How a ray and a disc lie to each other.
+  // The relation of a ray to a disc.
   struct Disc {
     Real impact;  // direction x (centre - ball); the ray crosses the disc if below rho
-    Real length;  // to where the ray enters it; infinity if it misses it or lies behind
+    Real length;  // to the point where the ray enters the disc; infinity if there is no such point
     Real cosine;  // of the angle to the normal there
   };
 

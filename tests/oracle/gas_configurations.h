@@ -1,4 +1,4 @@
-// The configuration integral of a gas, by two ways that share nothing with core/gas.
+// The configuration integral of a gas, by two methods that are independent of core/gas.
 //
 // ChainByQuadrature: the transfer operator of a chain, whose kernel K(x, y) is the area of a cell
 // between pistons with the offsets x on its left and y on its right. Only the curve that bounds the
@@ -105,7 +105,7 @@ class ChainByQuadrature {
     }
     return kernel;
   }
-  // The same with the ball on the piston at y.
+  // Kernel() with the ball in contact with the piston at y.
   Matrix Contact() const {
     return Vector::Constant(1) * height_left_.cwiseProduct(weights_).transpose();
   }

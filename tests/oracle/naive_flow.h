@@ -1,5 +1,6 @@
-// An independent flow to compare one event with: long double, every disc asked, the velocity
-// vector reflected as v - 2 (v.n) n. Slow, and it drifts; right for one event from a given state.
+// An independent flow for the comparison of one event. It uses long double, tests every disc, and
+// reflects the velocity as v - 2 (v.n) n. It is slow and its energy drifts, but one event from a
+// given state is accurate.
 #ifndef BALLPISTON_TESTS_ORACLE_NAIVE_FLOW_H_
 #define BALLPISTON_TESTS_ORACLE_NAIVE_FLOW_H_
 

@@ -1,5 +1,5 @@
-// Whether a sample is of a known law: the two classical tests, as numbers that the law itself keeps
-// small. Samples are independent.
+// Tests whether a sample is from a known law: two classical tests, whose results are small for
+// samples of this law. Samples must be independent.
 #ifndef BALLPISTON_TESTS_ORACLE_ONE_SAMPLE_H_
 #define BALLPISTON_TESTS_ORACLE_ONE_SAMPLE_H_
 

@@ -1,5 +1,5 @@
-// A csv table of reference values with more digits than a double, and how far computed values are
-// from it.
+// A csv table of reference values with more digits than a double, and the errors of computed
+// values.
 #ifndef BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
 #define BALLPISTON_TESTS_ORACLE_REFERENCE_TABLE_H_
 
@@ -40,7 +40,7 @@ class ErrorTable {
   // Over the rows, of the largest error in each row.
   double MedianOfRows() const;
 
-  // One line a column: worst error, the row it is in, and the same of `other` beside it.
+  // One line a column: the worst error and its row, and the same for `other`.
   void Print(const std::string& title, const ErrorTable& other,
              const std::string& other_title) const;
 

@@ -1,5 +1,5 @@
-// Whether two samples are of one law: the two classical tests, as numbers that the same law keeps
-// small. Samples are independent, of each other too.
+// Tests whether two samples are from the same law: two classical tests, whose results are small for
+// samples of the same law. Samples must be independent, also of each other.
 #ifndef BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
 #define BALLPISTON_TESTS_ORACLE_TWO_SAMPLE_H_
 

@@ -1,4 +1,4 @@
-// Return times at fixed energies: their errors, and where there are none.
+// Return times at fixed energies: their errors, and the cases without an error.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,29 +18,30 @@ EnsembleSpec SpecOfReturns(double share, double epsilon, int64_t samples, uint64
                 {.samples = samples}, Model::kBilliard, seed);
 }
 
-// A resting piston: the variance is infinite, but only just (its integral grows as the logarithm of
-// the sample's size), so the mean of 1e5 samples is within some percent of that of the volume which
-// is visited, and far from the limit of slow pistons, 14 times as large.
-TEST(ConditionalMeanFreeTime, OfARestingPistonHasNoErrorButTheRightMean) {
+// For a resting piston the variance is infinite; its integral diverges only logarithmically. So the
+// mean of 1e5 samples is within some percent of the mean over the visited volume, and far from the
+// limit of slow pistons, which is 14 times as large.
+TEST(ConditionalMeanFreeTime, OfARestingPistonHasTheCorrectMeanWithoutAnError) {
   const PointSummary summary = RunPoint(SpecOfReturns(0.2, 0, 100'000, 4));
   ASSERT_EQ(summary.estimates.size(), 1u);
   EXPECT_FALSE(summary.estimates[0].standard_error);
   EXPECT_NEAR(summary.estimates[0].value / *summary.estimates[0].exact, 1, 0.1);
 }
 
-// A piston so slow that its round trips, which carry the mean, are not in the sample: 10,000
-// returns hold one of them or more with half of the seeds, 500 with 4 % of them.
-TEST(ConditionalMeanFreeTime, GivesNoErrorWhereLongReturnsAreNotSeen) {
+// A piston so slow that its round trips, which dominate the mean, are rarely in the sample: 10,000
+// returns contain a round trip for half of the seeds, 500 returns for 4 % of the seeds.
+TEST(ConditionalMeanFreeTime, GivesNoErrorIfLongReturnsAreTooRare) {
   const PointSummary summary = RunPoint(SpecOfReturns(0.3, 1e-12, 500, 5));
   EXPECT_FALSE(summary.estimates[0].standard_error);
   EXPECT_LT(summary.estimates[0].value, 0.5 * *summary.estimates[0].exact);
 }
 
-// Looks at doubling numbers of samples stop early by luck so seldom that the stated error stays
-// honest. Of 10,000 seeds 69.6 % were found within one and 95.3 % within two of it. Here 2,000,
-// with errors of 1.0 % and 0.47 %, four of them left for either side: 1.3e-4 false alarms in all.
-// An error stated 10 % too small would put 63.2 % within one and 92.8 % within two.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestWhereAToleranceStops) {
+// The tolerance is judged at doubling numbers of samples. This rarely stops too early by chance, so
+// the stated error stays valid. Of 10,000 seeds 69.6 % were within one stated error and 95.3 %
+// within two. Here there are 2,000 seeds, so these shares have errors of 1.0 % and 0.47 %; the
+// windows are four errors wide on either side: 1.3e-4 false alarms in all. If the stated error were
+// 10 % too small, 63.2 % would be within one and 92.8 % within two.
+TEST(ConditionalMeanFreeTime, ErrorsAreValidWhenAToleranceStops) {
   constexpr int kSeeds = 2000;
   double within_one = 0, within_two = 0;
   for (uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -57,7 +58,7 @@ TEST(ConditionalMeanFreeTime, ErrorsAreHonestWhereAToleranceStops) {
 }
 
 // As for the equilibrium; here samples are independent, so the variance is 1 but for the skewness.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestOverManySeeds) {
+TEST(ConditionalMeanFreeTime, ErrorsAreValidOverManySeeds) {
   Moments z;
   for (uint64_t seed = 0; seed < 200; ++seed) {
     z.Add(*RunPoint(SpecOfReturns(0.6, 0.125, 5000, seed)).estimates[0].ZScore());
@@ -66,9 +67,9 @@ TEST(ConditionalMeanFreeTime, ErrorsAreHonestOverManySeeds) {
   EXPECT_NEAR(*z.Variance(), 1, 4 * 0.1);
 }
 
-// With the fewest long returns that get an error, 50 to 60, skewness moves the z-scores: their
-// variance is some 1.2. Windows of 4 errors of 200 seeds: 6e-5 false alarms each.
-TEST(ConditionalMeanFreeTime, ErrorsAreHonestWithFewLongReturns) {
+// With the fewest long returns that permit an error, 50 to 60, skewness changes the z-scores: their
+// variance is about 1.2. Windows of 4 errors of 200 seeds: 6e-5 false alarms each.
+TEST(ConditionalMeanFreeTime, ErrorsAreValidWithFewLongReturns) {
   for (const double epsilon : {1e-6, 0.5 - 1e-6}) {
     Moments z;
     for (uint64_t seed = 0; seed < 200; ++seed) {
@@ -84,9 +85,8 @@ TEST(ConditionalMeanFreeTime, ErrorsAreHonestWithFewLongReturns) {
   }
 }
 
-// Where tips are narrow, wide, and where the cell is so small that rounding matters most. Windows
-// of 4 errors beside the error that is stated: 6e-5 false alarms each. The samples tell 0.07 to
-// 0.14 %.
+// Narrow tips, wide tips, and a cell so small that rounding matters most. The windows are the
+// stated error plus 4 standard errors: 6e-5 false alarms each. Standard errors are 0.07 to 0.14 %.
 TEST(ConditionalMeanFreeTime, SinglePrecisionIsWithinItsStatedError) {
   for (const double rho : {0.501, 0.65, kSingleMaxRho}) {
     const PointParameters point = {{kRho, rho}, {kDelta, PairDeltaBound(rho)}, {kEpsilon, 0.45}};

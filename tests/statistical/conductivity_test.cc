@@ -1,4 +1,4 @@
-// The constants of the conductivity, and gaps of closed chains, at refinements that take long.
+// The constants of the conductivity, and the gaps of chains, with slow refinements.
 #include "core/conductivity/conductivity.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ struct ClosedChain {
 
 // The values of docs/conductivity.md, by fewer degrees. The stated error is
 // the change by the last term, which can be half of the true error.
-TEST(ChainGap, ClosedChainsHaveTheirDocumentedGaps) {
+TEST(ChainGap, ChainsHaveTheirDocumentedGaps) {
   const ClosedChain chains[] = {
       {{2, 1, 2}, {12, 14, 16, 18, 20}, {0.113388479, 2e-9}},
       {{1, 2, 1}, {12, 14, 16, 18, 20}, {0.146330848, 1e-9}},

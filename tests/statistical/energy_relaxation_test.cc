@@ -1,10 +1,10 @@
-// How the energy relaxes: the jump process against the spectrum, the billiard against both.
+// Relaxation of the energy: the jump process is compared with the spectrum, the billiard with both.
 //
 // Values at different lags come from the same orbits and are correlated. So a curve, at every other
-// lag, is compared by Hotelling's T^2, with the covariance that the means of some hundred
-// independent blocks show: what chi^2 is for independent numbers, for ones that are not. Where
-// single lags are compared, the largest of n scores is above 4.5 in at most n times 6.8e-6 of all
-// cases, whatever the correlations (Bonferroni).
+// lag, is compared by Hotelling's T^2, which generalises chi^2 to correlated numbers. The
+// covariance is that of the means of some hundred independent blocks. If single lags are compared,
+// the largest of n scores is above 4.5 in at most n times 6.8e-6 of all cases, for all correlations
+// (Bonferroni).
 #include "core/experiment/energy_relaxation.h"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,7 @@ void Print(const Curve& curve) {
 
 // 2 million orbits, 80 million jumps. False alarms: 3e-5 for the curve, 33 * 6.8e-6 for the lags,
 // 6e-5 for the integral; 3e-4 in all.
-TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
+TEST(EnergyRelaxation, AutocorrelationOfTheJumpProcessMatchesTheSpectrum) {
   const Blocks blocks = RunInBlocks(512, 4096, 0);
   const PointSummary& summary = blocks.summary;
   const Curve& curve = summary.curves.front();
@@ -133,8 +133,8 @@ TEST(EnergyRelaxation, JumpProcessDecaysOverThreeDecadesAsTheSpectrumSays) {
   EXPECT_GT(HotellingScore(blocks.curves, limit.array().pow(1.005)), 10);
 }
 
-// The same rates, twice. At lag 0 the energy is given.
-TEST(EnergyRelaxation, JumpProcessForgetsItsEnergyAsTheSpectrumSays) {
+// The same rates of false alarms, twice. At lag 0 the energy is given.
+TEST(EnergyRelaxation, MeanEnergyOfTheJumpProcessMatchesTheSpectrum) {
   for (const double epsilon : {0.01, 0.4}) {
     const Blocks blocks = RunInBlocks(128, 16384, 2, epsilon);
     const PointSummary& summary = blocks.summary;
@@ -171,8 +171,8 @@ void Print(const char* of, const Difference& difference) {
             << 100 * difference.standard_error << " %\n";
 }
 
-// Slow pistons come back by the clock: 4.9 % +- 0.1 % was measured with 4 million orbits. Windows
-// of 4 errors of both: 6e-5.
+// Slow pistons return after a fixed period: 4.9 % +- 0.1 % was measured with 4 million orbits.
+// Windows of 4 errors of both: 6e-5.
 TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
   const Difference large = FromLimit(RunPoint(SpecOfOrbits(Model::kBilliard, 0.2, 200'000)));
   Print("delta = 0.2: ", large);
@@ -180,8 +180,8 @@ TEST(EnergyRelaxation, BilliardIsSlowerThanTheLimitAtLargeDelta) {
   EXPECT_NEAR(large.value, 0.049, 4 * std::hypot(large.standard_error, 0.001));
 }
 
-// What is expected of the limit's error bounds it, and a pilot at a larger delta does: 4 errors of
-// the billiard's, 6e-5.
+// The expected limit error is a bound of the difference, and so is the bound from a pilot at a
+// larger delta: 4 errors of the billiard's result, 6e-5.
 TEST(EnergyRelaxation, BilliardIsNearTheLimitAtSmallDelta) {
   const PointParameters point = PaperPoint(0.05);
   const Difference small =
@@ -202,8 +202,8 @@ double Score(const CurvePoint& a, const CurvePoint& b) {
   return std::fabs(a.value - b.value) / std::hypot(*a.standard_error, *b.standard_error);
 }
 
-// In equilibrium C(0) is the energies' variance, 1/45 whatever delta. With it 36 scores below 4.5,
-// 2e-4 false alarms; orbits are independent.
+// In equilibrium C(0) is the variance of the energies, 1/45 at every delta. With it there are 36
+// scores below 4.5, 2e-4 false alarms; orbits are independent.
 TEST(EnergyRelaxation, EnginesAgree) {
   EnsembleSpec reference = SpecOfOrbits(Model::kBilliardReference, 0.2, 20'000);
   reference.seed = 3;
@@ -223,9 +223,9 @@ TEST(EnergyRelaxation, EnginesAgree) {
   }
 }
 
-// The master equation's solution, at energies from where an expansion in eigenfunctions alone was
-// wrong by percents in some bins: relative entropies of 3 million walks within 4.5 errors, a false
-// alarm in 12,000 seeds.
+// The master equation's solution, from initial energies at which an expansion only in
+// eigenfunctions had errors of percents in some bins: relative entropies of 3 million walks
+// within 4.5 errors, a false alarm in 12,000 seeds.
 TEST(EnergyRelaxation, LawsOfManyWalksSolveTheMasterEquation) {
   for (const double epsilon : {0.1, 0.4}) {
     const PointParameters point = PaperPoint(0.1, epsilon);

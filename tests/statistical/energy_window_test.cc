@@ -1,13 +1,13 @@
-// A series of ball-piston collisions in equilibrium, and those of them that leave the piston with
-// an energy in a window around ep. What the paper's eq. taumftepdelta prints, the mean return time
-// after such a collision over the width of the window, has no limit as the width falls. These have
-// one:
+// A series of ball-piston collisions in equilibrium, and among them the collisions after which the
+// piston's energy is in a window around ep. The quotient in the paper's eq. taumftepdelta, the mean
+// return time after such a collision over the width of the window, has no limit as the width falls.
+// Two other quantities have a limit:
 //
 //   mean return time after a collision in the window     -> tau(ep)
-//   mean time from one to the next of them, times width  -> sqrt(2 ep) tau(ep)
+//   mean time between two such collisions, times width   -> sqrt(2 ep) tau(ep)
 //
-// The energies after collisions have the density phi(e)/sqrt(2 e) (eq. intcnuep), and after a
-// collision that leaves e the mean return time is tau(e) = tau_bp/phi(e). So in a window (a, b)
+// The energies after collisions have the density phi(e)/sqrt(2 e) (eq. intcnuep). After a collision
+// with the final energy e the mean return time is tau(e) = tau_bp/phi(e). So in a window (a, b)
 //
 //   mean return time = tau_bp (sqrt(2 b) - sqrt(2 a))/share,  spacing = tau_bp/share,
 //   share = int_a^b phi(e)/sqrt(2 e) de,
@@ -64,7 +64,7 @@ WindowTimes ExactTimes(const EnergyWindow& window) {
           .spacing = spacing};
 }
 
-// What mean_return and spacing times width tend to.
+// The limits of mean_return and of spacing times width.
 WindowTimes Limits(double energy) {
   const double tau = ConditionalMeanFreeTime(kPaperPair, energy);
   return {.mean_return = tau, .spacing = std::sqrt(2 * energy) * tau};
@@ -139,7 +139,7 @@ double ZScoreOf(const BatchMeans& measured, double exact) {
 
 // Within 4 standard errors, each 0.07 to 0.3 % of the value: 16 comparisons, 6e-5 false alarms
 // each, one false alarm in 1000 choices of the seed.
-TEST(EnergyWindows, SampledTimesAreThoseOfTheWindow) {
+TEST(EnergyWindows, SampledTimesMatchTheExactTimesOfTheWindow) {
   for (size_t i = 0; i < kEnergyWindows.size(); ++i) {
     const WindowTimes exact = ExactTimes(kEnergyWindows[i]);
     const BatchMeans returns = SampledWindows().ReturnTimes(i);
@@ -155,8 +155,8 @@ TEST(EnergyWindows, SampledTimesAreThoseOfTheWindow) {
   }
 }
 
-// The narrowest windows against the limits themselves. What the limits leave out there is 0.13 % of
-// the spacing and less of the mean return time: the test below. False alarms as above.
+// Compares the narrowest windows with the limits. The difference of these windows from the limits
+// is 0.13 % of the spacing and less of the mean return time (next test). False alarms as above.
 TEST(EnergyWindows, SampledTimesOfNarrowWindowsAreNearTheirLimits) {
   for (const size_t i : {3u, 7u}) {
     const EnergyWindow& window = kEnergyWindows[i];
@@ -172,8 +172,8 @@ TEST(EnergyWindows, SampledTimesOfNarrowWindowsAreNearTheirLimits) {
   }
 }
 
-// Both tend to their limits as the square of the width: a window of half the width is off by a
-// quarter. Above 1/4 the spacing has nothing to lose: phi(e)/sqrt(2 e) is constant there.
+// The differences from the limits fall as the square of the width: half the width gives a quarter
+// of the difference. Above 1/4 the spacing has no difference, because phi(e)/sqrt(2 e) is constant.
 TEST(EnergyWindows, TimesTendToTheirLimitsAsTheSquareOfTheWidth) {
   for (const double energy : {0.03125, 0.125, 0.375, 0.45}) {
     const WindowTimes limit = Limits(energy);
@@ -186,7 +186,7 @@ TEST(EnergyWindows, TimesTendToTheirLimitsAsTheSquareOfTheWidth) {
   }
 }
 
-// The quotient that the paper prints doubles from width to half of it: it has no limit.
+// The quotient that the paper prints doubles if the width is halved, so it has no limit.
 TEST(EnergyWindows, MeanReturnTimeOverWidthGrowsWithoutBound) {
   const auto printed = [](double width) { return ExactTimes({0.125, width}).mean_return / width; };
   for (const double width : {0.1, 0.01, 1e-3, 1e-4}) {

@@ -29,7 +29,7 @@ void ExpectExactMeans(const PointSummary& summary, int count) {
     if (const auto z = estimate.ZScore()) {
       EXPECT_LT(std::fabs(*z), 4.5) << estimate.name;
     } else {
-      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // where nothing scatters
+      EXPECT_EQ(estimate.value, estimate.exact) << estimate.name;  // a value without scatter
     }
   }
   EXPECT_EQ(compared, count);
@@ -51,7 +51,7 @@ class EngineAtGeometry : public testing::TestWithParam<std::tuple<Model, RadiusA
 
 // Three means in equilibrium and one at each of six energies: 180 comparisons in all, one false
 // alarm in 800 choices of the seed. The test detects errors of 1 % (lanes) or 3 % (reference).
-TEST_P(EngineAtGeometry, GivesTheMeansOfTheClosedForms) {
+TEST_P(EngineAtGeometry, MeansMatchTheClosedForms) {
   const Target collisions = {.collisions = SamplesBy(model(), 200'000)};
   ExpectExactMeans(RunPoint(SpecOf(&kEquilibrium, point(), collisions, model(), kSeedOfEngines)),
                    3);
@@ -81,7 +81,7 @@ class Engines : public testing::TestWithParam<Model> {};
 // The invariant law is its own ingoing law at every delta: the divergence is noise, within 4 errors
 // of its floor (6e-5), and the means are the closed forms: 30 divergences and 90 means, one false
 // alarm in 400 choices of the seed.
-TEST_P(Engines, FirstHitsOfTheInvariantLawSitOnTheNoiseFloor) {
+TEST_P(Engines, FirstHitsOfTheInvariantLawAreAtTheNoiseFloor) {
   const int64_t samples = SamplesBy(GetParam(), 200'000);
   for (const double delta : {0.325, 0.1, 0.05}) {
     for (const double epsilon : {0.03125, 0.125, 0.25, 0.375, 0.46875}) {

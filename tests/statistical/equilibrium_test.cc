@@ -30,7 +30,7 @@ std::array<Moments, 3> ZScoresOfSeeds(double share, int64_t collisions) {
 // z-scores of 200 seeds: their variance has standard error sqrt(2/200) = 0.1, their mean 0.07. Were
 // the errors wrong by a factor 1.2 the variance would be 1.44. With 64 to 128 batches the ratio has
 // heavier tails than the normal law (1.03 expected). Windows of 4 errors: 6e-5 false alarms each.
-TEST(Equilibrium, ErrorsAreHonestOverManySeeds) {
+TEST(Equilibrium, ErrorsAreValidOverManySeeds) {
   const std::array<Moments, 3> z = ZScoresOfSeeds(0.6, 5000);
   for (const Moments& moments : z) {
     std::cout << "mean " << moments.mean << "  variance " << *moments.Variance() << "\n";
@@ -40,7 +40,7 @@ TEST(Equilibrium, ErrorsAreHonestOverManySeeds) {
 }
 
 // The fewest collisions that get an error; the ratio's skewness costs a little.
-TEST(Equilibrium, ErrorsAreHonestFromTheFewestCollisionsOn) {
+TEST(Equilibrium, ErrorsAreValidWithTheFewestCollisions) {
   for (const Moments& moments : ZScoresOfSeeds(0.3, 500)) {
     std::cout << "mean " << moments.mean << "  variance " << *moments.Variance() << "\n";
     EXPECT_NEAR(moments.mean, 0, 4 * 0.075);

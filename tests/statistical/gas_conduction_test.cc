@@ -1,5 +1,5 @@
-// Gases between a hot and a cold reservoir, against an independent plain program: heat currents of
-// tests/data/gas.csv, from where the numbers and their standard errors are copied.
+// Compares gases between a hot and a cold reservoir with an independent plain program. The heat
+// currents and their standard errors are copied from tests/data/gas.csv.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,8 +47,9 @@ double UnitOfRates(const GasGeometry& gas) {
   return std::sqrt(2 * std::numbers::pi) * InfiniteGasExchangeRate(gas, 1);
 }
 
-// The last digit printed is the least error of the reference's temperatures; their own standard
-// errors are not told, but their run was no shorter than this one. Four standard errors.
+// The error of the reference's temperatures is at least the last printed digit. Their standard
+// errors are unknown, but the reference's run was at least as long as this run. Four standard
+// errors.
 void ExpectTemperatures(const GasSamples& samples, const std::vector<double>& expected) {
   for (size_t body = 0; body < expected.size(); ++body) {
     const Moments& temperature = samples.temperatures[body];

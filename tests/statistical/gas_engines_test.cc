@@ -1,4 +1,4 @@
-// Compares the laws of the lanes' gas with those of the reference gas. Each engine runs its own
+// Compares the laws of the gas in lanes with those of the reference gas. Each engine runs its own
 // replicas. The points range from narrow tips to nearly vanishing cells, in several shapes.
 #include <gtest/gtest.h>
 

@@ -33,9 +33,9 @@ void ExpectGammaHalf(const std::vector<double>& energies) {
 
 class GasInEquilibriumOf : public testing::TestWithParam<std::tuple<GasEngine, const char*>> {};
 
-// The mean over the canonical ensemble, of many replicas. The rate is off by four standard errors,
-// 0.2 % to 0.6 % each, in 6e-5 of all cases; the energies of all bodies at the end are independent.
-// Together 2e-4 false alarms each.
+// The mean over the canonical ensemble, from many replicas. The rate differs by four standard
+// errors, of 0.2 % to 0.6 % each, in 6e-5 of all cases; the final energies of all bodies are
+// independent. Together 2e-4 false alarms each.
 TEST_P(GasInEquilibriumOf, HasItsExactRateAndItsGammaLaws) {
   const auto& [engine, shape] = GetParam();
   const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
@@ -69,7 +69,8 @@ TEST(JumpGas, KeepsTheGammaLaws) {
   ExpectGammaHalf(LastEnergies(samples, 4000, samples.last.size()));
 }
 
-// Twice the static conductivity, from the squares of what exchanges carry over half a cell.
+// Twice the static conductivity, from the squares of the energies that exchanges carry over half a
+// cell.
 class SquaresMeter : public CurrentMeter {
  public:
   explicit SquaresMeter(double& sum) : sum_(sum) {}
@@ -83,7 +84,7 @@ class SquaresMeter : public CurrentMeter {
 
 // CarriedCurrent leaves these squares out, because their mean is known. To 0.3 % and 1.4 %; four
 // standard errors are exceeded in 6e-5 of all cases.
-TEST(CarriedCurrent, SquaresOfWhatExchangesCarryAreTheStaticConductivity) {
+TEST(CarriedCurrent, SquaredExchangesGiveTheStaticConductivity) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4");
   const double rate = GasExchangeRate(gas, 1), duration = 8 / rate;
   for (const auto& [engine, replicas] :
@@ -118,7 +119,7 @@ void ExpectEquilibriumBetweenEqualReservoirs(GasEngine engine, uint64_t replicas
   EXPECT_LT(StandardErrorsOff(samples.rate, InfiniteGasExchangeRate(gas, 1)), 4);
   const auto balls = static_cast<size_t>(gas.balls());
   for (size_t body = 0; body < samples.temperatures.size(); ++body) {
-    // Of an outermost piston the jump process knows the mean alone.
+    // For an outermost piston the jump process has only the mean.
     const Moments& temperature = samples.temperatures[body];
     if (temperature.m2 < 1e-6) continue;
     EXPECT_LT(StandardErrorsOff(temperature, 1), 4) << "body " << body;

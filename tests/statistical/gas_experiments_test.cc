@@ -1,5 +1,5 @@
-// The experiments with a gas, by long runs: against exact values, against independent programs
-// (tests/data/gas.csv), and their stated errors against those that are measured.
+// Long runs of the experiments with a gas. Compares them with exact values and with independent
+// programs (tests/data/gas.csv), and the stated errors with measured errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ GasGeometry GeometryAt(const EnsembleSpec& spec) {
   return GasGeometryOf(PointAt(spec, 0), GasEnds::kPeriodic);
 }
 
-// The relative error that the plan states for so many samples, over the one that a run measures.
+// The relative error that the plan states for this number of samples, over the measured error.
 double StatedOverMeasured(const EnsembleSpec& spec) {
   const PointSummary summary = RunPoint(spec);
   const Estimate& first = summary.estimates.front();
@@ -49,7 +49,7 @@ double StatedOverMeasured(const EnsembleSpec& spec) {
 
 // An error measured with 1000 replicas is itself known to 1/sqrt(2000) = 2.2 %. The windows are 20
 // % wide: a statement that is right within 12 % fails for one seed in 3000.
-TEST(GasExperiments, StatedErrorsInEquilibriumAreTheMeasuredOnes) {
+TEST(GasExperiments, StatedErrorsInEquilibriumMatchTheMeasuredErrors) {
   for (const Model model : {Model::kMarkov, Model::kBilliard}) {
     for (const GasShape& shape : {GasShape{4}, GasShape{16}, GasShape{4, 4, true}}) {
       EXPECT_NEAR(StatedOverMeasured(Equilibrium(0.1, shape, model, 1000)), 1, 0.2);
@@ -59,7 +59,7 @@ TEST(GasExperiments, StatedErrorsInEquilibriumAreTheMeasuredOnes) {
 
 // One constant serves all longer chains, and one all wider lattices, although measured errors
 // differ by up to 25 % between shapes. An error measured with 4000 replicas is itself known to 3 %.
-TEST(GasExperiments, StatedErrorsOfTheConductivityAreTheMeasuredOnes) {
+TEST(GasExperiments, StatedErrorsOfTheConductivityMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](Model model, const GasShape& shape, double delta) {
     EnsembleSpec spec = Equilibrium(delta, shape, model, 4000);
     spec.target.estimate = "conductivity";
@@ -76,7 +76,7 @@ TEST(GasExperiments, StatedErrorsOfTheConductivityAreTheMeasuredOnes) {
 // Against the value of Varadhan's formula: within four errors and 3e-6, which the window and the
 // size of the gas may leave. Without the test function the error is larger by a factor of 3.5 or
 // 4.4. False alarms: 1.3e-4 each.
-TEST(GasExperiments, TheJumpProcessConductsAsTheSpectrumSays) {
+TEST(GasExperiments, ConductivityOfTheJumpProcessMatchesTheSpectrum) {
   for (const auto& [shape, replicas] : {std::pair(GasShape{16}, 10'000), {{8, 8, true}, 2000}}) {
     const EnsembleSpec spec = Equilibrium(0.1, shape, Model::kMarkov, replicas);
     const auto experiment = PointExperiment::Create(spec, 0);
@@ -96,7 +96,7 @@ TEST(GasExperiments, TheJumpProcessConductsAsTheSpectrumSays) {
 }
 
 // Between reservoirs at 1.05 and 0.95 1000 replicas know the current to 13 % only, 10,000 to 4 %.
-TEST(GasExperiments, StatedErrorsOfTheCurrentAreTheMeasuredOnes) {
+TEST(GasExperiments, StatedErrorsOfTheCurrentMatchTheMeasuredErrors) {
   const auto stated_over_measured = [](const GasShape& shape, double hot, double cold, Model model,
                                        double delta = 0.2, int64_t replicas = 1000) {
     return StatedOverMeasured(Conduction(delta, shape, hot, cold, model, replicas));
@@ -124,8 +124,8 @@ double Prefactor(double delta, const GasShape& shape) {
   return InfiniteGasExchangeRate(geometry, 1) * std::sqrt(2 * std::numbers::pi);
 }
 
-// Temperatures of the independent programs have no errors there; 0.004 is some four of theirs.
-TEST(GasExperiments, TheJumpProcessHasTheCurrentOfAnIndependentProgram) {
+// The table has no errors of the independent programs' temperatures; 0.004 is about four errors.
+TEST(GasExperiments, CurrentOfTheJumpProcessMatchesAnIndependentProgram) {
   const PointSummary two = RunPoint(Conduction(0.1, {2}, 1.5, 0.5, Model::kMarkov, 20'000));
   const double unit = Prefactor(0.1, {2});
   ExpectAgrees(two.estimates[0], 0.098723 * unit, 0.000181 * unit);
@@ -137,7 +137,7 @@ TEST(GasExperiments, TheJumpProcessHasTheCurrentOfAnIndependentProgram) {
   ExpectAgrees(eight.estimates[0], 0.030476 * unit, 0.000255 * unit);
 }
 
-TEST(GasExperiments, TheBilliardHasTheCurrentOfAnIndependentProgram) {
+TEST(GasExperiments, CurrentOfTheBilliardMatchesAnIndependentProgram) {
   const PointSummary two = RunPoint(Conduction(0.15, {2}, 2, 1, Model::kBilliard, 10'000));
   ExpectAgrees(two.estimates[0], 0.019931, 0.000150);
   const double expected[] = {1.976, 1.752, 1.512, 1.269, 1.021};
@@ -166,7 +166,7 @@ TEST(GasExperiments, ExchangeRatesAndTemperaturesInEquilibriumAreExact) {
 // z-scores of 200 seeds: their variance has the standard error 0.1, their mean 0.07. Windows of
 // four errors: 6e-5 false alarms each. With 64 replicas the ratio's tails are heavier than the
 // normal law's (1.03 expected).
-TEST(GasExperiments, ErrorsInEquilibriumAreHonestOverManySeeds) {
+TEST(GasExperiments, ErrorsInEquilibriumAreValidOverManySeeds) {
   std::vector<Moments> z(3);
   for (uint64_t seed = 0; seed < 200; ++seed) {
     EnsembleSpec spec = Equilibrium(0.2, {3}, Model::kBilliard, 64);

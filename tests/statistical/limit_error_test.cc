@@ -30,21 +30,21 @@ class Dice {
   std::mt19937_64 engine_{2026};
 };
 
-// Outside the zone where no relaxation time is told.
+// An energy outside of the zone without a relaxation time.
 double SomeEnergy(Dice& dice) {
   double epsilon = dice.Between(0.01, 0.49);
   while (!HasRelaxationTime(epsilon)) epsilon = dice.Between(0.01, 0.49);
   return epsilon;
 }
 
-// A half of them near the ends, where tips are narrow and where the cell vanishes.
+// Half of the radii are near the ends, where tips are narrow and where the cell vanishes.
 double SomeRho(Dice& dice) {
   if (dice.Between(0, 1) < 0.5) return dice.Between(0.501, 0.705);
   if (dice.Between(0, 1) < 0.5) return 0.5 + dice.LogBetween(0.001, 0.1);
   return kMaxRho - dice.LogBetween(kMaxRho - 0.705, 0.1);
 }
 
-// Deltas where the difference is seen within a second.
+// Deltas at which the difference can be measured within a second.
 PointParameters SomePoint(Dice& dice) {
   const double rho = SomeRho(dice);
   const double bound = PairDeltaBound(rho);
@@ -72,7 +72,8 @@ Ratio DifferenceOverBound(const PointParameters& point, uint64_t seed) {
 // A difference is outside if it is beyond the bound by more than two of its errors: that happens in
 // 2.3 % of all cases where the true one is just within. If 95 % of the domain were covered, and all
 // of it just so, 7.2 % would be outside, and more than 7 of 40 points in 0.9 % of all cases.
-// Found: none. Of a quarter of the bound more than 7 are outside, so that would be detected.
+// Found: no point outside. More than 7 points are outside of a quarter of the bound, so a bound
+// that is four times too small would be detected.
 TEST(LimitError, StatedErrorCoversTheBilliard) {
   constexpr int kPoints = 40, kMostOutside = 7;
   Dice dice;

@@ -1,6 +1,6 @@
-// Where collisions are too rare for samples of them, the lanes and the reference are compared by
-// the joint law of the ball after a thousand wall hits. The piston needs no comparison of its own:
-// its place is a function of time alone.
+// If collisions are too rare to sample, the lanes and the reference are compared by the joint law
+// of the ball after a thousand wall hits. The piston needs no comparison, because its position is a
+// function of time only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ BallOnWall AfterHits(ReferenceFlow& flow, uint64_t hits) {
   return {flow.state().position, flow.state().direction, length};
 }
 
-// At speed 1, the piston at rest where no ball comes.
+// The ball has speed 1; the piston rests out of the ball's reach.
 ReferenceFlow BallAlone(const PairGeometry& geometry, uint64_t seed, uint64_t sample) {
   CounterRandom random(seed, 31, sample);
   PairState state = DrawFromFlowMeasure(geometry, random);

@@ -1,5 +1,5 @@
-// The Markov property of the billiard's energy exchanges, and how it fails at a delta that is not
-// small: every estimate of the experiment at delta = 0.3, 0.2, 0.1, 0.05.
+// The Markov property of the billiard's energy exchanges, and the deviations from it at larger
+// delta: every estimate of the experiment at delta = 0.3, 0.2, 0.1, 0.05.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,17 +47,16 @@ double Signal(const Estimate& estimate) {
   return (estimate.value - estimate.noise_floor.value_or(0)) / *estimate.standard_error;
 }
 
-// At every delta, as the invariant law at fixed energies is its own ingoing law: 4 standard errors
-// of the noise, 6e-5 false alarms each.
+// This holds at every delta, because the invariant law at fixed energies is its own ingoing law: 4
+// standard errors of the noise, 6e-5 false alarms each.
 void ExpectTransitionsOfTheKernel(const std::vector<Estimates>& measured) {
   for (const Estimates& at : measured) {
     EXPECT_LT(std::fabs(Signal(at.at("transition_divergence"))), 4);
   }
 }
 
-// As delta^2, within a factor of two (there is a logarithm beside it): each distance at most (and
-// at least) what the step in delta makes of the one before. The least is 5 noise floors: no false
-// alarm to speak of.
+// The distances fall as delta^2 times a logarithm: from step to step the ratio is that of delta^2
+// within a factor of two. The smallest distance is 5 noise floors, so false alarms are negligible.
 void ExpectHittingTimesToBecomeExponential(const std::vector<Estimates>& measured) {
   for (size_t i = 1; i < std::size(kDeltas); ++i) {
     const Estimate& before = measured[i - 1].at("hitting_time_ks_distance");
@@ -69,8 +68,8 @@ void ExpectHittingTimesToBecomeExponential(const std::vector<Estimates>& measure
   }
 }
 
-// Well above the noise at delta = 0.3 and less by more than 4 standard errors at each smaller one
-// as long as anything can be seen: 6e-5 false alarms each.
+// The memory is well above the noise at delta = 0.3. At each smaller delta it is less by more than
+// 4 standard errors, as long as it is above the noise: 6e-5 false alarms each.
 void ExpectMemoryToFade(const std::vector<Estimates>& measured) {
   for (const char* name : {"memory_divergence", "memory_correlation"}) {
     EXPECT_GT(Signal(measured[0].at(name)), 40) << name;

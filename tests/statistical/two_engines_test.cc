@@ -30,7 +30,7 @@ constexpr size_t kBins = 1000;
 
 struct Point {
   double rho;
-  double share;  // delta in its bound: large ones, where a return takes some ten to hundred events
+  double share;  // delta over its bound; large, so that a return takes ten to a hundred events
   double epsilon;
   double exponent;
   double events = HUGE_VAL;  // that each engine may take, about
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Point{0.69, 1, 0.375, 5}, Point{0.7, 1, 0.46875, 1},
                     Point{0.705, 1, 0.499, 10}));
 
-// Where a thousand samples take no longer than that.
+// The corners at which a thousand samples take no longer than the points above.
 std::vector<Point> Corners() {
   constexpr double kEvents = 1e7;
   std::vector<Point> corners;

@@ -1,4 +1,4 @@
-// Whether the tests of two samples say what they should: of one law little, of two laws much.
+// Tests of the two-sample tests: results are small for samples of one law, large for two laws.
 #include "tests/oracle/two_sample.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(KolmogorovSmirnov, HasKolmogorovsMeanForSamplesOfOneLaw) {
   EXPECT_NEAR(values.mean, 0.8687, 4 * 0.013);
 }
 
-TEST(TwoSamples, OfDifferentLawsAreTold) {
+TEST(TwoSamples, DifferentLawsAreDetected) {
   const std::vector<double> first = Lifetimes(0, 100'000, 0), second = Lifetimes(1, 100'000, 0.05);
   EXPECT_GT(ChiSquareScore(Histogrammed(first), Histogrammed(second)), 4);
   EXPECT_GT(KolmogorovSmirnov(first, second), 2.3);

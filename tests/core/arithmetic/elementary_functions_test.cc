@@ -14,7 +14,7 @@
 namespace ballpiston {
 namespace {
 
-// |value - exact| in units in the last place of the exact one. A long double has at least eleven
+// |value - exact| in units in the last place of the exact value. A long double has at least eleven
 // bits more, so the C library's rounding of `exact` is a thousandth of a unit.
 double UlpError(double value, long double exact) {
   static_assert(std::numeric_limits<long double>::digits >= 64);
@@ -77,7 +77,7 @@ TEST(ElementaryFunctions, ExponentialsAreWithinTheirBound) {
     const double x = random.Uniform(), sign = random.Uniform() < 0.5 ? -1 : 1;
     for (const double scale : {1e-300, 1e-16, 1e-3, 1.0, 30.0, 700.0}) compare(sign * scale * x);
     compare(sign * std::exp2(-60 * x));
-    // Where the power of two beside exp r changes.
+    // Arguments at which the power of two in 2^k exp(r) changes.
     compare((std::floor(1000 * x) - 500.5) * std::numbers::ln2 * (1 + 0x1p-50 * sign));
   }
   std::cout << "worst error of an exponential: " << worst << " ulp\n";

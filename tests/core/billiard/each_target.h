@@ -1,4 +1,4 @@
-// Runs a test under every instruction set that this machine has and the build knows.
+// Runs a test under every instruction set that this machine and the build support.
 #ifndef BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
 #define BALLPISTON_TESTS_CORE_BILLIARD_EACH_TARGET_H_
 
@@ -29,7 +29,7 @@ inline void ForEachTarget(const std::function<void(int64_t target)>& test) {
   hwy::GetChosenTarget().DeInit();
 }
 
-// The same for the targets with fused multiply-add only; these must all give the same bits.
+// Runs a test under the targets with fused multiply-add. All of these must give the same bits.
 inline void ForEachFusedTarget(const std::function<void()>& test) {
   int targets = 0;
   ForEachTarget([&](int64_t target) {

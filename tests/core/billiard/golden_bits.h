@@ -1,4 +1,4 @@
-// What the orbits and experiments of golden_test.cc gave when their bits were last meant to change.
+// The fingerprints of the orbits and experiments of golden_test.cc, from the last intended change.
 // If the bits differ, this command prints the new lines:
 //   statistical_test --gtest_filter='*Golden*' | grep '^{'
 #ifndef BALLPISTON_TESTS_CORE_BILLIARD_GOLDEN_BITS_H_

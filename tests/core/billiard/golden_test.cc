@@ -2,15 +2,15 @@
 // any number of threads, in any order of the blocks, and in every later version with the same
 // kEngineVersion.
 //
-// To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that no
-// point of one version goes on from a checkpoint of the other. Then run `statistical_test
+// To change bits on purpose, raise kEngineVersion in core/engine_version.h, so that no point is
+// resumed from a checkpoint of another version. Then run `statistical_test
 // --gtest_filter='*Golden*'` and put the lines that it prints into golden_bits.h. An unintended
 // change of bits is a defect.
 //
 // The closed forms beside the estimates and the relative entropy are not compared: their sines and
 // logarithms come from the C library. The summaries of experiments that are compared with the limit
-// are not compared either, because the spectrum contributes to their estimates, nor are those of
-// gases: the exact exchange rate contributes to theirs.
+// are not compared either, because the spectrum contributes to their estimates. Neither are the
+// summaries of gases, because the exact exchange rate contributes to them.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -64,7 +64,7 @@ TEST(LaneBalls, FewerRecordsAreEveryNthHit) {
 }
 
 // The numbers of balls leave vectors, groups and batches incomplete, for vectors of 2 to 8 lanes.
-TEST(LaneBalls, EachBallFliesAsItDoesAlone) {
+TEST(LaneBalls, EachBallIsIndependentOfTheOthers) {
   ForEachTarget([](int64_t) {
     const std::vector<LaneFrame> starts = MiddleStarts(100);
     for (const size_t count : {1u, 5u, 7u, 13u, 25u, 49u, 100u}) {

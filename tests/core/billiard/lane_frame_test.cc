@@ -13,8 +13,8 @@
 namespace ballpiston {
 namespace {
 
-// Every wall hit of an orbit, so all discs and directions: there and back to some ulps.
-TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
+// Every wall hit of an orbit, and so all discs and directions, to some ulps.
+TEST(LaneFrame, ConversionToTheFrameAndBackIsTheIdentity) {
   for (const double rho : {0.501, kPaperRho, 0.7}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.3);
     CounterRandom random(1, 2, 3);
@@ -34,9 +34,9 @@ TEST(LaneFrame, ThereAndBackIsTheSamePlace) {
   }
 }
 
-// Anywhere in the cell and in any direction: there and back, and the next wall hit is that of the
-// reference.
-TEST(LaneFrame, OfABallInTheCellLeadsToTheNextWall) {
+// Balls anywhere in the cell, in any direction: the conversion to the frame and back is the
+// identity, and the next wall hit is that of the reference.
+TEST(LaneFrame, BallInTheCellReachesTheNextWallOfTheReference) {
   for (const double rho : {0.501, kPaperRho, 0.7}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.3);
     for (uint64_t i = 0; i < 3000; ++i) {
@@ -60,14 +60,14 @@ TEST(LaneFrame, OfABallInTheCellLeadsToTheNextWall) {
   }
 }
 
-// Where two discs meet, a ball reflected by one may lie in the quadrant of the other by rounding.
-// To take it for a ball that leaves the other would be to let it fly through that disc.
-TEST(LaneFrame, OnATipIsThatOfTheDiscWhichTheBallLeaves) {
+// Where two discs meet, rounding may put a ball that one disc has reflected into the quadrant of
+// the other disc. If the frame were that of the other disc, the ball would fly through that disc.
+TEST(LaneFrame, FrameOnATipBelongsToTheDiscThatTheBallLeaves) {
   for (const double rho : {0.5 + 1e-12, 0.501, kPaperRho, 0.7}) {
     const double tip = PairDeltaBound(rho);
     for (const double offset : {-1e-16, -1e-17, -0.0, 0.0, 1e-17, 1e-16}) {
       for (const double side : {-1.0, 1.0}) {
-        // Away from the disc on that side, into the one opposite.
+        // Away from the disc on this side, into the opposite disc.
         const Eigen::Vector2d direction = {-0.1 * (1 - 2 * tip), -side};
         for (const Eigen::Vector2d& place :
              {Eigen::Vector2d{tip, offset}, Eigen::Vector2d{-tip, offset}}) {

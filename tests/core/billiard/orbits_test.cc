@@ -18,7 +18,7 @@
 namespace ballpiston {
 namespace {
 
-TEST(Orbits, EveryOrbitComesToItsEnd) {
+TEST(Orbits, EveryOrbitEnds) {
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
     for (const uint64_t orbits :
@@ -56,8 +56,8 @@ void ExpectNear(const Contact& first, const Contact& second, double tolerance) {
   EXPECT_NEAR(first.state.piston_velocity, second.state.piston_velocity, tolerance);
 }
 
-// Errors grow by some 2.5 at a wall hit on average, by more at grazing ones and at collisions: so
-// an orbit is compared up to its eighth wall hit.
+// Errors grow by a factor of about 2.5 at a wall hit on average, and by more at grazing hits and at
+// collisions. So an orbit is compared up to its eighth wall hit.
 TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   constexpr uint64_t kOrbits = 5000, kMostHits = 8;
   int compared = 0, at_once = 0, later = 0;
@@ -86,7 +86,7 @@ TEST(Orbits, LanesMeetThePistonWhereTheReferenceDoes) {
   EXPECT_GT(later, 100);
 }
 
-// The same pair for every orbit, of which the ends are told.
+// The same pair for every orbit. Records the ends of the orbits.
 class WithTimeLimit : public NumberedOrbits {
  public:
   WithTimeLimit(const PairState& state, double limit, uint64_t orbits)
@@ -105,8 +105,8 @@ class WithTimeLimit : public NumberedOrbits {
   std::vector<std::vector<Contact>> ends_;
 };
 
-// Where the piston comes: in either direction of the piston, at any phase.
-TEST(Orbits, ABallAtRestIsMetWhereItStands) {
+// The ball is within the piston's reach; the piston moves in either direction, at any phase.
+TEST(Orbits, ThePistonMeetsABallAtRestAtItsPlace) {
   const PairGeometry geometry = PaperGeometry(0.2);
   const double left = geometry.piston_left(), right = geometry.piston_right();
   for (const Engine engine : kEngines) {
@@ -132,7 +132,7 @@ TEST(Orbits, ABallAtRestIsMetWhereItStands) {
   }
 }
 
-TEST(Orbits, StopEndsThem) {
+TEST(Orbits, StopEndsOrbits) {
   const PairGeometry geometry = PaperGeometry(1e-7);
   for (const Engine engine : kEngines) {
     RecordedContacts recorded(geometry, 10, 1);
@@ -140,7 +140,7 @@ TEST(Orbits, StopEndsThem) {
   }
 }
 
-// A ball that rests where the piston does not come: only the piston has events, for ever.
+// A ball that rests out of the piston's reach: only the piston has events, for ever.
 class RestingBall : public NumberedOrbits {
  public:
   explicit RestingBall(const PairGeometry& geometry) : geometry_(geometry) {}
@@ -156,7 +156,7 @@ class RestingBall : public NumberedOrbits {
   PairGeometry geometry_;
 };
 
-TEST(Orbits, StopEndsAFlightThatNeverComesToAWall) {
+TEST(Orbits, StopEndsAnOrbitOfARestingBall) {
   const PairGeometry geometry = PaperGeometry(0.1);
   for (const Engine engine : kEngines) {
     RestingBall source(geometry);
@@ -200,15 +200,15 @@ class UntilAnEscape : public RecordedContacts {
 };
 
 // In single precision the lanes cannot resolve a cell that nearly vanishes.
-TEST(Orbits, EscapesInLanesAreTold) {
+TEST(Orbits, EscapesInLanesAreReported) {
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-5, 1);
   UntilAnEscape single(geometry, 100'000, 20);
   EXPECT_FALSE(RunOrbits(Engine::kLanesSingle, geometry, 100'000, single, single.token()));
   EXPECT_TRUE(single.token().stop_requested());
 }
 
-// A ball that never meets the piston at rest, of a source that always wants to go on.
-TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
+// A ball that never meets the resting piston, and a source that always continues.
+TEST(Orbits, AnOrbitEndsAtItsTimeLimitEvenIfTheSourceContinues) {
   class GoesOn : public NumberedOrbits {
    public:
     PairState Start(uint64_t) override {
@@ -228,8 +228,8 @@ TEST(Orbits, AnOrbitEndsAtItsTimeLimitWhateverItsSourceSays) {
   }
 }
 
-// Pairs that do not meet, or not in 1e9: the piston rests, or nearly, where the ball does not come;
-// the ball rests, or nearly, where the piston does not.
+// Pairs that do not meet within a time of 1e9: the piston is at rest, or nearly, out of the ball's
+// reach; or the ball is at rest, or nearly, out of the piston's reach.
 std::vector<PairState> PairsApart(const PairGeometry& geometry) {
   const Eigen::Vector2d slant = {0.6, 0.8};
   std::vector<PairState> pairs;
@@ -292,8 +292,8 @@ void ExpectSameBits(const Contact& first, const Contact& second) {
   EXPECT_EQ(first.piston_wall_hits, second.piston_wall_hits);
 }
 
-// Every orbit is as without a limit up to the first collision that comes too late, and ends there:
-// in all engines and vector widths.
+// In all engines and vector widths every orbit is the same as without a limit up to the first
+// collision after the limit, and ends there.
 TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   constexpr uint64_t kOrbits = 300;
   constexpr size_t kCollisions = 6;
@@ -327,7 +327,7 @@ TEST(Orbits, TimeLimitChangesNothingWithinIt) {
   }
 }
 
-// Gives few orbits at a time, at times none, and pauses at every opportunity.
+// Supplies few orbits at a time, sometimes none, and pauses at every opportunity.
 class DripFedOrbits : public OrbitSource {
  public:
   DripFedOrbits(NumberedOrbits& orbits, uint64_t count) : orbits_(orbits), count_(count) {}
@@ -358,7 +358,7 @@ class DripFedOrbits : public OrbitSource {
 };
 
 // Lanes run empty and are filled again, many times over.
-TEST(Orbits, ASourceThatRunsDryChangesNoBits) {
+TEST(Orbits, AnIntermittentSourceGivesTheSameBits) {
   constexpr uint64_t kOrbits = 600;
   const PairGeometry geometry = *PairGeometry::Create(0.55, 0.05);
   for (const Engine engine : kEngines) {

@@ -29,7 +29,7 @@ std::optional<PistonWave::Meeting> FirstMeeting(const PistonWave& wave, const Ap
   return wave.FirstMeeting(a.phase, a.ratio, a.x, a.ux, a.length);
 }
 
-// The piston is nowhere left of the ball before `way`, up to rounding.
+// The piston is right of the ball until `way`, up to rounding.
 void ExpectApartBefore(const PistonWave& wave, const Approach& a, double way) {
   constexpr int kPlaces = 500;
   for (int i = 0; i < kPlaces; ++i) {
@@ -39,7 +39,7 @@ void ExpectApartBefore(const PistonWave& wave, const Approach& a, double way) {
   }
 }
 
-// Starts apart, or touching and parting.
+// Starts apart, or touching and moving apart.
 Approach Drawn(const PistonWave& wave, CounterRandom& random) {
   const double angle = 2 * M_PI * random.Uniform();
   Approach a = {.phase = 2 * wave.stroke() * random.Uniform(),
@@ -78,8 +78,9 @@ TEST(PistonWave, FirstMeetingIsWhereTheBallFirstTouchesThePiston) {
   EXPECT_GT(none, 500);
 }
 
-// For slow balls nothing is left of the piston's phase; there is an answer all the same.
-TEST(PistonWave, FirstMeetingOfASlowBallIsInItsWay) {
+// For slow balls the piston's phase has no correct digit, but FirstMeeting must still have an
+// answer.
+TEST(PistonWave, FirstMeetingOfASlowBallIsOnItsPath) {
   const PistonWave wave(PaperGeometry(0.01));
   for (uint64_t i = 0; i < 3000; ++i) {
     CounterRandom random(3, 4, i);
@@ -98,8 +99,8 @@ TEST(PistonWave, FirstMeetingOfASlowBallIsInItsWay) {
   }
 }
 
-// The test before it is worth its time if it seldom says yes in vain.
-TEST(PistonWave, MayMeetSeldomSaysYesInVain) {
+// MayMeet saves time only if it rarely returns true without a meeting.
+TEST(PistonWave, MayMeetIsRarelyWrong) {
   const PistonWave wave(PaperGeometry(0.025));
   CounterRandom random(61, 0, 0);
   int meetings = 0, alarms = 0;
@@ -117,7 +118,7 @@ TEST(PistonWave, MayMeetSeldomSaysYesInVain) {
   EXPECT_LE(alarms, 1.01 * meetings);
 }
 
-TEST(PistonWave, FirstMeetingOfABallThatLeavesIsNone) {
+TEST(PistonWave, ABallThatLeavesHasNoMeeting) {
   const PistonWave wave(PaperGeometry(0.1));
   for (const double ux : {0.0, -1e-300, -1.0}) {
     EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, ux, 0.5));
@@ -126,7 +127,7 @@ TEST(PistonWave, FirstMeetingOfABallThatLeavesIsNone) {
   EXPECT_FALSE(wave.FirstMeeting(0.05, 1, -0.01, 1e-300, 0.5));
 }
 
-TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
+TEST(PistonWave, ABallMeetsARestingPistonAtThePistonsPlace) {
   const PistonWave wave(PaperGeometry(0.1));
   const Approach a = {.phase = 0.07, .ratio = 0, .x = -0.2, .ux = 0.5, .length = 1};
   const std::optional<PistonWave::Meeting> meeting = FirstMeeting(wave, a);
@@ -134,8 +135,8 @@ TEST(PistonWave, FirstMeetingWithARestingPistonIsWhereItStands) {
   EXPECT_NEAR(meeting->way, 0.27 / 0.5, 1e-15);
 }
 
-// The ball touches the piston and goes the same way, slower; the piston comes back.
-TEST(PistonWave, FirstMeetingOfABallAtRestIsWithThePistonOnItsWayBack) {
+// The ball touches the piston and moves in the same direction, slower. The piston comes back.
+TEST(PistonWave, AReturningPistonMeetsABallAtRest) {
   const PistonWave wave(PaperGeometry(0.1));
   const double stroke = wave.stroke();
   const Approach a = {.phase = 0.05, .ratio = 1e18, .x = 0.05, .ux = 1, .length = 0.3};

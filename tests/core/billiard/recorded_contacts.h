@@ -1,4 +1,4 @@
-// Orbits of a few collisions from equilibrium, and every contact that they told of.
+// Orbits of a few collisions from equilibrium, and all contacts that they reported.
 #ifndef BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
 #define BALLPISTON_TESTS_CORE_BILLIARD_RECORDED_CONTACTS_H_
 

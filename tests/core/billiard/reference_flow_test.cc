@@ -21,9 +21,9 @@ PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
   return DrawFromFlowMeasure(geometry, random);
 }
 
-// How far inside a disc rounding may leave a ball: an ulp of its position in a cell, some more
-// where two discs are nearly tangent (2.1e-15 seen at rho = 0.5001, aiming exactly at a tip). An
-// orbit that leaves through a tip is out by 1e-3 and more a few events later.
+// The depth inside a disc to which rounding may put a ball: an ulp of its position in a cell, some
+// more where two discs are nearly tangent (2.1e-15 observed at rho = 0.5001, aiming exactly at a
+// tip). An orbit that leaves through a tip is outside by 1e-3 or more a few events later.
 constexpr double kSlack = 1e-14;
 
 Event StepAndExchange(ReferenceFlow& flow) {
@@ -67,9 +67,9 @@ TEST(ReferenceFlow, PistonStaysRightOfBall) {
   }
 }
 
-// The wedge between tip and piston is where orbits get stuck: a zero-time event may follow another
-// only as long as a corner is worked off.
-TEST(ReferenceFlow, NoOrbitStandsStill) {
+// In the wedge between tip and piston an orbit could get stuck. Only a few zero-time events may
+// follow each other there.
+TEST(ReferenceFlow, ZeroTimeEventsEnd) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     ReferenceFlow flow(geometry, StartInEquilibrium(geometry, 4));
     int standing = 0;
@@ -80,7 +80,7 @@ TEST(ReferenceFlow, NoOrbitStandsStill) {
   }
 }
 
-TEST(ReferenceFlow, TipsAimedAtLetNoBallThrough) {
+TEST(ReferenceFlow, BallsAimedAtTipsStayInTheCell) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     for (const double offset : {0.0, 1e-17, 1e-16, 1e-14, 1e-10, 1e-6, 1e-3}) {
       for (const double sign : {-1.0, 1.0}) {
@@ -100,8 +100,8 @@ TEST(ReferenceFlow, TipsAimedAtLetNoBallThrough) {
 }
 
 // One event at a time, from states along an orbit, so that errors cannot grow. In double a hit time
-// is good to some ulps of a length 1 over the sine of the grazing angle: the root of rho^2 - c^2
-// loses what c^2 cancels. States within 1e-5 of grazing are held to the looser bound.
+// has an error of some ulps of a length 1, divided by the sine of the grazing angle, because
+// rho^2 - c^2 cancels. States within 1e-5 of grazing have the larger bound.
 TEST(ReferenceFlow, OneEventAgreesWithNaiveFlow) {
   for (const PairGeometry& geometry : GeometriesOfFlows()) {
     if (geometry.rho() < 0.5001) continue;  // cusps: two discs at one point, the order is arbitrary
@@ -152,7 +152,7 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
     reversed.piston_velocity = -reversed.piston_velocity;
     if (reversed.ball_speed < 0.1) continue;  // a slow ball's error is large on its own scale
     ReferenceFlow back(kPaperPair, reversed);
-    ASSERT_NEAR(StepAndExchange(back).duration, 0, 1e-12);  // undoes the event it stands at
+    ASSERT_NEAR(StepAndExchange(back).duration, 0, 1e-12);  // undoes the last event
     for (int i = kEvents - 2; i >= 0; --i) {
       StepAndExchange(back);
       const PairState& there = states[static_cast<size_t>(i)];
@@ -164,7 +164,7 @@ TEST(ReferenceFlow, ReversedVelocityRetracesOrbit) {
   EXPECT_GT(compared, 150);
 }
 
-TEST(ReferenceFlow, RestingPistonIsHitWhereItStands) {
+TEST(ReferenceFlow, BallHitsARestingPistonAtItsPlace) {
   ReferenceFlow flow(kPaperPair, {.position = {0, 0},
                                   .direction = {1, 0},
                                   .ball_speed = 1,
@@ -174,7 +174,7 @@ TEST(ReferenceFlow, RestingPistonIsHitWhereItStands) {
   EXPECT_EQ(event.kind, EventKind::kBallPiston);
   EXPECT_DOUBLE_EQ(event.duration, 0.2);
   flow.ExchangeComponents();
-  EXPECT_EQ(flow.state().ball_speed, 0);  // all of the energy went over
+  EXPECT_EQ(flow.state().ball_speed, 0);  // the piston has all of the energy
   EXPECT_EQ(flow.state().piston_velocity, 1);
 }
 
@@ -194,8 +194,9 @@ TEST(ReferenceFlow, RestingBallWaitsForThePiston) {
   EXPECT_EQ(flow.state().piston_velocity, 0);
 }
 
-// At the left end of its way, within rounding, the piston comes no nearer.
-TEST(ReferenceFlow, RestingBallIsHitWhereThePistonTurns) {
+// The ball is at the left end of the piston's stroke, within rounding, so the piston comes no
+// nearer.
+TEST(ReferenceFlow, PistonHitsARestingBallAtItsTurningPoint) {
   const PairGeometry geometry = GeometryAtShare(kMaxRho - 1e-9, 0.1);
   for (const double beyond : {0.0, 1e-26, 1e-18}) {
     ReferenceFlow flow(geometry, {.position = {geometry.piston_left() + beyond, 0},

@@ -1,15 +1,16 @@
-// Compares one flight in lanes with one of the reference, and both with one of 64 bits or more,
-// from half a million states: anywhere, and where arcs meet or are touched.
+// Compares a flight in lanes with a flight of the reference, and both with a flight of 64 bits or
+// more, from half a million states: anywhere in the cell, where arcs meet, and where rays touch
+// arcs.
 //
-// The bound. With u the rounding of a number next to 1, 2^-53 or in single precision 2^-24, an
-// engine knows the ray's impact parameter c' on the next disc to some u: the cross product with the
-// direction, of the ball's place and of the disc's, each of a few rounded terms below 1, and rho^2
-// rounded. The flight ends at the foot minus s', s'^2 = rho^2 - c'^2, so
+// The bound. Let u be the rounding of a number next to 1, 2^-53 or in single precision 2^-24. The
+// error of the ray's impact parameter c' on the next disc is some u: c' is the cross product of the
+// direction with the ball's and with the disc's position, each a sum of a few rounded terms below
+// 1; rho^2 is also rounded. The flight ends at the foot minus s', s'^2 = rho^2 - c'^2, so
 //     |error of the time| <= u (A + B/cos phi),   cos phi = s'/rho,
-// until cos phi is itself as small as its error, sqrt(2 B u): there the root's error is that.
-// An engine may take another arc than the exact one only if the exact ray decides by as little:
-//   tie    it reaches both arcs, at times that differ by no more than the two bounds;
-//   touch  it touches one of the two within B u, as a hit or as a miss.
+// unless cos phi is as small as its error, sqrt(2 B u), which is then the error of the root.
+// An engine may choose another arc than the exact ray only in two cases:
+//   tie    the exact ray reaches both arcs, at times that differ by at most the two bounds;
+//   touch  the exact ray touches one of the two arcs within B u, as a hit or as a miss.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ constexpr double kDouble = 0x1p-53, kSingle = 0x1p-24;  // u
 constexpr double kTimeUnits = 8;                        // A
 constexpr double kImpactUnits = 8;                      // B
 
-// The half width of a cell in which a place in single precision says something.
+// The smallest half width of a cell in which single precision resolves a position.
 constexpr double kSmallestInSingle = 1e-4;
 
 constexpr size_t kStatesOfAGeometry = 50'000;
@@ -67,8 +68,8 @@ double RandomOffset(CounterRandom& random) {
 
 Vector2d Perpendicular(const Vector2d& a) { return {-a.y(), a.x()}; }
 
-// Balls alone about to leave a wall. All kinds are seen from the disc at lower left, then turned
-// into any other's frame by mirrors.
+// Balls alone that are about to leave a wall. All starts are drawn for the disc at the lower left,
+// then mirrored to the other discs.
 class Starts {
  public:
   Starts(const PairGeometry& geometry, uint64_t stream)
@@ -137,8 +138,8 @@ struct ReferenceFlight {
   int to;
 };
 
-// The disc from which the ball has just been reflected. Next to a tip its place alone does not
-// tell: the change of direction is along the arc's normal.
+// The disc that has just reflected the ball. Next to a tip the position alone does not determine
+// the disc, so the change of direction is used, which is along the arc's normal.
 int ReflectedBy(const PairGeometry& geometry, const PairState& before, const PairState& after) {
   const Vector2d change = after.direction - before.direction;
   const auto misfit = [&](int disc) {
@@ -171,7 +172,7 @@ std::vector<ReferenceFlight> ReferenceFlights(const PairGeometry& geometry, uint
   return flights;
 }
 
-// The centre of the frame's disc, (-1/2, -1/2) there as seen from the cell's centre, in the cell.
+// The number of the frame's disc. Its centre is (-1/2, -1/2) from the cell's centre in the frame.
 int DiscOf(const LaneFrame& frame) {
   return (frame.a < 0 ? 1 : 0) | (frame.m * frame.b < 0 ? 2 : 0);
 }
@@ -240,8 +241,8 @@ Tally JudgeReference(const PairGeometry& geometry, const std::vector<ReferenceFl
   return tally;
 }
 
-// The ball's place is along the ray as uncertain as the time; its direction turns by the angle to
-// the normal twice, each uncertain by as much over rho > 1/2.
+// The error of the ball's position along the ray is that of the time. The direction turns by twice
+// the angle to the normal; the error of this angle is that of the position over rho > 1/2.
 void CompareEngines(double bounds, const ReferenceFlight& reference, const LaneHit& lane,
                     Tally& tally) {
   const Vector2d place = PositionInCell(lane.frame), direction = DirectionInCell(lane.frame);
@@ -283,7 +284,7 @@ Tally JudgeLanes(double unit, const PairGeometry& geometry,
   return tally;
 }
 
-TEST(SingleFlight, InLanesEndsWhereAndWhenTheReferenceDoes) {
+TEST(SingleFlight, LanesMatchTheReferenceInPlaceAndTime) {
   const std::vector<PairGeometry> geometries = GeometriesOfFlights();
   std::vector<std::vector<ReferenceFlight>> flights;
   Tally reference;

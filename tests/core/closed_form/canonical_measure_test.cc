@@ -28,7 +28,7 @@ TEST(CanonicalMeasure, EnergiesHaveTheirEquipartition) {
               kCanonicalAverageError);
 }
 
-TEST(CanonicalMeasure, AveragesAreThoseOfTheMoments) {
+TEST(CanonicalMeasure, AveragesEqualIntegralsOfTheMoments) {
   for (double beta : {0.1, 1.0, 7.0}) {
     const CanonicalAverages averages = AveragesAt(beta);
     const auto current = [](double eb, double ep) { return (eb - ep) * EnergyCurrent(eb, ep); };
@@ -40,7 +40,7 @@ TEST(CanonicalMeasure, AveragesAreThoseOfTheMoments) {
   }
 }
 
-TEST(CanonicalMeasure, NoNetCurrentInEquilibrium) {
+TEST(CanonicalMeasure, NetCurrentVanishesInEquilibrium) {
   const double current = CanonicalAverage(1, EnergyCurrent);
   EXPECT_NEAR(current, 0, kCanonicalAverageError);
 }

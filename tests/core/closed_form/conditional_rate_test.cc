@@ -52,7 +52,7 @@ TEST(ConditionalRate, AveragesToTheUnconditionalRate) {
   const auto phi = [](Quad u) { return Phi(std::pow(static_cast<double>(u), 2) / 2); };
   const Quad below = oracle::IntegrateToRoot(phi, 0, M_SQRT1_2);
   const Quad above = oracle::Integrate(phi, M_SQRT1_2, 1);
-  // Rounding of phi in double is all that is left.
+  // The only remaining error is the rounding of phi in double.
   EXPECT_NEAR(static_cast<double>(below + above), 1, 1e-14);
 }
 
@@ -64,10 +64,10 @@ TEST(ConditionalRate, ConditionalMeanFreeTimeIsTauOverPhi) {
   }
 }
 
-// A rare piston: at rest it is met if it stands within delta of the tip, delta/(lambda + 2 delta)
-// of the volume; a resting ball waits for the piston to go to its far wall and back, 2 (lambda + 2
-// delta) at speed 1. Both to first order in delta.
-TEST(ConditionalRate, AtRestOnlyWhatIsVisitedCounts) {
+// A small delta. The ball meets a resting piston if the piston is within delta of the tip, which is
+// delta/(lambda + 2 delta) of the volume. A resting ball waits until the piston has gone to its far
+// wall and back, 2 (lambda + 2 delta) at speed 1. Both hold to first order in delta.
+TEST(ConditionalRate, AtRestOnlyTheVisitedPartCounts) {
   const double delta = 1e-6;
   const PairGeometry geometry = PaperGeometry(delta);
   const double tau = MeanFreeTimesOf(geometry).ball_piston, lambda = geometry.lambda();

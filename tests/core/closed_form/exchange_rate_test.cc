@@ -62,8 +62,8 @@ TEST(ExchangeRate, IsTheAverageOfTheMicrocanonicalRate) {
   }
 }
 
-// Mean of the current j where the ball has temperature T + t/2 and the piston T - t/2, by weights
-// over the canonical density at T. In units of |dG_bp|/|G|.
+// Mean of the current j if the ball has temperature T + t/2 and the piston T - t/2, by weights on
+// the canonical density at T. In units of |dG_bp|/|G|.
 double CurrentBetween(double temperature, double difference) {
   const double beta = 1 / temperature;
   const double ball = 1 / (temperature + difference / 2);
@@ -77,7 +77,7 @@ double CurrentBetween(double temperature, double difference) {
 
 // A gradient of one unit from cell to cell is a difference of 1/2 between a ball and the next
 // piston. Terms of second order in t/T = 0.01 are the tolerance.
-TEST(ExchangeRate, HalfOfItConductsBetweenUnequalTemperatures) {
+TEST(ExchangeRate, HalfTheRateIsTheStaticConductivity) {
   for (double temperature : {0.5, 2.0}) {
     const double difference = 0.01 * temperature;
     const double conducted = (CurrentBetween(temperature, difference) / difference) / 2;
@@ -86,16 +86,16 @@ TEST(ExchangeRate, HalfOfItConductsBetweenUnequalTemperatures) {
   }
 }
 
-// Row of a table that an independent program of the many-cell gas computed.
+// A row of a table that an independent program for the many-cell gas has computed.
 struct ReferenceGas {
   size_t row;
   double freedoms;           // degrees of freedom
   double contacts_per_ball;  // 2 in a chain, 4 in a lattice
 };
 
-// How much more often a contact is made in the gas than in the pair. A piston takes the fraction g
-// of a ball's area on average; at a contact the piston takes none from its other ball. Terms in g^2
-// are left out: 1e-5 here.
+// The rate of a contact in the gas over that in the pair. On average a piston takes the fraction g
+// of a ball's area; at a contact the piston takes no area from its other ball. Terms in g^2, which
+// are 1e-5 here, are neglected.
 double GasOverPair(const PairGeometry& geometry, double contacts_per_ball) {
   const double stroke = geometry.lambda() + 2 * geometry.delta();
   const double g = 1 - Measures(geometry).volume / (stroke * CellArea(geometry.rho()));
@@ -126,7 +126,7 @@ TEST(ExchangeRate, AgreesWithReferenceGases) {
 // Eight balls between pistons at T = 2 and 1, in the limit of rare collisions. The conductivity
 // grows as sqrt(T), so the current J gives J N sqrt(T)/[(2/3) (2^1.5 - 1)] at T. The dynamic
 // correlations are smaller than the tolerance, 4 standard errors of the table or 3.3 %.
-TEST(ExchangeRate, HalfOfItIsTheConductivityOfAReferenceGas) {
+TEST(ExchangeRate, HalfTheRateMatchesTheConductivityOfAReferenceGas) {
   const ReferenceTable table("gas.csv");
   const size_t row = 1;
   const double hot = table.Input(row, "hot"), cold = table.Input(row, "cold");

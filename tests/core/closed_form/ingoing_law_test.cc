@@ -44,7 +44,7 @@ Quad Norm(double ep) {
   return OverTheCircle(ep, [](Quad, int) { return 1; });
 }
 
-TEST(IngoingLaw, AllowedIntervals) {
+TEST(IngoingLaw, PermittedIntervals) {
   for (double ep : kEnergies) {
     const IngoingLaw law(ep);
     for (int sigma : {1, -1}) {
@@ -66,7 +66,7 @@ TEST(IngoingLaw, BinProbabilityIsTheIntegralOfTheDensity) {
         const double a1 = a0 + (edge - a0) * unit(random);
         const Quad exact =
             oracle::Integrate([&](Quad a) { return Weight(ep, sigma, a); }, a0, a1) / norm;
-        // The oracle counts the true edge, the law its rounding: see the header.
+        // The oracle uses the exact edge, the law the rounded edge: see the header.
         const double from_edge = std::min(edge - std::abs((a0 + a1) / 2), edge);
         const double tolerance =
             kIngoingLawRelativeError + (edge > 0 ? 1e-15 * edge / from_edge : 0);
@@ -88,7 +88,7 @@ TEST(IngoingLaw, NarrowBinIsDensityTimesWidth) {
   }
 }
 
-TEST(IngoingLaw, NothingOutsideOfTheAllowedInterval) {
+TEST(IngoingLaw, OnlyThePermittedIntervalCounts) {
   const IngoingLaw law(0.125);
   const double edge = law.AlphaMax(1);
   EXPECT_EQ(law.BinProbability(1, edge, M_PI), 0);
@@ -143,19 +143,20 @@ TEST(IngoingLaw, SignsContributeAsPrinted) {
   }
 }
 
-TEST(IngoingLaw, MeansAreThoseOfTheDensity) {
+TEST(IngoingLaw, MeansAreIntegralsOfTheDensity) {
   for (double ep : kEnergies) {
     const IngoingLaw law(ep);
     const Quad norm = Norm(ep);
     const Quad cosine = OverTheCircle(ep, [](Quad a, int) { return Cos(a); }) / norm;
     const Quad sign = OverTheCircle(ep, [](Quad, int sigma) { return sigma; }) / norm;
-    // Absolute: both integrals cancel where they are small, the library's closed forms do not.
+    // An absolute error, because both integrals cancel where they are small. The closed forms do
+    // not.
     EXPECT_NEAR(law.MeanCosAlpha(), static_cast<double>(cosine), 1e-14) << ep;
     EXPECT_NEAR(law.MeanSigma(), static_cast<double>(sign), 1e-14) << ep;
   }
 }
 
-TEST(IngoingLaw, PistonAtRestIsHitAlikeOnBothSigns) {
+TEST(IngoingLaw, PistonAtRestGivesBothSignsEqually) {
   const IngoingLaw law(0);
   EXPECT_DOUBLE_EQ(law.AlphaMax(1), M_PI / 2);
   EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI / 2);
@@ -164,7 +165,7 @@ TEST(IngoingLaw, PistonAtRestIsHitAlikeOnBothSigns) {
   EXPECT_DOUBLE_EQ(law.MeanCosAlpha(), M_PI / 4);  // of (1/2) cos alpha on |alpha| < pi/2
 }
 
-TEST(IngoingLaw, BallAtRestHasNoDirection) {
+TEST(IngoingLaw, BallAtRestHasUniformAlpha) {
   const IngoingLaw law(0.5);
   EXPECT_EQ(law.AlphaMax(1), 0);
   EXPECT_DOUBLE_EQ(law.AlphaMax(-1), M_PI);

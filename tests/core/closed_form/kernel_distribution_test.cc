@@ -14,8 +14,8 @@
 namespace ballpiston {
 namespace {
 
-// pi times the integral of W from 0 to ep_out, as it is found on paper: the arcsine part up to ep,
-// the root's part beyond.
+// pi times the integral of W from 0 to ep_out, calculated by hand: the arcsine part up to ep, the
+// root's part beyond.
 Quad IntegratedKernel(Quad eb, Quad ep, Quad ep_out) {
   const Quad arc_end = std::min({eb, ep, ep_out});
   Quad sum = eb > 0 ? Sqrt(ep) * Asin(Sqrt(arc_end / eb)) : Quad{0};
@@ -29,7 +29,7 @@ Quad ExactBelow(Quad eb, Quad ep, Quad ep_out) {
 
 Quad PairBall(double ep) { return Quad{1} / 2 - Quad{ep}; }
 
-// F of the pair and, where 1/2 - ep is exact anyway, of two energies.
+// The error of F of the pair and, if 1/2 - ep is exact, of F of two energies.
 double WorstError(double ep, double ep_out) {
   const double eb = 0.5 - ep;
   return std::max(
@@ -60,8 +60,9 @@ TEST(KernelDistribution, AccurateAtRandomEnergies) {
   EXPECT_GT(worst, 1e-16);  // the comparison sees rounding
 }
 
-// There F is 1 less a root: an energy left that is wrong by an ulp of 1/2 would show as 1e-8.
-TEST(KernelDistribution, AccurateWhereTheBallIsLeftWithLittle) {
+// In this case F is 1 minus a root, so an error of an ulp of 1/2 in the ball's remaining energy
+// would change F by 1e-8.
+TEST(KernelDistribution, AccurateWhereTheBallKeepsLittleEnergy) {
   std::mt19937_64 random(20240702);
   std::uniform_real_distribution<double> exponent(-17, -1);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -73,7 +74,7 @@ TEST(KernelDistribution, AccurateWhereTheBallIsLeftWithLittle) {
   }
 }
 
-TEST(KernelDistribution, IsOneRateForEveryWayToWriteIt) {
+TEST(KernelDistribution, RateEqualsThatOfKernelMoments) {
   for (const double ep : {0.0, 1e-300, 1e-9, 0.1, 0.2499999, 0.25, 0.3, 0.5}) {
     EXPECT_DOUBLE_EQ(KernelDistribution::OfPair(ep).CollisionRate(), PairCollisionRate(ep));
     EXPECT_DOUBLE_EQ(KernelDistribution(3, 6 * ep).CollisionRate(), CollisionRate(3, 6 * ep));
@@ -98,7 +99,7 @@ TEST(KernelDistribution, RisesFromZeroToOne) {
     }
   }
   EXPECT_EQ(KernelDistribution(0.3, 0.1).Below(0.3), 1);
-  EXPECT_EQ(KernelDistribution(0, 0.5).Below(0), 1);  // a ball at rest gives nothing
+  EXPECT_EQ(KernelDistribution(0, 0.5).Below(0), 1);  // a ball at rest gives the piston no energy
   EXPECT_EQ(KernelDistribution::OfPair(0.5).Below(0), 1);
 }
 

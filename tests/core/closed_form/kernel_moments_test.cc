@@ -99,7 +99,7 @@ TEST(KernelMoments, CurrentIsAccurateThroughItsZero) {
                                                                    (1 + Quad{offset}) * Quad{eb})));
   }
   EXPECT_LE(worst, kKernelMomentsRelativeError);
-  EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails
+  EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
 }
 
 TEST(KernelMoments, CurrentIsAccurateOneUlpFromItsZero) {

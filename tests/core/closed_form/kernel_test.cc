@@ -41,7 +41,7 @@ TEST(Kernel, AccurateAtRandomEnergies) {
   }
 }
 
-TEST(Kernel, AccurateWhereTheBallIsLeftWithLittle) {
+TEST(Kernel, AccurateWhereTheBallKeepsLittleEnergy) {
   double worst_printed = 0;
   std::mt19937_64 random(20240608);
   std::uniform_real_distribution<double> exponent(-17, -1);
@@ -56,7 +56,7 @@ TEST(Kernel, AccurateWhereTheBallIsLeftWithLittle) {
     const double printed = KernelAsPrinted(0.5 - ep, ep, out, M_PI);
     worst_printed = std::max(worst_printed, RelativeError(printed, exact));
   }
-  EXPECT_GT(worst_printed, 1e-3);  // the points are where the printed formula fails
+  EXPECT_GT(worst_printed, 1e-3);  // the printed formula fails at these points
   const double below = std::nextafter(0.25, 0.0);
   EXPECT_LE(RelativeError(PairKernel(below, below),
                           KernelOverSigns(Quad{1} / 2 - Quad{below}, below, below)),
@@ -71,7 +71,7 @@ TEST(Kernel, VanishesBeyondTheBallsEnergy) {
   EXPECT_EQ(PairKernel(0.5, 1e-12), 0);
 }
 
-TEST(Kernel, LimitsAtAPistonLeftAtRest) {
+TEST(Kernel, LimitsWhereThePistonEndsAtRest) {
   EXPECT_EQ(Kernel(0.3, 0.1, 0), std::numeric_limits<double>::infinity());
   EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 0), 1 / M_PI);
   EXPECT_DOUBLE_EQ(Kernel(0.25, 0, 1e-320), 1 / M_PI);

@@ -39,7 +39,7 @@ TEST(MeanFreeTime, RareLimitRateIsTheLimitOfTheRate) {
     for (double fraction : {1e-3, 1e-6, 1e-9}) {
       const double delta = fraction * PairDeltaBound(rho);
       const double rate = 1 / (MeanFreeTimesOf(GeometryOf(rho, delta)).ball_piston * delta * delta);
-      // Leading correction: a few delta/lambda, the reason of the tolerance's second term.
+      // The leading correction, a few delta/lambda, is the reason for the tolerance's second term.
       EXPECT_NEAR(rate / RareLimitRate(rho), 1, 1e-13 + 4 * delta / Lambda(rho)) << rho;
     }
   }
@@ -53,8 +53,8 @@ TEST(MeanFreeTime, RareLimitRateIsOneOverTheCell) {
   EXPECT_NEAR(RareLimitRate(rho) / printed, 1, 1e-14);  // a tenfold cancellation in `printed`
 }
 
-// The footnote's two orders. Each is approached along rho - 1/2 and delta going to zero together,
-// with delta/lambda going to zero in the one and to infinity in the other.
+// The two orders of limits in the footnote. In both, rho - 1/2 and delta tend to zero together;
+// delta/lambda tends to zero in the first and to infinity in the second.
 TEST(MeanFreeTime, DeltaFirstThenRhoGivesTheWedge) {
   for (double gap : {1e-4, 1e-6, 1e-8}) {
     const double rho = 0.5 + gap;

@@ -34,7 +34,7 @@ double ErrorOfMeasures(double rho, double delta) {
   return WorstError(Measures(GeometryOf(rho, delta)), oracle::MeasuresByQuadrature(rho, delta));
 }
 
-// The oracle is itself checked: where the printed formulas keep their digits, they agree.
+// A check of the oracle: it agrees with the printed formulas where these keep their digits.
 TEST(PairMeasures, QuadratureAgreesWithThePrintedFormulas) {
   for (double rho : {0.51, kPaperRho, 0.6, 0.69}) {
     const double delta = 0.3 * PairDeltaBound(rho);
@@ -101,7 +101,7 @@ TEST(PairMeasures, PistonAtTheBoundHalvesTheCell) {
   }
 }
 
-TEST(PairMeasures, PistonWallAreaIsTheCellTwiceLessTheProjection) {
+TEST(PairMeasures, PistonWallAreaIsTwoCellsMinusTheProjection) {
   for (double rho : kRadii) {
     const PairMeasures m = Measures(GeometryOf(rho, 0.7 * PairDeltaBound(rho)));
     EXPECT_NEAR((m.area_piston_wall + m.area_ball_piston / sqrt2) / m.cell_area, 2,
@@ -131,7 +131,7 @@ TEST(PairMeasures, RareCollisionsSeeAWedge) {
   }
 }
 
-TEST(PairMeasures, CellAreaIsThatOfMeasures) {
+TEST(PairMeasures, CellAreaMatchesMeasures) {
   for (double rho : kRadii) {
     EXPECT_EQ(CellArea(rho), Measures(GeometryOf(rho, 0.5 * PairDeltaBound(rho))).cell_area);
   }

@@ -19,7 +19,7 @@ namespace {
 
 using std::numbers::pi;
 
-// What the service promises for every row, and for half of them.
+// The errors that the service guarantees for every row, and for half of the rows.
 constexpr double kPromisedError = 1e-12;
 constexpr double kPromisedMedian = 1e-14;
 
@@ -100,7 +100,7 @@ TEST(ReferenceData, KernelIsWithinThePromise) {
   EXPECT_LE(errors.library.WorstOfAll(), kKernelMomentsRelativeError);
 }
 
-// Shows that the rows above are hard ones: where this fails, the test before it proves nothing.
+// Shows that the rows above are difficult. If this test fails, the tests above prove nothing.
 TEST(ReferenceData, PrintedFormulasInDoubleBreakThePromise) {
   const Errors errors = GeometryErrors();
   for (const char* column :

@@ -9,9 +9,9 @@
 namespace ballpiston {
 namespace {
 
-// Two other methods on one operator: that one has piecewise polynomials of the piston's speed. To
-// 1e-12 in tests/statistical, where degrees are higher.
-TEST(ChainGap, GapOfThePairIsThatOfItsGenerator) {
+// Two methods for the same operator: the generator uses piecewise polynomials of the piston's
+// speed. tests/statistical compares them to 1e-12, with higher degrees.
+TEST(ChainGap, GapOfThePairMatchesItsGenerator) {
   const double exact = RelaxationSpectrum::Get().Gap().value;
   for (const std::vector<int>& pair : {std::vector<int>{2, 1}, {1, 2}}) {
     EXPECT_NEAR(ChainGap(pair, {10, 12, 14, 16}).value, exact, 5e-11);

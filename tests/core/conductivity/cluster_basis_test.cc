@@ -29,7 +29,7 @@ TEST(ClusterBasis, TranslatesAreOneFunction) {
   for (const int shift : {-6, -2, 2, 8}) {
     EXPECT_EQ(basis.Find({At(shift, 0, 1), At(shift + 1, 0, 3)}), found);
   }
-  // A ball in the place of a piston is another function.
+  // The same polynomials of a ball and of a piston are different functions.
   EXPECT_NE(std::abs(basis.Find({At(1, 0, 1), At(2, 0, 3)})), std::abs(found));
 }
 
@@ -52,8 +52,8 @@ TEST(ClusterBasis, ReflectionsDifferInSignOnly) {
 // them begin at the first site. The basis has one for each pair of a function and its different
 // reflection, both for clusters that begin with a ball and for those that begin with a piston.
 TEST(ClusterBasis, HasEveryFunctionOfTheCluster) {
-  // Sites 1 and 2 apart of degrees (i, j): for neighbours of unlike kind all count, of equal kind
-  // only i < j.
+  // Two sites of degrees (i, j): if the sites are of different kinds, all (i, j) count; if they are
+  // of the same kind, only i < j.
   EXPECT_EQ(ChainBasis(2, 4).size(), 6);
   EXPECT_EQ(ChainBasis(1, 9).size(), 0);
   // Length 3 adds (i, m, j) with i < j around a ball or a piston: of degree 4 or less (1,0,2),

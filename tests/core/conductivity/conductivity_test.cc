@@ -35,8 +35,8 @@ TEST(Conductivity, StaticConductivityOfEqualSitesIsTheExchangeRate) {
   }
 }
 
-// Functions of one ball and one piston that touch. A square lattice's pairs along y do not matter.
-// Such functions were solved before by another program, to three digits.
+// Functions of one ball and one neighbouring piston. In a square lattice the pairs along y have no
+// effect. Another program computed these values before, to three digits.
 TEST(Conductivity, FunctionsOfOnePairHaveTheirKnownValues) {
   const auto pairs = [](const SiteLattice& lattice) {
     const GalerkinForm form = PairsOf(lattice, 16);
@@ -70,7 +70,7 @@ TEST(Conductivity, BoundFallsWithDegreeAndCluster) {
   }
 }
 
-// A unit of the published last digit: the value here is -0.0003725 (see kSpheresCorrection).
+// A unit of the published last digit: the value here is -0.0003725 (see kSphereChainCorrection).
 TEST(Conductivity, SpheresHaveThePublishedValue) {
   const ConductivityRatio spheres =
       RefineConductivity(EqualSitesChain(3), QuickPlan(EqualSitesChain(3)));

@@ -17,7 +17,7 @@ SixValues Listed(const ContactCurrents& c) {
   return {c.energy, c.products, c.ball[0], c.ball[1], c.piston[0], c.piston[1]};
 }
 
-// The sum over angles and signs, by the rule of the middles.
+// The sum over angles and signs, by the midpoint rule.
 SixValues ByDefinition(const TestFunction& f, double ball, double piston) {
   constexpr int kAngles = 40'000;
   const TestFunction::Values u = f.OfBall(ball), w = f.OfPiston(piston);
@@ -53,7 +53,7 @@ TEST(ContactCurrents, AgreeWithTheirDefinition) {
   }
 }
 
-TEST(ContactCurrents, TableIsWithinItsErrorOfThem) {
+TEST(ContactCurrents, TableErrorIsWithinItsBound) {
   std::mt19937_64 random(1);
   std::gamma_distribution<double> of_a_ball(1), of_a_piston(0.5);
   for (const ContactCurrentsTable* table :

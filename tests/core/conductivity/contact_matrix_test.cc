@@ -79,9 +79,9 @@ struct Element {
   int i, j, k, l;
 };
 
-// -<f L g> = -<(v_a - v_b)+ f (g' - g)>, on velocities: it is the symmetric form of the matrix only
-// if the exchange satisfies detailed balance. v_a = mean + half and v_b = mean - half have the
-// density exp(-mean^2 - half^2)/pi in mean and half.
+// -<f L g> = -<(v_a - v_b)+ f (g' - g)>, integrated over velocities. This is equal to the symmetric
+// form of the matrix only if the exchange satisfies detailed balance. v_a = mean + half and
+// v_b = mean - half have the density exp(-mean^2 - half^2)/pi in mean and half.
 std::vector<double> ByQuadrature(SiteDimensions d, const std::vector<Element>& elements,
                                  int panels) {
   const LaguerreSums p(d.a / 2.0), q(d.b / 2.0);
@@ -169,7 +169,7 @@ TEST(ContactMatrix, ConservesTheEnergyOfThePair) {
   }
 }
 
-TEST(ContactMatrix, IsSymmetricAndHasNoNegativeRate) {
+TEST(ContactMatrix, IsSymmetricAndPositiveSemidefinite) {
   for (const SiteDimensions d : kAllDimensions) {
     const Eigen::MatrixXd matrix = ContactMatrix(d, 10).elements();
     EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0);
@@ -193,7 +193,7 @@ TEST(ContactMatrix, SwappedSitesSwapTheIndices) {
   }
 }
 
-// Half of <rate (e_a' - e_a)^2> is the exchange rate at T = 1, whatever the dimensions.
+// Half of <rate (e_a' - e_a)^2> is the exchange rate at T = 1, for all dimensions.
 TEST(ContactMatrix, EnergyExchangeIsTheExchangeRate) {
   EXPECT_NEAR(kContactRate, 1 / std::sqrt(std::numbers::pi), 1e-16);
   for (const SiteDimensions d : kAllDimensions) {
@@ -201,7 +201,7 @@ TEST(ContactMatrix, EnergyExchangeIsTheExchangeRate) {
   }
 }
 
-// High degrees leave the elements of low ones as they are.
+// The elements of low degrees do not depend on the largest degree.
 TEST(ContactMatrix, HighDegreesAreExactToRounding) {
   const auto differ = [](SiteDimensions d, int low_degree, int high_degree) {
     const Eigen::MatrixXd low = ContactMatrix(d, low_degree).elements();

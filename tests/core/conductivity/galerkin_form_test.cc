@@ -14,8 +14,8 @@ namespace {
 // A function on a ring or torus, by its coefficients.
 using Function = std::map<std::vector<Factor>, double>;
 
-// Cells of the ring, or of a side of the torus. There are so many that no function of the examples
-// overlaps itself.
+// Cells of the ring, or of a side of the torus. Their number is large enough that no function of
+// the examples overlaps itself.
 int Cells(const SiteLattice& lattice) { return lattice.has_rows ? 3 : 6; }
 int Rows(const SiteLattice& lattice) { return lattice.has_rows ? Cells(lattice) : 1; }
 
@@ -60,7 +60,7 @@ Function Normalised(Function f) {
 struct Bond {
   Site a;
   Site b;
-  int field;  // x of a less x of b
+  int field;  // x of a minus x of b
 };
 
 // All contacts: with the sites beside each ball, or to the right of each equal site.
@@ -127,7 +127,7 @@ double Form(const SiteLattice& lattice, const ContactMatrix& contact, const Func
   return sum / (Cells(lattice) * Rows(lattice));
 }
 
-// sum(x e) at a contact, less a function of e_a + e_b.
+// sum(x e) at a contact, minus a function of e_a + e_b.
 Function FieldAt(const SiteLattice& lattice, const Bond& bond) {
   return {{{Factor{bond.a, 1}}, bond.field * std::sqrt(lattice.dimensions.a / 2.0)}};
 }

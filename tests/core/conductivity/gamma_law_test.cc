@@ -8,7 +8,7 @@ namespace ballpiston {
 namespace {
 
 // <x^k> is Gamma(shape + k)/Gamma(shape), a product of k factors.
-TEST(GammaLaw, QuadratureIsExactToTwiceItsNodes) {
+TEST(GammaLaw, QuadratureIsExactBelowTwiceItsNodes) {
   for (const double shape : {0.5, 1.0, 1.5, 2.0, 5.0}) {
     for (const int count : {1, 2, 7, 20, 40}) {
       const GammaQuadrature rule = GammaNodes(shape, count);

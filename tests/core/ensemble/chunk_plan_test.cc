@@ -45,7 +45,7 @@ TEST(ChunkPlan, ChunksDoubleUpToAMinute) {
   }
 }
 
-// Fewer tell no error.
+// Fewer samples are not enough to estimate an error.
 TEST(ChunkPlan, TheFirstChunkHas64SamplesAndSomeMillisecondsAtLeast) {
   EXPECT_EQ(ChunkPlan(kMany, Engine::kLanes, 1e9).SamplesIn(0), 64u);
   EXPECT_EQ(ChunkPlan(kMany, Engine::kLanes, 0x1p10).SamplesIn(0), 1024u);

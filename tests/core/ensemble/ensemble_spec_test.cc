@@ -36,7 +36,7 @@ auto Names(const std::string& field, const std::string& text) {
                Field(&FieldViolation::description, HasSubstr(text)));
 }
 
-TEST(EnsembleSpec, ValidOnesHaveNoViolations) {
+TEST(EnsembleSpec, ValidSpecsHaveNoViolations) {
   EXPECT_THAT(Violations(ValidFirstHit()), IsEmpty());
   EXPECT_THAT(Violations({.experiment = &kEquilibrium,
                           .grid = {{kRho, {0.6}}, {kDelta, {PairDeltaBound(0.6)}}}}),
@@ -54,7 +54,7 @@ TEST(EnsembleSpec, GridIsTheProductWithRhoOutermost) {
             (PointParameters{{kRho, 0.6}, {kDelta, 0.1}, {kEpsilon, 0.5}, {kExponent, 5}}));
 }
 
-TEST(EnsembleSpec, OnePointOfItHasItsShareOfABudget) {
+TEST(EnsembleSpec, OnePointSpecHasItsShareOfTheBudget) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.budget_seconds = 6};
   spec.seed = 5;
@@ -92,11 +92,11 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
                   Names("grid.delta[0]", "bound of a ball-piston pair"),
                   Names("grid.delta[1]", "-1"), Names("grid.epsilon[0]", "[0, 0.5]"),
                   Names("grid.epsilon[1]", "-inf"), Names("grid.exponent[0]", "[0, 1000]"),
-                  Names("grid.exponent[1]", "1001"), Names("grid.cells", "takes none"),
-                  Names("grid.temperature", "has 3 values; first-hit takes none"),
+                  Names("grid.exponent[1]", "1001"), Names("grid.cells", "does not use this list"),
+                  Names("grid.temperature", "has 3 values; first-hit does not use this list"),
                   Names("grid.temperature[2]", "temperature is -1"),
-                  Names("grid.hot", "has 1 values; first-hit takes none"),
-                  Names("grid.cold", "has 2 values; first-hit takes none"),
+                  Names("grid.hot", "has 1 values; first-hit does not use this list"),
+                  Names("grid.cold", "has 2 values; first-hit does not use this list"),
                   Names("grid.cold[1]", "cold is 0"), Names("target", "more than one"),
                   Names("target.samples", "is 0"), Names("target.tolerance", "0 < tolerance < 1"),
                   Names("model", "markov"), Names("precision", "single")));
@@ -104,13 +104,13 @@ TEST(EnsembleSpec, EveryViolationIsReportedAtOnce) {
 
 TEST(EnsembleSpec, DeltaBeyondTheBoundNamesItsValue) {
   EnsembleSpec spec = ValidFirstHit();
-  spec.grid[kDelta] = {0.2};  // legal at 0.55, not at 0.6, where the bound is 0.1683
+  spec.grid[kDelta] = {0.2};  // valid at rho = 0.55; at 0.6 the bound is 0.1683
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[0]",
                                                   "rho = 0.6: 0 < delta <= (1 - "
                                                   "lambda)/2 = 0.1683")));
 }
 
-TEST(EnsembleSpec, AbsurdGridsAreRefusedWithoutBeingExpanded) {
+TEST(EnsembleSpec, HugeGridsAreRejectedWithoutExpansion) {
   EnsembleSpec spec = ValidFirstHit();
   spec.grid[kDelta].assign(1000, 0.01);
   spec.grid[kEpsilon].assign(1000, 0.1);
@@ -118,15 +118,15 @@ TEST(EnsembleSpec, AbsurdGridsAreRefusedWithoutBeingExpanded) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid", "2000000000 points")));
 }
 
-TEST(EnsembleSpec, ListsThatTheExperimentLacksOrDoesNotUseAreNamed) {
+TEST(EnsembleSpec, MissingAndUnusedListsAreNamed) {
   EXPECT_THAT(Violations({.experiment = &kEquilibrium,
                           .grid = {{kDelta, {0.1}}, {kEpsilon, {0.1}}, {kExponent, {1}}}}),
               UnorderedElementsAre(Names("grid.rho", "needs at least one"),
-                                   Names("grid.epsilon", "takes none"),
-                                   Names("grid.exponent", "takes none")));
+                                   Names("grid.epsilon", "does not use this list"),
+                                   Names("grid.exponent", "does not use this list")));
 }
 
-TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
+TEST(EnsembleSpec, TargetsInTheWrongUnitAreRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.collisions = 10};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.collisions", "use target.samples")));
@@ -139,7 +139,7 @@ TEST(EnsembleSpec, TargetsThatTheExperimentDoesNotCountAreRefused) {
   }
 }
 
-TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
+TEST(EnsembleSpec, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.grid[kDelta] = {0.1, 1e-160, std::numeric_limits<double>::denorm_min()};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.delta[1]", "too small"),
@@ -152,7 +152,7 @@ TEST(EnsembleSpec, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRefused) {
   EXPECT_THAT(Violations(spec), testing::IsEmpty());
 }
 
-TEST(EnsembleSpec, ToleranceThatCannotBeReachedIsRefused) {
+TEST(EnsembleSpec, UnreachableToleranceIsRejected) {
   EnsembleSpec spec = ValidFirstHit();
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "epsilon = 0")));
@@ -179,11 +179,11 @@ TEST(EnsembleSpec, RelaxationTakesAnyNumberOfInitialEnergies) {
                                                      Names("grid.epsilon[1]", "[0, 0.5]"),
                                                      Names("grid.epsilon[2]", "[0, 0.5]")));
   spec.grid = {{kRho, {0.55}}, {kDelta, {0.1}}, {kExponent, {1}}};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "takes none")));
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.exponent", "does not use this list")));
 }
 
 // Around 1/6 the integral of the decay has a zero, and the relaxation time a pole.
-TEST(EnsembleSpec, ToleranceOfARelaxationTimeThatIsNotToldIsRefused) {
+TEST(EnsembleSpec, ToleranceWithoutARelaxationTimeIsRejected) {
   EnsembleSpec spec = ValidRelaxation();
   spec.grid[kEpsilon] = {0.12, 0.121, 1.0 / 6, 0.199, 0.2};
   spec.target = {.samples = 100};
@@ -211,10 +211,10 @@ TEST(EnsembleSpec, MarkovPropertyCountsCollisionsWithoutATolerance) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target.tolerance", "tends to 0")));
   spec.target = {};
   spec.grid[kEpsilon] = {0.1};
-  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "takes none")));
+  EXPECT_THAT(Violations(spec), ElementsAre(Names("grid.epsilon", "does not use this list")));
 }
 
-TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
+TEST(EnsembleSpec, UnsuitableModelsAreRejectedWithTheSuitableOnes) {
   const EnsembleSpec specs[] = {
       {.experiment = &kEquilibrium, .grid = {{kRho, {0.55}}, {kDelta, {0.1}}}},
       {.experiment = &kConditionalMeanFreeTime,
@@ -252,7 +252,7 @@ TEST(EnsembleSpec, ModelsThatCannotAnswerAreRefusedWithThoseThatCan) {
               ElementsAre(Names("model", "permitted: auto, billiard, billiard_reference")));
 }
 
-TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
+TEST(EnsembleSpec, SinglePrecisionIsOnlyForTheLanes) {
   EnsembleSpec spec = ValidRelaxation();
   spec.precision = Precision::kSingle;
   for (const Model model : {Model::kAuto, Model::kBilliard}) {
@@ -265,8 +265,8 @@ TEST(EnsembleSpec, SinglePrecisionIsTheLanesAlone) {
   }
 }
 
-// Beyond them it is not known how far its numbers are off (billiard/single_precision.h).
-TEST(EnsembleSpec, SinglePrecisionIsRefusedWhereItWasNotMeasured) {
+// Outside of this domain the errors of single precision are unknown (billiard/single_precision.h).
+TEST(EnsembleSpec, SinglePrecisionIsRejectedOutsideItsMeasuredDomain) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     if (IsOfAGas(experiment)) continue;  // it has no single precision
     EnsembleSpec spec = {.experiment = experiment, .precision = Precision::kSingle};
@@ -285,7 +285,7 @@ TEST(EnsembleSpec, SinglePrecisionIsRefusedWhereItWasNotMeasured) {
   }
 }
 
-TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
+TEST(EnsembleSpec, BudgetIsPermittedAloneOrWithATolerance) {
   EnsembleSpec spec = ValidRelaxation();
   for (const double seconds : {1e-3, 1.0, kMaxBudgetSeconds}) {
     spec.target = {.budget_seconds = seconds};
@@ -305,7 +305,7 @@ TEST(EnsembleSpec, BudgetStandsAloneOrBesideATolerance) {
   EXPECT_THAT(Violations(spec), ElementsAre(Names("target", "more than one kind")));
 }
 
-TEST(EnsembleSpec, VerifyStandsBesideAutoAlone) {
+TEST(EnsembleSpec, VerifyIsPermittedOnlyWithAuto) {
   EnsembleSpec spec = {.experiment = &kEquilibrium, .grid = {{kRho, {0.55}}, {kDelta, {0.1}}}};
   spec.verify = true;
   EXPECT_THAT(Violations(spec), IsEmpty());
@@ -316,7 +316,7 @@ TEST(EnsembleSpec, VerifyStandsBesideAutoAlone) {
 }
 
 // The closed form needs no variance.
-TEST(EnsembleSpec, ToleranceAtARestingPistonIsForTheClosedForm) {
+TEST(EnsembleSpec, ToleranceAtARestingPistonRequiresTheClosedForm) {
   EnsembleSpec spec = {.experiment = &kConditionalMeanFreeTime,
                        .grid = {{kRho, {0.55}}, {kDelta, {0.1}}, {kEpsilon, {0, 0.1}}},
                        .target = {.tolerance = 0.1}};
@@ -356,7 +356,7 @@ TEST(EnsembleSpec, EachExperimentPermitsTheNamesOfItsAims) {
   }
 }
 
-TEST(EnsembleSpec, AnUnknownEstimateIsRefusedWithThoseThatAreKnown) {
+TEST(EnsembleSpec, AnUnknownEstimateIsRejectedWithTheKnownNames) {
   EnsembleSpec spec = ValidGas();
   for (const char* name : {"conduct", "Conductivity", "temperature_ball"}) {
     spec.target.estimate = name;
@@ -374,7 +374,7 @@ TEST(EnsembleSpec, AnUnknownEstimateIsRefusedWithThoseThatAreKnown) {
   }
 }
 
-TEST(EnsembleSpec, AnEstimateThatTheModelCannotAnswerIsRefused) {
+TEST(EnsembleSpec, AnEstimateThatTheModelCannotAnswerIsRejected) {
   EnsembleSpec spec = ValidGas();
   spec.target.estimate = "conductivity";
   spec.model = Model::kClosedForm;

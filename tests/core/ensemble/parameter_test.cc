@@ -40,7 +40,7 @@ TEST(Parameter, CodeOfEveryShapeIsAValueOfCells) {
   }
 }
 
-TEST(Parameter, NumberThatIsNoCodeOfAShapeIsRefused) {
+TEST(Parameter, NumberWithoutAShapeIsRejected) {
   constexpr double kRow = 0x1p20;  // the code of a lattice without columns
   for (const double value : {0.0, -1.0, 0.5, 12.5, 1e6 + 1, kRow - 1, kRow, kRow + 0.5, 3 * kRow,
                              CodeOf({.columns = 1001, .rows = 1000, .is_lattice = true}),

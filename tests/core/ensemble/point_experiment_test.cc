@@ -105,7 +105,7 @@ TEST(PointExperiment, SeedDecidesTheNumbers) {
   }
 }
 
-TEST(PointExperiment, ComputesWhatTheTargetAsksFor) {
+TEST(PointExperiment, ComputesTheRequestedSamples) {
   for (const EnsembleSpec& spec : OneOfEach()) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
@@ -272,13 +272,13 @@ TEST(PointExperiment, AnswerDecidesTheModel) {
   EXPECT_EQ(point->answer().reason, "chosen");
   EXPECT_EQ(point->answer().model_error, 0.01);
   EXPECT_EQ(point->plan().samples(), 0u);
-  // By the same numbers as if the model had been named.
+  // The numbers are the same as if the specification had named the model.
   const auto chosen = PointExperiment::Create(spec, 0, {.model = Model::kMarkov});
   spec.model = Model::kMarkov;
   EXPECT_EQ(*FoldPoint(*chosen), *FoldPoint(*PointExperiment::Create(spec, 0)));
 }
 
-// However rare collisions are: a correlation needs two exchanges of one orbit.
+// A correlation needs two exchanges of one orbit, also if collisions are very rare.
 TEST(PointExperiment, BlocksHoldWholeOrbitsOfExchanges) {
   for (const Model model : {Model::kBilliard, Model::kBilliardReference, Model::kMarkov}) {
     for (const double delta : {0.2, 1e-3, 1e-6}) {

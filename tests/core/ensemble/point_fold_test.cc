@@ -91,7 +91,7 @@ TEST_F(ChunkFoldTest, AResumedChunkHasTheSameBits) {
   }
 }
 
-TEST_F(ChunkFoldTest, ARangeHasItsChunksAlone) {
+TEST_F(ChunkFoldTest, ARangeHasOnlyItsChunks) {
   ChunkFold fold(point_->plan(), {.chunk = 1}, 3);
   std::vector<ChunkResult> chunks;
   while (const auto block = fold.NextBlock()) {
@@ -113,14 +113,14 @@ TEST_F(ChunkFoldTest, ABlockCountsOnce) {
   EXPECT_EQ(fold.waiting(), 1u);
 }
 
-TEST_F(ChunkFoldTest, NoMoreBlocksAreHandedOutThanTheWindowHolds) {
+TEST_F(ChunkFoldTest, BlocksHandedOutAreLimitedByTheWindow) {
   const auto endless = Point({.tolerance = 1e-5});
   ChunkFold fold(endless->plan(), {}, endless->plan().chunks());
   std::vector<Block> blocks;
   while (const auto block = fold.NextBlock()) blocks.push_back(*block);
   EXPECT_EQ(blocks.size(), ChunkFold::kWindow);
   fold.Add(blocks[1], blocks_[1].result);
-  EXPECT_FALSE(fold.NextBlock());  // the first one is still out
+  EXPECT_FALSE(fold.NextBlock());  // the first block is not yet computed
   fold.Add(blocks[0], blocks_[0].result);
   EXPECT_TRUE(fold.NextBlock());
   EXPECT_TRUE(fold.NextBlock());
@@ -201,7 +201,7 @@ TEST_F(PointFoldTest, TheFirstBlocksOfAChunkCountOnce) {
   EXPECT_EQ(fold.Merged(), chunks_[0].result);
 }
 
-TEST_F(PointFoldTest, FinishKeepsWhatIsMergedAndDropsWhatWaits) {
+TEST_F(PointFoldTest, FinishKeepsMergedChunksAndDropsWaitingChunks) {
   PointFold fold(*point_);
   fold.Add(chunks_[0]);
   fold.Add(chunks_[2]);
@@ -212,7 +212,7 @@ TEST_F(PointFoldTest, FinishKeepsWhatIsMergedAndDropsWhatWaits) {
   EXPECT_FALSE(fold.Needs(3));
 }
 
-TEST_F(PointFoldTest, ALocalPointIsTheSame) {
+TEST_F(PointFoldTest, LocalPointMatchesTheFold) {
   LocalPoint local(*point_);
   for (const ComputedBlock& computed : blocks_) {
     ASSERT_EQ(local.NextBlock(), computed.block);
@@ -223,7 +223,7 @@ TEST_F(PointFoldTest, ALocalPointIsTheSame) {
   EXPECT_EQ(local.Merged(), *FoldPoint(*point_));
 }
 
-// It is reached within a chunk; the fold goes on to the chunk's end.
+// The tolerance is reached within a chunk; the fold continues to the chunk's end.
 TEST_F(PointFoldTest, AToleranceIsJudgedAtTheEndsOfChunks) {
   const auto point = Point({.tolerance = 0.1});
   const uint64_t samples = FoldPoint(*point)->samples;

@@ -16,7 +16,7 @@ uint64_t StreamAt(const ExperimentKind& experiment, const PointParameters& point
   return PointStream({.experiment = &experiment, .model = model, .purpose = purpose}, point);
 }
 
-TEST(PointStream, TellsEveryPointApart) {
+TEST(PointStream, StreamsOfAllPointsDiffer) {
   std::set<uint64_t> streams;
   size_t points = 0;
   for (const ExperimentKind* experiment : kAllExperiments) {
@@ -53,7 +53,7 @@ TEST(PointStream, EqualValuesOfDifferentParametersDiffer) {
   EXPECT_EQ(streams.size(), 5u);
 }
 
-TEST(PointStream, APilotAndTheJumpProcessHaveNumbersOfTheirOwn) {
+TEST(PointStream, PilotAndJumpProcessHaveTheirOwnRandomNumbers) {
   const PointParameters point = {{kRho, 0.6}, {kDelta, 0.1}};
   const uint64_t billiard = StreamAt(kEnergyRelaxation, point);
   const uint64_t walk = StreamAt(kEnergyRelaxation, point, Model::kMarkov);
@@ -65,7 +65,7 @@ TEST(PointStream, APilotAndTheJumpProcessHaveNumbersOfTheirOwn) {
 }
 
 // Results carry these bits: a change of the hash needs a new engine version.
-TEST(PointStream, StaysAsItIs) {
+TEST(PointStream, HashIsUnchanged) {
   EXPECT_EQ(StreamAt(kFirstHit, {{kRho, 0.6}, {kDelta, 0.1}, {kEpsilon, 0.125}, {kExponent, 5}}),
             0xc32990bea278da20u);
 }

@@ -28,7 +28,7 @@ EnergyRelaxation RelaxationAt(double delta, std::optional<double> epsilon = {}) 
   return {PaperGeometry(delta), PaperPoint(delta, epsilon)};
 }
 
-TEST(EnergyRelaxation, OrbitsLastAsLongAsWhatIsMeasured) {
+TEST(EnergyRelaxation, OrbitsLastAsLongAsTheMeasurement) {
   const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
   const EnergyRelaxation decay = RelaxationAt(0.1, 0.01);
   const EnergyRelaxation equilibrium = RelaxationAt(0.1);
@@ -38,7 +38,7 @@ TEST(EnergyRelaxation, OrbitsLastAsLongAsWhatIsMeasured) {
   EXPECT_EQ(CollisionsPerOrbit(PaperPoint(0.1)), kOriginTimes + kWindowTimes);
 }
 
-// Of an orbit that stays at its energy: the curve is flat, and the integral the window times it.
+// The orbit keeps its energy: the curve is flat, and the integral is the window times this value.
 TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
   constexpr double kEnergy = 0.4, kOff = kEnergy - kMeanPistonEnergy;
   const double tau = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston;
@@ -54,7 +54,7 @@ TEST(EnergyRelaxation, AnOrbitWithoutCollisionsKeepsItsEnergy) {
 
 // One jump, from 1/6 + a to 1/6 - a after a time that is a whole number of lags: with origins
 // before it, the product over a lag is a^2 before the jump and -a^2 across it.
-TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
+TEST(EnergyRelaxation, CorrelationsOfOneJumpMatchHandCalculation) {
   constexpr double kOff = 0.1;
   constexpr size_t kJumpAtLag = 64;  // of the 128 steps of origins
   const EnergyRelaxation relaxation = RelaxationAt(0.1);
@@ -74,8 +74,8 @@ TEST(EnergyRelaxation, CorrelationsOfOneJumpAreAsByHand) {
               1e-9 * tau);
 }
 
-// Followed by hand with the reference flow, at the times of the curve.
-TEST(EnergyRelaxation, AnOrbitIsTheFlowsOwn) {
+// The test follows an orbit with the reference flow, at the times of the curve.
+TEST(EnergyRelaxation, OrbitsMatchTheReferenceFlow) {
   for (const double epsilon : {0.01, 0.3, 0.5}) {
     const PointParameters point = PaperPoint(0.2, epsilon);
     const EnsembleSpec spec = SpecOfOrbits(point, Model::kBilliardReference, 1);
@@ -143,8 +143,8 @@ TEST(EnergyRelaxation, AWalkDoesNotDependOnTheBlock) {
   }
 }
 
-// Around 1/6 a ratio to epsilon - 1/6 says nothing, the integral does.
-TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
+// Around 1/6 the ratio to epsilon - 1/6 has no meaning, but the integral does.
+TEST(EnergyRelaxation, RelaxationTimeExistsAwayFromTheMeanEnergy) {
   for (const std::optional<double> epsilon :
        {std::optional<double>(), std::optional(0.0), std::optional(0.12), std::optional(0.2)}) {
     const EnergyRelaxation relaxation = RelaxationAt(0.1, epsilon);
@@ -167,8 +167,8 @@ TEST(EnergyRelaxation, TimesAreToldWhereThereIsADecay) {
   }
 }
 
-// What lies beyond the window is the spectrum's to tell, and little.
-TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
+// The spectrum gives the part beyond the window, which is small.
+TEST(EnergyRelaxation, WindowContainsNearlyAllOfTheLimitsIntegral) {
   for (const double delta : {0.2, 0.01}) {
     for (const std::optional<double> epsilon :
          {std::optional<double>(), std::optional(0.01), std::optional(0.4)}) {
@@ -183,7 +183,7 @@ TEST(EnergyRelaxation, WindowHoldsNearlyAllOfTheLimit) {
   }
 }
 
-TEST(EnergyRelaxation, CurveOfTheLimitIsTheSpectrums) {
+TEST(EnergyRelaxation, CurveOfTheLimitMatchesTheSpectrum) {
   const RelaxationSpectrum& spectrum = RelaxationSpectrum::Get();
   const double unit = MeanFreeTimesOf(PaperGeometry(0.1)).ball_piston / 4;
   const Curve correlation = RelaxationAt(0.1).CurveOfLimit();
@@ -222,7 +222,7 @@ TEST(EnergyRelaxation, LawsOfTheJumpProcessSolveTheMasterEquation) {
   }
 }
 
-TEST(EnergyRelaxation, LawsNeedAnEnergyToStartFrom) {
+TEST(EnergyRelaxation, LawsRequireAnInitialEnergy) {
   EXPECT_TRUE(RelaxationAt(0.1).Empty().histograms.empty());
   EXPECT_TRUE(RelaxationAt(0.1).ProbabilitiesOfLimit().empty());
   EXPECT_TRUE(RelaxationAt(0.1, 0.1).LawsOfLimit()[0].histogram.counts.empty());

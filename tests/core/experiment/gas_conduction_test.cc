@@ -1,4 +1,4 @@
-// The experiment `gas-conduction`: estimates, profile, cut-short replicas, bad input.
+// The experiment `gas-conduction`: estimates, profile, shortened replicas, invalid input.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,8 +100,8 @@ TEST(GasConduction, TheProfileHasBallsInCellsAndPistonsBetweenThem) {
   }
 }
 
-// At most 128 columns stand alone. Of a longer gas some share a place, the last ones fewer; its
-// inner pistons are in no place.
+// Up to 128 columns have separate places. In a longer gas several columns share a place, the last
+// place has fewer columns, and inner pistons have no place.
 TEST(GasConduction, TheProfileOfALongGasHasSharedPlaces) {
   const auto places = [](const GasShape& shape) {
     const auto point = PointExperiment::Create(SpecBetween(3, 1, shape), 0);
@@ -160,14 +160,15 @@ BlockResult SomeReplicas(const PointExperiment& point) {
 }
 
 // 30,000 cells in a row take 10^9 times as long as one cell, and there are 30,000 of them.
-TEST(GasConduction, ReplicasThatAreCutShortGiveNoErrorsAndSayWhy) {
+TEST(GasConduction, ShortenedReplicasGiveNoErrorsAndARemark) {
   const auto point = PointExperiment::Create(SpecBetween(3, 1, {.columns = 30'000}), 0);
   const PointSummary summary = point->Summarize(SomeReplicas(*point));
   ASSERT_EQ(summary.remarks.size(), 1u);
   EXPECT_THAT(
       summary.remarks[0],
-      AllOf(HasSubstr("replicas of 30000 cells in a row were followed for "),
-            HasSubstr(" of the time that a stationary state takes: no errors can be given")));
+      AllOf(HasSubstr("replicas of 30000 cells in a row ran for only "),
+            HasSubstr(
+                " of the time that a stationary state needs, so there are no standard errors")));
   for (const Estimate& estimate : summary.estimates) {
     EXPECT_FALSE(estimate.standard_error) << estimate.name;
   }
@@ -183,8 +184,8 @@ TEST(GasConduction, ReplicasThatAreLongEnoughGiveErrorsAndNoRemark) {
   for (const CurvePoint& place : summary.curves[0].points) EXPECT_TRUE(place.standard_error);
 }
 
-// The longest relaxation time grows as (N + 1)^2, until a replica is cut short.
-TEST(GasConduction, AReplicaIsFollowedForTheRelaxationTime) {
+// The longest relaxation time grows as (N + 1)^2, until replicas are shortened.
+TEST(GasConduction, DurationOfAReplicaGrowsWithTheRelaxationTime) {
   const auto exchanges_a_contact = [](int64_t columns) {
     const PointParameters point = PointAt(SpecBetween(3, 1, {.columns = columns}), 0);
     return kGasConduction.collisions(Model::kBilliard, point) / static_cast<double>(2 * columns);
@@ -223,14 +224,13 @@ TEST(GasConduction, TemperaturesHaveToBePositive) {
   }
 }
 
-TEST(GasConduction, AToleranceOfNoCurrentIsRejected) {
+TEST(GasConduction, AToleranceOfZeroCurrentIsRejected) {
   EnsembleSpec spec = SpecBetween(2, 1);
   spec.target = {.tolerance = 0.1};
   EXPECT_THAT(Violations(spec), IsEmpty());
   spec.grid[kHot] = {2, 1};
-  EXPECT_THAT(
-      Violations(spec),
-      ElementsAre(Violates("target.tolerance", "the heat current is 0 where hot = cold = 1")));
+  EXPECT_THAT(Violations(spec),
+              ElementsAre(Violates("target.tolerance", "the heat current is 0 if hot = cold = 1")));
   spec.target = {.budget_seconds = 1};
   EXPECT_THAT(Violations(spec), IsEmpty());
 }

@@ -122,9 +122,9 @@ TEST(GasEquilibrium, ConductivityIsMeasuredUpTo5000Contacts) {
   }
 }
 
-// Half of the exchange rate, times a factor that the shape alone decides. core/conductivity tests
-// the factor.
-TEST(GasEquilibrium, TheSpectrumKnowsTheConductivity) {
+// The conductivity is half of the exchange rate, times a factor that depends only on the shape. The
+// tests of core/conductivity check the factor.
+TEST(GasEquilibrium, TheSpectrumGivesTheConductivity) {
   for (const auto& [shape, correction] :
        {std::pair(GasShape{5}, kChainCorrection), {GasShape{4, 3, true}, kLatticeCorrection}}) {
     for (const double delta : {0.19, 0.01}) {
@@ -176,7 +176,7 @@ TEST(GasEquilibrium, AllScalesWithTheTemperature) {
 }
 
 // Of speeds v: 1 - exp(-v^2/2T) of a ball in two dimensions, erf(v/sqrt(2T)) of a piston in one.
-TEST(GasEquilibrium, ExpectedProbabilitiesAreThoseOfTheThermalLaws) {
+TEST(GasEquilibrium, ExpectedProbabilitiesMatchTheThermalLaws) {
   const PointSummary summary = RunPoint(SpecAt(2));
   const auto laws = kGasEquilibrium.expected_probabilities(PointAt(SpecAt(2), 0));
   ASSERT_EQ(laws.size(), 2u);
@@ -195,8 +195,8 @@ TEST(GasEquilibrium, ExpectedProbabilitiesAreThoseOfTheThermalLaws) {
   }
 }
 
-// Balls of another temperature than the stated one are noticed in the law of their speeds.
-TEST(GasEquilibrium, ADivergenceAboveItsNoiseTellsAnotherLaw) {
+// If the balls have another temperature than the stated one, the law of their speeds shows it.
+TEST(GasEquilibrium, AnotherLawGivesADivergenceAboveTheNoise) {
   BlockResult merged = *FoldPoint(*PointExperiment::Create(SpecAt(1), 0));
   const PointSummary before = Summarized(SpecAt(1), merged);
   for (const size_t i : {3, 4}) {

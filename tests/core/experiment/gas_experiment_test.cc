@@ -1,4 +1,4 @@
-// What both experiments with a gas have in common, by every model that samples.
+// The common properties of both experiments with a gas, by every model that samples.
 #include "core/experiment/gas_experiment.h"
 
 #include <gmock/gmock.h>
@@ -102,7 +102,7 @@ TEST(GasExperiment, BlocksComputedTogetherEqualThoseComputedAlone) {
   }
 }
 
-TEST(GasExperiment, AReplicaDependsOnItsNumberAlone) {
+TEST(GasExperiment, AReplicaDependsOnlyOnItsNumber) {
   for (const EnsembleSpec& spec : OneOfEach(12)) {
     SCOPED_TRACE(Described(spec));
     const auto point = PointExperiment::Create(spec, 0);
@@ -150,8 +150,8 @@ TEST(GasExperiment, AResumedFoldHasTheSameBits) {
   }
 }
 
-// A histogram has no more counts than the samples' own number says: the server checks that when it
-// reads a checkpoint.
+// A histogram has at most CountsOfASample() counts for each sample. The server checks this bound
+// when it reads a checkpoint.
 TEST(GasExperiment, CountsOfASampleBoundEveryHistogram) {
   for (const EnsembleSpec& spec : OneOfEach(12)) {
     const auto point = PointExperiment::Create(spec, 0);
@@ -188,7 +188,7 @@ TEST(GasExperiment, DeltaUpToTheGasBoundIsPermitted) {
   }
 }
 
-TEST(GasExperiment, DeltaWhoseTimesLeaveTheRangeOfDoubleIsRejected) {
+TEST(GasExperiment, DeltaWithTimesOutsideTheRangeOfDoubleIsRejected) {
   for (const ExperimentKind* kind : kGases) {
     EnsembleSpec spec = Valid(kind);
     spec.grid[kDelta] = {1e-160};
@@ -205,7 +205,7 @@ TEST(GasExperiment, SinglePrecisionIsRejected) {
   }
 }
 
-TEST(GasExperiment, CellsThatAreNoShapeAreRejected) {
+TEST(GasExperiment, CellsWithoutAShapeAreRejected) {
   for (const ExperimentKind* kind : kGases) {
     EnsembleSpec spec = Valid(kind);
     for (const double code : {0.0, -1.0, 0.5, 1e9, 1e300, std::nan(""), HUGE_VAL}) {
@@ -236,11 +236,12 @@ TEST(GasExperiment, AnotherExperimentsParametersAreRejected) {
   equilibrium.grid[kHot] = {2};
   equilibrium.grid[kEpsilon] = {0.1};
   conduction.grid[kTemperature] = {1};
-  EXPECT_THAT(Violations(equilibrium), testing::UnorderedElementsAre(
-                                           Violates("grid.hot", "gas-equilibrium takes none"),
-                                           Violates("grid.epsilon", "gas-equilibrium takes none")));
+  EXPECT_THAT(Violations(equilibrium),
+              testing::UnorderedElementsAre(
+                  Violates("grid.hot", "gas-equilibrium does not use this list"),
+                  Violates("grid.epsilon", "gas-equilibrium does not use this list")));
   EXPECT_THAT(Violations(conduction),
-              ElementsAre(Violates("grid.temperature", "gas-conduction takes none")));
+              ElementsAre(Violates("grid.temperature", "gas-conduction does not use this list")));
 }
 
 }  // namespace

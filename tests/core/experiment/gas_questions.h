@@ -1,4 +1,4 @@
-// What the tests of the gas's experiments share.
+// Functions that the tests of the gas's experiments share.
 #ifndef BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
 #define BALLPISTON_TESTS_CORE_EXPERIMENT_GAS_QUESTIONS_H_
 
@@ -11,7 +11,7 @@
 
 namespace ballpiston {
 
-// What the spec's experiment says of replicas that have been measured.
+// The summary of measured replicas by the spec's experiment.
 inline PointSummary Summarized(const EnsembleSpec& spec, const BlockResult& merged) {
   return PointExperiment::Create(spec, 0)->Summarize(merged);
 }

@@ -44,7 +44,7 @@ TEST(HitTimeLaw, IntegralOfTheSurvivalIsTheMeanHitTime) {
   }
 }
 
-TEST(HitTimeLaw, HistogramsAndDivergenceAreOfTheAngleAlone) {
+TEST(HitTimeLaw, HistogramsAndDivergenceUseOnlyTheAngle) {
   const PointSummary summary =
       RunPoint(SpecOf(&kFirstHit, PaperPoint(0.2, 0.3, 1), {.samples = 1'000}, Model::kBilliard));
   ASSERT_EQ(summary.histograms.size(), 1u);

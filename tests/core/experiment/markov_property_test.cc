@@ -31,7 +31,8 @@ double EnergyAt(double v, double ep) {
 // Jumps after which an orbit's first energy is that of equilibrium.
 constexpr size_t kBurnIn = 50;
 
-// Counts orbits of a process that draws v and the waiting time's exponent by what they were before.
+// Counts orbits of a process that draws v and the waiting time's exponent from their previous
+// values.
 template <typename Outcome, typename Exponent>
 BlockResult CountsOfProcess(uint64_t seed, int orbits, Outcome outcome, Exponent exponent) {
   BlockResult counts = EmptyMarkovPropertyCounts();
@@ -95,8 +96,8 @@ TEST(MarkovPropertyDivergence, NoiseFloorsHoldForTheJumpProcess) {
   }
 }
 
-// Each way to fail shows in its own estimate.
-TEST(MarkovPropertyStatistics, SeesWhatIsNotMarkov) {
+// Each kind of deviation shows in a different estimate.
+TEST(MarkovPropertyStatistics, DetectsDeviationsFromMarkov) {
   const auto uniform = [](CounterRandom& random, double, double) { return Uniform(random); };
   const auto exponential = [](CounterRandom& random, double) { return Exponential(random); };
   const auto estimates = [](const BlockResult& counts) {
@@ -132,7 +133,7 @@ TEST(MarkovPropertyStatistics, SeesWhatIsNotMarkov) {
   EXPECT_GT(std::fabs(Named("memory_correlation", sluggish).value), 0.1);
 }
 
-// An orbit to and fro between two energies: what comes next is what was before, so B = V.
+// An orbit that alternates between two energies: the next energy is the previous one, so B = V.
 TEST(MarkovPropertyStatistics, ReadBackwardIsTheLawReadForward) {
   BlockResult counts = EmptyMarkovPropertyCounts();
   for (uint64_t i = 0; i < 1000; ++i) {

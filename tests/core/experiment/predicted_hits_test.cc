@@ -35,8 +35,8 @@ class CountedReturns : public ReturnOrbits {
   Counted counted;
 };
 
-// Exact means, as the paper's measures are: 5 standard errors, 6e-7 false alarms each. Starts in
-// contact: what is counted between two collisions is what comes before the second.
+// The predictions are exact means: 5 standard errors, 6e-7 false alarms each. An orbit starts in
+// contact, and its hits before the second collision are counted.
 void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
   EXPECT_NEAR(counted.ball_wall.mean, predicted.ball_wall, 5 * *counted.ball_wall.StandardError());
   EXPECT_NEAR(counted.piston_wall.mean, predicted.piston_wall,
@@ -44,7 +44,7 @@ void ExpectCounted(const PredictedHits& predicted, const Counted& counted) {
   EXPECT_EQ(predicted.Events(), 1 + predicted.ball_wall + predicted.piston_wall);
 }
 
-TEST(PredictedHits, AreThoseOfOrbitsInEquilibrium) {
+TEST(PredictedHits, MatchOrbitsInEquilibrium) {
   for (const double rho : {0.501, kPaperRho, 0.65}) {
     const PairGeometry geometry = GeometryAtShare(rho, 0.6);
     for (const Engine engine : kEngines) {
@@ -58,8 +58,8 @@ TEST(PredictedHits, AreThoseOfOrbitsInEquilibrium) {
   }
 }
 
-// From the law that is its own: exponent 1.
-TEST(PredictedHits, AreThoseOfReturnsAtAnEnergy) {
+// Starts are from the invariant law, exponent 1.
+TEST(PredictedHits, MatchReturnsAtAnEnergy) {
   const PairGeometry geometry = PaperGeometry(0.25);
   for (const double epsilon : {0.05, 0.2, 0.35, 0.45}) {
     for (const Engine engine : kEngines) {

@@ -7,7 +7,7 @@
 namespace ballpiston {
 namespace {
 
-TEST(ReturnOrbits, AnEscapedOrbitIsCountedAndIsNoSample) {
+TEST(ReturnOrbits, AnEscapedOrbitCountsAsAnEscapeOnly) {
   ReturnOrbits orbits(kPaperPair, {0.125, 1}, {.seed = 1, .stream = 2}, {.samples = 2});
   Contact contact;
   contact.state = orbits.Start(0);

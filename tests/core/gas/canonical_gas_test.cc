@@ -18,7 +18,7 @@
 namespace ballpiston {
 namespace {
 
-// Crowded: a piston takes 1.8 % of a cell on either side, and is inside of one half of its time.
+// Crowded: a piston takes 1.8 % of a cell on either side, and is inside of a cell half of the time.
 constexpr double kCrowdedRho = 0.52;
 constexpr uint64_t kConfigurations = 100'000;
 
@@ -89,8 +89,8 @@ TEST(CanonicalGas, PistonsHaveTheirExactLaw) {
   }
 }
 
-// A piston between uniform places, as if it took nothing from any cell: the law of a ring of one
-// cell is farther from it than the tests allow.
+// A piston with a uniform offset, as if it took no area from any cell. Its distance from the law of
+// a ring of one cell exceeds the tolerance of the tests.
 TEST(CanonicalGas, AnotherLawOfPistonsIsDetected) {
   const double reach = CrowdedGas("1").reach();
   std::vector<double> offsets;
@@ -109,7 +109,7 @@ bool HasBallBeyondPiston(const GasGeometry& gas, const GasState& state) {
   return false;
 }
 
-// All places drawn again until no ball is beyond a piston: the definition.
+// By definition: all positions are drawn again until no ball is beyond a piston.
 GasState DrawnAsAWhole(const GasGeometry& gas, CounterRandom& random) {
   GasState state;
   state.balls.resize(static_cast<size_t>(gas.balls()));
@@ -127,8 +127,8 @@ GasState DrawnAsAWhole(const GasGeometry& gas, CounterRandom& random) {
   return state;
 }
 
-// What the two samples are compared in: pistons inside cells; pistons inside of the first cell;
-// places of a ball and a piston; the narrowest gap.
+// The quantities in which the two samples are compared: pistons inside cells; pistons inside of the
+// first cell; positions of a ball and a piston; the narrowest gap.
 struct Observed {
   std::vector<uint64_t> inside_cells = std::vector<uint64_t>(20);
   std::vector<uint64_t> inside_first = std::vector<uint64_t>(5);
@@ -155,7 +155,7 @@ struct Observed {
 };
 
 // False alarms: 2e-4 a shape.
-TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
+TEST(CanonicalGas, PositionsMatchPlainRejection) {
   struct Case {
     const char* shape;
     GasEnds ends;
@@ -180,7 +180,7 @@ TEST(CanonicalGas, PlacesAreThoseOfPlainRejection) {
   }
 }
 
-TEST(CanonicalGas, NoBallIsBeyondAPiston) {
+TEST(CanonicalGas, EveryBallIsOnItsSideOfThePistons) {
   for (const double rho : {0.5 + 1e-6, 0.52, 0.6, 0.7}) {
     for (const char* shape : {"1", "2", "50", "1x1", "1x7", "20x20"}) {
       for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
@@ -204,8 +204,8 @@ double GammaOne(double x) { return -std::expm1(-x); }
 double GammaHalf(double x) { return std::erf(std::sqrt(x)); }
 double UniformOnCircle(double angle) { return 0.5 + angle / (2 * std::numbers::pi); }
 
-// Each distance exceeds 2.3 in 5e-5 of all cases; the sign of a piston's velocity is off by four
-// standard errors in 6e-5.
+// Each distance exceeds 2.3 in 5e-5 of all cases; the share of positive piston velocities differs
+// by four standard errors in 6e-5.
 TEST(CanonicalGas, EnergiesHaveTheirGammaLaws) {
   for (const double temperature : {1e-3, 1.0, 40.0}) {
     const GasGeometry gas = CrowdedGas("200x100");

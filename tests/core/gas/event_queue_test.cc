@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNoEvent = std::numeric_limits<double>::infinity();
 
-// The slow way: all bodies in order, by time and then by number.
+// A slow implementation: all bodies in order, by time and then by number.
 class OrderedEvents {
  public:
   explicit OrderedEvents(size_t bodies) : times_(bodies, kNoEvent) {

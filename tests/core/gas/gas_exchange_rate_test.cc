@@ -21,7 +21,7 @@ namespace {
 
 double PairRate(const GasGeometry& gas) { return ExchangeRate(Measures(gas.pair()), 1); }
 
-// How far two rates differ, relatively. Oracles in double add the rounding of some 1e5 operations.
+// Relative difference of two rates. Oracles in double add the rounding of some 1e5 operations.
 constexpr double kOracleError = 2e-14;
 void ExpectSameRate(double rate, double exact) {
   EXPECT_NEAR(rate / exact, 1, kGasExchangeRateRelativeError + kOracleError);
@@ -41,7 +41,7 @@ TEST(GasExchangeRate, RingsAreTracesOfTheirTransferOperator) {
   }
 }
 
-TEST(GasExchangeRate, TheTemperatureIsAFactorSqrtT) {
+TEST(GasExchangeRate, RateScalesWithTheRootOfTheTemperature) {
   for (const char* shape : {"3", "3x2"}) {
     const GasGeometry gas = GasOf(kPaperRho, 0.2, shape);
     EXPECT_DOUBLE_EQ(GasExchangeRate(gas, 6.25), 2.5 * GasExchangeRate(gas, 1));
@@ -63,12 +63,12 @@ TEST(GasExchangeRate, ToriCountEveryConfiguration) {
 }
 
 // A piston has one cell on both of its sides: Z = 1 - 4 z.
-TEST(GasExchangeRate, TheSmallestTorusInClosedForm) {
+TEST(GasExchangeRate, TheSmallestTorusHasAClosedForm) {
   for (const double z : {0.0, 1e-3, 0.02})
     ExpectSameRate(CrowdingFactor({1, 1, true}, z), 1 / (1 - 4 * z));
 }
 
-// F is 1 where no piston takes anything from a cell.
+// F is 1 if no piston takes area from a cell.
 TEST(GasExchangeRate, WithoutCrowdingTheFactorIsOne) {
   for (const char* shape : {"1", "2", "1000000", "1x1", "2x3", "9x7", "1000x1000", "1x1000000"}) {
     ExpectSameRate(CrowdingFactor(ShapeNamed(shape), 0), 1);
@@ -77,8 +77,8 @@ TEST(GasExchangeRate, WithoutCrowdingTheFactorIsOne) {
   ExpectSameRate(InfiniteCrowdingFactor(true, 0), 1);
 }
 
-// What a finite gas adds falls by a factor of at least ten from one size to the next, down to the
-// error of the infinite lattice.
+// The difference between a finite and the infinite gas falls by a factor of at least ten from one
+// size to the next, down to the error of the infinite lattice.
 TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
   for (const double z : {0.005, 0.02}) {
     for (const bool is_lattice : {false, true}) {
@@ -102,7 +102,7 @@ TEST(GasExchangeRate, LargeGasesTendToTheInfiniteOne) {
 }
 
 // A tube, long on one side and narrow on the other, is not the infinite lattice.
-TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
+TEST(GasExchangeRate, LongTubesDependOnTheirWidth) {
   for (const double z : {0.005, 0.02}) {
     for (int width = 1; width <= 5; ++width) {
       const double exact = oracle::TorusByStates(40, width, z);
@@ -117,7 +117,7 @@ TEST(GasExchangeRate, LongTubesAreThoseOfTheirWidth) {
 }
 
 // The domain 0 <= z <= 0.02 covers all geometries.
-TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
+TEST(GasExchangeRate, DomainCoversEveryGeometry) {
   double largest = 0;
   for (double rho = 0.5001; rho < kMaxRho; rho += 0.005) {
     largest = std::fmax(largest, oracle::ChainByQuadrature(rho, GasDeltaBound(rho)).MeanFraction());
@@ -126,7 +126,7 @@ TEST(GasExchangeRate, NoGeometryIsMoreCrowdedThanTheDomain) {
   EXPECT_GT(largest, 0.01);
 }
 
-TEST(GasExchangeRate, ExceedsThePairsRateAsTheHeaderSays) {
+TEST(GasExchangeRate, ExceedsThePairsRateByTheStatedAmount) {
   const GasGeometry chain = GasOf(kPaperRho, 0.2, "3"), lattice = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_NEAR(InfiniteGasExchangeRate(chain, 1) / PairRate(chain), 1.0240, 5e-5);
   EXPECT_NEAR(InfiniteGasExchangeRate(lattice, 1) / PairRate(lattice), 1.0494, 5e-5);

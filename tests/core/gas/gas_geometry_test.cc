@@ -165,7 +165,7 @@ TEST(GasGeometry, ThePapersDeltaIsAccepted) {
   EXPECT_NEAR(gas.pair().delta(), 0.2, 1e-13);
 }
 
-TEST(GasGeometry, RadiiOutsideTheDomainAreRefused) {
+TEST(GasGeometry, RadiiOutsideTheDomainAreRejected) {
   for (const double rho :
        {0.5, 0.3, -0.6, kMaxRho, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(
@@ -185,7 +185,7 @@ TEST(GasGeometry, PistonsAtTheBoundTouch) {
   }
 }
 
-TEST(GasGeometry, SeenFromIsTheWayBackFromSeenToward) {
+TEST(GasGeometry, SeenFromIsTheInverseOfSeenToward) {
   const Eigen::Vector2d v(0.3, -0.7);
   for (const Direction direction : kDirections) {
     EXPECT_EQ(SeenFrom(direction, SeenToward(direction, v)), v);
@@ -196,7 +196,7 @@ TEST(GasGeometry, SeenFromIsTheWayBackFromSeenToward) {
   }
 }
 
-// Turned, not mirrored: what is 90 degrees to the left stays there.
+// The view is turned, not mirrored: a vector 90 degrees to the left stays 90 degrees to the left.
 TEST(GasGeometry, EveryPistonLiesOnTheRightAfterTurning) {
   const Eigen::Vector2d pistons[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   for (const Direction direction : kDirections) {

@@ -60,7 +60,7 @@ class Replicas {
 
 class GasRunOfEngine : public testing::TestWithParam<GasEngine> {};
 
-TEST_P(GasRunOfEngine, ManyShortCallsGiveTheBitsOfOne) {
+TEST_P(GasRunOfEngine, ManyShortCallsGiveTheBitsOfOneCall) {
   for (const char* shape : {"1", "2", "3x2"}) {
     for (const GasEnds ends : {GasEnds::kPeriodic, GasEnds::kReservoirs}) {
       const GasGeometry gas = GasOf(kPaperRho, 0.2, shape, ends);
@@ -114,7 +114,7 @@ TEST(GasMeter, CountsAndAverages) {
   EXPECT_EQ(meter.Energy(0), 3);
 }
 
-TEST(GasMeter, EnergyThatCrossesTheColumnsIsNotCarriedAlongX) {
+TEST(GasMeter, ExchangesAlongYCarryNoEnergyAlongX) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   GasMeter meter(gas, GasInEquilibrium(gas, 1, 92, 0));
   meter.Begin(0);

@@ -13,7 +13,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST(GasShape, TextsOfShapesAreRead) {
+TEST(GasShape, ParsesChainsAndLattices) {
   EXPECT_THAT(ParseGasShape("1"), IsOkAndHolds(GasShape{1, 1, false}));
   EXPECT_THAT(ParseGasShape("12"), IsOkAndHolds(GasShape{12, 1, false}));
   EXPECT_THAT(ParseGasShape("4x3"), IsOkAndHolds(GasShape{4, 3, true}));
@@ -24,13 +24,13 @@ TEST(GasShape, TextsOfShapesAreRead) {
   EXPECT_THAT(ParseGasShape("1x1000000"), IsOkAndHolds(GasShape{1, 1'000'000, true}));
 }
 
-TEST(GasShape, ARowOfALatticeIsNotAChain) {
+TEST(GasShape, ARowOfALatticeDiffersFromAChain) {
   EXPECT_FALSE(ParseGasShape("7").value() == ParseGasShape("7x1").value());
   EXPECT_EQ(ParseGasShape("7").value().directions(), 2);
   EXPECT_EQ(ParseGasShape("7x1").value().directions(), 4);
 }
 
-TEST(GasShape, MalformedTextsAreRefusedWithTheirText) {
+TEST(GasShape, MalformedTextsAreRejectedAndQuoted) {
   for (const std::string text : {"",
                                  "0",
                                  "x",

@@ -1,4 +1,4 @@
-// Gases for tests. They have to be valid.
+// Gases for tests. Their parameters must be valid.
 #ifndef BALLPISTON_TESTS_CORE_GAS_GASES_H_
 #define BALLPISTON_TESTS_CORE_GAS_GASES_H_
 
@@ -33,7 +33,8 @@ inline GasState GasInEquilibrium(const GasGeometry& geometry, double temperature
   return DrawGas(geometry, TemperatureProfile(temperature), random);
 }
 
-// How far the ball is from the piston that it sees in this direction: negative beyond it.
+// The distance from the ball to the piston that it sees in this direction; negative if the ball is
+// beyond the piston.
 inline double GapTo(const GasGeometry& geometry, const GasState& state, int64_t ball,
                     Direction direction) {
   const auto& position = state.balls[static_cast<size_t>(ball)].position;

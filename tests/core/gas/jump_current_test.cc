@@ -42,8 +42,8 @@ double ValueOf(const TestFunction& f, const GasGeometry& gas, const Energies& e)
   return sum;
 }
 
-// Twice J and J' by their definition: the sum over all exchanges that can be next of what each adds
-// to the field and to the test function, by the rule of the middles over the ball's angle.
+// Twice J and J' by their definition: the sum, over all possible next exchanges, of the change of
+// the field and of the test function, by the midpoint rule over the ball's angle.
 struct Currents {
   double all = 0;
   double left = 0;
@@ -79,9 +79,9 @@ Currents ByDefinition(const GasGeometry& gas, const TestFunction& f, const Energ
 
 class JumpCurrentOf : public testing::TestWithParam<const char*> {};
 
-// After each of some exchanges. Values are some 0.1 for each contact, and the table is within 3e-4
-// of them; the rule's error is 1e-6.
-TEST_P(JumpCurrentOf, CurrentsAreThoseOfTheirDefinition) {
+// Compares after each of some exchanges. Values are about 0.1 for each contact, with a table error
+// of 3e-4; the error of the midpoint rule is 1e-6.
+TEST_P(JumpCurrentOf, CurrentsMatchTheirDefinition) {
   const GasGeometry gas = GasOf(kPaperRho, 0.1, GetParam());
   const GasState state = GasInEquilibrium(gas, 1, 5, 0);
   JumpCurrent current(gas, GasExchangeRate(gas, 1), state, 1);

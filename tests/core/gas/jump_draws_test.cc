@@ -21,7 +21,7 @@ JumpKinds TwoKinds() {
            {.before = 0.25, .per_place = 2 / 0.75, .first = 3, .count = 2, .largest = 5}}};
 }
 
-TEST(JumpDraws, EveryBodyOfAKindIsTriedAsOften) {
+TEST(JumpDraws, BodiesOfAKindHaveEqualRatesOfAttempts) {
   const JumpKinds kinds = TwoKinds();
   CounterRandom random(1, 2, 3);
   std::vector<uint64_t> counts(5);
@@ -53,7 +53,7 @@ TEST(JumpDraws, BodiesAtTheEdgesOfPlacesAreOfTheirKind) {
 }
 
 // A kind at rest has no places.
-TEST(JumpDraws, AKindAtRestIsNotChosen) {
+TEST(JumpDraws, OnlyMovingKindsAreChosen) {
   const JumpKinds kinds = {{{.before = 0, .per_place = 3, .first = 0, .count = 3, .largest = 2},
                             {.before = 1, .per_place = INFINITY, .first = 3, .count = 2}}};
   CounterRandom random(1, 2, 4);

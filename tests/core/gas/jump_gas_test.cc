@@ -21,7 +21,7 @@ namespace {
 constexpr double kDensity = 0.3;
 constexpr uint64_t kReplicas = 20'000;
 
-// Places play no part.
+// Positions have no effect.
 GasState WithEnergies(const std::vector<double>& balls, const std::vector<double>& pistons) {
   GasState state;
   for (const double energy : balls) state.balls.push_back({.speed = std::sqrt(2 * energy)});
@@ -74,10 +74,10 @@ FirstExchange Find(JumpGas gas, const GasGeometry& geometry, const GasState& sta
 
 double Exponential(double x) { return -std::expm1(-x); }
 
-// A ring of two cells, each ball with both pistons: four contacts with their own rates. The first
-// exchange comes at the sum of their rates, is each one's in proportion, and has the kernel's law.
-// False alarms: 1e-4 a row of energies.
-TEST(JumpGas, PairsAreTheJumpProcess) {
+// A ring of two cells, in which each ball meets both pistons: four contacts with their own rates.
+// The rate of the first exchange is the sum of these rates; the probability of each contact is in
+// proportion to its rate; the energy has the kernel's law. False alarms: 1e-4 a row of energies.
+TEST(JumpGas, PairsFollowTheJumpProcess) {
   const GasGeometry ring = GasOf(kPaperRho, 0.2, "2");
   struct Energies {
     double balls[2];
@@ -137,7 +137,7 @@ TEST(JumpGas, APistonThatABallSeesTwiceHasTwoContacts) {
 TEST(JumpGas, OutermostPistonsAreThermal) {
   constexpr double kHot = 3, kCold = 0.5, kBall = 1;
   const GasGeometry chain = GasOf(kPaperRho, 0.2, "1", GasEnds::kReservoirs);
-  // Their own energies at the start play no part.
+  // The initial energies of these pistons have no effect.
   const GasState start = WithEnergies({kBall}, {17, 1e-3});
   const auto thermal_rate = [&](double temperature) {
     const auto integrand = [&](Quad v3) {
@@ -168,8 +168,8 @@ TEST(JumpGas, OutermostPistonsAreThermal) {
             4);
 }
 
-// Of a ring, which is isolated: an exchange rounds each energy.
-TEST(JumpGas, KeepsTheEnergy) {
+// A ring is isolated. An exchange rounds each energy.
+TEST(JumpGas, EnergyIsConserved) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "4x4");
   const GasState start = GasInEquilibrium(gas, 1, 84, 0);
   GasMeter meter(gas, start);

@@ -18,7 +18,7 @@
 namespace ballpiston {
 namespace {
 
-// The energies of all bodies of some replicas at a time, and how often they have exchanged.
+// The energies of all bodies of some replicas at a time, and the number of their exchanges.
 struct Outcome {
   std::vector<double> energies;
   uint64_t exchanges = 0;
@@ -49,8 +49,8 @@ Outcome OutcomeOf(GasEngine engine, const GasGeometry& geometry, uint64_t replic
   return outcome;
 }
 
-// Errors grow threefold with each wall hit, from ulps, and faster where a ball grazes: so of fast
-// balls some may be off. An exchange that one engine misses changes the count.
+// Errors of some ulps grow threefold with each wall hit, and faster at grazing hits. So some fast
+// balls may differ. A missed exchange would change the count.
 void ExpectSame(const Outcome& lanes, const Outcome& reference) {
   EXPECT_EQ(lanes.exchanges, reference.exchanges);
   EXPECT_EQ(lanes.escapes, 0u);
@@ -86,7 +86,7 @@ TEST(LaneGas, AgreesWithTheReferenceAtThermalWalls) {
   }
 }
 
-TEST(LaneGas, EnergyStays) {
+TEST(LaneGas, EnergyIsConserved) {
   const GasGeometry gas = GasAtShare(0.529561127988977, 0.7, "6x5");
   const auto total = [](const Outcome& outcome) {
     double sum = 0;
@@ -110,8 +110,7 @@ TEST(LaneGas, SameBitsOnEveryTargetWithFusedMultiplyAdd) {
 
 // The piston moves ahead of the ball. Both reach the tip at the same time, to within some ulps.
 // There the walls and the piston are closer to the ball than its rounding; the ball must stay in
-// the cell.
-// Returns how often they exchanged.
+// the cell. Returns the number of exchanges.
 uint64_t MeetInTheTip(const GasGeometry& gas, CounterRandom& random) {
   constexpr double kWay = 0.01;
   const double slope = gas.pair().lambda() * (2 * random.Uniform() - 1);
@@ -148,8 +147,8 @@ TEST(LaneGas, BallsThatMeetPistonsInTipsStayInTheirCells) {
   }
 }
 
-// A gas at rest but for one piston, which comes to a ball that rests where it can reach it.
-TEST(LaneGas, ABallAtRestIsMetWhereItStands) {
+// A gas at rest except for one piston, which comes to a resting ball within its reach.
+TEST(LaneGas, ThePistonMeetsABallAtRestAtItsPlace) {
   const GasGeometry gas = GasOf(0.529561127988977, 0.15, "3");
   GasState state = GasInEquilibrium(gas, 1, 43, 0);
   for (GasBall& ball : state.balls) ball = {.position = {0, 0}};

@@ -54,9 +54,9 @@ PairState PairOf(const GasGeometry& gas, const GasState& state, double speed, in
           .piston_velocity = sign * piston.velocity / speed};
 }
 
-// All else rests: balls in the middle of their cells, pistons on their edges, where no ball comes.
-// An error of 1e-16 grows some threefold a wall hit, to some 1e-9 in 15.
-TEST(ReferenceGas, OneBallAndOnePistonAreThePair) {
+// All other bodies rest: balls in the middle of their cells, pistons on their edges, which no ball
+// reaches. An error of 1e-16 grows about threefold a wall hit, to 1e-9 in 15 hits.
+TEST(ReferenceGas, OneBallAndOnePistonMoveLikeThePair) {
   constexpr double kSpeed = 3.7, kTolerance = 1e-8;
   constexpr int kWallHits = 15;
   int exchanges = 0;
@@ -115,9 +115,9 @@ void RunTo(ReferenceGas& gas, double time) {
   while (gas.NextTime() <= time) gas.Step();
 }
 
-// The gas runs for so long that each ball hits fifteen walls on average, and back. An error of
-// 1e-16 grows threefold a wall hit on both ways, and an exchange hands it on to another ball. Half
-// of the balls are off by less than 1e-9, and those that fly fast and graze discs by most: few by
+// The gas runs until each ball has hit fifteen walls on average, and back. An error of 1e-16 grows
+// threefold a wall hit on both runs, and an exchange passes it on to another ball. The error of
+// half of the balls is below 1e-9. It is largest for fast balls that graze discs; few errors reach
 // 0.01.
 TEST(ReferenceGas, ReversedVelocitiesRetraceTheirWay) {
   size_t off = 0, near = 0, balls = 0, exchanges = 0;
@@ -151,7 +151,7 @@ TEST(ReferenceGas, ReversedVelocitiesRetraceTheirWay) {
 }
 
 // Speeds carry an ulp from each exchange, at random.
-TEST(ReferenceGas, EnergyStays) {
+TEST(ReferenceGas, EnergyIsConserved) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "8x8");
   const GasState start = GasInEquilibrium(gas, 1, 73, 0);
   ReferenceGas moving = GasFrom(gas, start);
@@ -194,12 +194,12 @@ TEST(ReferenceGas, BallsStayInTheirCellsAndBeforeTheirPistons) {
   }
 }
 
-TEST(ReferenceGas, AGasAtRestHasNoEvents) {
+TEST(ReferenceGas, AGasAtRestHasAnInfiniteNextTime) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2");
   EXPECT_EQ(GasFrom(gas, AtRest(gas)).NextTime(), std::numeric_limits<double>::infinity());
 }
 
-TEST(ReferenceGas, ARestingPistonIsHitWhereItStands) {
+TEST(ReferenceGas, BallHitsARestingPistonAtItsPlace) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
        {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
@@ -218,7 +218,7 @@ TEST(ReferenceGas, ARestingPistonIsHitWhereItStands) {
   }
 }
 
-TEST(ReferenceGas, ABallAtRestInReachOfAPistonIsMet) {
+TEST(ReferenceGas, PistonMeetsABallAtRestWithinReach) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
        {Direction::kRight, Direction::kUp, Direction::kLeft, Direction::kDown}) {
@@ -241,8 +241,8 @@ TEST(ReferenceGas, ABallAtRestInReachOfAPistonIsMet) {
   }
 }
 
-// At the end of its way, within rounding, the piston comes no nearer.
-TEST(ReferenceGas, ABallAtRestIsMetWhereThePistonTurns) {
+// The ball is at the end of the piston's stroke, within rounding, so the piston comes no nearer.
+TEST(ReferenceGas, PistonMeetsABallAtRestAtItsTurningPoint) {
   const GasGeometry gas = GasAtShare(0.6, 0.3, "3");
   const PairState start = {.position = {0.5 - gas.reach(), 0},
                            .direction = {1, 0},
@@ -268,7 +268,8 @@ TEST(ReferenceGas, InARingOfOneCellThePistonMeetsItsBallFromBothSides) {
   EXPECT_GT(met[static_cast<int>(Direction::kLeft)], 100);
 }
 
-// A piston that leaves a thermal wall has a new speed; every other one keeps its speed.
+// A piston that leaves a thermal wall has a new speed; a piston that leaves any other wall keeps
+// its speed.
 TEST(ReferenceGas, OnlyThermalWallsChangeAPistonsSpeed) {
   const GasGeometry gas = GasOf(kPaperRho, 0.2, "2x2", GasEnds::kReservoirs);
   const GasRandom random(76, 0, 0);

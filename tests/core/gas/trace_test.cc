@@ -36,7 +36,7 @@ GasState GasStart(const GasGeometry& gas) {
   return DrawGas(gas, TemperatureProfile(1.5), random);
 }
 
-TEST(Trace, OfThePairIsTheReferenceFlow) {
+TEST(Trace, PairTraceMatchesTheReferenceFlow) {
   const PairState start = PairStart(0);
   const auto trace = TracePair(kPaperPair, start);
   ReferenceFlow flow(kPaperPair, start);
@@ -65,7 +65,7 @@ TEST(Trace, OfThePairIsTheReferenceFlow) {
   }
 }
 
-TEST(Trace, OfAGasIsTheReferenceGas) {
+TEST(Trace, GasTraceMatchesTheReferenceGas) {
   for (const char* shape : {"1", "5", "1x1", "4x3"}) {
     const GasGeometry gas = Gas(shape);
     const GasState start = GasStart(gas);
@@ -92,8 +92,8 @@ TEST(Trace, OfAGasIsTheReferenceGas) {
   }
 }
 
-// The pistons of a cell are on its four sides, where the gas does not close on itself.
-TEST(Trace, AnExchangeIsWhereThePistonIs) {
+// The pistons of a cell are on its four sides, up to the periodic boundary.
+TEST(Trace, BallAndPistonExchangeAtTheSamePlace) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));
   for (int exchanges = 0; exchanges < 1000;) {
@@ -143,7 +143,7 @@ TEST(Trace, EveryEventConservesEnergy) {
   }
 }
 
-// And the energy before an event is that after the last one.
+// Also checks that the energy before an event is that after the previous event.
 TEST(Trace, BodiesFlyStraightBetweenTheirEvents) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));
@@ -170,7 +170,7 @@ TEST(Trace, BodiesFlyStraightBetweenTheirEvents) {
   }
 }
 
-TEST(Trace, FreeTimesAreThoseOfTheSameKindAndBodies) {
+TEST(Trace, FreeTimesCountFromTheSameKindAndBodies) {
   const GasGeometry gas = Gas("4x3");
   const auto trace = TraceGas(gas, GasStart(gas));
   std::map<std::tuple<EventKind, int64_t, int64_t>, double> last;

@@ -22,7 +22,7 @@ std::string Message(double rho, double delta) {
   return std::string(geometry.status().message());
 }
 
-TEST(PairGeometry, DerivedLengthsAreThoseOfTheCell) {
+TEST(PairGeometry, DerivedLengthsMatchTheCell) {
   ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(kPaperRho, 0.175));
   EXPECT_EQ(g.rho(), kPaperRho);
   EXPECT_EQ(g.delta(), 0.175);
@@ -59,7 +59,7 @@ TEST(PairGeometry, DeltaExactlyAtTheBoundIsAccepted) {
     const double bound = PairDeltaBound(rho);
     ASSERT_OK_AND_ASSIGN(const PairGeometry g, PairGeometry::Create(rho, bound));
     EXPECT_EQ(g.piston_left(), 0);
-    // Rounded up by a user, it stands for the bound.
+    // A value that a user has rounded up counts as the bound.
     ASSERT_OK_AND_ASSIGN(const PairGeometry rounded,
                          PairGeometry::Create(rho, bound * (1 + 9e-13)));
     EXPECT_EQ(rounded.delta(), bound);

@@ -45,7 +45,8 @@ TEST(EnergyLaw, BecomesTheStationaryLaw) {
   }
 }
 
-// The mass that has not jumped is at one place of its bin; the rest is spread over the bins.
+// The probability without a jump is at a single energy in its bin; the rest is spread over the
+// bins.
 TEST(EnergyLaw, MeanAgreesWithTheSpectrum) {
   const EnergyLaw narrow({.degree = 8, .levels = 4}, 256);
   for (const double epsilon : kEpsilons) {

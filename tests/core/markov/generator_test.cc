@@ -64,8 +64,8 @@ TEST(Generator, ConservesProbability) {
   }
 }
 
-// A finer mesh has all functions of a coarser one, and more: by the minimax principle no eigenvalue
-// rises, but by rounding.
+// A finer mesh contains all functions of a coarser mesh. So by the minimax principle eigenvalues
+// cannot rise, except by rounding.
 void ExpectBelow(const Eigen::VectorXd& finer, const Eigen::VectorXd& coarser) {
   constexpr double kRounding = 1e-14;
   for (Eigen::Index k = 1; k <= 5 && coarser.size() > 0; ++k) {
@@ -96,7 +96,7 @@ TEST(Generator, RatesConvergeFromAbove) {
     std::cout << " |\n";
   }
   std::cout << std::defaultfloat;
-  // There was something to converge.
+  // The coarsest gap differs from the limit, so the test shows convergence.
   EXPECT_GT(Generator({.degree = 2, .levels = 1}).rates()[1] - best, 1e-7);
 }
 
@@ -110,7 +110,7 @@ Eigen::VectorXd IsolatedRates(const Eigen::VectorXd& rates) {
 
 // The reference is extrapolated from 200, 400 and 800 cells. Its error is 2e-10 for the gap, and up
 // to ten times that for the next rates; their tolerance is 2e-8.
-TEST(Generator, IsolatedRatesAreThoseOfEnergyCells) {
+TEST(Generator, IsolatedRatesMatchEnergyCells) {
   const Eigen::VectorXd rates = IsolatedRates(InUse().rates());
   const Eigen::VectorXd cells = oracle::FromEnergyCells(
       200, [](const oracle::EnergyCells& of) { return IsolatedRates(of.Rates()); });
@@ -122,8 +122,8 @@ TEST(Generator, IsolatedRatesAreThoseOfEnergyCells) {
   EXPECT_GT(rates[3], kContinuumTop);
 }
 
-// Of the cells, which do not know the closed form.
-TEST(Generator, JumpRateIsWhatLeavesACell) {
+// The cells do not use the closed form.
+TEST(Generator, JumpRateMatchesTheRateOfLeavingACell) {
   constexpr Eigen::Index kCells = 64;
   const oracle::EnergyCells cells(kCells);
   for (Eigen::Index i = 0; i < kCells; ++i) {
@@ -179,8 +179,8 @@ TEST(Generator, RateOfChangeOfTheEnergyIsTheCurrent) {
   }
 }
 
-// What the expansion calls dE[ep(t)]/dt is L applied to E[ep(t)] by quadrature: the backward
-// equation, at times from none to where only the gap's function is left.
+// The expansion's dE[ep(t)]/dt is equal to L applied to E[ep(t)] by quadrature: the backward
+// equation, from time 0 to times at which only the gap's function remains.
 TEST(Generator, EvolutionObeysTheMasterEquation) {
   const Eigen::VectorXd energy = EnergyOf(InUse());
   for (const double t : {0.0, 1.0, 5.0, 20.0, 60.0}) {
@@ -195,7 +195,7 @@ TEST(Generator, EvolutionObeysTheMasterEquation) {
   }
 }
 
-// A unit mass anywhere stays one, and ends uniform.
+// A unit mass at any place keeps its total, and becomes uniform.
 TEST(Generator, MassIsConservedAndEndsUniform) {
   const Eigen::VectorXd one = InUse().Coefficients([](double) { return 1.0; });
   EXPECT_NEAR(one.squaredNorm(), 1, 1e-14);
@@ -204,8 +204,8 @@ TEST(Generator, MassIsConservedAndEndsUniform) {
     for (const double t : {0.0, 3.0, 300.0}) {
       const Eigen::VectorXd later =
           mass.cwiseProduct((-InUse().rates() * t).array().exp().matrix());
-      // At u = 1 rounding is told apart by the shortest element, of a measure of some 1e-10. Found:
-      // 7e-11 on x86, 1.1e-10 on AArch64.
+      // At u = 1 the shortest element, of a measure of about 1e-10, determines the rounding error.
+      // Measured: 7e-11 on x86, 1.1e-10 on AArch64.
       EXPECT_NEAR(one.dot(later), 1, 4e-10) << i << " " << t;
       if (t == 300) {
         EXPECT_NEAR(EnergyOf(InUse()).dot(later), 1.0 / 6, 1e-10);

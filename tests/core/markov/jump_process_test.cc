@@ -18,7 +18,7 @@
 namespace ballpiston {
 namespace {
 
-// From nothing to all, through the point where the two parts of the law part, 1/sqrt 2.
+// From 0 to the total energy, through 1/sqrt 2, where the two parts of the law separate.
 std::vector<double> Energies() {
   std::vector<double> us = {0, std::numeric_limits<double>::denorm_min(), 1e-300, 1e-160, 1e-30};
   for (int k = 1; k <= 16; ++k) {
@@ -61,8 +61,8 @@ class ExactLaw {
   Quad u_, s2_, s_, c_;
 };
 
-// v lies between the probabilities of what is a relative kJumpError below and above. Below
-// (u/s)/c times 1e-290 the quantile itself is no normal number.
+// v lies between the probabilities of the two values that are a relative kJumpError below and above
+// `next`. Below (u/s)/c times 1e-290 the quantile is not a normal number.
 void ExpectQuantile(double u, double v, double next) {
   SCOPED_TRACE(testing::Message() << "u " << u << " v " << v << " u' " << next);
   EXPECT_TRUE(next >= 0 && next <= 1);
@@ -103,7 +103,7 @@ TEST(JumpProcess, WaitsWithTheRateOfCollisions) {
   }
 }
 
-TEST(JumpProcess, ABallAtRestIsLeftByAPistonAtRest) {
+TEST(JumpProcess, BallAtRestStopsThePiston) {
   for (const double v : UniformNumbers()) EXPECT_EQ(JumpFrom(1, 0.5, v).u, 0);
 }
 
@@ -170,7 +170,7 @@ void ExpectLaneIsScalar(const Group& before, const Group& after, size_t i) {
   EXPECT_NEAR(after.waiting_times[i], jump.waiting_time, kJumpError * jump.waiting_time);
 }
 
-TEST(JumpProcess, LanesAreTheScalarDefinition) {
+TEST(JumpProcess, LanesMatchTheScalarDefinition) {
   const std::vector<double> us = Energies(), vs = UniformNumbers();
   ForEachTarget([&](int64_t) {
     size_t shift = 0;
@@ -231,7 +231,7 @@ std::vector<uint64_t> BitsAfter(int jumps, uint64_t first, std::vector<double> s
   return BitsOf(walkers);
 }
 
-TEST(JumpWalkers, DoesNotDependOnWhoElseWalks) {
+TEST(JumpWalkers, WalkersAreIndependentOfEachOther) {
   const std::vector<double> starts = Starts(100);
   const std::vector<uint64_t> all = BitsAfter(7, 5, starts);
   for (const size_t count : {1u, 2u, 31u, 32u, 33u, 64u, 99u}) {
@@ -256,14 +256,15 @@ uint64_t Hash(const std::vector<uint64_t>& words) {
   return hash;
 }
 
-// What they were when they were last meant to change; the failure prints the new value.
+// The values since the last intended change. A failure prints the new value.
 constexpr uint64_t kFirstJump = 0x49c16fa40bbb71, kTenthJump = 0x52df7e3171c109d0;
 
 TEST(JumpWalkers, SameBitsOnEveryProcessor) {
   ForEachTarget([&](int64_t target) {
     if (!HasFusedMultiplyAdd(target)) return;
     EXPECT_EQ(Hash(BitsAfter(1, 0, Starts(10'000))), kFirstJump);
-    // Jumps contract differences, so the bits of one tell the most; later ones the words' order.
+    // Jumps contract differences, so the bits of one jump are the most sensitive. Later jumps check
+    // the order of the words.
     EXPECT_EQ(Hash(BitsAfter(10, 0, Starts(1000))), kTenthJump);
   });
 }

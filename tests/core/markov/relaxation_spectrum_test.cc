@@ -38,8 +38,8 @@ TEST(RelaxationSpectrum, GapAgreesBetweenDiscretisations) {
   }
 }
 
-// A coarser discretisation's difference is more than what the finer one is off: by the finest.
-TEST(RelaxationSpectrum, ErrorsAreNotLessThanTheyAre) {
+// A stated error is larger than the true error, measured with the finest discretisation.
+TEST(RelaxationSpectrum, StatedErrorsAreUpperBounds) {
   constexpr double kRounding = 1e-14;
   const RelaxationSpectrum coarse({.degree = 6, .levels = 3});
   const auto expect_covered = [](const SpectralValue& value, const SpectralValue& truth) {
@@ -68,7 +68,7 @@ TEST(RelaxationSpectrum, IsolatedRatesAscendBelowTheContinuum) {
   }
 }
 
-TEST(RelaxationSpectrum, CorrelationTimeIsThatOfEnergyCells) {
+TEST(RelaxationSpectrum, CorrelationTimeMatchesEnergyCells) {
   const double cells = oracle::FromEnergyCells(
       200, [](const oracle::EnergyCells& of) { return of.CorrelationTime(); });
   EXPECT_NEAR(Spectrum().CorrelationTime(kForEver).value, cells, 5e-9);
@@ -86,7 +86,7 @@ double MeanSquaredTransfer() {
 
 // In equilibrium C(t + s) = <E[ep(t)|u at 0] E[ep(s)|u at 0]> - 1/36: reversibility and the
 // semigroup at once.
-TEST(RelaxationSpectrum, DecaysOverThreeDecadesAsItsOwnGeneratorSays) {
+TEST(RelaxationSpectrum, AutocorrelationSatisfiesSemigroupAndInitialSlope) {
   for (const double t : {0.0, 1.0, 4.0, 20.0}) {
     for (const double s : {0.5, 4.0, 15.0}) {
       const auto product = [&](Quad x) {
@@ -125,11 +125,11 @@ TEST(RelaxationSpectrum, AutocorrelationIsASumOfDecaysNoSlowerThanTheGap) {
     EXPECT_LE(before * before, now * before_that * (1 + 1e-12));  // convex in its logarithm
     before_that = before, before = now;
   }
-  // In the end the gap's own.
+  // At long times the rate is the gap.
   EXPECT_NEAR(std::log(before_that / before) / 0.5, gap, 1e-4);
 }
 
-TEST(RelaxationSpectrum, IntegralsAreThoseOfTheCurves) {
+TEST(RelaxationSpectrum, IntegralsMatchTheCurves) {
   for (const double window : {0.3, 4.0, 32.0}) {
     EXPECT_NEAR(Spectrum().CorrelationTime(window).value,
                 IntegralOver(window, [](double t) { return Spectrum().Autocorrelation(t).value; }),
@@ -149,7 +149,7 @@ TEST(RelaxationSpectrum, IntegralsAreThoseOfTheCurves) {
               Spectrum().DecayIntegral(0.05, kForEver).value, 1e-14);
 }
 
-TEST(RelaxationSpectrum, MeanEnergyStartsAtTheInitialEnergyAndForgetsIt) {
+TEST(RelaxationSpectrum, MeanEnergyRelaxesFromTheInitialEnergy) {
   // At epsilon = 1/2; elsewhere 1e-13. Found: 3e-12 on x86, 1.3e-11 on AArch64.
   constexpr double kRounding = 5e-11;
   for (const double epsilon : {0.0, 1e-300, 1e-6, 0.01, 0.1, 0.25, 0.4, 0.4999, 0.5}) {
@@ -168,7 +168,7 @@ TEST(RelaxationSpectrum, MeanEnergyStartsAtTheInitialEnergyAndForgetsIt) {
   }
 }
 
-// From below it rises to 1/6 and from above it falls to it, in the end with the gap.
+// From below the mean energy rises to 1/6, from above it falls to 1/6; at long times with the gap.
 TEST(RelaxationSpectrum, MeanEnergyEndsWithTheGap) {
   for (const double epsilon : {0.01, 0.4}) {
     const auto off = [&](double t) {

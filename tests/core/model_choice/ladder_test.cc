@@ -18,7 +18,7 @@ using testing::Not;
 
 const Target kTargets[] = {{}, {.tolerance = 1e-6}, {.tolerance = 0.1}, {.budget_seconds = 1}};
 
-TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
+TEST(Ladder, AutoChoosesTheClosedFormIfThereIsOne) {
   for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     for (const Target& target : kTargets) {
       const std::optional<Answer> answer = Choice(Asked(experiment, 0.1, target), MayNotBeAsked);
@@ -29,7 +29,7 @@ TEST(Ladder, AutoTakesTheClosedFormWhereThereIsOne) {
   }
 }
 
-TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
+TEST(Ladder, VerifyChoosesTheBilliardDespiteAClosedForm) {
   for (const ExperimentKind* experiment : {&kEquilibrium, &kConditionalMeanFreeTime}) {
     EnsembleSpec spec = Asked(experiment, 0.1);
     spec.verify = true;
@@ -39,8 +39,8 @@ TEST(Ladder, VerifyTakesTheBilliardForWhatHasAClosedForm) {
   }
 }
 
-// Measured laws are the billiard's: neither tolerance nor budget makes another model answer.
-TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
+// Only the billiard measures laws: neither a tolerance nor a budget makes another model answer.
+TEST(Ladder, AutoChoosesTheBilliardIfNoCheaperModelAnswers) {
   for (const ExperimentKind* experiment : {&kFirstHit, &kMarkovProperty}) {
     for (const Target& target : kTargets) {
       if (experiment == &kMarkovProperty && target.tolerance) continue;
@@ -51,7 +51,7 @@ TEST(Ladder, WhatNothingCheaperAnswersIsTheBilliards) {
   }
 }
 
-TEST(Ladder, WithoutAToleranceRelaxationIsTheBilliards) {
+TEST(Ladder, WithoutAToleranceRelaxationUsesTheBilliard) {
   for (const double delta : {0.3, 1e-4}) {
     for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
       EXPECT_EQ(Choice(Relaxation(delta, target), MayNotBeAsked)->model, Model::kBilliard);
@@ -59,9 +59,9 @@ TEST(Ladder, WithoutAToleranceRelaxationIsTheBilliards) {
   }
 }
 
-// Over deltas and tolerances of five decades each: a pilot is asked at most once, at the point's
-// place, and then what it says decides.
-TEST(Ladder, APilotIsAskedOnlyWhereItCanDecide) {
+// Deltas and tolerances over five decades each: a pilot is used at most once, at the point's place,
+// and then its result decides.
+TEST(Ladder, APilotRunsOnlyIfItCanDecide) {
   int asked = 0, told_without = 0;
   for (double delta = 0.3; delta > 1e-5; delta /= 2) {
     for (double tolerance = 0.5; tolerance > 1e-6; tolerance /= 2) {
@@ -95,8 +95,8 @@ TEST(Ladder, APilotIsAskedOnlyWhereItCanDecide) {
   EXPECT_GT(told_without, 100);
 }
 
-// The three reasons for which none is asked.
-TEST(Ladder, WhyNoPilotIsAskedIsTold) {
+// The three reasons for using no pilot.
+TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
   // The limit is 5 % off at delta = 0.2.
   EXPECT_THAT(Choice(Relaxation(0.2, {.tolerance = 0.01}), MayNotBeAsked)->reason,
               HasSubstr("beyond the tolerance"));
@@ -124,8 +124,8 @@ TEST(Ladder, OnePilotServesAllSmallerDeltas) {
   }
 }
 
-// From an energy far from both ends the error scales as in equilibrium; a piston that rests is out
-// of reach at every delta.
+// From an energy far from both ends the error scales as in equilibrium. For a resting piston the
+// limit does not apply at any delta.
 TEST(Ladder, APilotServesADecayToo) {
   MadeUpPilots pilots(Pilot{.difference = 0.01, .standard_error = 0.01});
   EnsembleSpec spec = Relaxation(0.0125, {.tolerance = 0.02});
@@ -139,13 +139,13 @@ TEST(Ladder, APilotServesADecayToo) {
   EXPECT_EQ(pilots.asked().size(), 1u);
 }
 
-TEST(Ladder, APilotThatIsStoppedLeavesNoAnswer) {
+TEST(Ladder, WithoutThePilotsResultThereIsNoAnswer) {
   MadeUpPilots stopped(std::nullopt);
   EXPECT_FALSE(Choice(Relaxation(0.01, {.tolerance = 0.01}), stopped.source()));
   EXPECT_EQ(stopped.asked().size(), 1u);
 }
 
-TEST(Ladder, WithAToleranceEveryMachineChoosesAlike) {
+TEST(Ladder, WithAToleranceEveryMachineMakesTheSameChoice) {
   const Pilot pilot = {.difference = 0.01, .standard_error = 0.005};
   for (double delta = 0.3; delta > 1e-4; delta /= 1.7) {
     for (double tolerance = 0.5; tolerance > 1e-5; tolerance /= 3) {
@@ -161,8 +161,8 @@ TEST(Ladder, WithAToleranceEveryMachineChoosesAlike) {
   }
 }
 
-// With a budget alone whatever comes nearest in that time.
-TEST(Ladder, BudgetTakesTheBilliardOnceItIsMoreExact) {
+// With a budget alone AUTO chooses the model with the smallest error within the budget.
+TEST(Ladder, BudgetChoosesTheBilliardIfItsErrorIsSmaller) {
   double turn = 0;
   for (double seconds = 1e-3; seconds < 1e5; seconds *= 2) {
     const Answer answer = *Choice(Relaxation(0.0125, {.budget_seconds = seconds}), MayNotBeAsked);
@@ -182,8 +182,8 @@ TEST(Ladder, BudgetIsSharedByWorkersAndPoints) {
   EXPECT_EQ(BudgetOfAPoint(spec, 4), 8);
 }
 
-// Whichever is reached first.
-TEST(Ladder, BudgetBesideAToleranceTakesTheBilliardWhereItReachesThat) {
+// The point ends with the tolerance or the budget, whichever is reached first.
+TEST(Ladder, BudgetWithToleranceChoosesTheBilliardIfItReachesTheTolerance) {
   const auto choice = [](double tolerance, double seconds) {
     const Target target = {.tolerance = tolerance, .budget_seconds = seconds};
     return Choice(Relaxation(0.0125, target), MayNotBeAsked)->model;
@@ -193,8 +193,8 @@ TEST(Ladder, BudgetBesideAToleranceTakesTheBilliardWhereItReachesThat) {
   EXPECT_EQ(choice(1e-5, 1e5), Model::kBilliard);
 }
 
-// Where no relaxation time is told nothing is known of the limit's error in it.
-TEST(Ladder, AroundTheMeanEnergyRelaxationIsTheBilliards) {
+// Without a relaxation time the limit's error is unknown.
+TEST(Ladder, AroundTheMeanEnergyRelaxationUsesTheBilliard) {
   for (const Target& target : {Target{}, Target{.budget_seconds = 1e-3}}) {
     EnsembleSpec spec = Relaxation(0.01, target);
     spec.grid[kEpsilon] = {0.15};
@@ -207,8 +207,8 @@ TEST(Ladder, AroundTheMeanEnergyRelaxationIsTheBilliards) {
   }
 }
 
-// One that was not run yet is predicted, and what it takes is part of the answer's work; but where
-// another point of the grid runs it.
+// The result of a pilot that has not run is predicted, and its cost is part of the answer's work,
+// unless another point of the grid runs the pilot.
 TEST(Ladder, AnUnknownPilotIsPartOfTheWork) {
   const EnsembleSpec spec = Relaxation(0.001, {.tolerance = 0.01});
   MadeUpPilots none(std::nullopt);
@@ -286,7 +286,7 @@ TEST(Ladder, TheSpectrumAnswersTheConductivityWhereItsBoundIsWithinTheTolerance)
   }
 }
 
-TEST(Ladder, WithoutAToleranceTheConductivityIsTheBilliards) {
+TEST(Ladder, WithoutAToleranceTheConductivityUsesTheBilliard) {
   for (const Target& target : {Target{}, Target{.samples = 10}, Target{.collisions = 10}}) {
     const Answer answer = *Choice(Conductivity(1e-4, target), MayNotBeAsked);
     EXPECT_EQ(answer.model, Model::kBilliard);
@@ -298,7 +298,7 @@ TEST(Ladder, WithoutAToleranceTheConductivityIsTheBilliards) {
             Model::kBilliard);
 }
 
-TEST(Ladder, ThePlanIsThatOfTheNamedEstimate) {
+TEST(Ladder, ThePlanRefersToTheNamedEstimate) {
   EnsembleSpec spec = Conductivity(0.01, {.tolerance = 0.05});
   const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), MayNotBeAsked);
   EXPECT_FALSE(ladder.rungs[0].answers);
@@ -325,7 +325,7 @@ TEST(Ladder, ABudgetWeighsTheStatisticalErrorOfTheJumpProcess) {
   EXPECT_EQ(Choice(near_the_bound, MayNotBeAsked)->model, Model::kBilliard);
 }
 
-TEST(Ladder, ANamedModelAnswersWhateverItsError) {
+TEST(Ladder, ANamedModelAnswersWithAnyError) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     for (const Model model : kLadder) {
       if (!experiment->IsAnsweredBy(model)) continue;
@@ -339,13 +339,13 @@ TEST(Ladder, ANamedModelAnswersWhateverItsError) {
       } else if (AimOf(spec).limit_error != nullptr) {
         EXPECT_EQ(answer.model_error, AimOf(spec).limit_error->expected(PointAt(spec, 0)));
       } else {
-        EXPECT_FALSE(answer.model_error);  // nobody knows
+        EXPECT_FALSE(answer.model_error);  // unknown
       }
     }
   }
 }
 
-TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
+TEST(Ladder, ListsEveryModelCheapestFirstWithReasons) {
   for (const ExperimentKind* experiment : kAllExperiments) {
     MadeUpPilots none(std::nullopt);
     const EnsembleSpec spec = Asked(experiment, 0.05);
@@ -367,7 +367,7 @@ TEST(Ladder, HasEveryModelCheapestFirstAndWhy) {
   }
 }
 
-TEST(Ladder, SamplesAreWhatTheTargetTakes) {
+TEST(Ladder, SamplesAreThoseThatTheTargetNeeds) {
   const auto rung = [](const EnsembleSpec& spec, Model model) {
     MadeUpPilots none(std::nullopt);
     const Ladder ladder = LadderFor(spec, PointAt(spec, 0), SomeMachine(), none.source());
@@ -417,7 +417,7 @@ EnsembleSpec InSinglePrecision(EnsembleSpec spec) {
   return spec;
 }
 
-// Whoever chose the billiard, and why: in single precision it is not exact.
+// In single precision the billiard is not exact, for every reason of its choice.
 TEST(Ladder, SinglePrecisionHasAModelError) {
   EnsembleSpec verified = InSinglePrecision(Asked(&kEquilibrium, 0.1));
   verified.verify = true;
@@ -444,15 +444,15 @@ TEST(Ladder, SinglePrecisionHasAModelError) {
   }
 }
 
-// Distances between laws tend to 0: a relative error of them says nothing.
-TEST(Ladder, SinglePrecisionsErrorIsUnknownWhereNoneIsRelative) {
+// Distances between laws tend to 0, so their relative error has no meaning.
+TEST(Ladder, SinglePrecisionsErrorIsUnknownWithoutARelativeError) {
   const EnsembleSpec spec = InSinglePrecision(Asked(&kMarkovProperty, 0.1));
   const Answer answer = *Choice(spec, MayNotBeAsked);
   EXPECT_FALSE(answer.model_error);
   EXPECT_THAT(answer.reason, Not(HasSubstr("exact")));
 }
 
-TEST(Ladder, SinglePrecisionDoesNotTouchOtherModels) {
+TEST(Ladder, SinglePrecisionAffectsOnlyTheLanes) {
   const Answer closed = *Choice(InSinglePrecision(Asked(&kEquilibrium, 0.1)), MayNotBeAsked);
   EXPECT_EQ(closed.model, Model::kClosedForm);
   EXPECT_EQ(closed.model_error, 0);
@@ -463,7 +463,7 @@ TEST(Ladder, SinglePrecisionDoesNotTouchOtherModels) {
   EXPECT_EQ(pilots.asked().size(), 1u);
 }
 
-TEST(Ladder, SinglePrecisionRefusesAToleranceBelowItsError) {
+TEST(Ladder, SinglePrecisionRejectsAToleranceBelowItsError) {
   for (const Model model : {Model::kAuto, Model::kBilliard}) {
     for (const ExperimentKind* experiment : {&kEnergyRelaxation, &kFirstHit}) {
       EnsembleSpec spec =
@@ -482,7 +482,7 @@ TEST(Ladder, SinglePrecisionRefusesAToleranceBelowItsError) {
   }
 }
 
-TEST(Ladder, ReducedModelsRefuseAToleranceBelowTheirError) {
+TEST(Ladder, ReducedModelsRejectAToleranceBelowTheirError) {
   const auto violations = [](const ExperimentKind* experiment, Model model, double tolerance,
                              double delta) {
     EnsembleSpec spec = Asked(experiment, delta, {.tolerance = tolerance});
@@ -502,10 +502,10 @@ TEST(Ladder, ReducedModelsRefuseAToleranceBelowTheirError) {
   EXPECT_TRUE(violations(&kEquilibrium, Model::kClosedForm, 1e-12, 0.2).empty());
   for (const Model model : {Model::kAuto, Model::kBilliard, Model::kBilliardReference}) {
     EXPECT_TRUE(violations(&kEnergyRelaxation, model, 1e-5, 0.2).empty());
-    // What samples cannot be told to more than the most of them allow.
+    // The largest permitted number of samples limits the tolerance of a model that samples.
     EXPECT_EQ(violations(&kEnergyRelaxation, model, 1e-9, 0.2).size(), 1u);
   }
-  // The worst point of the grid counts; and without a tolerance nothing.
+  // The worst point of the grid counts. Without a tolerance there is no violation.
   EnsembleSpec spec = Relaxation(0.01, {.tolerance = 0.01});
   spec.model = Model::kSpectrum;
   EXPECT_TRUE(ToleranceViolations(spec).empty());

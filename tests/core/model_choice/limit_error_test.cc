@@ -13,7 +13,7 @@ namespace ballpiston {
 namespace {
 
 // 4.9 % +- 0.1 % were measured with 4e6 orbits at delta = 0.2, and 1.75 % +- 0.05 % at 0.1.
-TEST(LimitError, IsAboveWhatWasMeasuredAndOfItsOrder) {
+TEST(LimitError, BoundIsAboveTheMeasuredErrorAndOfItsOrder) {
   EXPECT_GT(ExpectedLimitError(PaperPoint(0.2)), 0.049);
   EXPECT_LT(ExpectedLimitError(PaperPoint(0.2)), 0.049 * 3);
   EXPECT_GT(ExpectedLimitError(PaperPoint(0.1)), 0.0175);
@@ -57,13 +57,13 @@ TEST(LimitError, GrowsTowardsTheZoneWithoutARelaxationTime) {
 
 // Where tips are narrow collisions repeat: 14 % +- 1 % were measured at rho = 0.501, delta = 0.1,
 // of which x log(1 + 1/x) is 1.3 %.
-TEST(LimitError, IsLargerWhereTipsAreNarrow) {
+TEST(LimitError, IsLargerInNarrowTips) {
   const PointParameters narrow = {{kRho, 0.501}, {kDelta, 0.1}};
   EXPECT_GT(ExpectedLimitError(narrow), 0.14);
   EXPECT_LT(ExpectedLimitError(narrow), 0.28);
 }
 
-TEST(LimitError, PilotsAreMadeWhereCollisionsAreCheap) {
+TEST(LimitError, PilotsAreAtDeltasWithCheapCollisions) {
   const double cheap = PilotPlaceFor(PaperPoint(1e-6)).delta;
   EXPECT_GT(cheap, 0.2 * PairDeltaBound(kPaperRho));
   EXPECT_LT(cheap, 0.4 * PairDeltaBound(kPaperRho));
@@ -72,9 +72,9 @@ TEST(LimitError, PilotsAreMadeWhereCollisionsAreCheap) {
   EXPECT_EQ(PilotPlaceFor(PaperPoint(0.3)).epsilon, std::nullopt);
 }
 
-// From the energy of a slow partner the limit need not be near at the pilot's delta, nor the error
-// fall in proportion from there: then the pilot is made at the point itself.
-TEST(LimitError, PilotsFromAnEnergyAreMadeWhereTheErrorIsSmall) {
+// From an energy at which a body is slow, the limit may not apply at the pilot's delta, and the
+// error may not fall in proportion to delta. Then the pilot is at the point itself.
+TEST(LimitError, PilotsFromAnEnergyAreAtDeltasWithSmallErrors) {
   EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).delta, PilotPlaceFor(PaperPoint(1e-3)).delta);
   EXPECT_EQ(PilotPlaceFor(PaperPoint(1e-3, 0.1)).epsilon, 0.1);
   for (const double epsilon : {0.0, 1e-6, 0.4999999, 0.5}) {
@@ -87,14 +87,14 @@ TEST(LimitError, BoundIsTheDifferenceAndTwoErrorsScaledWithDelta) {
   const PilotPlace place = {.rho = kPaperRho, .delta = 0.1};
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.1)), 0.04);
   EXPECT_DOUBLE_EQ(LimitErrorBound(pilot, place, PaperPoint(0.001)), 0.0004);
-  // Never less than is expected: a pilot that found nothing has not shown that there is nothing.
+  // The bound is at least the expected error, also if a pilot finds no difference by chance.
   const Pilot lucky = {.difference = 0, .standard_error = 1e-9};
   EXPECT_EQ(LimitErrorBound(lucky, place, PaperPoint(0.05)), ExpectedLimitError(PaperPoint(0.05)));
 }
 
-// What is expected to be found, scaled from the pilot's place, covers what is expected at smaller
+// The expected result of a pilot, scaled from its place, covers the expected error at smaller
 // deltas: the bound's proportion to delta is on the safe side.
-TEST(LimitError, BoundCoversWhatIsExpectedAtSmallerDeltas) {
+TEST(LimitError, BoundCoversTheExpectedErrorAtSmallerDeltas) {
   const PilotPlace place = PilotPlaceFor(PaperPoint(1e-6));
   const Pilot pilot = {.difference = ExpectedLimitError(PaperPoint(place.delta)),
                        .standard_error = 0};
@@ -104,7 +104,7 @@ TEST(LimitError, BoundCoversWhatIsExpectedAtSmallerDeltas) {
   }
 }
 
-// At the largest delta, where a pilot takes least; from an energy, as its orbits are the shorter.
+// At the largest delta, where a pilot costs least; from an energy, because such orbits are shorter.
 TEST(LimitError, PilotIsAFunctionOfItsPlace) {
   const PilotPlace place = {.rho = kPaperRho, .delta = PairDeltaBound(kPaperRho), .epsilon = 0.01};
   const auto run = [&] {

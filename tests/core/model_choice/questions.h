@@ -48,7 +48,7 @@ inline EnsembleSpec Relaxation(double delta, const Target& target = {}) {
   return Asked(&kEnergyRelaxation, delta, target);
 }
 
-// Says the same of every place, and remembers the places.
+// Returns the same pilot for every place, and records the places.
 class MadeUpPilots {
  public:
   explicit MadeUpPilots(std::optional<Pilot> pilot) : pilot_(pilot) {}

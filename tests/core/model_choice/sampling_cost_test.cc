@@ -29,7 +29,7 @@ Measured ErrorMeasured(const EnsembleSpec& spec) {
           static_cast<double>(summary.samples)};
 }
 
-// Errors of some thousand samples are themselves known to a few percent.
+// The errors from some thousand samples are accurate to a few percent.
 void ExpectWithinAFactor(double factor, const EnsembleSpec& spec) {
   ASSERT_TRUE(Violations(spec).empty());
   const PointParameters point = PointAt(spec, 0);
@@ -76,7 +76,7 @@ TEST(SamplingCost, ErrorOfRelaxationIsWithinAFactorOfTwoAndAHalf) {
   }
 }
 
-TEST(SamplingCost, NoNumberOfSamplesIsEnoughWhereThereIsNoVariance) {
+TEST(SamplingCost, InfiniteVarianceMakesTheErrorInfinite) {
   EnsembleSpec spec = Asked(&kConditionalMeanFreeTime, 0.1);
   spec.grid[kEpsilon] = {0};
   EXPECT_TRUE(std::isinf(AimOf(spec).error(spec.model, PointAt(spec, 0))));
@@ -94,7 +94,7 @@ double Cost(const EnsembleSpec& spec, const MachineRates& rates) {
   return SecondsPerSample(spec, PointAt(spec, 0), rates);
 }
 
-TEST(SamplingCost, IsThatOfTheEventsOfASample) {
+TEST(SamplingCost, CostIsTheSumOverEvents) {
   const PairGeometry geometry = PaperGeometry(0.1);
   const double hits = HitsPerCollision(geometry).ball_wall;
   const EnsembleSpec collision = Asked(&kEquilibrium, 0.1), orbit = Relaxation(0.1);
@@ -110,7 +110,7 @@ TEST(SamplingCost, IsThatOfTheEventsOfASample) {
   EXPECT_DOUBLE_EQ(Cost(returns, OnlyOf(&EngineRate::sample)), 1);
 }
 
-TEST(SamplingCost, JumpsCostWhateverDelta) {
+TEST(SamplingCost, CostOfJumpsIsIndependentOfDelta) {
   MachineRates rates;
   rates.jump = 1;
   for (const double delta : {0.3, 1e-3}) {
@@ -122,7 +122,7 @@ TEST(SamplingCost, JumpsCostWhateverDelta) {
   }
 }
 
-TEST(SamplingCost, IsTheEnginesThatRuns) {
+TEST(SamplingCost, CostIsThatOfTheEngineInUse) {
   EnsembleSpec spec = Asked(&kEquilibrium, 0.1);
   const Machine machine = SomeMachine();
   const double lanes = Cost(spec, machine.rates);

@@ -27,8 +27,9 @@ TEST(CounterRandom, IsPhilox4x64) {
   EXPECT_EQ(random.Bits(), 0x7e68b68aec7ba23bu);
 }
 
-// A block is four words of the same sequence, also if words of the one before are left.
-TEST(CounterRandom, BlocksAreOfTheSameSequence) {
+// A block is the next four words of the same sequence, also if words of the previous block are
+// unused.
+TEST(CounterRandom, BlocksContinueTheSameSequence) {
   CounterRandom words(1, 2, 3), blocks(1, 2, 3);
   uint64_t block[CounterRandom::kBlock];
   EXPECT_EQ(blocks.Bits(), words.Bits());
@@ -38,7 +39,7 @@ TEST(CounterRandom, BlocksAreOfTheSameSequence) {
   EXPECT_EQ(blocks.Bits(), words.Bits());
 }
 
-TEST(CounterRandom, DependsOnSeedStreamAndSampleAlone) {
+TEST(CounterRandom, DependsOnlyOnSeedStreamAndSample) {
   EXPECT_EQ(Draws(1, 2, 3), Draws(1, 2, 3));
   const std::set<std::vector<uint64_t>> distinct = {Draws(1, 2, 3), Draws(2, 2, 3), Draws(1, 3, 3),
                                                     Draws(1, 2, 4), Draws(2, 1, 3)};
@@ -59,7 +60,7 @@ TEST(CounterRandom, UniformIsUniformAndOpen) {
   EXPECT_NEAR(*moments.Variance(), 1.0 / 12, 5 * std::sqrt(1.0 / 180 / 1e6));
 }
 
-TEST(UniformDirection, HasLengthOneAndNoPreference) {
+TEST(UniformDirection, HasLengthOneAndIsIsotropic) {
   CounterRandom random(6, 0, 0);
   Moments cosine, cosine_of_double, cosine_of_quadruple;
   for (int i = 0; i < 1'000'000; ++i) {

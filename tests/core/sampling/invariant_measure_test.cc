@@ -11,7 +11,7 @@
 namespace ballpiston {
 namespace {
 
-TEST(FlowMeasure, StatesAreLegalAndEnergiesAreBeta) {
+TEST(FlowMeasure, StatesAreValidAndEnergiesAreBeta) {
   CounterRandom random(4, 0, 0);
   Moments u, u_squared;
   for (int i = 0; i < 100'000; ++i) {
@@ -28,7 +28,7 @@ TEST(FlowMeasure, StatesAreLegalAndEnergiesAreBeta) {
 }
 
 // The share of states whose piston is left of the cell's tip is (|G| - A (lambda + delta))/|G|.
-TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
+TEST(FlowMeasure, PistonsPositionsAreUniformOnTheVolume) {
   const PairMeasures measures = Measures(kPaperPair);
   const double expected =
       1 - measures.cell_area * (kPaperPair.lambda() + kPaperPair.delta()) / measures.volume;
@@ -40,9 +40,9 @@ TEST(FlowMeasure, PistonIsWhereTheVolumeIs) {
   EXPECT_NEAR(left.mean, expected, 5 * *left.StandardError());
 }
 
-// At given energies positions are those of mu, directions those of the circle, and the piston comes
-// as often as it goes.
-TEST(FlowMeasure, AtAnEnergyOnlySpeedsAreGiven) {
+// At given energies positions have the law of mu, directions are uniform, and both signs of the
+// piston's velocity are equally frequent.
+TEST(FlowMeasure, AtAnEnergyPositionsAndDirectionsAreUniform) {
   const PairMeasures measures = Measures(kPaperPair);
   const double left_share =
       1 - measures.cell_area * (kPaperPair.lambda() + kPaperPair.delta()) / measures.volume;

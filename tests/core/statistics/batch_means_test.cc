@@ -37,7 +37,7 @@ TEST(BatchMeans, MergeWithEmptyIsIdentity) {
   EXPECT_EQ(right, whole);
 }
 
-TEST(BatchMeans, ErrorOfIndependentTermsIsTheirs) {
+TEST(BatchMeans, ErrorOfIndependentTermsIsTheUsualOne) {
   CounterRandom random(5, 0, 0);
   BatchMeans batches;
   Moments moments;
@@ -68,10 +68,10 @@ TEST(BatchMeans, TooFewBatchesHaveNoError) {
   EXPECT_TRUE(batches.StandardError());
 }
 
-// Of a series with correlation time 10, single terms as batches understate the error some four
-// times, batches of 500 terms do not: with 300 z-scores their variance has standard error 0.08; the
-// window of 4 of these has a false-alarm rate of 1e-4.
-TEST(BatchMeans, LongBatchesOfACorrelatedSeriesAreHonest) {
+// For a series with correlation time 10, single terms as batches understate the error by a factor
+// of about four; batches of 500 terms do not. With 300 z-scores their variance has the standard
+// error 0.08; the window of 4 of these has a false-alarm rate of 1e-4.
+TEST(BatchMeans, LongBatchesGiveValidErrorsOfACorrelatedSeries) {
   CounterRandom random(9, 0, 0);
   Moments z_of_batches, z_of_terms;
   for (int repetition = 0; repetition < 300; ++repetition) {

@@ -13,7 +13,7 @@ TEST(Histogram, CountsInTheBinThatHoldsTheValue) {
   EXPECT_EQ(histogram.counts, (std::vector<uint64_t>{2, 2, 2, 2}));
 }
 
-TEST(Histogram, LosesNoSampleAtOrBeyondItsEnds) {
+TEST(Histogram, SamplesAtOrBeyondTheEndsAreCounted) {
   Histogram histogram = Histogram::OfBins(-1, 1, 2);
   histogram.Add(1);
   histogram.Add(std::nextafter(1.0, 2.0));

@@ -118,7 +118,7 @@ Moments Divergences(const std::vector<double>& probabilities, uint64_t samples, 
 // 12 comparisons at 4.5 standard errors: one false alarm in 1e4 seeds, and the seed is fixed. The
 // scatter's own error is its 1/sqrt(2 repeats), more where it is not that of a Gaussian (by its
 // measured kurtosis).
-TEST(KlDivergence, NoiseIsThatOfSamplesFromTheLaw) {
+TEST(KlDivergence, NoiseMatchesSamplesFromTheLaw) {
   for (const size_t cells : {1000u, 2000u}) {
     const std::vector<double> probabilities = SteepLaw(cells);
     for (const auto& [samples, repeats] :
@@ -136,7 +136,7 @@ TEST(KlDivergence, NoiseIsThatOfSamplesFromTheLaw) {
   }
 }
 
-// 1e8 samples in 2000 cells: what the series in samples a cell leaves out is below 1e-4.
+// 1e8 samples in 2000 cells: the error of the series in 1/(samples a cell) is below 1e-4.
 TEST(KlDivergence, NoiseTendsToThatOfChiSquared) {
   for (const size_t cells : {1000u, 2000u}) {
     const std::vector<double> probabilities = SteepLaw(cells);

@@ -83,7 +83,7 @@ TEST(Moments, TooFewSamplesHaveNoError) {
 // Of an exponential law the coefficient of variation is 1; over many samples of 1000 its z-scores
 // have variance near 1. With 500 z-scores the variance has standard error sqrt(2/500) = 0.06 and,
 // as the 1/count bias of the delta method is some 0.1, the window is 1 +- 0.35 (false alarms 1e-6).
-TEST(Moments, CoefficientOfVariationErrorIsHonest) {
+TEST(Moments, CoefficientOfVariationErrorIsValid) {
   CounterRandom random(11, 0, 0);
   Moments z;
   for (int repetition = 0; repetition < 500; ++repetition) {

@@ -11,8 +11,8 @@
 namespace ballpiston {
 namespace {
 
-// Functions whose jumps lie on a grid of this step: what is linear between its points is summed
-// exactly by the trapezoidal rule.
+// The jumps of the functions lie on a grid of this step. So the trapezoidal rule is exact for
+// integrands that are linear between the grid's points.
 constexpr double kStep = 1.0 / 16;
 
 struct OnGrid {
@@ -73,7 +73,7 @@ TEST(StepFunction, IntegralIsExact) {
 
 // A value of 1 for a time 1, then 0: int_0^1 dt (1 - t) = 1/2 with a window of 1 or more, and
 // int_0^1 min(1/4, 1 - t) dt = 3/16 + 1/32 with one of 1/4.
-TEST(StepFunction, CorrelationOfAPulseIsAsByHand) {
+TEST(StepFunction, CorrelationOfAPulseMatchesHandCalculation) {
   StepFunction pulse(1);
   pulse.Add(1, 0);
   EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 1), 0.5);
@@ -81,7 +81,7 @@ TEST(StepFunction, CorrelationOfAPulseIsAsByHand) {
   EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 4, 100), 0.125);
   EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 1, 0.25), 7.0 / 32);
   EXPECT_DOUBLE_EQ(pulse.CorrelationIntegral(0, 0.5, 0.25), 0.25);
-  // With 1/2 taken off the two halves of a square wave are alike.
+  // After subtraction of 1/2 the two halves of the square wave cancel.
   EXPECT_DOUBLE_EQ(pulse.Integral(0.5, 2), 0);
 }
 
@@ -92,7 +92,7 @@ TEST(StepFunction, SamplesHoldTheLastValue) {
   function.Add(0.5, 7);
   EXPECT_EQ(function.last_jump(), 1.5);
   EXPECT_EQ(function.jumps(), 2u);
-  // At a jump the value after it.
+  // At a jump a sample has the value after the jump.
   EXPECT_EQ(function.Samples(0.5, 6), (std::vector<double>{5, 5, 6, 7, 7, 7}));
   EXPECT_EQ(function.Samples(100, 2), (std::vector<double>{5, 7}));
   EXPECT_TRUE(function.Samples(1, 0).empty());
@@ -123,7 +123,7 @@ TEST(StepFunction, SamplesAreTheValuesAtTheirTimes) {
   }
 }
 
-TEST(StepFunction, PiecesWithoutDurationAreNotSeen) {
+TEST(StepFunction, PiecesWithoutDurationHaveNoEffect) {
   StepFunction with(1), without(1);
   with.Add(0, -1), with.Add(0, 1);
   for (StepFunction* function : {&with, &without}) function->Add(2, 3);
@@ -133,7 +133,7 @@ TEST(StepFunction, PiecesWithoutDurationAreNotSeen) {
   EXPECT_DOUBLE_EQ(with.CorrelationIntegral(0.1, 5, 3), without.CorrelationIntegral(0.1, 5, 3));
 }
 
-// What lies beyond origins + window does not count, and neither does where the record ends.
+// Values beyond origins + window have no effect, and neither has the end of the record.
 TEST(StepFunction, OnlyOriginsAndWindowCount) {
   StepFunction longer(1), shorter(1);
   for (StepFunction* function : {&longer, &shorter}) function->Add(1, 0.25), function->Add(3, 0.75);

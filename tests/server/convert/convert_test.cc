@@ -267,7 +267,7 @@ TEST(Spec, TextThatIsNotAShapeIsAViolationBesideTheOthers) {
   EXPECT_THAT(ViolatedFields(checked), testing::UnorderedElementsAreArray(expected));  // each once
   EXPECT_THAT(checked.violations,
               testing::Contains(testing::Field(&FieldViolation::description,
-                                               "has 9 values; first-hit takes none")));
+                                               "has 9 values; first-hit does not use this list")));
 }
 
 TEST(Spec, ViolationShowsAStrangeTextEscapedAndShortened) {
