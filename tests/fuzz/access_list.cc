@@ -1,4 +1,5 @@
-// The access file, the credentials of a call, and --new-token. Errors do not show the refused text.
+// The access file, the credentials of a call, and --new-token. Errors do not quote the rejected
+// text.
 #include "server/security/access_list.h"
 
 #include <memory>
@@ -16,7 +17,7 @@
 namespace ballpiston::fuzz {
 namespace {
 
-// A call at this time, by one who shows the text.
+// Calls with the text as credentials.
 void CheckCalls(const server::AccessList& list, const std::string& text) {
   const server::Authenticator door(std::make_shared<const server::AccessList>(list));
   const absl::Time now = absl::FromUnixSeconds(1'800'000'000);
@@ -33,7 +34,7 @@ void CheckCalls(const server::AccessList& list, const std::string& text) {
   }
 }
 
-// Entries of tokens, which the server writes itself.
+// Entries of tokens, which the server itself writes.
 void CheckWritten(const std::string& line) {
   const auto entry = server::ParseAccessEntry(line);
   if (!entry.ok() || !entry->has_value()) return;
@@ -46,7 +47,7 @@ void CheckWritten(const std::string& line) {
   Require((*again)->principal.role == (*entry)->principal.role, "a role stays");
 }
 
-// None of a token or its hash, either of which is longer than every word of a message.
+// The error contains no token and no hash. Both are longer than every word of a message.
 void RequireSilence(const absl::Status& error, const std::string& text) {
   constexpr size_t kLongerThanAnyWordOfOurs = 32;
   for (const absl::string_view word : absl::StrSplit(text, absl::ByAnyChar(" \t\r\n"))) {

@@ -1,5 +1,5 @@
-// A file with chunks that a worker left: as a whole file, and as the payload of a file whose
-// checksum is right. Chunks that fit a lease are merged.
+// A worker's file with chunks. The input is used as a whole file, and as the payload of a file with
+// a correct checksum. Chunks that fit a lease are merged.
 #include "server/worker/chunk_file.h"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// CreateEnsembleJob: everything that is looked at before a job is made.
+// CreateEnsembleJob: all checks before a job is made.
 #include "absl/strings/ascii.h"
 #include "ballpiston/v1/ensemble.pb.h"
 #include "server/api/request_check.h"

@@ -1,4 +1,4 @@
-// The client's reading of an error that a server sent: with details, or without.
+// How the client reads an error from a server, with and without details.
 #include "client/library/error_text.h"
 
 #include "google/rpc/status.pb.h"

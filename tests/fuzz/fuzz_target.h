@@ -1,5 +1,5 @@
-// A fuzz target: a kind of bytes that come from outside, what the programs do to read them, and
-// what has to hold of whatever they make of it.
+// A fuzz target: a kind of input from outside, the code that reads it, and the properties that must
+// hold for the result.
 //
 // Each target has a file of its own, which ends in
 //   const Registration kStoredSpec({.name = "stored_spec", .check = CheckStoredSpec, ...});
@@ -21,27 +21,27 @@
 namespace ballpiston::fuzz {
 
 struct FuzzTarget {
-  std::string name;                                    // of the folder of its seeds, too
-  void (*check)(const std::string& input);             // throws what Require does
-  const google::protobuf::Message* message = nullptr;  // whose bytes the input is; null: text
-  std::vector<std::string> (*made_seeds)() = nullptr;  // beside those in files
+  std::string name;                                    // also of the folder of its seeds
+  void (*check)(const std::string& input);             // throws as Require does
+  const google::protobuf::Message* message = nullptr;  // the input's message; null: text
+  std::vector<std::string> (*made_seeds)() = nullptr;  // besides the files
 };
 
 struct Registration {
   explicit Registration(FuzzTarget target);
 };
 
-// Of this program.
+// All targets of this program.
 const std::vector<FuzzTarget>& Targets();
 
-// Throws std::logic_error unless it is so.
+// Throws std::logic_error unless `is_so`.
 void Require(bool is_so, const char* what);
 
-// Whether this input is one of the one in n that a slow check is made of: the same ones every time.
+// Selects one input in n for slow checks. The selection depends only on the input.
 bool IsOneIn(size_t n, const std::string& input);
 
-// Inputs to begin with: the files of FOLDER/NAME, those called *.textproto as the bytes of the
-// message that they spell, and what the target makes itself. Throws if a file cannot be read.
+// The seeds: the files of FOLDER/NAME, and those that the target makes itself. Files *.textproto
+// are converted to the bytes of their message. Throws if a file cannot be read.
 std::vector<std::string> SeedsOf(const FuzzTarget& target, const std::string& folder);
 
 }  // namespace ballpiston::fuzz

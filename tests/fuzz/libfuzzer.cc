@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kWriteSeeds[] = "--write_seeds=";
 
-// What is tested is told once, not for each of a million inputs.
+// Protobuf must not log an error for each of a million inputs.
 const google::protobuf::LogSilencer silence;
 
 void WriteSeeds(const std::string& folder, const std::string& corpus) {

@@ -1,4 +1,4 @@
-// The server's log, in which what a client sent may stand: it stays one line of a form.
+// A log message with any text of a client stays one well-formed line.
 #include "server/observability/log_line.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void RequireJson(const std::string& line) {
   Require(object.fields().contains("severity"), "with a severity");
 }
 
-// Beyond where a message is cut, wherever that falls.
+// Repeats the text until a message with it must be cut.
 std::string Repeated(const std::string& text) {
   std::string repeated;
   while (!text.empty() && repeated.size() < server::kMaxLogLine) repeated += text;
@@ -43,7 +43,9 @@ void CheckLogLine(const std::string& text) {
   RequireOneLine(Line(LogFormat::kText, message));
   const std::string json = Line(LogFormat::kJson, message);
   RequireOneLine(json);
-  if (IsOneIn(64, text)) RequireJson(json);  // some of the cut ones, too: no divisor in common
+  if (IsOneIn(64, text))
+    RequireJson(json);  // 64 has no common divisor with the other selections, so some cut lines are
+                        // checked too
 }
 
 std::vector<std::string> Texts() {

@@ -17,7 +17,7 @@ using google::protobuf::Reflection;
 
 constexpr int kLongestList = 12;
 
-// Ends of domains, and what no domain holds.
+// Bounds of domains, and numbers outside every domain.
 constexpr std::array kNumbers = {0.0,
                                  -0.0,
                                  0.5,
@@ -140,7 +140,7 @@ void SetSingle(Dice& dice, const FieldDescriptor& field, Message& message) {
     case FieldDescriptor::CPPTYPE_MESSAGE:
       return MutateMessage(dice, *reflection.MutableMessage(&message, &field));
     default:
-      return;  // kinds that no message of the project has
+      return;  // field types that the project does not use
   }
 }
 

@@ -26,12 +26,12 @@ class Dice {
 // One flip, insertion, deletion, repetition or number of interest.
 void MutateBytes(Dice& dice, std::string& bytes);
 
-// One field of it, or of a message inside: set, cleared, added to, shortened, or moved to the edge
-// of its domain.
+// Changes one field of the message or of a message in it: sets, clears, extends or shortens it, or
+// moves it to the edge of its domain.
 void MutateMessage(Dice& dice, google::protobuf::Message& message);
 
-// The bytes of a message of this kind, changed in one to four fields; false, and nothing changed,
-// if they are not such bytes.
+// Changes one to four fields of a message of this kind. False, and no change, if the bytes are not
+// such a message.
 bool MutateFields(Dice& dice, const google::protobuf::Message& kind, std::string& bytes);
 
 }  // namespace ballpiston::fuzz

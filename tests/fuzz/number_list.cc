@@ -16,8 +16,8 @@ void RequireTold(const absl::Status& error) {
   Require(absl::StartsWith(error.message(), "'"), "the text is quoted");
 }
 
-// Ranges with a count of hundreds, or one that has an exponent: such lists take longer than all
-// other inputs together, and differ by their length alone.
+// Whether the text has a range with a count of hundreds or with an exponent. Such lists take longer
+// than all other inputs together, and differ only in their length.
 bool IsLong(const std::string& text) {
   constexpr size_t kLong = 3;
   if (text.find(':') == std::string::npos) return false;

@@ -1,4 +1,4 @@
-// EvaluatePairs: the whole answer.
+// EvaluatePairs: checks the whole answer.
 #include <cmath>
 
 #include "ballpiston/v1/analytic.pb.h"
@@ -9,7 +9,8 @@
 namespace ballpiston::fuzz {
 namespace {
 
-// Every answer is evaluated: few numbers make all that there is to be wrong.
+// Larger requests are skipped, because every answer is evaluated and a few pairs can show every
+// error.
 constexpr int kMostPairs = 16;
 
 void RequireFinite(const v1::PairAnalytics& point) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr size_t kOneIn = 16;
 
-// Each point may be looked at, and many differ from few by their number alone.
+// Grids with many points are skipped: each point takes time, and many points show nothing new.
 bool HasManyPoints(const v1::Grid& grid) {
   int points = 1;
   for (const int size :

@@ -1,5 +1,5 @@
-// What has to hold of several kinds of input. All throw what Require does. What takes much longer
-// than what it judges is done for one input in sixteen.
+// Properties that several targets share. All functions throw as Require does. Slow checks run for
+// one input in sixteen.
 #ifndef BALLPISTON_TESTS_FUZZ_RULES_H_
 #define BALLPISTON_TESTS_FUZZ_RULES_H_
 
@@ -13,20 +13,21 @@
 
 namespace ballpiston::fuzz {
 
-// An error that a client can be sent: its details fit into gRPC's trailers, say a reason, and come
-// back from the client's library with the same code and reason.
+// The server can send the error: its details fit into gRPC's trailers, have a reason, and the
+// client's library returns the same code and reason.
 void RequireSendable(const absl::Status& error, const std::string& input);
 
-// Each names a field that begins with `prefix`, and says something.
+// Each violation names a field that begins with `prefix`, and has a description.
 void RequireNamed(const std::vector<FieldViolation>& violations, const std::string& prefix);
 
-// Accepted: it has points that make pairs, and comes back from the core's form and from bytes as it
-// went. Refused: every violation is named and they can be sent. True if it was accepted.
+// An accepted specification has points with valid pairs, and converts to the core's form and to
+// bytes and back without a change. A rejected one has named violations that can be sent. True if it
+// was accepted.
 bool RequireJudged(const v1::EnsembleSpec& spec, const std::string& input);
 
-// The size and the token of a page of `list`, which begins at `first` without a token. Accepted:
-// the page has a size and a start, and a token made of the start leads back there. Refused: the
-// error can be sent.
+// The size and the token of a page of `list`, which begins at `first` without a token. An accepted
+// page has a size and a start, and a token of this start gives the same start. For a rejected page
+// the error can be sent.
 void RequirePage(int32_t page_size, const std::string& page_token, const std::string& list,
                  int64_t first, const std::string& input);
 

@@ -1,5 +1,5 @@
-// Every target over its seeds and some thousands of changed ones: what any compiler can do. The
-// search for what is wrong is libFuzzer's (make fuzz).
+// Runs every target over its seeds and some thousands of changed seeds, with any compiler.
+// libFuzzer searches for more (make fuzz).
 #include <gtest/gtest.h>
 
 #include <exception>
@@ -17,7 +17,7 @@
 
 namespace ballpiston::fuzz {
 
-// Its name, of which CTest makes the test's, instead of its bytes.
+// Prints the target's name instead of its bytes; CTest uses it in the name of the test.
 void PrintTo(const FuzzTarget& target, std::ostream* out) { *out << target.name; }
 
 namespace {
@@ -26,7 +26,7 @@ const std::string kSeeds = SourcePath("tests/fuzz/seeds");
 constexpr int kChangedInputs = 3000;
 constexpr size_t kLongestInput = 1 << 14;
 
-// What is wrong with the target on this input; empty if nothing is.
+// The rule that the target breaks on this input; empty if none.
 std::string Fault(const FuzzTarget& target, const std::string& input) {
   try {
     target.check(input);
@@ -41,7 +41,7 @@ std::string Changed(Dice& dice, const FuzzTarget& target, const std::vector<std:
   std::string input = seeds[dice.Below(seeds.size())];
   if (target.message != nullptr && !dice.OneIn(4)) MutateFields(dice, *target.message, input);
   for (size_t changes = dice.Below(4); changes > 0; --changes) MutateBytes(dice, input);
-  if (dice.OneIn(8)) {  // its beginning, and the end of another
+  if (dice.OneIn(8)) {  // the beginning of this seed and the end of another
     const std::string& other = seeds[dice.Below(seeds.size())];
     input.resize(dice.Below(input.size() + 1));
     input += other.substr(dice.Below(other.size() + 1));
@@ -79,7 +79,7 @@ TEST(Fault, NamesTheRuleAndTheInput) {
   EXPECT_EQ(Fault(target, "x\n"), "there is no x, with input \"x\\n\"");
 }
 
-// Half of a search that the first check ends is no search.
+// Changed messages must pass the first checks often enough, or the search would be useless.
 TEST(MutateFields, MakesSpecificationsOfBothKinds) {
   std::vector<std::string> seeds;
   for (const FuzzTarget& target : Targets()) {
@@ -92,7 +92,7 @@ TEST(MutateFields, MakesSpecificationsOfBothKinds) {
     std::string bytes = seeds[dice.Below(seeds.size())];
     ASSERT_TRUE(MutateFields(dice, v1::EnsembleSpec::default_instance(), bytes));
     v1::EnsembleSpec spec;
-    // gRPC refuses bytes that have a text that is not UTF-8.
+    // gRPC rejects messages with a text that is not UTF-8.
     const bool is_read = spec.ParseFromString(bytes);
     ++(is_read && server::CheckSpec(spec).violations.empty() ? accepted : refused);
   }

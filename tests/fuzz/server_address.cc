@@ -1,5 +1,5 @@
-// Addresses, as the client takes them and as the server does: the client can call every one that
-// the server can listen at.
+// Addresses, as client and server parse them: the client can call every address at which the server
+// can listen.
 #include "client/library/server_address.h"
 
 #include "absl/strings/match.h"
@@ -23,7 +23,7 @@ void CheckListening(const std::string& text) {
 }
 
 void CheckServerAddress(const std::string& text) {
-  if (text.find('\0') != std::string::npos) return;  // no argument of a program holds it
+  if (text.find('\0') != std::string::npos) return;  // a program's arguments cannot contain it
   const absl::StatusOr<std::string> target = client::GrpcTarget(text);
   if (target.ok()) {
     Require(absl::StartsWith(*target, "unix:") || absl::StartsWith(*target, "dns:///"),

@@ -1,5 +1,5 @@
-// A checkpoint's record: read, checked against each experiment, and resumed and summarized where it
-// fits.
+// A checkpoint's record: read, checked against each experiment and, if it fits, resumed and
+// summarized.
 #include <memory>
 
 #include "ballpiston/storage/records.pb.h"

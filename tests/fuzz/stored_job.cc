@@ -1,4 +1,4 @@
-// A job's row, all columns of it: as the API shows it.
+// The message that the API makes from a job's row, with all its columns.
 //
 // Eight bytes each: state, times of creation, start and end, points, points done, samples, work;
 // then one byte that says how long the specification is, the specification, the error.

@@ -1,4 +1,4 @@
-// A finished point's result: read for pages of results, and for what a restart wants of it.
+// A finished point's result, as pages of results and a restart read it.
 #include "core/ensemble/point_experiment.h"
 #include "server/convert/errors.h"
 #include "server/convert/point_result.h"

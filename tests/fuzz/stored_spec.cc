@@ -1,4 +1,4 @@
-// The specification in a job's row: as a restart reads it.
+// The specification in a job's row, as a restart reads it.
 #include "server/convert/spec.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/rules.h"

@@ -1,4 +1,4 @@
-// The table of the paper's equations is complete and names what exists.
+// The table of the paper's equations is complete, and its files and names exist.
 #include "tests/layout/equation_table.h"
 
 #include <fstream>

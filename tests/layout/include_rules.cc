@@ -18,7 +18,7 @@ struct Rule {
   bool operating_system;  // threads, clocks and the headers of POSIX
 };
 
-// The first row whose folder holds the file counts.
+// The first row whose folder contains the file applies.
 const std::vector<Rule>& Rules() {
   static const auto* const rules = new std::vector<Rule>{
       {"core/arithmetic/", {"core/arithmetic/", "absl/"}, false},
@@ -159,7 +159,7 @@ bool StartsWithAny(std::string_view path, const Prefixes& prefixes) {
                      [&](std::string_view prefix) { return path.starts_with(prefix); });
 }
 
-// Those of C++ and of Abseil.
+// Whether a header of C++ or Abseil has threads or clocks.
 bool IsThreadOrClock(std::string_view include) {
   static constexpr std::array<std::string_view, 6> kStandard = {
       "thread", "future", "mutex", "condition_variable", "chrono", "ctime"};
@@ -199,7 +199,7 @@ void SkipBlanks(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
-// Takes `word` and the blanks before it off the text, if it comes next.
+// Removes `word` and the blanks before it from the text if the text begins with them.
 bool Skip(std::string_view word, std::string_view& text) {
   SkipBlanks(text);
   if (!text.starts_with(word)) return false;
@@ -207,7 +207,7 @@ bool Skip(std::string_view word, std::string_view& text) {
   return true;
 }
 
-// What the line includes; empty if nothing.
+// The file that the line includes; empty if none.
 std::string IncludedBy(std::string_view line) {
   if (!Skip("#", line) || !Skip("include", line)) return "";
   if (!Skip("<", line) && !Skip("\"", line)) return "";

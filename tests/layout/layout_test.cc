@@ -1,4 +1,4 @@
-// The folder rules hold in this tree, and each of them can fail.
+// Tests that the folder rules hold in this tree, and that each rule can fail.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -85,7 +85,7 @@ TEST(Layout, TheCoreIsLinkedWithPhysicsOnly) {
   }
 }
 
-// The lists of links reach through other targets, or the two tests above would prove nothing.
+// The lists of links must include indirect ones, or the two tests above would prove nothing.
 TEST(Layout, TheServerIsLinkedWithTheCore) {
   EXPECT_THAT(LinkedInto("ballpistond"), Contains("ballpiston_core"));
   EXPECT_THAT(LinkedInto("ballpistond"), Contains("gRPC::grpc++"));
@@ -140,7 +140,7 @@ TEST(IncludeRules, BilliardIncludesNoExperiment) {
   ExpectWrong("core/billiard/x.h", "\"core/statistics/moments.h\"");
 }
 
-// Numbers of many bits are for the tools that compare precisions.
+// Only the tools that compare precisions use multiprecision numbers.
 TEST(IncludeRules, OnlyToolsUseBoostsNumbers) {
   const std::string numbers = "#include <boost/multiprecision/eigen.hpp>\n";
   EXPECT_THAT(WrongIncludes("tools/flows/x.h", numbers), IsEmpty());

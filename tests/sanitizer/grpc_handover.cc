@@ -1,13 +1,14 @@
-// Tells the thread sanitizer of the order that gRPC keeps between threads.
+// Reports to the thread sanitizer the order that gRPC enforces between threads.
 //
-// gRPC's library and Abseil's are not instrumented, so what orders their threads is not seen. This
-// library comes before them in the order in which symbols are looked up, and stands between:
-//   - a lock of theirs orders what was done before it was let go and what is done when it is had;
-//   - what was done before a call was handed to gRPC (a write, an end) comes before the reaction.
-// What a reaction and a thread of the server's own do to the same variable races as before
+// The libraries of gRPC and Abseil are not instrumented, so the sanitizer does not see how they
+// order their threads. This library comes before them in the order of symbol look-up, and replaces
+// some of their functions:
+//   - what a thread did before it released a lock comes before what the next owner does;
+//   - what was done before a call was given to gRPC (a write, an end) comes before the reaction.
+// If a reaction and a thread of the server use the same variable, they still race
 // (seeded_race.cc). Two threads that both call gRPC may be ordered by its locks by chance, as by
-// any lock: a race between them is seen in some runs only. Not stood in for, because nothing here
-// uses it: readers' locks, conditions of absl::Mutex, reactions of the client's callback API.
+// any lock: a race between them is reported in some runs only. Not replaced, because nothing here
+// uses them: readers' locks, conditions of absl::Mutex, reactions of the client's callback API.
 //
 // The names and the layout are those of Debian's gRPC 1.51 and Abseil 20220623.
 #include <dlfcn.h>
@@ -24,7 +25,7 @@
 
 namespace {
 
-// Whom this library stands before.
+// The function that this library replaces.
 template <typename Function>
 Function* Next(Function*, const char* symbol) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, symbol));
@@ -91,7 +92,7 @@ bool WaitUntil(void* condition, void* mutex, absl::Time deadline) {
 
 using Functor = grpc_completion_queue_functor;
 
-// grpc::internal::CallbackWithSuccessTag::StaticRun: what gRPC begins a reaction with.
+// grpc::internal::CallbackWithSuccessTag::StaticRun, with which gRPC starts a reaction.
 void RunReaction(Functor* tag, int ok) __asm__(RUN_REACTION);
 
 static void RunReactionAfterHandover(Functor* tag, int ok) {
@@ -115,9 +116,9 @@ grpc_call_error grpc_call_start_batch(grpc_call* call, const grpc_op* ops, size_
   return start(call, ops, count, tag, reserved);
 }
 
-// grpc::internal::ServerCallbackCall::ScheduleOnDone, asked for by whoever counts the outstanding
-// reactions down to none: which gRPC's library may be. The count is behind the table of virtual
-// functions and another one.
+// grpc::internal::ServerCallbackCall::ScheduleOnDone. The thread that ends the last outstanding
+// reaction calls it; that thread may be in gRPC's library. The count follows the table of virtual
+// functions and another count.
 void ScheduleOnDone(void* call, bool here) __asm__(SCHEDULE_ON_DONE);
 void ScheduleOnDone(void* call, bool here) {
   static const auto schedule = Next(ScheduleOnDone, SCHEDULE_ON_DONE);

@@ -1,9 +1,9 @@
-// A race on purpose: what gRPC's own thread does in a reaction, and a worker, count in the same
-// variable. gRPC is not instrumented, and whatever keeps the thread sanitizer from reporting gRPC's
-// own doings (grpc_handover.cc) must not keep it from reporting this.
+// A race on purpose: a reaction on gRPC's thread and a worker change the same variable. gRPC is not
+// instrumented. The code that prevents false reports about gRPC (grpc_handover.cc) must not hide
+// this race.
 //
-//   seeded_race             has to be reported
-//   seeded_race --mended    the same with a lock: nothing may be
+//   seeded_race             the sanitizer must report the race
+//   seeded_race --mended    the same with a lock: the sanitizer must report nothing
 #include <atomic>
 #include <cstdio>
 #include <memory>
@@ -60,7 +60,7 @@ class CountingService : public v1::AnalyticService::CallbackService {
   Counter& counter_;
 };
 
-// As the server's, which every reaction is begun through.
+// An interceptor like the server's, through which gRPC starts every reaction.
 class Passing : public grpc::experimental::Interceptor {
   void Intercept(grpc::experimental::InterceptorBatchMethods* batch) override { batch->Proceed(); }
 };
@@ -81,7 +81,7 @@ std::unique_ptr<grpc::Server> Serve(CountingService& service) {
   return builder.BuildAndStart();
 }
 
-// Orders nothing: a lock here would order the worker's counts before the calls.
+// Uses no lock, because a lock would order the worker's counts before the calls.
 class Worker {
  public:
   explicit Worker(Counter& counter) : counter_(counter), thread_([this] { Work(); }) {

@@ -1,4 +1,4 @@
-// Whole files as texts, and what the file system says of them.
+// Contents and modes of files.
 #ifndef BALLPISTON_TESTS_SUPPORT_FILES_H_
 #define BALLPISTON_TESTS_SUPPORT_FILES_H_
 

@@ -1,6 +1,6 @@
-// What libraries that are not ours do not give back, for the leak sanitizer.
+// Suppresses leaks of other projects' libraries for the leak sanitizer.
 //
-// libcares: a few bytes of a resolver's configuration, now and then, when gRPC looks up an address.
+// libcares sometimes leaks a few bytes of a resolver's configuration when gRPC looks up an address.
 extern "C" const char* __lsan_default_suppressions();
 
 extern "C" const char* __lsan_default_suppressions() { return "leak:libcares.so\n"; }

@@ -45,7 +45,7 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
   return pointers;
 }
 
-// Until the text or the reader ends.
+// Writes until the text or the reader ends.
 void WriteAll(int descriptor, const std::string& text) {
   sigset_t pipe;
   sigemptyset(&pipe);

@@ -37,7 +37,7 @@ MATCHER_P(ExitsWith, code, "") {
   return arg.exit_code == code;
 }
 
-// Killed, if it still runs, when the object ends.
+// The destructor kills the program if it still runs.
 class Process {
  public:
   explicit Process(const ProcessOptions& options);

@@ -20,7 +20,7 @@ class StandInSlurm {
   // The words before a server's command line, so that it finds the programs.
   std::vector<std::string> Launcher() const;
   std::string shared_folder() const { return folder_.File("shared"); }
-  // How many tasks it has started so far.
+  // The number of tasks that were started so far.
   int tasks() const;
 
  private:

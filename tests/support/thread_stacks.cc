@@ -25,7 +25,7 @@ constexpr std::chrono::seconds kPatience(1);
 
 pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
-// Never given back: a thread may answer after its second.
+// Never freed, because a thread may answer after the time limit.
 struct Request {
   pid_t thread = 0;
   std::array<void*, kMaxDepth> frames = {};
@@ -64,7 +64,7 @@ std::string StackOf(const Request& request) {
   std::string text;
   char name[512];
   for (int i = 0; i < request.depth; ++i) {
-    // An address of return lies behind the call, which may be the function's last instruction.
+    // The return address is behind the call, which may be the function's last instruction.
     const void* const call = static_cast<char*>(request.frames[static_cast<size_t>(i)]) - 1;
     absl::StrAppend(&text, "    ", absl::Symbolize(call, name, sizeof(name)) ? name : "?", "\n");
   }

@@ -9,8 +9,8 @@ namespace ballpiston {
 // second is named without its stack: it is stopped in the kernel or, under the thread sanitizer,
 // computes without a call that the sanitizer knows.
 //
-// For a process that is about to end: the signal SIGRTMAX is taken for good, memory is not given
-// back, and a thread that holds the allocator's lock may make the caller wait for ever.
+// For a process that is about to end: the function keeps the signal SIGRTMAX and does not free its
+// memory, and a thread that holds the allocator's lock may make the caller wait for ever.
 void WriteThreadStacks(int descriptor);
 
 }  // namespace ballpiston

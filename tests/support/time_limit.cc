@@ -75,7 +75,7 @@ class Watchdog {
   void StartTest(const std::string& name) {
     Start(name, TimeScale() * std::chrono::duration<double>(TimeLimitOf(name)));
   }
-  // No shorter than usual, whatever the scale.
+  // The time limit is at least the usual one, for every scale.
   void StartOther(const std::string& what) {
     Start(what, std::max(TimeScale(), 1.0) * std::chrono::duration<double>(kUsual));
   }
@@ -126,7 +126,7 @@ bool HasSuite(std::string_view name) {
   return false;
 }
 
-// A suite that was renamed has lost its row.
+// Finds rows whose suite does not exist any more, for example after a rename.
 void CheckRowsOf(std::string_view program) {
   for (const Limit& limit : kLonger) {
     if (!program.ends_with(limit.program) || HasSuite(limit.suite)) continue;

@@ -13,8 +13,9 @@
 
 namespace ballpiston {
 
-// In a namespace with a name, and not inlined, so that the stacks can show them. By functions of
-// the system that the thread sanitizer knows: only there it hands a signal on.
+// In a namespace with a name, and not inlined, so that the stacks can show them. It waits in a
+// system function that the thread sanitizer knows, because the sanitizer delivers a signal only
+// there.
 [[gnu::noinline]] void WaitForAnAnswerThatNeverComes() {
   std::mutex mutex;
   std::condition_variable answer;

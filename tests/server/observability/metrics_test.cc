@@ -83,7 +83,7 @@ TEST(ServerMetrics, TheEndOfACertificateIsAMetricIfThereIsOne) {
   EXPECT_EQ(names(server)[kExpiry], 2e9);
 }
 
-TEST_F(MetricsTest, AHealthWatchEndedByItsClientCountsAsOk) {
+TEST_F(MetricsTest, AHealthWatchEndedByItsClientIsNotLogged) {
   testing::internal::CaptureStderr();
   RunningServer& server = Start();
   {
