@@ -106,10 +106,13 @@ class WordParser {
 
   // If the value is missing, CLI11 would take the next word as the value, even if it is a flag.
   static absl::Status CheckValuesAreThere(const std::vector<std::string>& words) {
+    const std::string line = absl::StrCat(absl::StrJoin(words, " "), " ");
     std::map<std::string, bool> takes_value;
     for (const Verb& verb : Verbs()) {
-      for (const Flag* flag : FlagsOf(verb))
-        takes_value[LongName(*flag)] |= !flag->value.IsSwitch();
+      if (!absl::StartsWith(line, verb.name + " ")) continue;
+      for (const Flag* flag : FlagsOf(verb)) {
+        takes_value[LongName(*flag)] = !flag->value.IsSwitch();
+      }
     }
     for (auto word = words.begin(); word != words.end() && *word != "--"; ++word) {
       const std::string name = word->substr(0, word->find('='));

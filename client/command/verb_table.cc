@@ -474,7 +474,7 @@ std::vector<Verb> ServerVerbs() {
        "other languages can connect there.",
        {},
        With({&kServer}, {}),
-       {"server address"},
+       {"server address", "server address --server lab.example.org:50051 --ca authority.pem"},
        &ServerAddress},
       {"server status",
        "show the server's load and its limits",

@@ -16,7 +16,7 @@ class Save : public ::testing::Test {
  protected:
   std::string File(const std::string& name) const { return folder_.path() + "/" + name; }
   ProcessResult Verify(const std::string& name) const {
-    return RunProcess(ClientCommand(folder_, {"result", "--verify", File(name)}));
+    return RunProgram(ClientCommand(folder_, {"result", "--verify", File(name)}));
   }
 
   TemporaryFolder folder_;

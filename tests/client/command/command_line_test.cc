@@ -488,7 +488,7 @@ TEST_F(CommandLineTest, FigureCopiesItsScriptsAndPrintsTheirPaths) {
   EXPECT_EQ(Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder}).err,
             "ballpiston: using " + folder +
                 "/mean-free-time.sh, which differs from the installed file; delete it to use the "
-                "installed one\n");
+                "installed file\n");
   EXPECT_EQ(Contents(folder + "/mean-free-time.sh"), "# mine\n");
 }
 

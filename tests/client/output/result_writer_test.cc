@@ -211,7 +211,7 @@ TEST(ResultJson, HasShapesPositionsAndRemarks) {
   EXPECT_THAT(text, HasSubstr(R"("cells":"12","hot":2,"cold":1})"));
   EXPECT_THAT(text,
               HasSubstr(R"("points":[{"value":2,"position":0},{"value":1.9,"position":0.5}])"));
-  EXPECT_THAT(text, HasSubstr(R"("remarks":["the run was too short","another sentence"]})"));
+  EXPECT_THAT(text, HasSubstr(R"("remarks":["the run was too short","another sentence"],)"));
 }
 
 TEST(ResultJson, HasReasonsAndCurves) {
@@ -222,12 +222,11 @@ TEST(ResultJson, HasReasonsAndCurves) {
 }
 
 TEST(ResultJson, HasTheProtosNamesAndKeepsDefaults) {
-  EXPECT_EQ(
-      Written(Format::kJson),
-      R"({"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"estimate":"","samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0},
+  EXPECT_EQ(Written(Format::kJson), R"({"client_version": ")" BALLPISTON_VERSION R"(",
+"job": {"name":"ensembleJobs/abc","spec":{"experiment":"FIRST_HIT","target":{"estimate":"","samples":"10000"},"seed":"7","model":"MODEL_UNSPECIFIED","precision":"PRECISION_UNSPECIFIED","verify":false},"state":"SUCCEEDED","progress":{"points":2,"points_done":2,"samples":20000,"fraction":1},"engine_version":"1","work":0,"principal":"","priority":0,"answered_from_store":false,"pinned":false,"results_expired":false,"stored_bytes":0},
 "points": [
-{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[],"remarks":[]},
-{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[],"remarks":[]}
+{"index":0,"parameters":{"rho":0.53,"delta":0.2,"epsilon":0,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":21.63214,"standard_error":0.1234,"exact":21.62257,"z_score":0.0775527},{"name":"mean_sigma","value":-0.25}],"kl_divergence":{"value":0.005,"noise_floor":0.0025,"cells":2000,"noise_error":0.0001,"standard_error":0.0002},"histograms":[{"name":"alpha","sigma":1,"lower":0,"upper":0.5,"counts":[1,0],"expected_probabilities":[]}],"health":{"escapes":0,"max_energy_error":1e-12},"reason":"","curves":[],"remarks":[],"chunk_digests":[]},
+{"index":1,"parameters":{"rho":0.53,"delta":0.1,"epsilon":0.25,"exponent":1},"model":"BILLIARD_REFERENCE","samples":10000,"estimates":[{"name":"mean_hit_time","value":1e-07,"standard_error":2e-09}],"histograms":[],"reason":"","curves":[],"remarks":[],"chunk_digests":[]}
 ]}
 )");
 }
@@ -238,7 +237,8 @@ TEST(ResultJson, IsADocumentWithoutPoints) {
   writer->Begin(v1::EnsembleJob());
   writer->End();
   EXPECT_EQ(out.str(),
-            "{\"job\": "
+            "{\"client_version\": \"" BALLPISTON_VERSION
+            "\",\n\"job\": "
             "{\"name\":\"\",\"state\":\"STATE_UNSPECIFIED\",\"engine_version\":\"\",\"work\":0,"
             "\"principal\":\"\",\"priority\":0,\"answered_from_store\":false,\"pinned\":false,"
             "\"results_expired\":false,\"stored_bytes\":0},\n"

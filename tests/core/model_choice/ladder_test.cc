@@ -104,7 +104,7 @@ TEST(Ladder, TheReasonForRunningNoPilotIsStated) {
   EXPECT_THAT(Choice(Relaxation(0.0097, {.tolerance = 0.0007}), MayNotBeAsked)->reason,
               HasSubstr("could not establish"));
   EXPECT_THAT(Choice(Relaxation(0.09, {.tolerance = 0.05}), MayNotBeAsked)->reason,
-              HasSubstr("sooner"));
+              HasSubstr("before a pilot"));
 }
 
 TEST(Ladder, OnePilotServesAllSmallerDeltas) {

@@ -79,7 +79,9 @@ TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsFree) {
   EXPECT_OK(CallByName(server.channel(), kListJobs));
   EXPECT_FALSE(Connection(server.address()).ReadSome().empty());
   const std::string log = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(log, HasSubstr("1 connection closed: the process has nearly as many descriptors"));
+  EXPECT_THAT(
+      log,
+      HasSubstr("1 connection closed: the process has nearly reached its limit of descriptors"));
 }
 
 TEST(ConnectionBounds, TheSettingsLimitTheStreamsOfAConnection) {

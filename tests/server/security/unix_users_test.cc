@@ -337,7 +337,7 @@ TEST_F(SharedSocket, AnAccessFileAdmitsItsUsersWithTheirRoles) {
 TEST_F(SharedSocket, ATokenOrAFileWithTokensOnlyDoesNotReplaceTheUser) {
   EXPECT_THAT(
       StartError({.listen = "unix:" + path_, .security = WithList("certificate box box read\n")}),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("of the kind user only")));
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("only lines of the kind user")));
   Start(WithList("user daemon ada submit\n"));
   TestClient bin = As(kBin);
   EXPECT_EQ(ReasonOf(CallByName(bin.channel(), kListJobs, "", Bearer("token"))),

@@ -79,7 +79,7 @@ TEST(VerifyResult, EveryModelGivesTheSameNumbersAgain) {
 
 TEST(VerifyResult, APointWithAToleranceEndsAtTheSameChunk) {
   EnsembleSpec spec = FirstHits();
-  spec.target = {.tolerance = 0.02};
+  spec.target = {.tolerance = 0.01};
   const v1::SavedResult saved = Saved(spec);
   ASSERT_GT(saved.points(0).chunk_digests_size(), 1);
   EXPECT_THAT(Verified(saved), IsOkAndHolds(HasSubstr("everything is equal")));
