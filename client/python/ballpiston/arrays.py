@@ -115,9 +115,7 @@ def _divergence_arrays(points: Sequence[Any]) -> Arrays:
 
 def _health_arrays(points: Sequence[Any]) -> Arrays:
     def field(name: str) -> Array:
-        return _floats(
-            getattr(p.health, name) if p.HasField("health") else np.nan for p in points
-        )
+        return _floats(getattr(p.health, name) if p.HasField("health") else np.nan for p in points)
 
     arrays: Arrays = {}
     for name in ("escapes", "max_energy_error"):

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -47,22 +46,6 @@ class ChannelSecurity:
     @property
     def is_empty(self) -> bool:
         return not (self.has_tls or self.has_token)
-
-
-def from_environment(environment: Mapping[str, str]) -> ChannelSecurity:
-    """What BALLPISTON_TLS, _CA, _CERT, _KEY, _TOKEN_FILE and _TOKEN say."""
-
-    def variable(name: str) -> str:
-        return environment.get(f"BALLPISTON_{name}", "")
-
-    return ChannelSecurity(
-        tls=variable("TLS").lower() in ("1", "true", "yes", "on"),
-        ca=variable("CA"),
-        certificate=variable("CERT"),
-        key=variable("KEY"),
-        token_file=variable("TOKEN_FILE"),
-        token=variable("TOKEN"),
-    )
 
 
 def check(security: ChannelSecurity, address: str) -> None:

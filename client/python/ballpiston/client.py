@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import uuid
 from collections.abc import Iterable, Iterator
 from types import TracebackType
 from typing import Any
 
-from ballpiston import channel_security
-from ballpiston.channel_security import ChannelSecurity
 from ballpiston.closed_forms import ClosedForms
 from ballpiston.connection import Connection
 from ballpiston.errors import ResourceExhausted
@@ -20,7 +17,7 @@ from ballpiston.parameter_lists import whole_number
 from ballpiston.plan import Plan
 from ballpiston.private_server import find_private_server
 from ballpiston.result import Result
-from ballpiston.server_address import is_socket
+from ballpiston.settings import address_and_security
 from ballpiston.server_status import ServerStatus, server_status_of
 from ballpiston.specification import question_of, takes_question
 from ballpiston.spelling import from_spelling
@@ -54,9 +51,9 @@ def connect(
 ) -> Client:
     """A client of a server.
 
-    Without an address the server is that of the variable BALLPISTON_SERVER, else the private server:
-    it is started if it does not run, keeps its answers in ~/.local/state/ballpiston, and stops by
-    itself after a minute without work.
+    Without an address the server is that of the variable BALLPISTON_SERVER, else that of the command
+    line's config file, else the private server: it is started if it does not run, keeps its answers
+    in ~/.local/state/ballpiston, and stops by itself after a minute without work.
 
     Args:
         address: "host:port" or "unix:PATH".
@@ -68,8 +65,8 @@ def connect(
             the token itself in BALLPISTON_TOKEN]. A token is sent over TLS only.
         timeout: seconds for each single call; watches and traces have none.
 
-    The variable in brackets is used if the argument is not given. Over a Unix socket, the private
-    server's too, the variables of TLS and tokens are ignored.
+    If an argument is not given, the variable in brackets is used, else the config file. Over a Unix
+    socket, the private server's too, both are ignored.
 
     Raises:
         ValueError: not an address, or a file that cannot be used.
@@ -82,34 +79,13 @@ def connect(
         ...                         token_file="ada.token") as client:
         ...     client.status()
     """
-    address = address or os.environ.get("BALLPISTON_SERVER")
-    given = {"ca": ca, "tls": tls, "certificate": certificate, "key": key, "token_file": token_file}
-    given = {name: value for name, value in given.items() if value}
-    if not address:
-        return _connect_privately(given, timeout)
-    security = ChannelSecurity(**_with_environment(given, address))  # type: ignore[arg-type]
-    return Client(Connection(address, security, timeout=timeout))
-
-
-def _connect_privately(given: dict[str, Any], timeout: float) -> Client:
-    if given:
-        raise ValueError(
-            f"the private server needs no {', '.join(given)}: name a server, connect('host:port', ...)"
-        )
+    arguments = {"address": address, "ca": ca, "tls": tls, "certificate": certificate}
+    arguments |= {"key": key, "token_file": token_file}
+    named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
+    if named:
+        return Client(Connection(named, security, timeout=timeout))
     private = find_private_server()
-    return Client(
-        Connection(private.address(), ChannelSecurity(), private=private, timeout=timeout)
-    )
-
-
-def _with_environment(given: dict[str, Any], address: str) -> dict[str, Any]:
-    """What is given, else what the variables say; over a Unix socket the variables say nothing."""
-    if is_socket(address):
-        return given
-    variables = vars(channel_security.from_environment(os.environ))
-    if "token_file" in given:
-        variables = variables | {"token": ""}
-    return variables | given
+    return Client(Connection(private.address(), security, private=private, timeout=timeout))
 
 
 class Client:

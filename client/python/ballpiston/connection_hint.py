@@ -48,7 +48,9 @@ def _tls_hint(security: ChannelSecurity, message: str) -> str:
         return "the server's certificate is for another host: write the host as it stands there"
     if "wrong version number" in message or "packet length too long" in message:
         return "that server does not use TLS: leave out ca, tls, certificate and key"
-    if not security.certificate and ("Socket closed" in message or "certificate required" in message):
+    if not security.certificate and (
+        "Socket closed" in message or "certificate required" in message
+    ):
         return "if that server wants a certificate of yours: certificate=FILE, key=FILE"
     if "Socket closed" in message or "alert" in message:
         return (

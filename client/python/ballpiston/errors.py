@@ -95,14 +95,16 @@ class NoPrivateServer(Unavailable):
     """The private server cannot be started, for instance because no program is installed."""
 
 
-class JobFailed(Error):
-    """The job that was watched has failed. Its finished points stay: `error.job.result()`."""
-
-    job: Job
-
-
-class JobCancelled(Error):
-    """The job that was watched has been cancelled. Its finished points stay:
+class JobNotSucceeded(Error):
+    """The job that was watched ended without success. Its finished points stay:
     `error.job.result()`."""
 
     job: Job
+
+
+class JobFailed(JobNotSucceeded):
+    """The job that was watched has failed; the message says why."""
+
+
+class JobCancelled(JobNotSucceeded):
+    """The job that was watched has been cancelled."""

@@ -80,7 +80,10 @@ def choose_histogram(
     if len(found) > 1 and time is None:
         times = ", ".join(f"{h.time:.6g}" for h in found)
         raise KeyError(f"histogram {name!r} was counted at several times: choose time= of {times}")
-    return found[0] if time is None else min(found, key=lambda h: abs((h.time or 0.0) - time))
+    if time is None:
+        return found[0]
+    distances = [abs((h.time or 0.0) - time) for h in found]
+    return found[distances.index(min(distances))]
 
 
 def _no_such(what: str, name: str, names: list[str]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import Error, JobCancelled, JobFailed, ResultsExpired
+from ballpiston.errors import Error, JobCancelled, JobFailed, JobNotSucceeded, ResultsExpired
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.spelling import spelling
@@ -208,7 +208,9 @@ class Job:
             "error": self.error,
         }
         rows = "".join(
-            f"<tr><th>{name}</th><td>{escape(fact)}</td></tr>" for name, fact in facts.items() if fact
+            f"<tr><th>{name}</th><td>{escape(fact)}</td></tr>"
+            for name, fact in facts.items()
+            if fact
         )
         return f"<table>{rows}</table>"
 
@@ -242,7 +244,7 @@ class Job:
         state = self._last_state()
         if state == "succeeded":
             return
-        error_class = JobCancelled if state == "cancelled" else JobFailed
+        error_class: type[JobNotSucceeded] = JobCancelled if state == "cancelled" else JobFailed
         status = self.message.error
         text = f"{self.name} {state}" + (f": {status.message}" if status.message else "")
         error = error_of(error_class, text, details_of(status), "")

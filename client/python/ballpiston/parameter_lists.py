@@ -39,17 +39,15 @@ def number_list(name: str, value: Numbers) -> list[float]:
     """
     if isinstance(value, str):
         return _parsed_list(name, value)
-    items = [value] if _is_number(value) else _items(name, value)
-    return [_number(name, item) + 0.0 for item in items]  # + 0.0: -0.0 becomes 0.0
+    return [_number(name, item) + 0.0 for item in _items(name, value)]  # + 0.0: -0.0 becomes 0.0
 
 
 def shape_list(name: str, value: Shapes) -> list[str]:
     """Shapes of a gas: 8 or "8" is a chain of 8 cells, "10x5" a lattice of 10 columns and 5 rows."""
     if isinstance(value, str):
         return [shape for item in value.split(",") for shape in _parsed_shapes(name, item)]
-    items = [value] if _is_number(value) else _items(name, value)
     shapes: list[str] = []
-    for item in items:
+    for item in _items(name, value):
         shapes += _parsed_shapes(name, item) if isinstance(item, str) else [_chain(name, item)]
     return shapes
 
@@ -86,6 +84,8 @@ def _number(name: str, value: object) -> float:
 
 
 def _items(name: str, value: object) -> list[object]:
+    if _is_number(value):
+        return [value]
     if isinstance(value, np.ndarray) and value.ndim != 1:
         raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")
     if isinstance(value, bytes) or not isinstance(value, Iterable):
@@ -115,7 +115,9 @@ def _parsed_range(name: str, text: str) -> list[float]:
         return [_parsed_number(name, text)]
     is_logarithmic = parts[3:] == ["log"]
     if len(parts) < 3 or (len(parts) > 3 and not is_logarithmic):
-        raise ValueError(f"{name}: {text!r} is not a range; write from:to:count or from:to:count:log")
+        raise ValueError(
+            f"{name}: {text!r} is not a range; write from:to:count or from:to:count:log"
+        )
     first, last = _parsed_number(name, parts[0]), _parsed_number(name, parts[1])
     count = whole_number(f"{name}: the count of {text!r}", _parsed_number(name, parts[2]))
     if not 1 <= count <= _MOST:

@@ -67,7 +67,12 @@ class Plan:
 
     def _repr_html_(self) -> str:
         cells = [
-            (row["model"], f"{row['work']:.2g} s" if "work" in row else "", row["reason"], row["chosen"])
+            (
+                row["model"],
+                f"{row['work']:.2g} s" if "work" in row else "",
+                row["reason"],
+                row["chosen"],
+            )
             for row in self._rows()[:_MOST_ROWS]
         ]
         body = "".join(
@@ -81,7 +86,7 @@ class Plan:
     def _heading(self) -> str:
         models = ", ".join(dict.fromkeys(self.models))
         return (
-            f"{self.points} points by {models}: {self.work:.2g} s of processor time, "
+            f"{self.points} {'point' if self.points == 1 else 'points'} by {models}: {self.work:.2g} s of processor time, "
             f"about {self.time:.2g} s with {self.message.workers} workers"
         )
 

@@ -18,12 +18,14 @@ _PLAIN_BAR_WIDTH = 20
 class Bar(Protocol):
     """One line that is drawn again and again."""
 
-    def show(self, fraction: float, text: str) -> None: ...
+    def show(self, fraction: float, text: str) -> None:
+        ...
 
     def note(self, text: str) -> None:
         """A line of its own, above the bar."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        ...
 
 
 class Progress:
@@ -42,7 +44,9 @@ class Progress:
         self._update(job.progress, [])
 
     def on_snapshot(self, snapshot: Any) -> None:
-        self._update(snapshot.progress, list(snapshot.points) or list(snapshot.finished_points)[-1:])
+        self._update(
+            snapshot.progress, list(snapshot.points) or list(snapshot.finished_points)[-1:]
+        )
 
     def on_disconnect(self, why: Error, pause: float) -> None:
         self._show(f"{self._text}  no answer, retrying in {pause:.1f} s")
@@ -76,7 +80,7 @@ def fraction_of(progress: Any) -> float:
     """The share of the work that is done: the server's prediction, else that of the points."""
     if progress.HasField("fraction"):
         return float(progress.fraction)
-    return progress.points_done / progress.points if progress.points else 0.0
+    return float(progress.points_done / progress.points) if progress.points else 0.0
 
 
 def _first_estimate(point: Any) -> str:

@@ -62,10 +62,12 @@ class Result:
         return (Point(message) for message in self.messages)
 
     @overload
-    def __getitem__(self, key: str) -> FloatArray: ...
+    def __getitem__(self, key: str) -> FloatArray:
+        ...
 
     @overload
-    def __getitem__(self, key: int) -> Point: ...
+    def __getitem__(self, key: int) -> Point:
+        ...
 
     def __getitem__(self, key: str | int) -> FloatArray | Point:
         """The values of an estimate at all points, or one point.

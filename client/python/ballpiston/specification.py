@@ -6,7 +6,6 @@ energy of a ball-piston pair is 1/2, the Boltzmann constant is 1.
 
 from __future__ import annotations
 
-import functools
 import inspect
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
@@ -149,7 +148,6 @@ def takes_question(method: Method) -> Method:
     own = inspect.signature(method)
     keywords = [p for p in _KEYWORDS.values() if p.name not in own.parameters]
     parameters = [p for p in own.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    functools.update_wrapper(method, method)
     shown = own.replace(parameters=[*parameters[:2], *keywords, *parameters[2:]])
     setattr(method, "__signature__", shown)
     return method

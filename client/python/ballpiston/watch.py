@@ -119,7 +119,9 @@ class _Watch:
             return self._connection.error_of(error)
         finally:
             stream.cancel()
-        return Unavailable("the server ended the watch before the end of the job", code="UNAVAILABLE")
+        return Unavailable(
+            "the server ended the watch before the end of the job", code="UNAVAILABLE"
+        )
 
     def _handle(self, message: Any) -> None:
         self._pace.heard(time.monotonic())
