@@ -8,8 +8,9 @@
     result["mean_hit_time"], result.error("mean_hit_time")
     result.save("first-hit.json")
 
-`connect()` starts the user's private server if none is named. `help(ballpiston.specification)` lists
-experiments and parameters with their units and ranges, `help(ballpiston.Result)` what an answer has.
+`connect()` starts the user's private server if none is named. `help(ballpiston.specification)`
+lists experiments and parameters with their units and ranges, `help(ballpiston.Result)` what an
+answer has.
 The messages and stubs of the protocol are in ballpiston.v1.
 """
 

@@ -1,7 +1,7 @@
 """Channels to a server, set up for long watches.
 
-Calls that are safe to repeat are retried for about a second while the server is unreachable: all but
-deletions (creations and cancellations carry a request id). Watches attach again by themselves
+Calls that are safe to repeat are retried for about a second while the server is unreachable: all
+but deletions (creations and cancellations carry a request id). Watches attach again by themselves
 (watch.py).
 """
 
@@ -44,7 +44,8 @@ _ARGUMENTS: list[tuple[str, int | str]] = [
     ("grpc.primary_user_agent", f"ballpiston/{__version__} (python)"),
     ("grpc.keepalive_time_ms", 30_000),
     ("grpc.keepalive_timeout_ms", 10_000),
-    # A watch only listens: without this the pings stop after two, and a dead connection is not seen.
+    # A watch only listens: without this the pings stop after two, and nobody sees that a connection
+    # is dead.
     ("grpc.http2.max_pings_without_data", 0),
     # gRPC's own pauses between attempts to connect grow to two minutes: too long for a watch that
     # waits for a server to come back.

@@ -51,9 +51,9 @@ def connect(
 ) -> Client:
     """A client of a server.
 
-    Without an address the server is that of the variable BALLPISTON_SERVER, else that of the command
-    line's config file, else the private server: it is started if it does not run, keeps its answers
-    in ~/.local/state/ballpiston, and stops by itself after a minute without work.
+    Without an address the server is that of the variable BALLPISTON_SERVER, else that of the
+    command line's config file, else the private server: it is started if it does not run, keeps its
+    answers in ~/.local/state/ballpiston, and stops by itself after a minute without work.
 
     Args:
         address: "host:port" or "unix:PATH".
@@ -296,7 +296,8 @@ class Client:
 
         The dicts are the lines of `ballpiston trace`: "time", "event" (such as "ball_piston"),
         "free_time", and positions, velocities and energies of the bodies that take part.
-        The server computes events only as fast as they are read. The same call gives the same orbit.
+        The server computes events only as fast as they are read. The same call gives the same
+        orbit.
 
         Args:
             rho, delta: of the cell.

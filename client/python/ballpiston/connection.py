@@ -23,8 +23,8 @@ _REVIVE_SECONDS = 10.0
 
 
 class Connection:
-    """A channel to the server at `address`. `private`: the server is the user's private one, and may
-    be started again. `timeout` bounds each single call, in seconds. Safe to share between threads.
+    """A channel to the server at `address`. `private`: the server is the user's private one, and
+    may be started again. `timeout` bounds each single call, in seconds. Safe to share between threads.
     """
 
     def __init__(
@@ -79,8 +79,8 @@ class Connection:
         return type(error)(text, code=error.code)
 
     def revive(self, wait: float = _REVIVE_SECONDS) -> None:
-        """Starts a private server again if it is gone. Then waits, at most `wait` seconds, until the
-        channel is connected: it may be pausing after its last attempt, and a call would fail at
+        """Starts a private server again if it is gone. Then waits, at most `wait` seconds, until
+        the channel is connected: it may be pausing after its last attempt, and a call would fail at
         once.
 
         Raises:

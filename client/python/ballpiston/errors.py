@@ -76,7 +76,7 @@ class ResultsExpired(FailedPrecondition):
 
 
 class ResourceExhausted(Error):
-    """A limit of the server was reached. `metadata` names the limit; the message says what helps."""
+    """A limit of the server was reached. `metadata` names it; the message says what helps."""
 
 
 class DataLoss(Error):

@@ -80,7 +80,7 @@ class Job:
 
     @property
     def answered_from_store(self) -> bool:
-        """Whether this job already existed and answered the same question, when it was submitted."""
+        """Whether this job existed before it was submitted, and answered the same question."""
         return self._is_from_store
 
     @property

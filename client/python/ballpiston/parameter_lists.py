@@ -7,8 +7,8 @@
                                from:to:count:log, or a mixture
 
 A text gives the same doubles as the command line: inner numbers of from:to:count are rounded to 15
-digits, so that "0.01:0.49:49" has the doubles that are nearest to its decimal fractions. The numbers
-of np.linspace may differ from them in the last bit.
+digits, so that "0.01:0.49:49" has the doubles that are nearest to its decimal fractions. The
+numbers of np.linspace may differ from them in the last bit.
 
 Only the form is checked here. The server judges the values.
 """
@@ -43,7 +43,7 @@ def number_list(name: str, value: Numbers) -> list[float]:
 
 
 def shape_list(name: str, value: Shapes) -> list[str]:
-    """Shapes of a gas: 8 or "8" is a chain of 8 cells, "10x5" a lattice of 10 columns and 5 rows."""
+    """Shapes of a gas: 8 or "8" is a chain of 8 cells, "10x5" a lattice of 10 columns, 5 rows."""
     if isinstance(value, str):
         return [shape for item in value.split(",") for shape in _parsed_shapes(name, item)]
     shapes: list[str] = []

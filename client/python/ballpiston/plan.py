@@ -51,8 +51,8 @@ class Plan:
         return [str(point.reason) for point in self.message.points]
 
     def to_frame(self) -> pandas.DataFrame:
-        """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds of
-        processor time) and relative errors; NaN where unknown. Needs pandas."""
+        """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds
+        of processor time) and relative errors; NaN where unknown. Needs pandas."""
         import pandas
 
         return pandas.DataFrame(self._rows())
@@ -86,7 +86,7 @@ class Plan:
     def _heading(self) -> str:
         models = ", ".join(dict.fromkeys(self.models))
         return (
-            f"{self.points} {'point' if self.points == 1 else 'points'} by {models}: {self.work:.2g} s of processor time, "
+            f"points: {self.points}, by {models}: {self.work:.2g} s of processor time, "
             f"about {self.time:.2g} s with {self.message.workers} workers"
         )
 

@@ -6,8 +6,8 @@ from typing import Any
 
 
 def record_of(message: Any) -> dict[str, Any]:
-    """The fields by name. Optional fields and messages that are absent are left out; values of enums
-    are their names."""
+    """The fields by name. Optional fields and messages that are absent are left out; values of
+    enums are their names."""
     record: dict[str, Any] = {}
     for field in message.DESCRIPTOR.fields:
         value = getattr(message, field.name)

@@ -50,11 +50,11 @@ def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity
     Raises:
         ValueError: the private server with TLS or a token, or a config file that is not TOML.
     """
-    settings = _config_file() | _environment() | dict(given)
+    settings: dict[str, Any] = {**_config_file(), **_environment(), **given}
     address = str(settings.pop("address", ""))
     if not address or is_socket(address):
         settings = {name: value for name, value in given.items() if name != "address"}
-    if not address and settings:
+    if not address and any(settings.values()):
         raise ValueError(
             f"the private server needs no {', '.join(settings)}: name a server, "
             'connect("host:port", ...)'

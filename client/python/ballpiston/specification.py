@@ -75,7 +75,8 @@ def specification(
             at most one, or tolerance and budget together.
         estimate: the estimate that the tolerance refers to; only "gas-equilibrium" has a choice:
             "exchange_rate" or "conductivity".
-        seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same numbers.
+        seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
+            numbers.
         model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".
         precision: "double" or "single".
         verify: with "auto", also simulate what a closed form answers.

@@ -137,9 +137,9 @@ class _Watch:
     def _wait_to_reattach(self, why: Error) -> None:
         pause = self._pace.next_pause(time.monotonic())
         if pause is None:
+            silence = f"{self._pauses.give_up_after:g} s"
             raise Unavailable(
-                f"gave up watching after {self._pauses.give_up_after:g} s without the server: {why}",
-                code="UNAVAILABLE",
+                f"gave up watching after {silence} without the server: {why}", code="UNAVAILABLE"
             ) from why
         self._observer.on_disconnect(why, pause)
         time.sleep(pause)
