@@ -1,0 +1,213 @@
+"""A result as a dict of NumPy arrays: the layout of `.npz` files.
+
+    index, rho, delta, ...          (points,)  the parameters that are used; cells as str
+    model, samples                  (points,)
+    NAME, NAME_standard_error, NAME_exact, NAME_z_score, NAME_model_error, NAME_noise_floor,
+    NAME_limit                      (points,)  for each estimate; NaN where absent
+    kl_divergence, kl_divergence_standard_error, _noise_floor, _noise_error, _cells
+                                    (points,)  if there is a divergence
+    health_escapes, health_max_energy_error
+                                    (points,)
+    histogram_NAME_counts, _expected
+                                    (points, bins), or (points, times, bins) with times
+    histogram_NAME_lower, _upper    (points,)
+    histogram_NAME_time             (points, times), with times
+    curve_NAME_time or _position, _value, _standard_error, _limit
+                                    (points, length)
+    provenance                      ()  JSON: job, engine_version, client_version, spec
+
+NAME of an angle's histogram ends with _plus or _minus, for sigma +1 and -1. Shorter histograms and
+curves are padded with NaN. An array that would have no value at all is left out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston._version import __version__
+from ballpiston.document import json_of
+from ballpiston.point import ESTIMATE_FIELDS, PARAMETERS
+from ballpiston.spelling import spelling
+from ballpiston.v1 import spec_pb2
+
+Array = npt.NDArray[Any]
+Arrays = dict[str, Array]
+
+_SIGNS = {1: "_plus", -1: "_minus"}
+_DIVERGENCE_FIELDS = ("standard_error", "noise_floor", "noise_error", "cells")
+
+
+def arrays_of(job: Any, points: Sequence[Any]) -> Arrays:
+    """Of an EnsembleJob and its PointResults."""
+    return {
+        "index": np.array([point.index for point in points], dtype=np.int64),
+        **parameter_arrays(points),
+        "model": _texts(spelling(spec_pb2.EnsembleSpec.Model, point.model) for point in points),
+        "samples": _floats(point.samples for point in points),
+        **_estimate_arrays(points),
+        **_divergence_arrays(points),
+        **_health_arrays(points),
+        **_histogram_arrays(points),
+        **_curve_arrays(points),
+        "provenance": np.array(json.dumps(_provenance(job))),
+    }
+
+
+def parameter_arrays(points: Sequence[Any]) -> Arrays:
+    """rho, delta and every other parameter that some point has."""
+    arrays: Arrays = {}
+    for name in PARAMETERS:
+        is_always = name in ("rho", "delta")
+        if not is_always and not any(point.parameters.HasField(name) for point in points):
+            continue
+        if name == "cells":
+            arrays[name] = _texts(point.parameters.cells for point in points)
+        elif is_always:
+            arrays[name] = _floats(getattr(point.parameters, name) for point in points)
+        else:
+            arrays[name] = optional_floats([point.parameters for point in points], name)
+    return arrays
+
+
+def optional_floats(messages: Iterable[Any], field: str) -> npt.NDArray[np.float64]:
+    """A field that may be absent, of messages that may be None; NaN where absent."""
+    return _floats(
+        getattr(m, field) if m is not None and m.HasField(field) else np.nan for m in messages
+    )
+
+
+def _provenance(job: Any) -> dict[str, Any]:
+    return {
+        "job": job.name,
+        "engine_version": job.engine_version,
+        "client_version": __version__,
+        "spec": json_of(job.spec),
+    }
+
+
+def _estimate_arrays(points: Sequence[Any]) -> Arrays:
+    by_name = [{estimate.name: estimate for estimate in point.estimates} for point in points]
+    arrays: Arrays = {}
+    for name in dict.fromkeys(name for estimates in by_name for name in estimates):
+        column = [estimates.get(name) for estimates in by_name]
+        arrays[name] = _floats(np.nan if e is None else e.value for e in column)
+        for field in ESTIMATE_FIELDS:
+            _add_unless_empty(arrays, f"{name}_{field}", optional_floats(column, field))
+    return arrays
+
+
+def _divergence_arrays(points: Sequence[Any]) -> Arrays:
+    column = [p.kl_divergence if p.HasField("kl_divergence") else None for p in points]
+    if not any(kl is not None for kl in column):
+        return {}
+
+    def field(name: str) -> Array:
+        return _floats(np.nan if kl is None else getattr(kl, name) for kl in column)
+
+    fields = {f"kl_divergence_{name}": field(name) for name in _DIVERGENCE_FIELDS}
+    return {"kl_divergence": field("value"), **fields}
+
+
+def _health_arrays(points: Sequence[Any]) -> Arrays:
+    def field(name: str) -> Array:
+        return _floats(getattr(p.health, name) if p.HasField("health") else np.nan for p in points)
+
+    arrays: Arrays = {}
+    for name in ("escapes", "max_energy_error"):
+        _add_unless_empty(arrays, f"health_{name}", field(name))
+    return arrays
+
+
+def _histogram_arrays(points: Sequence[Any]) -> Arrays:
+    by_name = [_grouped(point.histograms, _histogram_name) for point in points]
+    arrays: Arrays = {}
+    for name in dict.fromkeys(name for groups in by_name for name in groups):
+        column = [groups.get(name, []) for groups in by_name]
+        arrays.update(_arrays_of_one_histogram(f"histogram_{name}", column))
+    return arrays
+
+
+def _arrays_of_one_histogram(name: str, column: list[list[Any]]) -> Arrays:
+    """`column` has the histograms of each point that have this name: one, or one for each time."""
+    has_times = any(h.HasField("time") for group in column for h in group)
+    arrays: Arrays = {}
+    for suffix, field in (("counts", "counts"), ("expected", "expected_probabilities")):
+        rows = [[list(getattr(h, field)) for h in group] for group in column]
+        values = _padded(rows, 3)
+        if not has_times and values.size:
+            values = values[:, 0, :]
+        _add_unless_empty(arrays, f"{name}_{suffix}", values)
+    for bound in ("lower", "upper"):
+        arrays[f"{name}_{bound}"] = _floats(
+            getattr(group[0], bound) if group else np.nan for group in column
+        )
+    if has_times:
+        arrays[f"{name}_time"] = _padded([[h.time for h in group] for group in column], 2)
+    return arrays
+
+
+def _histogram_name(histogram: Any) -> str:
+    return str(histogram.name) + _SIGNS.get(histogram.sigma, "")
+
+
+def _curve_arrays(points: Sequence[Any]) -> Arrays:
+    by_name = [{curve.name: curve for curve in point.curves} for point in points]
+    arrays: Arrays = {}
+    for name in dict.fromkeys(name for curves in by_name for name in curves):
+        column = [list(c[name].points) if name in c else [] for c in by_name]
+        for field in ("time", "position", "value", "standard_error", "limit"):
+            rows = [[_curve_value(point, field) for point in curve] for curve in column]
+            _add_unless_empty(arrays, f"curve_{name}_{field}", _padded(rows, 2))
+    return arrays
+
+
+def _curve_value(point: Any, field: str) -> float:
+    is_there = field == "value" or point.HasField(field)
+    return float(getattr(point, field)) if is_there else np.nan
+
+
+def _grouped(items: Iterable[Any], key: Callable[[Any], str]) -> dict[str, list[Any]]:
+    groups: dict[str, list[Any]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
+
+
+def _padded(rows: list[Any], dimensions: int) -> Array:
+    """Nested lists of numbers as one array, with NaN where a list is shorter than the longest."""
+    shape = tuple(_longest(rows, depth) for depth in range(dimensions))
+    array = np.full(shape, np.nan)
+    _fill(array, rows)
+    return array
+
+
+def _longest(rows: Any, depth: int) -> int:
+    if depth == 0:
+        return len(rows)
+    return max((_longest(row, depth - 1) for row in rows), default=0)
+
+
+def _fill(array: Array, rows: Any) -> None:
+    if array.ndim == 1:
+        array[: len(rows)] = rows
+        return
+    for part, row in zip(array, rows):
+        _fill(part, row)
+
+
+def _add_unless_empty(arrays: Arrays, name: str, values: Array) -> None:
+    if values.size and not np.all(np.isnan(values)):
+        arrays[name] = values
+
+
+def _floats(values: Iterable[float]) -> npt.NDArray[np.float64]:
+    return np.array(list(values), dtype=np.float64)
+
+
+def _texts(values: Iterable[str]) -> Array:
+    return np.array(list(values), dtype=np.str_)

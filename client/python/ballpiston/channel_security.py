@@ -1,0 +1,132 @@
+"""How a channel proves which server it is, and who calls.
+
+    nothing set        no encryption: a Unix socket, a server on this machine, or a tunnel to one
+    tls                TLS; the server's certificate is signed by an authority of this system
+    ca                 TLS; it is signed by an authority in this file
+    certificate, key   TLS; the client shows a certificate of its own
+    token              sent with every call, over TLS only
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import grpc
+
+from ballpiston.errors import PermissionDenied
+from ballpiston.server_address import is_socket
+
+_MOST_FILE_BYTES = 1 << 20
+_LONGEST_TOKEN = 256
+
+
+@dataclass(frozen=True)
+class ChannelSecurity:
+    """The files and the token. Empty: not given."""
+
+    tls: bool = False
+    ca: str = ""
+    certificate: str = ""
+    key: str = ""
+    token_file: str = ""
+    token: str = field(default="", repr=False)
+
+    @property
+    def has_tls(self) -> bool:
+        return self.tls or bool(self.ca or self.certificate or self.key)
+
+    @property
+    def has_token(self) -> bool:
+        return bool(self.token_file or self.token)
+
+    @property
+    def is_empty(self) -> bool:
+        return not (self.has_tls or self.has_token)
+
+
+def check(security: ChannelSecurity, address: str) -> None:
+    """Whether these go together, and with the address. Reads no file.
+
+    Raises:
+        ValueError: says what does not fit, for instance a token without TLS.
+    """
+    if is_socket(address) and not security.is_empty:
+        raise ValueError(
+            "a Unix socket uses no TLS and no token: the system tells the server who you are"
+        )
+    if bool(security.certificate) != bool(security.key):
+        raise ValueError("a certificate and its key have to be given together")
+    if security.has_token and not security.has_tls:
+        raise ValueError(
+            "a token is not sent over a connection that others can read: use TLS "
+            "(ca=FILE, or tls=True for the authorities of this system)"
+        )
+
+
+def credentials_of(security: ChannelSecurity) -> Any | None:
+    """gRPC's credentials, or None for a channel without encryption. Reads the files.
+
+    Raises:
+        ValueError: names a file that cannot be used.
+        PermissionDenied: names a secret file that other users can read.
+    """
+    if not security.has_tls:
+        return None
+    channel = grpc.ssl_channel_credentials(
+        root_certificates=_pem(security.ca, "authority file", "-----BEGIN CERTIFICATE-----"),
+        private_key=_pem(security.key, "key file", "PRIVATE KEY-----", is_secret=True),
+        certificate_chain=_pem(
+            security.certificate, "certificate file", "-----BEGIN CERTIFICATE-----"
+        ),
+    )
+    if not security.has_token:
+        return channel
+    caller = grpc.access_token_call_credentials(_token_of(security))
+    return grpc.composite_channel_credentials(channel, caller)
+
+
+def _pem(path: str, what: str, kind: str, is_secret: bool = False) -> bytes | None:
+    """PEM, at least by its looks: gRPC would only say that there is no connection."""
+    if not path:
+        return None
+    data = _contents(path, what, is_secret)
+    if kind.encode() not in data:
+        raise ValueError(f'the {what} {path} does not contain "{kind}": it has to be a PEM file')
+    return data
+
+
+def _token_of(security: ChannelSecurity) -> str:
+    token, what = security.token, "the token"
+    if security.token_file:
+        what = f"the token file {security.token_file}"
+        data = _contents(security.token_file, "token file", is_secret=True)
+        token = data.decode("ascii", "replace").strip()
+    if 1 <= len(token) <= _LONGEST_TOKEN and all("!" <= c <= "~" for c in token):
+        return token
+    raise ValueError(f"{what} has to be one word of 1 to {_LONGEST_TOKEN} printable characters")
+
+
+def _contents(path: str, what: str, is_secret: bool) -> bytes:
+    try:
+        with Path(path).open("rb") as file:
+            if is_secret:
+                _check_that_only_its_owner_reads(path, what, os.fstat(file.fileno()).st_mode)
+            data = file.read(_MOST_FILE_BYTES + 1)
+    except OSError as error:
+        raise ValueError(f"the {what} {path} cannot be read: {error.strerror}") from error
+    if len(data) > _MOST_FILE_BYTES:
+        raise ValueError(f"the {what} {path} is longer than {_MOST_FILE_BYTES} bytes")
+    return data
+
+
+def _check_that_only_its_owner_reads(path: str, what: str, mode: int) -> None:
+    if mode & (stat.S_IRWXG | stat.S_IRWXO) == 0:
+        return
+    raise PermissionDenied(
+        f"the {what} {path} is open to other users (mode {stat.S_IMODE(mode):04o}): "
+        "chmod 600 it, and if others may have read it ask for a new one"
+    )

@@ -1,0 +1,358 @@
+"""The client of a server: questions, jobs, closed forms, traces."""
+
+from __future__ import annotations
+
+import sys
+import uuid
+from collections.abc import Iterable, Iterator
+from types import TracebackType
+from typing import Any
+
+from ballpiston.closed_forms import ClosedForms
+from ballpiston.connection import Connection
+from ballpiston.errors import ResourceExhausted
+from ballpiston.job import Job
+from ballpiston.parameter_lists import Numbers, Shapes, number_list, real_number, shape_list
+from ballpiston.parameter_lists import whole_number
+from ballpiston.plan import Plan
+from ballpiston.private_server import find_private_server
+from ballpiston.result import Result
+from ballpiston.settings import address_and_security
+from ballpiston.server_status import ServerStatus, server_status_of
+from ballpiston.specification import question_of, takes_question
+from ballpiston.spelling import from_spelling
+from ballpiston.trace import events_of
+from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trace_pb2
+
+_COLLECTION = "ensembleJobs/"
+_PAGE = 1000
+
+# What a user can do about a limit, by the server's reason.
+_HINTS = {
+    "TOO_MANY_POINTS": "Split the grid between several jobs.",
+    "TOO_MANY_SAMPLES": "Ask for fewer at each point, or split the grid.",
+    "QUEUE_FULL": "Try again when some jobs have ended.",
+    "TOO_MANY_JOBS": "Wait until some have ended, or cancel some: client.jobs(), job.cancel()",
+    "TOO_MANY_ACTIVE_POINTS": "Wait until some jobs have ended, or cancel some: job.cancel()",
+    "TOO_MANY_STORED_BYTES": "Delete jobs that are no longer needed: client.jobs(), job.delete()",
+    "STORE_FULL": "Delete jobs that are no longer needed: client.jobs(), job.delete()",
+}
+
+
+def connect(
+    address: str | None = None,
+    *,
+    ca: str | None = None,
+    tls: bool | None = None,
+    certificate: str | None = None,
+    key: str | None = None,
+    token_file: str | None = None,
+    timeout: float = 60.0,
+) -> Client:
+    """A client of a server.
+
+    Without an address the server is that of the variable BALLPISTON_SERVER, else that of the
+    command line's config file, else the private server: it is started if it does not run, keeps its
+    answers in ~/.local/state/ballpiston, and stops by itself after a minute without work.
+
+    Args:
+        address: "host:port" or "unix:PATH".
+        ca: TLS; PEM file of the authority that signed the server's certificate [BALLPISTON_CA].
+        tls: TLS; with the authorities of this system [BALLPISTON_TLS=1].
+        certificate: TLS; PEM file of your certificate, if the server wants one [BALLPISTON_CERT].
+        key: PEM file of its private key, which other users cannot read [BALLPISTON_KEY].
+        token_file: file with your token, which other users cannot read [BALLPISTON_TOKEN_FILE, or
+            the token itself in BALLPISTON_TOKEN]. A token is sent over TLS only.
+        timeout: seconds for each single call; watches and traces have none.
+
+    If an argument is not given, the variable in brackets is used, else the config file. Over a Unix
+    socket, the private server's too, both are ignored.
+
+    Raises:
+        ValueError: not an address, or a file that cannot be used.
+        PermissionDenied: other users can read the key or the token file.
+        NoPrivateServer: the private server cannot be started.
+
+    Example:
+        >>> client = ballpiston.connect()
+        >>> with ballpiston.connect("lab.example.org:50051", ca="authority.pem",
+        ...                         token_file="ada.token") as client:
+        ...     client.status()
+    """
+    arguments = {"address": address, "ca": ca, "tls": tls, "certificate": certificate}
+    arguments |= {"key": key, "token_file": token_file}
+    named, security = address_and_security({k: v for k, v in arguments.items() if v is not None})
+    if named:
+        return Client(Connection(named, security, timeout=timeout))
+    private = find_private_server()
+    return Client(Connection(private.address(), security, private=private, timeout=timeout))
+
+
+class Client:
+    """Asks one server. `ballpiston.connect()` makes it.
+
+    It may be shared between threads. As a context manager it closes the connection at the end; jobs
+    go on.
+
+    Example:
+        >>> with ballpiston.connect() as client:
+        ...     result = client.run("first-hit", rho=0.5296, delta=[0.1, 0.05], epsilon=0.125,
+        ...                         exponent=[1, 2], samples=1e5, seed=7)
+        >>> result["mean_hit_time"]
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+
+    @property
+    def address(self) -> str:
+        """Of the server: host:port or unix:PATH."""
+        return self._connection.address
+
+    def close(self) -> None:
+        """Closes the connection. Jobs go on."""
+        self._connection.close()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<client of {self.address}>"
+
+    # Questions
+
+    @takes_question
+    def submit(
+        self,
+        experiment: Any,
+        *,
+        fresh: bool = False,
+        priority: int = 0,
+        request_id: str | None = None,
+        **question: Any,
+    ) -> Job:
+        """Asks a question and returns the job at once; it is then on the server's disk.
+
+        A question that was answered before is answered by the job of that time
+        (`job.answered_from_store`), unless it has a budget.
+
+        Args:
+            experiment: its name, such as "first-hit", with the keywords of
+                `ballpiston.specification` (rho, delta, samples, seed, ...); or a whole
+                specification, such as `job.specification`.
+            fresh: compute, even if the server has stored the answer.
+            priority: -100 to 100; of your own jobs those with a higher one run first.
+            request_id: a UUID, the idempotency key: a retry with it returns the original job.
+
+        Raises:
+            TypeError: a keyword that does not exist; the message suggests the nearest one.
+            InvalidSpecification: wrong values; `violations` lists all of them.
+            ResourceExhausted: a limit of the server.
+
+        Example:
+            >>> job = client.submit("equilibrium", rho=0.5296, delta="0.05:0.2:4",
+            ...                     collisions=1e5, model="billiard")
+            >>> job.watch()["mean_free_time_ball_piston"]
+        """
+        request = ensemble_pb2.CreateEnsembleJobRequest(
+            spec=question_of(experiment, question),
+            request_id=request_id or str(uuid.uuid4()),
+            fresh=fresh,
+            priority=priority,
+        )
+        return Job(self._connection, self._create(request))
+
+    @takes_question
+    def run(
+        self,
+        experiment: Any,
+        *,
+        fresh: bool = False,
+        priority: int = 0,
+        request_id: str | None = None,
+        progress: bool = True,
+        **question: Any,
+    ) -> Result:
+        """`submit` and `Job.watch` in one: waits for the job and returns its result.
+
+        Args:
+            progress: False shows no bar.
+            experiment, fresh, priority, request_id: as those of `submit`.
+
+        Raises:
+            JobFailed, JobCancelled: the job did not succeed; `error.job` is the job.
+        """
+        job = self.submit(
+            experiment, fresh=fresh, priority=priority, request_id=request_id, **question
+        )
+        return job.watch(progress=progress)
+
+    @takes_question
+    def plan(self, experiment: Any, **question: Any) -> Plan:
+        """What a question would cost with each model, and which model would answer. Runs nothing.
+
+        Example:
+            >>> client.plan("energy-relaxation", rho=0.5296, delta=0.0125,
+            ...             tolerance=0.01)
+        """
+        request = ensemble_pb2.PlanEnsembleJobRequest(spec=question_of(experiment, question))
+        return Plan(self._connection.call(self._connection.ensembles.PlanEnsembleJob, request))
+
+    # Jobs
+
+    def job(self, name: str) -> Job:
+        """The job of this name, ensembleJobs/ID or the ID alone.
+
+        Raises:
+            NotFound: there is no such job, or it belongs to another user.
+        """
+        full = name if name.startswith(_COLLECTION) else _COLLECTION + name
+        request = ensemble_pb2.GetEnsembleJobRequest(name=full)
+        return Job(
+            self._connection,
+            self._connection.call(self._connection.ensembles.GetEnsembleJob, request),
+        )
+
+    def jobs(
+        self,
+        *,
+        state: str | Iterable[str] = (),
+        experiment: str | Iterable[str] = (),
+        limit: int | None = 50,
+    ) -> list[Job]:
+        """Your jobs, the newest first.
+
+        Args:
+            state: one or several of "queued", "running", "cancelling", "succeeded", "failed",
+                "cancelled"; empty: any.
+            experiment: one or several; empty: any.
+            limit: at most so many; None: all.
+        """
+        request = ensemble_pb2.ListEnsembleJobsRequest(
+            states=_numbers_of(ensemble_pb2.EnsembleJob.State, "state", state),
+            experiments=_numbers_of(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment),
+        )
+        jobs: list[Job] = []
+        while limit is None or len(jobs) < limit:
+            request.page_size = _PAGE if limit is None else min(_PAGE, limit - len(jobs))
+            page = self._connection.call(self._connection.ensembles.ListEnsembleJobs, request)
+            jobs += [Job(self._connection, message) for message in page.jobs]
+            request.page_token = page.next_page_token
+            if not request.page_token:
+                break
+        return jobs
+
+    # Without a job
+
+    def analytic(
+        self,
+        rho: Numbers,
+        delta: Numbers,
+        epsilon: Numbers = (),
+        *,
+        outgoing_epsilon: Numbers = (),
+        beta: Numbers = (),
+        temperature: Numbers = (),
+    ) -> ClosedForms:
+        """Closed forms at every pair of rho and delta, at most 10,000 pairs. Samples nothing.
+
+        Args:
+            rho, delta: as in a question.
+            epsilon: energies of the piston, 0 to 1/2: adds the moments of the kernel and the
+                conditional mean free time.
+            outgoing_epsilon: energies after the collision, between 0 and 1/2: adds the kernel.
+            beta, temperature: 1e-120 to 1e120; adds canonical averages.
+
+        Example:
+            >>> client.analytic(0.5296, [0.1, 0.2])["tau_ball_piston"]
+        """
+        lists = {"rho": rho, "delta": delta, "epsilon": epsilon, "beta": beta}
+        lists |= {"outgoing_epsilon": outgoing_epsilon, "temperature": temperature}
+        request = analytic_pb2.EvaluatePairsRequest(
+            **{name: number_list(name, values) for name, values in lists.items()}
+        )
+        return ClosedForms(self._connection.call(self._connection.analytic.EvaluatePairs, request))
+
+    def trace(
+        self,
+        *,
+        rho: float,
+        delta: float,
+        events: float,
+        seed: int = 0,
+        cells: Shapes | None = None,
+        temperature: float | None = None,
+    ) -> Iterator[dict[str, Any]]:
+        """One orbit of the reference billiard: an iterator of dicts, first the start with all
+        bodies, then the events in the order of time.
+
+        The dicts are the lines of `ballpiston trace`: "time", "event" (such as "ball_piston"),
+        "free_time", and positions, velocities and energies of the bodies that take part.
+        The server computes events only as fast as they are read. The same call gives the same
+        orbit.
+
+        Args:
+            rho, delta: of the cell.
+            events: how many, 1 to 1,000,000.
+            seed: of the random start.
+            cells: shape of a periodic gas, such as 8 or "4x3", at most 1,000 cells; None: the pair.
+            temperature: of the gas; None: 1.
+
+        Example:
+            >>> events = client.trace(rho=0.5296, delta=0.2, events=1000)
+            >>> pandas.DataFrame(events).groupby("event")["free_time"].mean()
+        """
+        request = trace_pb2.TraceOrbitRequest(
+            rho=real_number("rho", rho),
+            delta=real_number("delta", delta),
+            events=whole_number("events", events),
+            seed=whole_number("seed", seed),
+        )
+        if cells is not None:
+            request.cells = _only_shape(cells)
+        if temperature is not None:
+            request.temperature = real_number("temperature", temperature)
+        return events_of(self._connection, request)
+
+    def status(self) -> ServerStatus:
+        """What the server is doing and what it permits. The first call to a server takes most of a
+        second, because the server measures its speed."""
+        request = server_pb2.GetServerStatusRequest()
+        message = self._connection.call(self._connection.server.GetServerStatus, request)
+        return server_status_of(self.address, message)
+
+    def _create(self, request: Any) -> Any:
+        """One request id for all attempts: a server that accepted the job and stopped before it
+        could answer does not get a second one."""
+        try:
+            return self._connection.call(self._connection.ensembles.CreateEnsembleJob, request)
+        except ResourceExhausted as error:
+            if hint := _HINTS.get(error.reason):
+                error.args = (f"{error}\n{hint}",)
+            raise
+        except KeyboardInterrupt:
+            print(
+                "The server may have accepted the job. With "
+                f'request_id="{request.request_id}" the same call returns this job.',
+                file=sys.stderr,
+            )
+            raise
+
+
+def _numbers_of(enum: Any, what: str, names: str | Iterable[str]) -> list[int]:
+    return [from_spelling(enum, what, n) for n in ([names] if isinstance(names, str) else names)]
+
+
+def _only_shape(cells: Shapes) -> str:
+    shapes = shape_list("cells", cells)
+    if len(shapes) != 1:
+        raise ValueError(f"a trace has one shape of cells, not {len(shapes)}")
+    return shapes[0]

@@ -1,0 +1,96 @@
+"""The paper's closed forms at pairs of rho and delta, as NumPy arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.suggestion import did_you_mean
+from ballpiston.v1 import analytic_pb2
+
+if TYPE_CHECKING:
+    import pandas
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def _numbers(message: Any) -> tuple[str, ...]:
+    fields = message.DESCRIPTOR.fields
+    return tuple(f.name for f in fields if f.message_type is None and f.label != f.LABEL_REPEATED)
+
+
+_PAIR = _numbers(analytic_pb2.PairAnalytics)
+_ENERGY = _numbers(analytic_pb2.EnergyAnalytics)
+_CANONICAL = _numbers(analytic_pb2.CanonicalAnalytics)
+
+
+class ClosedForms:
+    """Closed forms, exact to a relative error of 1e-12.
+
+    A name gives an array. The first axis is the pairs (rho, delta), rho outermost:
+
+    - (pairs,): rho, delta, lambda, eta, cell_area, volume, area_ball_piston, area_ball_wall,
+      area_piston_wall, tau_ball_piston, tau_ball_wall, tau_piston_wall (mean free times),
+      pair_delta_bound, gas_delta_bound, rare_limit_rate
+    - (pairs, energies): epsilon, phi, f, j, h, mean_free_time_conditional
+    - (pairs, energies, outgoing energies): kernel
+    - (pairs, temperatures), first those of `beta`: beta, temperature, mean_f, mean_energy_current,
+      mean_h, exchange_rate, static_conductivity, rare_limit_exchange_rate
+
+    Attributes:
+        message: the message ballpiston.v1.EvaluatePairsResponse.
+
+    Example:
+        >>> forms = client.analytic(rho=0.5296, delta=[0.1, 0.2])
+        >>> forms["tau_ball_piston"]
+        array([53.01538682, 14.68040105])
+    """
+
+    def __init__(self, message: Any) -> None:
+        self.message = message
+
+    @property
+    def names(self) -> list[str]:
+        """The names that this answer has."""
+        first = self.message.points[0] if self.message.points else analytic_pb2.PairAnalytics()
+        names = list(_PAIR)
+        if first.energies:
+            names += _ENERGY
+            names += ["kernel"] if first.energies[0].kernel else []
+        return names + (list(_CANONICAL) if first.canonical else [])
+
+    def __len__(self) -> int:
+        return len(self.message.points)
+
+    def __getitem__(self, name: str) -> FloatArray:
+        if name not in self.names:
+            there = ", ".join(self.names)
+            hint = did_you_mean(name, self.names)
+            raise KeyError(f"there is no closed form {name!r}{hint}; this answer has {there}")
+        points = self.message.points
+        if name in _PAIR:
+            return np.array([getattr(point, name) for point in points])
+        if name == "kernel":
+            return np.array([[list(e.kernel) for e in point.energies] for point in points])
+        part = "energies" if name in _ENERGY else "canonical"
+        return np.array([[getattr(x, name) for x in getattr(point, part)] for point in points])
+
+    def to_frame(self) -> pandas.DataFrame:
+        """A pandas DataFrame: one row for each pair and, if there are energies or temperatures, one
+        for each of these. The kernel is left out. Needs pandas."""
+        import pandas
+
+        rows = []
+        for point in self.message.points:
+            pair = {name: getattr(point, name) for name in _PAIR}
+            parts = [(_ENERGY, e) for e in point.energies] + [
+                (_CANONICAL, c) for c in point.canonical
+            ]
+            for fields, part in parts or [((), None)]:
+                rows.append(pair | {name: getattr(part, name) for name in fields})
+        return pandas.DataFrame(rows)
+
+    def __repr__(self) -> str:
+        return f"<closed forms at {len(self)} pairs: {', '.join(self.names)}>"

@@ -1,0 +1,100 @@
+"""The connection of a Client: its channel, the stubs, and how a call is made.
+
+A private server may stop, idle, just as a call arrives, or be killed: then it is started again and
+the call is repeated once. So every call that goes through `call` has to be safe to repeat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import grpc
+
+from ballpiston.channel import open_channel
+from ballpiston.channel_security import ChannelSecurity
+from ballpiston.connection_hint import connection_hint
+from ballpiston.error_details import from_rpc_error
+from ballpiston.errors import Error, Unavailable
+from ballpiston.private_server import PrivateServer
+from ballpiston.v1 import analytic_pb2_grpc, ensemble_pb2_grpc, server_pb2_grpc, trace_pb2_grpc
+
+_REVIVE_SECONDS = 10.0
+
+
+class Connection:
+    """A channel to the server at `address`. `private`: the server is the user's private one, and
+    may be started again. `timeout` bounds each single call, in seconds. Safe to share between threads.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        security: ChannelSecurity,
+        *,
+        private: PrivateServer | None = None,
+        timeout: float = 60.0,
+    ) -> None:
+        self.address = address
+        self.security = security
+        self.private = private
+        self.timeout = timeout
+        self.channel = open_channel(address, security)
+        self.ensembles = ensemble_pb2_grpc.EnsembleServiceStub(self.channel)
+        self.analytic = analytic_pb2_grpc.AnalyticServiceStub(self.channel)
+        self.traces = trace_pb2_grpc.TraceServiceStub(self.channel)
+        self.server = server_pb2_grpc.ServerServiceStub(self.channel)
+
+    def close(self) -> None:
+        self.channel.close()
+
+    def call(self, method: Callable[..., Any], request: Any) -> Any:
+        """The answer to a call that may be repeated."""
+        try:
+            return self.call_once(method, request)
+        except Unavailable as error:
+            if self.private is None or error.code != "UNAVAILABLE":
+                raise
+        self.revive()
+        return self.call_once(method, request)
+
+    def call_once(
+        self, method: Callable[..., Any], request: Any, timeout: float | None = None
+    ) -> Any:
+        """The answer to a single attempt, apart from those of the channel's retry policy."""
+        try:
+            return method(request, timeout=self.timeout if timeout is None else timeout)
+        except grpc.RpcError as error:
+            raise self.error_of(error) from None
+
+    def error_of(self, rpc_error: grpc.RpcError) -> Error:
+        """The exception for a failed call. An error without a reason is one of the connection: its
+        text names the server."""
+        error = from_rpc_error(rpc_error)
+        if not isinstance(error, Unavailable) or error.reason:
+            return error
+        message = str(error)
+        hint = connection_hint(self.address, self.security, message)
+        text = f"no answer from the server at {self.address}: {message}{hint}"
+        return type(error)(text, code=error.code)
+
+    def revive(self, wait: float = _REVIVE_SECONDS) -> None:
+        """Starts a private server again if it is gone. Then waits, at most `wait` seconds, until
+        the channel is connected: it may be pausing after its last attempt, and a call would fail at
+        once.
+
+        Raises:
+            NoPrivateServer: the private server cannot be started.
+        """
+        if self.private is not None:
+            self.private.address()
+        self.wait_for_connection(wait)
+
+    def wait_for_connection(self, seconds: float) -> None:
+        ready = grpc.channel_ready_future(self.channel)
+        try:
+            ready.result(timeout=seconds)
+        except grpc.FutureTimeoutError:
+            pass
+        finally:
+            ready.cancel()

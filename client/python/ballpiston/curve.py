@@ -1,0 +1,79 @@
+"""Curves of a point: functions of time, or of the position in a gas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A measured function.
+
+    Attributes:
+        name: "survival", the probability that ball and piston have not met up to this time;
+            "energy_autocorrelation"; "mean_energy"; "temperature_profile" of a gas.
+        time: in cells over unit speed; None of a function of the position.
+        position: in cells from the left reservoir; None of a function of time.
+        value: of the function.
+        standard_error: one sigma; NaN where there is none.
+        limit: what the limit delta -> 0 gives here; NaN where it gives nothing.
+
+    Example:
+        >>> curve = result.curve("survival")
+        >>> plt.errorbar(curve.x, curve.value, curve.standard_error)
+    """
+
+    name: str
+    time: FloatArray | None
+    position: FloatArray | None
+    value: FloatArray
+    standard_error: FloatArray
+    limit: FloatArray
+
+    @property
+    def x(self) -> FloatArray:
+        """The times or the positions."""
+        if self.time is not None:
+            return self.time
+        return np.empty(0) if self.position is None else self.position
+
+
+def curve_of(message: Any) -> Curve:
+    """Of a message ballpiston.v1.Curve."""
+    points = list(message.points)
+    is_of_position = any(point.HasField("position") for point in points)
+    return Curve(
+        name=message.name,
+        time=None if is_of_position else _optional(points, "time"),
+        position=_optional(points, "position") if is_of_position else None,
+        value=np.array([point.value for point in points], dtype=np.float64),
+        standard_error=_optional(points, "standard_error"),
+        limit=_optional(points, "limit"),
+    )
+
+
+def choose_curve(messages: Iterable[Any], name: str) -> Curve:
+    """The curve of this name.
+
+    Raises:
+        KeyError: there is none.
+    """
+    names = []
+    for message in messages:
+        if message.name == name:
+            return curve_of(message)
+        names.append(message.name)
+    there = ", ".join(names) or "none"
+    raise KeyError(f"there is no curve {name!r}; this point has {there}")
+
+
+def _optional(points: list[Any], field: str) -> FloatArray:
+    values = [getattr(p, field) if p.HasField(field) else np.nan for p in points]
+    return np.array(values, dtype=np.float64)

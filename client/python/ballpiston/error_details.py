@@ -1,0 +1,134 @@
+"""Turns a failed call, or the error of a failed job, into an exception of errors.py.
+
+The server attaches a google.rpc.Status with an ErrorInfo (the reason, as one word) and, if the
+request is wrong, a BadRequest with every violation. The text is that of the program `ballpiston`:
+
+    MESSAGE (REASON)                        without violations
+    FIELD: DESCRIPTION (REASON)             one violation
+    not valid, N violations (REASON):       several, one line each
+      FIELD: DESCRIPTION
+      and M more                            if the server left some out
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from ballpiston import errors
+from ballpiston._google_rpc import error_details_pb2, status_pb2
+
+_DETAILS_KEY = "grpc-status-details-bin"
+
+_CLASSES: dict[str, type[errors.Error]] = {
+    "INVALID_ARGUMENT": errors.InvalidArgument,
+    "OUT_OF_RANGE": errors.InvalidArgument,
+    "NOT_FOUND": errors.NotFound,
+    "UNAUTHENTICATED": errors.Unauthenticated,
+    "PERMISSION_DENIED": errors.PermissionDenied,
+    "FAILED_PRECONDITION": errors.FailedPrecondition,
+    "RESOURCE_EXHAUSTED": errors.ResourceExhausted,
+    "DATA_LOSS": errors.DataLoss,
+    "UNAVAILABLE": errors.Unavailable,
+    "DEADLINE_EXCEEDED": errors.DeadlineExceeded,
+}
+
+AnyError = TypeVar("AnyError", bound=errors.Error)
+
+
+@dataclass(frozen=True)
+class Details:
+    """What the messages inside a google.rpc.Status say."""
+
+    reason: str = ""
+    metadata: dict[str, str] = field(default_factory=dict)
+    violations: list[tuple[str, str]] = field(default_factory=list)
+
+    def text(self, message: str) -> str:
+        """`message` with reason and violations, as the head of this file shows."""
+        reason = f" ({self.reason})" if self.reason else ""
+        left_out = self._violations_left_out()
+        count = len(self.violations) + left_out
+        if count == 0:
+            return message + reason
+        lines = [f"{where}: {what}" for where, what in self.violations]
+        if count == 1 and left_out == 0:
+            return lines[0] + reason
+        more = f"\n  and {left_out} more" if left_out > 0 else ""
+        return f"not valid, {count} violations{reason}:" + "".join(f"\n  {x}" for x in lines) + more
+
+    def _violations_left_out(self) -> int:
+        text = self.metadata.get("violations_left_out", "")
+        return int(text) if text.isdecimal() else 0
+
+
+def details_of(status: Any) -> Details:
+    """Of a google.rpc.Status. Messages of other types are ignored."""
+    reason, metadata, violations = "", {}, []
+    for item in status.details:
+        info, bad = error_details_pb2.ErrorInfo(), error_details_pb2.BadRequest()
+        if item.Unpack(info) and not reason:
+            reason, metadata = info.reason, dict(info.metadata)
+        if item.Unpack(bad):
+            violations += [(v.field, v.description) for v in bad.field_violations]
+    return Details(reason, metadata, violations)
+
+
+def error_of(error_class: type[AnyError], message: str, details: Details, code: str) -> AnyError:
+    """An exception of that class with everything that the details say."""
+    return error_class(
+        details.text(message),
+        reason=details.reason,
+        metadata=details.metadata,
+        violations=details.violations,
+        code=code,
+    )
+
+
+def from_rpc_error(rpc_error: Any) -> errors.Error:
+    """The exception for a grpc.RpcError."""
+    code: str = rpc_error.code().name
+    details = _details_of_call(rpc_error)
+    message = rpc_error.details() or ""
+    if details == Details():
+        message = _plain_text(code, message)
+    return error_of(_class_of(code, details), message, details, code)
+
+
+def _class_of(code: str, details: Details) -> type[errors.Error]:
+    if code == "INVALID_ARGUMENT" and details.violations:
+        return errors.InvalidSpecification
+    if details.reason == "RESULTS_EXPIRED":
+        return errors.ResultsExpired
+    return _CLASSES.get(code, errors.Error)
+
+
+def _details_of_call(rpc_error: Any) -> Details:
+    for key, value in rpc_error.trailing_metadata() or ():
+        if key == _DETAILS_KEY:
+            return _parsed(value)
+    return Details()
+
+
+def _parsed(data: bytes) -> Details:
+    status = status_pb2.Status()
+    try:
+        status.ParseFromString(data)
+    except Exception:  # the class of the error depends on the implementation of protobuf
+        return Details()
+    return details_of(status)
+
+
+def _plain_text(code: str, message: str) -> str:
+    """gRPC says nothing at all about a method that the server lacks, and little about a message
+    that is too large."""
+    if code == "UNIMPLEMENTED" and not message:
+        return "the server is of an earlier version, which does not offer this"
+    sizes = re.search(r"message larger than max \((\d+) vs\. (\d+)\)", message)
+    if code == "RESOURCE_EXHAUSTED" and sizes:
+        return (
+            f"the request or its answer is too large to be sent: {sizes[1]} bytes; "
+            f"at most {sizes[2]} are permitted"
+        )
+    return message or code

@@ -1,0 +1,109 @@
+"""Histograms of a point, and how one of them is chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Histogram:
+    """Equal bins. What lies beyond them was counted in the first or last bin.
+
+    Attributes:
+        name: the counted quantity: "alpha", an angle in radians, in first-hit; "piston_energy" in
+            energy-relaxation; "ball_speed" and "piston_speed" in a gas.
+        sigma: of an angle the sign of the piston's velocity, +1 or -1; else 0.
+        time: at which it was counted, in cells over unit speed; None if it has no time.
+        edges: of the bins, one more than bins.
+        counts: in the bins; empty if the model has no samples.
+        density: of the counts. Over the histograms of one name and time it integrates to 1: for an
+            angle over both signs.
+        expected: exact probabilities of the bins, of "piston_energy" those of the limit
+            delta -> 0; empty if there are none.
+        expected_density: `expected` over the width of the bins, to be drawn beside `density`.
+
+    Example:
+        >>> alpha = result.histogram("alpha", sigma=+1)
+        >>> plt.stairs(alpha.density, alpha.edges)
+        >>> plt.plot(alpha.centers, alpha.expected_density)
+    """
+
+    name: str
+    sigma: int
+    time: float | None
+    edges: FloatArray
+    counts: FloatArray
+    density: FloatArray
+    expected: FloatArray
+    expected_density: FloatArray
+
+    @property
+    def centers(self) -> FloatArray:
+        """The middles of the bins."""
+        middles: FloatArray = (self.edges[:-1] + self.edges[1:]) / 2
+        return middles
+
+
+def histograms_of(messages: Iterable[Any]) -> list[Histogram]:
+    """Those of one point: the densities need the counts of both signs of an angle."""
+    messages = list(messages)
+    totals: dict[tuple[str, float], float] = {}
+    for message in messages:
+        key = (message.name, message.time)
+        totals[key] = totals.get(key, 0.0) + float(sum(message.counts))
+    return [_histogram(message, totals[message.name, message.time]) for message in messages]
+
+
+def choose_histogram(
+    histograms: list[Histogram], name: str, sigma: int | None, time: float | None
+) -> Histogram:
+    """The only one of this name and sign; of several times the nearest one.
+
+    Raises:
+        KeyError: there is none, or several signs or times to choose from.
+    """
+    named = [h for h in histograms if h.name == name]
+    if not named:
+        raise KeyError(_no_such("histogram", name, [h.name for h in histograms]))
+    found = [h for h in named if sigma is None or h.sigma == np.sign(sigma)]
+    if not found:
+        raise KeyError(f"histogram {name!r} has no sigma={sigma:+d}")
+    if sigma is None and len({h.sigma for h in found}) > 1:
+        raise KeyError(f"histogram {name!r} has two signs: choose sigma=+1 or sigma=-1")
+    if len(found) > 1 and time is None:
+        times = ", ".join(f"{h.time:.6g}" for h in found)
+        raise KeyError(f"histogram {name!r} was counted at several times: choose time= of {times}")
+    if time is None:
+        return found[0]
+    distances = [abs((h.time or 0.0) - time) for h in found]
+    return found[distances.index(min(distances))]
+
+
+def _no_such(what: str, name: str, names: list[str]) -> str:
+    there = ", ".join(dict.fromkeys(names))
+    return f"there is no {what} {name!r}; this point has {there or 'none'}"
+
+
+def _histogram(message: Any, total: float) -> Histogram:
+    counts = np.array(message.counts, dtype=np.float64)
+    expected = np.array(message.expected_probabilities, dtype=np.float64)
+    bins = max(len(counts), len(expected))
+    width = (message.upper - message.lower) / bins if bins else np.nan
+    density = counts / total / width if total > 0 else np.full(len(counts), np.nan)
+    return Histogram(
+        name=message.name,
+        sigma=message.sigma,
+        time=message.time if message.HasField("time") else None,
+        edges=message.lower + np.arange(bins + 1) * width if bins else np.empty(0),
+        counts=counts,
+        density=density,
+        expected=expected,
+        expected_density=expected / width,
+    )

@@ -1,0 +1,270 @@
+"""A job on a server: one question, its progress and its results."""
+
+from __future__ import annotations
+
+import sys
+import uuid
+from datetime import datetime, timezone
+from html import escape
+from typing import Any
+
+from ballpiston.connection import Connection
+from ballpiston.error_details import details_of, error_of
+from ballpiston.errors import Error, JobCancelled, JobFailed, JobNotSucceeded, ResultsExpired
+from ballpiston.progress import Progress, fraction_of, progress_on_screen
+from ballpiston.result import Result
+from ballpiston.spelling import spelling
+from ballpiston.v1 import ensemble_pb2, spec_pb2
+from ballpiston.watch import has_ended, watch_job
+
+_PAGE = 1000
+_GLANCE_SECONDS = 2.0  # for a notebook that shows a job
+
+
+class Job:
+    """A job. `client.submit` and `client.job` make these objects; they hold no result.
+
+    Properties show the job as it was when the server was last asked, except `state`, which asks the
+    server until the job has ended. `refresh()` updates all of them.
+
+    Attributes:
+        message: the message ballpiston.v1.EnsembleJob, as last seen.
+    """
+
+    def __init__(self, connection: Connection, message: Any) -> None:
+        self._connection = connection
+        self.message = message
+        # The server says so in the answer to the submission only.
+        self._is_from_store = bool(message.answered_from_store)
+
+    # What it is
+
+    @property
+    def name(self) -> str:
+        """ensembleJobs/ID: with it `client.job(name)` finds the job again, also from another
+        process."""
+        return str(self.message.name)
+
+    @property
+    def specification(self) -> Any:
+        """The question, as the message ballpiston.v1.EnsembleSpec; client.submit accepts it."""
+        return self.message.spec
+
+    @property
+    def experiment(self) -> str:
+        """Such as "first-hit"."""
+        return spelling(spec_pb2.EnsembleSpec.Experiment, self.message.spec.experiment)
+
+    @property
+    def state(self) -> str:
+        """Now: "queued", "running", "cancelling", "succeeded", "failed" or "cancelled"."""
+        if not has_ended(self.message.state):
+            self.refresh()
+        return self._last_state()
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it has succeeded, failed or been cancelled by now."""
+        return self.state in ("succeeded", "failed", "cancelled")
+
+    @property
+    def progress(self) -> float:
+        """The share of the work that was done when the server was last asked, 0 to 1."""
+        return fraction_of(self.message.progress)
+
+    @property
+    def error(self) -> str:
+        """Why it failed; empty if it did not."""
+        error = self.message.error
+        return details_of(error).text(error.message) if self.message.HasField("error") else ""
+
+    @property
+    def answered_from_store(self) -> bool:
+        """Whether this job existed before it was submitted, and answered the same question."""
+        return self._is_from_store
+
+    @property
+    def pinned(self) -> bool:
+        """Whether its results do not expire."""
+        return bool(self.message.pinned)
+
+    @property
+    def created(self) -> datetime | None:
+        """When the server accepted it, in UTC."""
+        return self._time("create_time")
+
+    @property
+    def started(self) -> datetime | None:
+        """When a worker began it; None before that."""
+        return self._time("start_time")
+
+    @property
+    def ended(self) -> datetime | None:
+        """When it ended; None before that."""
+        return self._time("end_time")
+
+    # What can be done
+
+    def refresh(self) -> Job:
+        """Asks the server for the job as it is now."""
+        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
+        self.message = self._call("GetEnsembleJob", request)
+        return self
+
+    def watch(self, progress: bool = True) -> Result:
+        """Waits until the job has ended and returns its result.
+
+        A bar shows the progress in a terminal (on standard error) and in a notebook. The watch goes
+        on through restarts of the server. Ctrl-C ends the watch and leaves the job running; a
+        message says how to watch it again.
+
+        Args:
+            progress: False shows nothing.
+
+        Raises:
+            JobFailed: the job failed; the exception says why.
+            JobCancelled: somebody cancelled it.
+            Unavailable: the server did not answer for two minutes. The job goes on.
+        """
+        screen = progress_on_screen(progress)
+        if self.answered_from_store and screen.is_visible:
+            screen.note(_from_store_text(self))
+        try:
+            self._follow(screen)
+        except KeyboardInterrupt:
+            print(_farewell(self.name), file=sys.stderr)
+            raise
+        self._raise_unless_succeeded()
+        return self.result()
+
+    def result(self) -> Result:
+        """The points that are finished now. It does not wait.
+
+        Raises:
+            ResultsExpired: the server keeps only the specification:
+                `client.run(job.specification)` computes the same results again.
+        """
+        self.refresh()
+        self.message.answered_from_store = self._is_from_store
+        request = ensemble_pb2.ListResultsRequest(parent=self.name, page_size=_PAGE)
+        points: list[Any] = []
+        while True:
+            page = self._call("ListResults", request)
+            points.extend(page.points)
+            request.page_token = page.next_page_token
+            if not request.page_token:
+                job = ensemble_pb2.EnsembleJob()
+                job.CopyFrom(self.message)
+                return Result(job, points)
+
+    def cancel(self) -> Job:
+        """Stops the job. Its finished points stay.
+
+        Raises:
+            FailedPrecondition: it has already ended (reason JOB_ALREADY_ENDED).
+        """
+        request = ensemble_pb2.CancelEnsembleJobRequest(
+            name=self.name, request_id=str(uuid.uuid4())
+        )
+        self.message = self._call("CancelEnsembleJob", request)
+        return self
+
+    def pin(self, pinned: bool = True) -> Job:
+        """Keeps its results from expiring; with False they may expire again."""
+        request = ensemble_pb2.PinEnsembleJobRequest(name=self.name, pinned=pinned)
+        self.message = self._call("PinEnsembleJob", request)
+        return self
+
+    def delete(self) -> None:
+        """Deletes the job with its results. It is not retried: if the answer was lost
+        (Unavailable), the job may have been deleted.
+
+        Raises:
+            FailedPrecondition: it has not ended (reason JOB_STILL_ACTIVE).
+        """
+        if self._connection.private is not None:
+            self._connection.revive()
+        request = ensemble_pb2.DeleteEnsembleJobRequest(name=self.name)
+        self._connection.call_once(self._connection.ensembles.DeleteEnsembleJob, request)
+
+    # How it looks
+
+    def __repr__(self) -> str:
+        progress = self.message.progress
+        return (
+            f"<job {self.name}: {self.experiment}, {self._last_state()}, "
+            f"{progress.points_done} of {progress.points} points>"
+        )
+
+    def _repr_html_(self) -> str:
+        self._glance()
+        progress = self.message.progress
+        facts = {
+            "job": self.name,
+            "experiment": self.experiment,
+            "state": self._last_state(),
+            "points": f"{progress.points_done} of {progress.points}",
+            "progress": f"{100 * self.progress:.0f} %",
+            "error": self.error,
+        }
+        rows = "".join(
+            f"<tr><th>{name}</th><td>{escape(fact)}</td></tr>"
+            for name, fact in facts.items()
+            if fact
+        )
+        return f"<table>{rows}</table>"
+
+    def _glance(self) -> None:
+        """Updates the job if the server answers at once; a private server is not started for it."""
+        request = ensemble_pb2.GetEnsembleJobRequest(name=self.name)
+        try:
+            self.message = self._connection.call_once(
+                self._connection.ensembles.GetEnsembleJob, request, _GLANCE_SECONDS
+            )
+        except Error:
+            pass
+
+    def _last_state(self) -> str:
+        return spelling(ensemble_pb2.EnsembleJob.State, self.message.state)
+
+    def _call(self, method: str, request: Any) -> Any:
+        try:
+            return self._connection.call(getattr(self._connection.ensembles, method), request)
+        except ResultsExpired as error:
+            error.args = (f"{error}\nTo compute them again: client.run(job.specification)",)
+            raise
+
+    def _follow(self, screen: Progress) -> None:
+        try:
+            self.message = watch_job(self._connection, self.name, screen)
+        finally:
+            screen.close()
+
+    def _raise_unless_succeeded(self) -> None:
+        state = self._last_state()
+        if state == "succeeded":
+            return
+        error_class: type[JobNotSucceeded] = JobCancelled if state == "cancelled" else JobFailed
+        status = self.message.error
+        text = f"{self.name} {state}" + (f": {status.message}" if status.message else "")
+        error = error_of(error_class, text, details_of(status), "")
+        error.job = self
+        raise error
+
+    def _time(self, field: str) -> datetime | None:
+        if not self.message.HasField(field):
+            return None
+        time: datetime = getattr(self.message, field).ToDatetime()
+        return time.replace(tzinfo=timezone.utc)
+
+
+def _farewell(name: str) -> str:
+    return (
+        f'The job goes on.\n  watch it again:  client.job("{name}").watch()\n'
+        f'  cancel it:       client.job("{name}").cancel()'
+    )
+
+
+def _from_store_text(job: Job) -> str:
+    when = f", computed {job.ended:%Y-%m-%d %H:%M} UTC" if job.ended else ""
+    return f"answered from the store: {job.name}{when} (fresh=True computes anew)"

@@ -1,0 +1,161 @@
+"""Lists of parameters, as callers write them in Python or as on the command line.
+
+    0.5296                     a number
+    [0.1, 0.05], range(1, 5)   any sequence or iterator of numbers
+    np.linspace(0.1, 0.4, 4)   a one-dimensional array
+    "0.1:0.4:4"                the command line's text: a,b,c or from:to:count or
+                               from:to:count:log, or a mixture
+
+A text gives the same doubles as the command line: inner numbers of from:to:count are rounded to 15
+digits, so that "0.01:0.49:49" has the doubles that are nearest to its decimal fractions. The
+numbers of np.linspace may differ from them in the last bit.
+
+Only the form is checked here. The server judges the values.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Iterable
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+Numbers = Union[float, str, Iterable[float], "npt.NDArray[np.floating]"]
+Shapes = Union[int, str, Iterable[Union[int, str]]]
+
+_MOST = 100_000  # values of a list
+_NUMBER_CHARACTERS = frozenset("0123456789+-.eE")
+
+
+def number_list(name: str, value: Numbers) -> list[float]:
+    """The numbers of one parameter, which `name` names in errors.
+
+    Raises:
+        TypeError: a value is not a number.
+        ValueError: a text does not have the form of a list.
+    """
+    if isinstance(value, str):
+        return _parsed_list(name, value)
+    return [_number(name, item) + 0.0 for item in _items(name, value)]  # + 0.0: -0.0 becomes 0.0
+
+
+def shape_list(name: str, value: Shapes) -> list[str]:
+    """Shapes of a gas: 8 or "8" is a chain of 8 cells, "10x5" a lattice of 10 columns, 5 rows."""
+    if isinstance(value, str):
+        return [shape for item in value.split(",") for shape in _parsed_shapes(name, item)]
+    shapes: list[str] = []
+    for item in _items(name, value):
+        shapes += _parsed_shapes(name, item) if isinstance(item, str) else [_chain(name, item)]
+    return shapes
+
+
+def whole_number(name: str, value: object) -> int:
+    """10000, 1e4 or np.int64(10000), as an int.
+
+    Raises:
+        TypeError: not a number.
+        ValueError: a number that is not whole.
+    """
+    if isinstance(value, numbers.Integral) and not isinstance(value, bool):
+        return int(value)
+    number = _number(name, value)
+    if not number.is_integer():
+        raise ValueError(f"{name} has to be a whole number, not {value!r}")
+    return int(number)
+
+
+def real_number(name: str, value: object) -> float:
+    """A float, or the TypeError that names the argument."""
+    return _number(name, value)
+
+
+def _is_number(value: object) -> bool:
+    is_scalar_array = isinstance(value, np.ndarray) and value.ndim == 0
+    return isinstance(value, numbers.Real) or is_scalar_array
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, (bool, np.bool_)) or not _is_number(value):
+        raise TypeError(f"{name} has to be a number, not {value!r}")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _items(name: str, value: object) -> list[object]:
+    if _is_number(value):
+        return [value]
+    if isinstance(value, np.ndarray) and value.ndim != 1:
+        raise ValueError(f"{name} has {value.ndim} dimensions; a list of parameters has one")
+    if isinstance(value, bytes) or not isinstance(value, Iterable):
+        raise TypeError(f"{name} has to be a number or a list of numbers, not {value!r}")
+    return list(value)
+
+
+def _parsed_list(name: str, text: str) -> list[float]:
+    values = [number for item in text.split(",") for number in _parsed_range(name, item)]
+    if len(values) > _MOST:
+        raise ValueError(f"{name}: {text!r} has more than {_MOST} numbers")
+    return values
+
+
+def _parsed_number(name: str, text: str) -> float:
+    if text and set(text) <= _NUMBER_CHARACTERS:
+        try:
+            return float(text) + 0.0
+        except ValueError:
+            pass
+    raise ValueError(f"{name}: {text!r} is not a decimal number such as 0.1 or 1e-3")
+
+
+def _parsed_range(name: str, text: str) -> list[float]:
+    parts = text.split(":")
+    if len(parts) == 1:
+        return [_parsed_number(name, text)]
+    is_logarithmic = parts[3:] == ["log"]
+    if len(parts) < 3 or (len(parts) > 3 and not is_logarithmic):
+        raise ValueError(
+            f"{name}: {text!r} is not a range; write from:to:count or from:to:count:log"
+        )
+    first, last = _parsed_number(name, parts[0]), _parsed_number(name, parts[1])
+    count = whole_number(f"{name}: the count of {text!r}", _parsed_number(name, parts[2]))
+    if not 1 <= count <= _MOST:
+        raise ValueError(f"{name}: the count of {text!r} has to be from 1 to {_MOST}")
+    if is_logarithmic and min(first, last) <= 0:
+        raise ValueError(f"{name}: {text!r} is logarithmic, so both ends have to be above 0")
+    return _range(first, last, count, is_logarithmic)
+
+
+def _range(first: float, last: float, count: int, is_logarithmic: bool) -> list[float]:
+    steps = count - 1
+    if steps == 0:
+        return [first]
+    if is_logarithmic:
+        inner = [first * math.pow(last / first, i / steps) for i in range(1, steps)]
+    else:
+        inner = [float(f"{((steps - i) * first + i * last) / steps:.15g}") for i in range(1, steps)]
+    return [first, *inner, last]
+
+
+def _parsed_shapes(name: str, text: str) -> list[str]:
+    if ":" in text:
+        return [_chain(name, number) for number in _parsed_range(name, text)]
+    try:
+        return ["x".join(_count(part) for part in text.split("x", 1))]
+    except ValueError:
+        raise ValueError(
+            f"{name}: {text!r} is not a shape: write N, a chain of N cells, or NxM, a lattice"
+        ) from None
+
+
+def _count(text: str) -> str:
+    return str(whole_number("count", _parsed_number("count", text)))
+
+
+def _chain(name: str, value: object) -> str:
+    number = _number(name, value)
+    whole = round(number)
+    if abs(number - whole) > 1e-12 * abs(number):  # those of a logarithmic range are rounded
+        raise ValueError(f"{name} has to have whole numbers, not {value!r}")
+    return str(whole)

@@ -1,0 +1,111 @@
+"""What a question would cost with each model, and which model would answer."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from ballpiston.spelling import spelling
+from ballpiston.v1 import spec_pb2
+
+if TYPE_CHECKING:
+    import pandas
+
+_MOST_ROWS = 25
+
+
+class Plan:
+    """The ladder of models for a question. Nothing was run.
+
+    Attributes:
+        message: the message ballpiston.v1.PlanEnsembleJobResponse. Of a grid with more than 1,000
+            points it has as many, evenly spread.
+    """
+
+    def __init__(self, message: Any) -> None:
+        self.message = message
+
+    @property
+    def points(self) -> int:
+        """Of the grid."""
+        return int(self.message.point_count)
+
+    @property
+    def work(self) -> float:
+        """Seconds of processor time for the whole job."""
+        return float(self.message.work)
+
+    @property
+    def time(self) -> float:
+        """Seconds by the clock, if the server did nothing else."""
+        return float(self.message.time)
+
+    @property
+    def models(self) -> list[str]:
+        """The model that would answer, for each planned point."""
+        return [_model(point.model) for point in self.message.points]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why that model, for each planned point."""
+        return [str(point.reason) for point in self.message.points]
+
+    def to_frame(self) -> pandas.DataFrame:
+        """A pandas DataFrame, one row for each planned point and model, with samples, work (seconds
+        of processor time) and relative errors; NaN where unknown. Needs pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._rows())
+
+    def __repr__(self) -> str:
+        lines = [self._heading()]
+        for row in self._rows()[:_MOST_ROWS]:
+            mark = ">" if row["chosen"] else " "
+            work = f"{row['work']:.2g} s" if "work" in row else ""
+            lines.append(f" {mark} {row['model']:<18} {work:>9}  {row['reason']}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        cells = [
+            (
+                row["model"],
+                f"{row['work']:.2g} s" if "work" in row else "",
+                row["reason"],
+                row["chosen"],
+            )
+            for row in self._rows()[:_MOST_ROWS]
+        ]
+        body = "".join(
+            f"<tr><td>{'&gt;' if chosen else ''}</td><td>{escape(model)}</td><td>{work}</td>"
+            f"<td>{escape(reason)}</td></tr>"
+            for model, work, reason, chosen in cells
+        )
+        head = "<tr><th></th><th>model</th><th>work</th><th>remark</th></tr>"
+        return f"<p>{escape(self._heading())}</p><table>{head}{body}</table>"
+
+    def _heading(self) -> str:
+        models = ", ".join(dict.fromkeys(self.models))
+        return (
+            f"points: {self.points}, by {models}: {self.work:.2g} s of processor time, "
+            f"about {self.time:.2g} s with {self.message.workers} workers"
+        )
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [_row(point, model) for point in self.message.points for model in point.models]
+
+
+def _row(point: Any, model: Any) -> dict[str, Any]:
+    parameters = point.parameters
+    row: dict[str, Any] = {field.name: value for field, value in parameters.ListFields()}
+    row["model"] = _model(model.model)
+    row["chosen"] = model.model == point.model
+    row["answers"] = model.answers
+    for field in ("samples", "work", "statistical_error", "model_error"):
+        if model.HasField(field):
+            row[field] = getattr(model, field)
+    row["reason"] = model.reason
+    return row
+
+
+def _model(number: int) -> str:
+    return spelling(spec_pb2.EnsembleSpec.Model, number)

@@ -1,0 +1,168 @@
+"""One point of the grid of a result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ballpiston.curve import Curve, choose_curve, curve_of
+from ballpiston.histogram import Histogram, choose_histogram, histograms_of
+from ballpiston.number_text import measured_text
+from ballpiston.spelling import spelling
+from ballpiston.suggestion import did_you_mean
+from ballpiston.v1 import result_pb2, spec_pb2
+
+# Of the grid, in the order of its product.
+PARAMETERS = ("rho", "delta", "epsilon", "exponent", "cells", "temperature", "hot", "cold")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A measured number. What does not exist is None.
+
+    Attributes:
+        value: of the quantity `name`.
+        standard_error: one sigma; None if there are too few samples for one.
+        exact: the closed form, if there is one.
+        z_score: (value - exact)/standard_error.
+        model_error: upper bound of the relative difference between the model and the billiard,
+            without the statistical error.
+        noise_floor: of a distance between two laws, its mean if the laws were equal.
+        limit: what the limit delta -> 0 gives here.
+    """
+
+    name: str
+    value: float
+    standard_error: float | None = None
+    exact: float | None = None
+    z_score: float | None = None
+    model_error: float | None = None
+    noise_floor: float | None = None
+    limit: float | None = None
+
+    def __str__(self) -> str:
+        return f"{self.name} {measured_text(self.value, self.standard_error)}"
+
+
+ESTIMATE_FIELDS = ("standard_error", "exact", "z_score", "model_error", "noise_floor", "limit")
+
+
+class Point:
+    """What was measured at one point.
+
+    Example:
+        >>> point = result[0]
+        >>> point.parameters["delta"], point["mean_hit_time"]
+        (0.1, 57.66164520250258)
+    """
+
+    def __init__(self, message: Any) -> None:
+        self.message = message  # ballpiston.v1.PointResult
+
+    @property
+    def index(self) -> int:
+        """Position in the product of the grid's lists, rho outermost."""
+        return int(self.message.index)
+
+    @property
+    def parameters(self) -> dict[str, float | str]:
+        """The values of the parameters that the experiment uses, `cells` as text."""
+        return parameters_of(self.message)
+
+    @property
+    def model(self) -> str:
+        """The model that answered, such as "billiard"."""
+        return spelling(spec_pb2.EnsembleSpec.Model, self.message.model)
+
+    @property
+    def reason(self) -> str:
+        """Why that model, if the server chose it."""
+        return str(self.message.reason)
+
+    @property
+    def samples(self) -> float:
+        """First hits, orbits, replicas or collisions behind the estimates."""
+        return float(self.message.samples)
+
+    @property
+    def remarks(self) -> list[str]:
+        """Sentences about the result, for instance that a run was too short."""
+        return list(self.message.remarks)
+
+    @property
+    def estimates(self) -> dict[str, Estimate]:
+        """All of them by name, in the order of the answer."""
+        return {message.name: _estimate(message) for message in estimate_messages(self.message)}
+
+    def __getitem__(self, name: str) -> float:
+        return self._named(name).value
+
+    def error(self, name: str) -> float | None:
+        """The standard error of an estimate, or None."""
+        return self._named(name).standard_error
+
+    @property
+    def histograms(self) -> list[Histogram]:
+        """All of this point."""
+        return histograms_of(self.message.histograms)
+
+    def histogram(
+        self, name: str, sigma: int | None = None, time: float | None = None
+    ) -> Histogram:
+        """One of them; see Result.histogram."""
+        return choose_histogram(self.histograms, name, sigma, time)
+
+    @property
+    def curves(self) -> list[Curve]:
+        """All of this point."""
+        return [curve_of(message) for message in self.message.curves]
+
+    def curve(self, name: str) -> Curve:
+        """The curve of this name."""
+        return choose_curve(self.message.curves, name)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{name}={value}" for name, value in self.parameters.items())
+        estimates = "".join(f"\n  {estimate}" for estimate in self.estimates.values())
+        return f"<point {self.index}: {shown}; {self.model}>{estimates}"
+
+    def _named(self, name: str) -> Estimate:
+        estimates = self.estimates
+        if name in estimates:
+            return estimates[name]
+        raise KeyError(unknown_estimate(name, list(estimates)))
+
+
+def parameters_of(message: Any) -> dict[str, float | str]:
+    """Of a PointResult: rho, delta and the optional ones that it has."""
+    parameters = message.parameters
+    names = [n for n in PARAMETERS if n in ("rho", "delta") or parameters.HasField(n)]
+    return {name: getattr(parameters, name) for name in names}
+
+
+def estimate_messages(message: Any) -> list[Any]:
+    """The estimates of a PointResult. A divergence is one more estimate, kl_divergence."""
+    messages = list(message.estimates)
+    if message.HasField("kl_divergence"):
+        kl = message.kl_divergence
+        messages.append(
+            result_pb2.Estimate(
+                name="kl_divergence",
+                value=kl.value,
+                standard_error=kl.standard_error,
+                noise_floor=kl.noise_floor,
+            )
+        )
+    return messages
+
+
+def unknown_estimate(name: object, names: list[str]) -> str:
+    """The message of a KeyError."""
+    return f"there is no estimate {name!r}{did_you_mean(str(name), names)}; " + (
+        f"the estimates are {', '.join(names)}" if names else "no point is finished"
+    )
+
+
+def _estimate(message: Any) -> Estimate:
+    fields = {f: getattr(message, f) for f in ESTIMATE_FIELDS if message.HasField(f)}
+    return Estimate(message.name, message.value, **fields)

@@ -1,0 +1,152 @@
+"""The progress bar of a watch, on standard error or in a notebook.
+
+tqdm draws it if tqdm is installed. Where nobody looks, in a pipeline for instance, there is no bar.
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import Any, Protocol
+
+from ballpiston.errors import Error
+from ballpiston.number_text import measured_text
+
+_PLAIN_BAR_WIDTH = 20
+
+
+class Bar(Protocol):
+    """One line that is drawn again and again."""
+
+    def show(self, fraction: float, text: str) -> None:
+        ...
+
+    def note(self, text: str) -> None:
+        """A line of its own, above the bar."""
+
+    def close(self) -> None:
+        ...
+
+
+class Progress:
+    """Shows the messages of a watch (watch.Observer) on a bar; None shows nothing."""
+
+    def __init__(self, bar: Bar | None) -> None:
+        self._bar = bar
+        self._fraction = 0.0
+        self._text = ""
+
+    @property
+    def is_visible(self) -> bool:
+        return self._bar is not None
+
+    def on_job(self, job: Any) -> None:
+        self._update(job.progress, [])
+
+    def on_snapshot(self, snapshot: Any) -> None:
+        self._update(
+            snapshot.progress, list(snapshot.points) or list(snapshot.finished_points)[-1:]
+        )
+
+    def on_disconnect(self, why: Error, pause: float) -> None:
+        self._show(f"{self._text}  no answer, retrying in {pause:.1f} s")
+
+    def note(self, text: str) -> None:
+        if self._bar is not None:
+            self._bar.note(text)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def _update(self, progress: Any, points: list[Any]) -> None:
+        self._fraction = fraction_of(progress)
+        self._text = f"{progress.points_done}/{progress.points} points"
+        self._show("  ".join([self._text, *(_first_estimate(point) for point in points[:1])]))
+
+    def _show(self, text: str) -> None:
+        if self._bar is not None:
+            self._bar.show(self._fraction, text)
+
+
+def progress_on_screen(wanted: bool) -> Progress:
+    """With a bar if it is wanted and somebody looks: in a terminal or in a notebook."""
+    if not wanted or not (_is_notebook() or _is_terminal()):
+        return Progress(None)
+    return Progress(_new_bar())
+
+
+def fraction_of(progress: Any) -> float:
+    """The share of the work that is done: the server's prediction, else that of the points."""
+    if progress.HasField("fraction"):
+        return float(progress.fraction)
+    return float(progress.points_done / progress.points) if progress.points else 0.0
+
+
+def _first_estimate(point: Any) -> str:
+    if not point.estimates:
+        return ""
+    estimate = point.estimates[0]
+    error = estimate.standard_error if estimate.HasField("standard_error") else None
+    return f"{estimate.name} {measured_text(estimate.value, error)}"
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _is_notebook() -> bool:
+    """Only a kernel of Jupyter has loaded ipykernel and runs a shell of its own."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    return shell is not None and hasattr(shell, "kernel")
+
+
+def _new_bar() -> Bar:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # tqdm warns if a notebook has no widgets
+            from tqdm.auto import tqdm
+    except ImportError:
+        return _PlainBar()
+    return _TqdmBar(tqdm)
+
+
+class _TqdmBar:
+    def __init__(self, tqdm: Any) -> None:
+        self._tqdm = tqdm
+        self._bar: Any = None
+
+    def show(self, fraction: float, text: str) -> None:
+        if self._bar is None:
+            shape = "{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]"
+            # `initial`: the time left follows from what was done during this watch.
+            self._bar = self._tqdm(total=1.0, initial=fraction, bar_format=shape, file=sys.stderr)
+        self._bar.n = fraction
+        self._bar.set_description_str(text, refresh=False)
+        self._bar.refresh()
+
+    def note(self, text: str) -> None:
+        self._tqdm.write(text, file=sys.stderr)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+class _PlainBar:
+    def __init__(self) -> None:
+        self._width = 0
+
+    def show(self, fraction: float, text: str) -> None:
+        marks = int(min(max(fraction, 0.0), 1.0) * _PLAIN_BAR_WIDTH)
+        line = f"[{'#' * marks}{'-' * (_PLAIN_BAR_WIDTH - marks)}] {text}"
+        sys.stderr.write("\r" + line.ljust(self._width))
+        sys.stderr.flush()
+        self._width = len(line)
+
+    def note(self, text: str) -> None:
+        sys.stderr.write("\r" + text.ljust(self._width) + "\n")
+
+    def close(self) -> None:
+        if self._width > 0:
+            sys.stderr.write("\n")

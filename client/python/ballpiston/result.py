@@ -1,0 +1,260 @@
+"""The finished points of a job, as NumPy arrays over the points."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from ballpiston.arrays import Arrays, arrays_of, optional_floats, parameter_arrays
+from ballpiston.curve import Curve
+from ballpiston.document import document_of, read_document, write_atomically
+from ballpiston.histogram import Histogram
+from ballpiston.point import Point, estimate_messages, unknown_estimate
+from ballpiston.result_table import html_table, text_table
+from ballpiston.spelling import spelling
+from ballpiston.v1 import ensemble_pb2, spec_pb2
+
+if TYPE_CHECKING:
+    import os
+
+    import pandas
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Result:
+    """The finished points of a job, in the order of the grid (rho outermost).
+
+    A name gives an array over the points, a number gives one point:
+
+        result["mean_hit_time"]             values
+        result.error("mean_hit_time")       standard errors, one sigma
+        result.exact("mean_hit_time")       closed forms
+        result.z_score("mean_hit_time")     (value - exact)/standard error
+        result.parameters["delta"]          the parameter at each point
+        result[3]                           a Point
+        len(result), result.names           points, names of the estimates
+
+    What does not exist at a point is NaN. Lengths are cells, masses are 1, the energy of a
+    ball-piston pair is 1/2.
+
+    Attributes:
+        job: the message ballpiston.v1.EnsembleJob, as the job was when the result was fetched.
+        messages: one message ballpiston.v1.PointResult for each point.
+    """
+
+    def __init__(self, job: Any, messages: Sequence[Any]) -> None:
+        self.job = job
+        self.messages = list(messages)
+        self._estimates: list[dict[str, Any]] | None = None
+
+    # Points
+
+    def __len__(self) -> int:
+        return len(self.messages)
+
+    def __iter__(self) -> Iterator[Point]:
+        return (Point(message) for message in self.messages)
+
+    @overload
+    def __getitem__(self, key: str) -> FloatArray:
+        ...
+
+    @overload
+    def __getitem__(self, key: int) -> Point:
+        ...
+
+    def __getitem__(self, key: str | int) -> FloatArray | Point:
+        """The values of an estimate at all points, or one point.
+
+        Raises:
+            KeyError: no point has an estimate of this name.
+            IndexError: there are fewer points.
+        """
+        if isinstance(key, str):
+            values = [np.nan if e is None else e.value for e in self._column(key)]
+            return np.array(values, dtype=np.float64)
+        return Point(self.messages[key])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    # Columns
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the estimates that some point has."""
+        return list(dict.fromkeys(name for estimates in self._by_name() for name in estimates))
+
+    def error(self, name: str) -> FloatArray:
+        """Standard errors (one sigma) of an estimate; NaN where there are too few samples."""
+        return optional_floats(self._column(name), "standard_error")
+
+    def exact(self, name: str) -> FloatArray:
+        """Closed forms of an estimate; NaN where there is none."""
+        return optional_floats(self._column(name), "exact")
+
+    def z_score(self, name: str) -> FloatArray:
+        """(value - exact)/standard error of an estimate."""
+        return optional_floats(self._column(name), "z_score")
+
+    def model_error(self, name: str) -> FloatArray:
+        """Upper bounds of the relative difference between the model and the billiard, without the
+        statistical error. 0 for the billiard itself and for closed forms."""
+        return optional_floats(self._column(name), "model_error")
+
+    def noise_floor(self, name: str) -> FloatArray:
+        """Of a distance between two laws: its mean if the laws were equal."""
+        return optional_floats(self._column(name), "noise_floor")
+
+    def limit(self, name: str) -> FloatArray:
+        """What the limit delta -> 0 gives at each point."""
+        return optional_floats(self._column(name), "limit")
+
+    @property
+    def parameters(self) -> Arrays:
+        """Arrays of rho, delta and of every other parameter that is used; `cells` as str."""
+        return parameter_arrays(self.messages)
+
+    @property
+    def samples(self) -> FloatArray:
+        """First hits, orbits, replicas or collisions at each point."""
+        return np.array([message.samples for message in self.messages], dtype=np.float64)
+
+    @property
+    def models(self) -> list[str]:
+        """The model that answered at each point, such as "billiard"."""
+        return [point.model for point in self]
+
+    @property
+    def remarks(self) -> list[list[str]]:
+        """Sentences about each point, for instance that its run was too short."""
+        return [point.remarks for point in self]
+
+    # Histograms and curves
+
+    def histogram(
+        self, name: str, *, sigma: int | None = None, time: float | None = None, point: int = 0
+    ) -> Histogram:
+        """A histogram of one point.
+
+        Args:
+            name: "alpha", "piston_energy", "ball_speed" or "piston_speed".
+            sigma: of an angle the sign of the piston's velocity, +1 or -1.
+            time: for "piston_energy", in cells over unit speed: the nearest one is taken.
+            point: position in this result.
+
+        Raises:
+            KeyError: the point has no such histogram, or several; the message lists them.
+        """
+        return self[point].histogram(name, sigma, time)
+
+    def curve(self, name: str, *, point: int = 0) -> Curve:
+        """A curve of one point, such as "survival" or "temperature_profile".
+
+        Raises:
+            KeyError: the point has no such curve; the message lists those that it has.
+        """
+        return self[point].curve(name)
+
+    # Other forms
+
+    def arrays(self) -> Arrays:
+        """Everything as a dict of arrays, as in an .npz file; arrays.py describes the layout."""
+        return arrays_of(self.job, self.messages)
+
+    def to_frame(self) -> pandas.DataFrame:
+        """A pandas DataFrame with one row for each point, and as columns the one-dimensional arrays
+        of `arrays()`. Needs pandas."""
+        import pandas
+
+        columns = {name: a for name, a in self.arrays().items() if a.ndim == 1}
+        return pandas.DataFrame(columns)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes a file: NAME.json, which ballpiston.load reads again, or NAME.npz, arrays for
+        numpy.load. An existing file is replaced.
+
+        Raises:
+            ValueError: the name ends with neither .json nor .npz.
+        """
+        path = Path(path)
+        if path.suffix == ".json":
+            write_atomically(path, document_of(self.job, self.messages).encode())
+        elif path.suffix == ".npz":
+            buffer = io.BytesIO()
+            np.savez_compressed(buffer, **self.arrays())
+            write_atomically(path, buffer.getvalue())
+        else:
+            raise ValueError(f"{path}: the name of the file has to end with .json or .npz")
+
+    # The job
+
+    @property
+    def job_name(self) -> str:
+        """ensembleJobs/ID, for client.job."""
+        return str(self.job.name)
+
+    @property
+    def state(self) -> str:
+        """That of the job when the result was fetched, such as "succeeded"."""
+        return spelling(ensemble_pb2.EnsembleJob.State, self.job.state)
+
+    @property
+    def specification(self) -> Any:
+        """The question, for client.submit."""
+        return self.job.spec
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Result):
+            return NotImplemented
+        return bool(self.job == other.job and self.messages == other.messages)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return text_table(self._heading(), self.messages)
+
+    def _repr_html_(self) -> str:
+        return html_table(self._heading(), self.messages)
+
+    def _heading(self) -> str:
+        experiment = spelling(spec_pb2.EnsembleSpec.Experiment, self.job.spec.experiment)
+        return (
+            f"{experiment}, {len(self)} of {self.job.progress.points} points, "
+            f"seed {self.job.spec.seed}, engine {self.job.engine_version} "
+            f"({self.job_name}, {self.state})"
+        )
+
+    def _by_name(self) -> list[dict[str, Any]]:
+        if self._estimates is None:
+            self._estimates = [{e.name: e for e in estimate_messages(m)} for m in self.messages]
+        return self._estimates
+
+    def _column(self, name: str) -> list[Any]:
+        """The estimate of each point, None where a point lacks it."""
+        column = [estimates.get(name) for estimates in self._by_name()]
+        if all(estimate is None for estimate in column):
+            raise KeyError(unknown_estimate(name, self.names))
+        return column
+
+
+def load(path: Union[str, "os.PathLike[str]"]) -> Result:
+    """A result from a JSON file that `result.save` or `ballpiston result JOB --format json` wrote.
+    Needs no server.
+
+    Raises:
+        ValueError: the file is not a saved result, for instance one with arrays (.npz), which
+            numpy.load reads.
+        OSError: the file cannot be read.
+
+    Example:
+        >>> result = ballpiston.load("sweep.json")
+        >>> result["mean_free_time_conditional"]
+    """
+    return Result(*read_document(Path(path)))

@@ -1,0 +1,97 @@
+"""Which server, and how: the argument of `connect`, else the environment variable, else the config
+file of the command line, ~/.config/ballpiston/config.toml.
+
+    argument      variable                 key in the config file
+    address       BALLPISTON_SERVER        server
+    ca            BALLPISTON_CA            ca
+    tls           BALLPISTON_TLS           tls
+    certificate   BALLPISTON_CERT          cert
+    key           BALLPISTON_KEY           key
+    token_file    BALLPISTON_TOKEN_FILE    token-file
+                  BALLPISTON_TOKEN
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ballpiston.channel_security import ChannelSecurity
+from ballpiston.server_address import is_socket
+
+_VARIABLES = {
+    "address": "BALLPISTON_SERVER",
+    "ca": "BALLPISTON_CA",
+    "tls": "BALLPISTON_TLS",
+    "certificate": "BALLPISTON_CERT",
+    "key": "BALLPISTON_KEY",
+    "token_file": "BALLPISTON_TOKEN_FILE",
+    "token": "BALLPISTON_TOKEN",
+}
+_KEYS = {
+    "address": "server",
+    "ca": "ca",
+    "tls": "tls",
+    "certificate": "cert",
+    "key": "key",
+    "token_file": "token-file",
+}
+_TRUE = ("1", "true", "yes", "on", "enable")
+_FALSE = ("", "0", "false", "no", "off", "disable")
+
+
+def address_and_security(given: Mapping[str, Any]) -> tuple[str, ChannelSecurity]:
+    """From the arguments of `connect` that are not None. The address is empty for the private
+    server. Over a Unix socket, the private server's too, only arguments count.
+
+    Raises:
+        ValueError: the private server with TLS or a token, or a config file that is not TOML.
+    """
+    settings: dict[str, Any] = {**_config_file(), **_environment(), **given}
+    address = str(settings.pop("address", ""))
+    if not address or is_socket(address):
+        settings = {name: value for name, value in given.items() if name != "address"}
+    if not address and any(settings.values()):
+        raise ValueError(
+            f"the private server needs no {', '.join(settings)}: name a server, "
+            'connect("host:port", ...)'
+        )
+    if "token_file" in given:
+        settings.pop("token", None)
+    settings["tls"] = _truth(settings.get("tls", False))
+    return address, ChannelSecurity(**settings)
+
+
+def _environment() -> dict[str, str]:
+    values = {name: os.environ.get(variable, "") for name, variable in _VARIABLES.items()}
+    return {name: value for name, value in values.items() if value}
+
+
+def _config_file() -> dict[str, Any]:
+    path = _config_path()
+    if path is None:
+        return {}
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"the config file {path} cannot be used: {error}") from error
+    return {name: content[key] for name, key in _KEYS.items() if content.get(key)}
+
+
+def _config_path() -> Path | None:
+    if named := os.environ.get("BALLPISTON_CONFIG"):
+        return Path(named)
+    folder = os.environ.get("XDG_CONFIG_HOME", "")
+    root = Path(folder) if folder.startswith("/") else Path.home() / ".config"
+    path = root / "ballpiston" / "config.toml"
+    return path if path.exists() else None
+
+
+def _truth(value: object) -> bool:
+    text = str(value).lower()
+    if text in _TRUE or text in _FALSE:
+        return text in _TRUE
+    raise ValueError(f"tls is {value!r}; it has to be true or false")

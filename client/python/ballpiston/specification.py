@@ -1,0 +1,211 @@
+"""The question: an experiment on a grid of parameters, and how much of it is computed.
+
+The names are those of the command line. Units everywhere: lengths are cells, masses are 1, the
+energy of a ball-piston pair is 1/2, the Boltzmann constant is 1.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from google.protobuf import json_format
+
+from ballpiston.parameter_lists import (
+    Numbers,
+    Shapes,
+    number_list,
+    real_number,
+    shape_list,
+    whole_number,
+)
+from ballpiston.spelling import from_spelling
+from ballpiston.suggestion import did_you_mean
+from ballpiston.v1 import spec_pb2
+
+_NANOSECONDS = 1_000_000_000
+_MOST_SEED = 2**64 - 1
+_MOST_COUNT = 2**63 - 1
+
+
+def specification(
+    experiment: str,
+    *,
+    rho: Numbers | None = None,
+    delta: Numbers | None = None,
+    epsilon: Numbers | None = None,
+    exponent: Numbers | None = None,
+    cells: Shapes | None = None,
+    temperature: Numbers | None = None,
+    hot: Numbers | None = None,
+    cold: Numbers | None = None,
+    samples: float | None = None,
+    collisions: float | None = None,
+    tolerance: float | None = None,
+    budget: float | None = None,
+    estimate: str | None = None,
+    seed: int = 0,
+    model: str | None = None,
+    precision: str | None = None,
+    verify: bool = False,
+) -> Any:
+    """A question, as the message ballpiston.v1.EnsembleSpec. Sends nothing.
+
+    Each parameter of the grid takes a number, a list, an array, or a text such as "0.1:0.4:4"
+    (from:to:count, as on the command line). The grid is the product of the lists, rho outermost, at
+    most 100,000 points.
+
+    Args:
+        experiment: "equilibrium", "conditional-mean-free-time", "first-hit", "energy-relaxation",
+            "markov-property", "gas-equilibrium" or "gas-conduction".
+        rho: radius of the discs; 1/2 < rho < 1/sqrt(2).
+        delta: how far the piston reaches into the cell; 0 < delta <= (1 - sqrt(4 rho^2 - 1))/2.
+        epsilon: energy of the piston; 0 to 1/2.
+        exponent: n of the outgoing law h^(n); 0 to 1000.
+        cells: shape of a gas: 8, a chain of 8 cells, or "10x5", a lattice of 10 columns and 5 rows;
+            at most 10^6 cells in all.
+        temperature: of a gas in equilibrium; 1e-120 to 1e120.
+        hot, cold: temperatures of the reservoirs; 1e-120 to 1e120, hot >= cold.
+        samples: first hits, orbits or replicas of a gas, for each point; 1 to 10^12.
+        collisions: ball-piston collisions for each point; 1 to 10^12.
+        tolerance: relative standard error of the first estimate; between 0 and 1.
+        budget: seconds of computing with all workers, for the whole grid; with a tolerance the job
+            fails if some point does not reach it. Of samples, collisions, tolerance and budget give
+            at most one, or tolerance and budget together.
+        estimate: the estimate that the tolerance refers to; only "gas-equilibrium" has a choice:
+            "exchange_rate" or "conductivity".
+        seed: of the random numbers; 0 to 2^64 - 1. The same question and seed give the same
+            numbers.
+        model: "auto", "closed-form", "spectrum", "markov", "billiard" or "billiard-reference".
+        precision: "double" or "single".
+        verify: with "auto", also simulate what a closed form answers.
+
+    Raises:
+        TypeError: a value of a wrong type, or targets that exclude each other.
+        ValueError: an unknown name, or a text or number that cannot be sent.
+
+    Example:
+        >>> question = specification("equilibrium", rho=0.5296, delta="0.1:0.3:3", collisions=1e6)
+        >>> list(question.grid.delta)
+        [0.1, 0.2, 0.3]
+    """
+    spec = spec_pb2.EnsembleSpec(verify=bool(verify))
+    spec.experiment = from_spelling(spec_pb2.EnsembleSpec.Experiment, "experiment", experiment)
+    grid = {"rho": rho, "delta": delta, "epsilon": epsilon, "exponent": exponent}
+    grid |= {"temperature": temperature, "hot": hot, "cold": cold}
+    for name, values in grid.items():
+        if values is not None:
+            getattr(spec.grid, name).extend(number_list(name, values))
+    if cells is not None:
+        spec.grid.cells.extend(shape_list("cells", cells))
+    _set_target(spec, samples, collisions, tolerance, budget)
+    if estimate is not None:
+        spec.target.estimate = estimate
+    spec.seed = _within("seed", seed, 0, _MOST_SEED)
+    if model is not None:
+        spec.model = from_spelling(spec_pb2.EnsembleSpec.Model, "model", model)
+    if precision is not None:
+        spec.precision = from_spelling(spec_pb2.EnsembleSpec.Precision, "precision", precision)
+    return spec
+
+
+def question_of(experiment: object, question: Mapping[str, Any]) -> Any:
+    """The message for the arguments of submit, run and plan. In place of an experiment's name they
+    take a message, such as job.specification, or its JSON as a dict.
+
+    Raises:
+        TypeError: a keyword that does not exist; the message suggests the nearest one.
+        ValueError: a dict that is not a specification.
+    """
+    if isinstance(experiment, str):
+        _check_keywords(question)
+        return specification(experiment, **question)
+    if question:
+        raise TypeError(
+            "a specification holds the whole question: give no "
+            + ", ".join(question)
+            + " beside it, or change a copy of the specification"
+        )
+    if isinstance(experiment, spec_pb2.EnsembleSpec):
+        return experiment
+    if isinstance(experiment, Mapping):
+        try:
+            return json_format.ParseDict(dict(experiment), spec_pb2.EnsembleSpec())
+        except json_format.ParseError as error:
+            raise ValueError(f"not a specification: {error}") from error
+    raise TypeError(
+        "the first argument has to be the name of an experiment or a specification, not "
+        + type(experiment).__name__
+    )
+
+
+Method = TypeVar("Method", bound=Callable[..., Any])
+
+
+def takes_question(method: Method) -> Method:
+    """Shows the keywords of `specification` in the signature of a method that has **question, for
+    help() and for completion in notebooks."""
+    own = inspect.signature(method)
+    keywords = [p for p in _KEYWORDS.values() if p.name not in own.parameters]
+    parameters = [p for p in own.parameters.values() if p.kind is not p.VAR_KEYWORD]
+    shown = own.replace(parameters=[*parameters[:2], *keywords, *parameters[2:]])
+    setattr(method, "__signature__", shown)
+    return method
+
+
+_KEYWORDS = {
+    name: parameter
+    for name, parameter in inspect.signature(specification).parameters.items()
+    if parameter.kind is parameter.KEYWORD_ONLY
+}
+# Those of submit and run, for suggestions.
+_JOB_KEYWORDS = ("fresh", "priority", "request_id", "progress")
+
+
+def _check_keywords(question: Mapping[str, Any]) -> None:
+    for name in question:
+        if name not in _KEYWORDS:
+            hint = did_you_mean(name, [*_KEYWORDS, *_JOB_KEYWORDS])
+            raise TypeError(f"there is no keyword {name!r}{hint}")
+
+
+def _set_target(
+    spec: Any,
+    samples: float | None,
+    collisions: float | None,
+    tolerance: float | None,
+    budget: float | None,
+) -> None:
+    values = {"samples": samples, "collisions": collisions}
+    values |= {"tolerance": tolerance, "budget": budget}
+    given = [name for name, value in values.items() if value is not None]
+    if len(given) > 1 and given != ["tolerance", "budget"]:
+        raise TypeError(
+            f"{' and '.join(given)} exclude each other: give at most one of samples, collisions, "
+            "tolerance, budget; only tolerance and budget may stand together"
+        )
+    if samples is not None:
+        spec.target.samples = _within("samples", samples, -_MOST_COUNT, _MOST_COUNT)
+    if collisions is not None:
+        spec.target.collisions = _within("collisions", collisions, -_MOST_COUNT, _MOST_COUNT)
+    if tolerance is not None:
+        spec.target.tolerance = real_number("tolerance", tolerance) + 0.0
+    if budget is not None:
+        _set_duration(spec.target.budget, real_number("budget", budget))
+
+
+def _within(name: str, value: object, least: int, most: int) -> int:
+    number = whole_number(name, value)
+    if not least <= number <= most:
+        raise ValueError(f"{name} has to be from {least} to {most}, not {value!r}")
+    return number
+
+
+def _set_duration(duration: Any, seconds: float) -> None:
+    if not abs(seconds) <= 1e9:
+        raise ValueError(f"budget has to be a number of seconds up to 10^6, not {seconds!r}")
+    nanoseconds = round(seconds * _NANOSECONDS)
+    sign = 1 if nanoseconds >= 0 else -1
+    whole, rest = divmod(abs(nanoseconds), _NANOSECONDS)
+    duration.seconds, duration.nanos = sign * whole, sign * rest
