@@ -9,12 +9,13 @@ STABILITY_OUT ?= stability.md
 TEST_PACKAGES := libgtest-dev libgmock-dev
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
+DEB_PACKAGES := debhelper dh-python help2man lintian
 WEB_PACKAGES = chromium $(shell command -v npm >/dev/null || echo nodejs npm)
 PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability pages
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -76,6 +77,10 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
+
+deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (10 minutes)
+	@scripts/setup.sh $(DEB_PACKAGES)
+	@scripts/deb.sh build/deb
 
 thread-safety: ## Check with Clang that the server holds the right mutexes, in their order (1 minute)
 	@scripts/setup.sh clang
