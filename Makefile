@@ -15,7 +15,7 @@ PROGRAMS := ballpiston ballpistond ballpiston-worker method_comparison stability
 
 .DEFAULT_GOAL := build
 .NOTPARALLEL:  # each step is parallel by itself, and two configure the same folder
-.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
+.PHONY: build test demo chart ladder bench stability stability-table torture test-slurm test-alerts test-web deb oci asan tsan aarch64 fuzz thread-safety nightly format check-format tidy setup clean help
 
 build: build/release/.$(PRESETS_PREFIX)programs ## Build the programs, optimised, in build/release/bin (the default)
 	@cmake --build build/release --target $(PROGRAMS)
@@ -81,6 +81,10 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (10 minutes)
 	@scripts/setup.sh $(DEB_PACKAGES)
 	@scripts/deb.sh build/deb
+
+oci: ## Make an image for containers of the packages that make deb built, in build/oci (2 minutes)
+	@scripts/setup.sh mmdebstrap umoci
+	@scripts/oci.sh build/deb build/oci
 
 thread-safety: ## Check with Clang that the server holds the right mutexes, in their order (1 minute)
 	@scripts/setup.sh clang

@@ -1,3 +1,4 @@
+cmake_policy(SET CMP0054 NEW)  # a quoted word is a word, never the name of a variable
 # Run by `cmake --install`; CMakeLists.txt sets the variables ballpiston_*.
 set(bin "${ballpiston_bindir}")
 set(etc "${ballpiston_sysconfdir}")
