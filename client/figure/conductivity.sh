@@ -13,11 +13,11 @@ set -eu
 : "${seed:=0}"
 
 measure() {
-  ballpiston run gas-equilibrium --rho "$rho" --delta "$2" --cells "$3" --temperature 1 \
-    --model "$1" --samples "$4" --seed "$seed" --estimate conductivity --resume --format csv
+  ask "conductivity-$1.csv" gas-equilibrium --rho "$rho" --delta "$3" --cells "$4" --temperature 1 \
+    --model "$2" --samples "$5" --seed "$seed" --estimate conductivity
 }
-into conductivity-billiard.csv measure billiard "$delta" "$billiard_cells" "$billiard_samples"
+measure billiard billiard "$delta" "$billiard_cells" "$billiard_samples"
 # The correction of the limit depends neither on rho nor on delta.
-into conductivity-rings.csv measure markov "${delta%%[,:]*}" "$cells" "$samples"
+measure rings markov "${delta%%[,:]*}" "$cells" "$samples"
 
 draw conductivity

@@ -31,6 +31,14 @@ into() {
   mv "$part" "$file"
 }
 
+# Asks, and keeps the answer in a CSV file that has its specification, seed and versions in its first
+# lines: ask FILE EXPERIMENT FLAGS. If the same question was asked before, its job goes on.
+ask() {
+  asked=$1
+  shift
+  ballpiston run "$@" --resume --save "$asked" >/dev/null
+}
+
 trap 'rm -f .*."$$"' EXIT
 
 # Draws the picture with NAME.gnuplot, if gnuplot is installed.

@@ -13,7 +13,7 @@ set -eu
 
 # The curve `survival` is the probability that ball and piston have not collided up to a time. Its
 # limit is the exponential law with the same mean free time.
-into hitting-time.csv ballpiston run first-hit --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
-  --exponent "$exponent" --samples "$samples" --seed "$seed" --resume --format csv-curves
+ask hitting-time.csv first-hit --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
+  --exponent "$exponent" --samples "$samples" --seed "$seed" --format csv-curves
 
 draw hitting-time

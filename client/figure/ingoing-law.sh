@@ -14,8 +14,8 @@ set -eu
 # the picture. Fewer samples need wider bins; otherwise the noise hides the deviation.
 merged=$(by_effort 40 20 10)
 
-into ingoing-law-histograms.csv ballpiston run first-hit --rho "$rho" --delta "$delta" \
-  --epsilon "$epsilon" --exponent "$exponent" --samples "$samples" --seed "$seed" --resume \
+ask ingoing-law-histograms.csv first-hit --rho "$rho" --delta "$delta" \
+  --epsilon "$epsilon" --exponent "$exponent" --samples "$samples" --seed "$seed" \
   --format csv-histograms
 
 # Writes every histogram with the wider bins. Densities are means over a bin; `error` is the
@@ -27,7 +27,8 @@ merge() {
       if (n) print key, (lower + upper)/2, density/n, sqrt(count)/(samples*(upper - lower)), exact/n
       n = count = density = exact = 0
     }
-    NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    /^#/ { next }
+    $1 == "rho" { for (i = 1; i <= NF; i++) at[$i] = i; next }
     $at["name"] == "alpha" {
       this = $at["delta"] "," $at["epsilon"] "," $at["exponent"] "," $at["sigma"]
       if (this != key || n == merged) flush()

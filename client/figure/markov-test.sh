@@ -12,15 +12,16 @@ set -eu
 : "${seed:=0}"
 synthetic=$(by_effort 20 200 200)  # repetitions that calibrate a probability
 
-into markov-test.csv ballpiston run first-hit --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
-  --exponent "$exponent" --samples "$samples" --seed "$seed" --resume --format csv
+ask markov-test.csv first-hit --rho "$rho" --delta "$delta" --epsilon "$epsilon" \
+  --exponent "$exponent" --samples "$samples" --seed "$seed" --format csv
 
 # The relative entropy minus its noise floor, with its standard error. If the two laws are equal,
 # the standard error is the error of the floor.
 excess() {
   echo "delta,epsilon,exponent,excess,standard_error"
   awk -F, -v OFS=, '
-    NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    /^#/ { next }
+    $1 == "rho" { for (i = 1; i <= NF; i++) at[$i] = i; next }
     $at["name"] == "kl_divergence" { value = $at["value"]; error = $at["standard_error"] }
     $at["name"] == "kl_noise_floor" {
       if ($at["standard_error"] > error) error = $at["standard_error"]

@@ -13,11 +13,11 @@ set -eu
 # In units of the mean free time, the times and the law of the jump process are the same at every
 # delta. Therefore one delta is enough for the jump process.
 law() {
-  ballpiston run energy-relaxation --rho "$rho" --epsilon "$epsilon" --samples "$samples" \
-    --seed "$seed" --resume --format csv-histograms "$@"
+  ask "master-equation-$1.csv" energy-relaxation --rho "$rho" --epsilon "$epsilon" --model "$1" \
+    --delta "$2" --samples "$samples" --seed "$seed" --format csv-histograms
 }
-into master-equation-billiard.csv law --delta "$delta" --model billiard
-into master-equation-markov.csv law --delta "${delta%%[,:]*}" --model markov
+law billiard "$delta"
+law markov "${delta%%[,:]*}"
 
 into master-equation-times.csv ballpiston analytic --rho "$rho" --delta "$delta" --format csv
 
@@ -26,7 +26,8 @@ into master-equation-times.csv ballpiston analytic --rho "$rho" --delta "$delta"
 laws() {
   echo "model,delta,epsilon,time,lower,upper,density,error,exact,ratio,ratio_error"
   awk -F, -v OFS=, '
-    FNR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    /^#/ { next }
+    $1 == "rho" { for (i = 1; i <= NF; i++) at[$i] = i; next }
     FILENAME ~ /times/ { tau[$at["delta"]] = $at["tau_ball_piston"]; next }
     $at["name"] == "piston_energy" {
       samples = $at["samples"]

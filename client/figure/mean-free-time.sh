@@ -16,10 +16,10 @@ energies=0.0003125,0.000625,0.00125,0.0025,0.005,0.01:0.49:49,0.495,0.4975,0.498
 
 # --model billiard is needed: by default the server would answer with the closed forms that the
 # figure tests.
-into mean-free-time.csv ballpiston run conditional-mean-free-time --rho "$rho" --delta "$delta" \
-  --epsilon "$energies" --samples "$samples" --seed "$seed" --model billiard --resume --format csv
-into mean-free-time-inset.csv ballpiston run equilibrium --rho "$rho" --delta "$delta" \
-  --collisions "$collisions" --seed "$seed" --model billiard --resume --format csv
+ask mean-free-time.csv conditional-mean-free-time --rho "$rho" --delta "$delta" \
+  --epsilon "$energies" --samples "$samples" --seed "$seed" --model billiard --format csv
+ask mean-free-time-inset.csv equilibrium --rho "$rho" --delta "$delta" \
+  --collisions "$collisions" --seed "$seed" --model billiard --format csv
 
 # The exact curves: phi, the same at every delta, and the rate up to the largest delta.
 into mean-free-time-phi.csv ballpiston analytic --rho "$rho" --delta "$delta" --epsilon 0:0.5:201 \

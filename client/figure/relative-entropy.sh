@@ -11,7 +11,7 @@ set -eu
 : "${samples:=$(by_effort 30000 100000 1000000)}"
 : "${seed:=0}"
 
-into relative-entropy.csv ballpiston run first-hit --rho "$rho" --delta "$delta" \
-  --epsilon "$epsilon" --exponent 0,1,5,10 --samples "$samples" --seed "$seed" --resume --format csv
+ask relative-entropy.csv first-hit --rho "$rho" --delta "$delta" \
+  --epsilon "$epsilon" --exponent 0,1,5,10 --samples "$samples" --seed "$seed" --format csv
 
 draw relative-entropy

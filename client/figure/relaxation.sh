@@ -12,11 +12,13 @@ set -eu
 
 # With --epsilon the result is the mean energy, without --epsilon the autocorrelation of the energy.
 relax() {
-  ballpiston run energy-relaxation --rho "$rho" --delta "$delta" --model billiard \
-    --samples "$samples" --seed "$seed" --resume --format csv-curves "$@"
+  file=relaxation-$1.csv
+  shift
+  ask "$file" energy-relaxation --rho "$rho" --delta "$delta" --model billiard \
+    --samples "$samples" --seed "$seed" --format csv-curves "$@"
 }
-into relaxation-energy.csv relax --epsilon "$epsilon"
-into relaxation-autocorrelation.csv relax
+relax energy --epsilon "$epsilon"
+relax autocorrelation
 # The mean free times, which are the units of time.
 into relaxation-times.csv ballpiston analytic --rho "$rho" --delta "$delta" --format csv
 

@@ -12,9 +12,9 @@ set -eu
 # The total rate f(epsilon), whose values are the continuum.
 into spectrum-rate.csv ballpiston analytic --rho "$rho" --delta "$delta" --epsilon 0:0.5:201 \
   --format csv
-into spectrum.csv ballpiston run energy-relaxation --rho "$rho" --delta "${delta%%[,:]*}" \
-  --model spectrum --resume --format csv
-into spectrum-billiard.csv ballpiston run energy-relaxation --rho "$rho" --delta "$delta" \
-  --samples "$samples" --seed "$seed" --model billiard --resume --format csv-curves
+ask spectrum.csv energy-relaxation --rho "$rho" --delta "${delta%%[,:]*}" \
+  --model spectrum --format csv
+ask spectrum-billiard.csv energy-relaxation --rho "$rho" --delta "$delta" \
+  --samples "$samples" --seed "$seed" --model billiard --format csv-curves
 
 draw spectrum

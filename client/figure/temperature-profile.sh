@@ -16,10 +16,10 @@ set -eu
 : "${seed:=0}"
 
 conduct() {
-  ballpiston run gas-conduction --rho "$rho" --delta "$delta" --cells "$cells" --hot "$hot" \
-    --cold "$cold" --seed "$seed" --model "$1" --samples "$2" --resume --format csv-curves
+  ask "temperature-profile-$1.csv" gas-conduction --rho "$rho" --delta "$delta" --cells "$cells" --hot "$hot" \
+    --cold "$cold" --seed "$seed" --model "$1" --samples "$2" --format csv-curves
 }
-into temperature-profile-markov.csv conduct markov "$samples"
-into temperature-profile-billiard.csv conduct billiard "$billiard_samples"
+conduct markov "$samples"
+conduct billiard "$billiard_samples"
 
 draw temperature-profile

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <filesystem>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,10 @@ class FigureTest : public ::testing::Test {
   std::string File(const std::string& suffix) const { return folder_ + "/mean-free-time" + suffix; }
   std::string Data(const std::string& name) const { return Contents(folder_ + "/" + name); }
   size_t LineCount(const std::string& name) const {
-    return Words(absl::StrSplit(Data(name), '\n', absl::SkipEmpty())).size();
+    const Words lines = absl::StrSplit(Data(name), '\n', absl::SkipEmpty());
+    return static_cast<size_t>(std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
+      return line[0] != '#';  // where the data come from
+    }));
   }
   static bool HasGnuplot() {
     return RunProgram({.command = {"sh", "-c", "command -v gnuplot"}}).exit_code == 0;
