@@ -235,8 +235,7 @@ TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
   const std::vector<DiskOperation> operations = scene.disk().operations();
   const auto failed = std::find_if(operations.begin(), operations.end(),
                                    [](const DiskOperation& done) { return done.refused; });
-  const auto cut =
-      static_cast<size_t>(failed - operations.begin());  // before a retry overwrites it
+  const auto cut = static_cast<size_t>(failed - operations.begin());  // before the retry
   for (const Survival survival : {Survival::kNothing, Survival::kEverything}) {
     FaultDisk left(AfterPowerCut({}, operations, cut, survival, 0));
     ServiceOnDisk service(left);

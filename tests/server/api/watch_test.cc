@@ -367,7 +367,7 @@ TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
     return message.has_heartbeat();
   });
   WatchStream unknown(server, name,
-                      "b3RoZXI6MTox");  // a token of another server: everything is sent
+                      "b3RoZXI6MTox");  // of another server: all is sent
   unknown.Until(HasPoints);
 }
 

@@ -310,19 +310,19 @@ void WithEachFieldChanged(
 TEST(Question, EveryFieldOfTheSpecificationIsPartOfIt) {
   std::map<std::string, std::string> fields = {{QuestionOf(Question(), "1"), "none"}};
   int changes = 0;
-  WithEachFieldChanged(
-      Question(), {}, *v1::EnsembleSpec::descriptor(),
-      [&](const FieldDescriptor& field, const v1::EnsembleSpec& changed) {
-        ++changes;
-        const std::string question = QuestionOf(changed, "1");
-        if (changed.target().has_budget()) {
-          EXPECT_EQ(question, "") << field.full_name();  // an empty question has no answer
-          return;
-        }
-        EXPECT_NE(question, "");
-        const auto [same, is_new] = fields.emplace(question, field.full_name());
-        EXPECT_TRUE(is_new) << field.full_name() << " makes the same question as " << same->second;
-      });
+  WithEachFieldChanged(Question(), {}, *v1::EnsembleSpec::descriptor(),
+                       [&](const FieldDescriptor& field, const v1::EnsembleSpec& changed) {
+                         ++changes;
+                         const std::string question = QuestionOf(changed, "1");
+                         if (changed.target().has_budget()) {
+                           EXPECT_EQ(question, "") << field.full_name();  // it has no answer
+                           return;
+                         }
+                         EXPECT_NE(question, "");
+                         const auto [same, is_new] = fields.emplace(question, field.full_name());
+                         EXPECT_TRUE(is_new)
+                             << field.full_name() << " makes the same question as " << same->second;
+                       });
   EXPECT_GE(changes, 15);
 }
 
