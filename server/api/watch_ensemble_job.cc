@@ -19,7 +19,7 @@ constexpr size_t kMaxPoints = 100;  // of a kind in a message
 // Limit for all watches together. A snapshot takes some 50 us, mostly in gRPC.
 constexpr int64_t kSnapshotsPerSecond = 1000;
 
-// A message with a specification above kLargeSpec is large. The other constant limits the bytes of
+// A message with a specification above kLargeSpec is large. kLargeMessages limits the bytes of
 // large messages on their way to one principal.
 constexpr size_t kLargeSpec = size_t{64} << 10;
 constexpr int64_t kLargeMessages = int64_t{32} << 20;

@@ -15,7 +15,7 @@
 //   3. TheTerminalStateIsSentOnce, last, and then OK. So the watch of a job that has ended begins
 //      with the finished points that were not sent yet.
 //
-// The resume token names the job, the number of its restarts by newer engines, and the last
+// The resume token names the job, the number of its restarts by other engines, and the last
 // finished point that was sent. For unfinished points it also has the server process and the last
 // change that was sent. The watch ignores some tokens and sends everything: a token of another job,
 // of results that were dropped because another engine computes the job again, or of points that the

@@ -312,8 +312,7 @@ void SlurmExecutor::Guarded(Activity activity, absl::FunctionRef<absl::Status()>
   absl::Status outcome;
   try {
     outcome = round();
-    if (activity == Activity::kQueue)
-      return;  // the parts of this round have set their own outcomes
+    if (activity == Activity::kQueue) return;  // its parts have set their own problems
   } catch (const std::exception& error) {
     outcome = absl::InternalError(error.what());
   }

@@ -55,7 +55,7 @@ absl::Status CheckRoom(Database& database, const Limits& limits, const ActivePoi
   return refused.ok() ? CheckStoreSize(database, limits, refused) : absl::OkStatus();
 }
 
-// The number of requests with the same job that are stored. Later ones are not stored.
+// A job has at most this many stored requests. Later ones that it answers are not stored.
 constexpr int64_t kMostRequestsOfJob = 1000;
 
 // A retry of a request that is not stored returns the same job, because the job is stored.

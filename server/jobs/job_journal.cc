@@ -160,8 +160,7 @@ void JobJournal::Ended(const absl::Status& outcome) {
     const absl::Status counted = CountStoredPoints(database, record, *end);
     if (!counted.ok()) return counted;
     const absl::StatusOr<JobState> state = EndJob(database, record.sequence, *end);
-    if (state.ok() && *state != end->state)
-      end->error.clear();  // the job was cancelled just before
+    if (state.ok() && *state != end->state) end->error.clear();  // it was cancelled
     end->state = state.value_or(end->state);
     return state.status();
   };

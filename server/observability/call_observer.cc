@@ -190,7 +190,7 @@ void CallObserver::WriteLine(const FailedCall& call, Verdict verdict) {
   const std::optional<int64_t> left_out = (failed ? failures_ : refusals_).Take(Clock::now());
   if (!left_out) return;
   const char* what = failed                          ? "call failed: "
-                     : verdict == Verdict::kNotLetIn ? "call not authorised: "
+                     : verdict == Verdict::kNotLetIn ? "access denied: "
                                                      : "call rejected: ";
   Log(failed ? Severity::kError : Severity::kWarning, absl::StrCat(what, call.message),
       {{"method", call.method},

@@ -13,7 +13,7 @@ constexpr int kMostAttemptsElsewhere = 5;
 constexpr size_t kMostOpenPoints = 2000;
 
 // Points that one lease opens. kCheapPoints: if opening a point finishes it, in some 3 to 100 us.
-// The other: if points may wait for executors elsewhere.
+// kPointsForElsewhere: if points may wait for executors elsewhere.
 constexpr size_t kCheapPoints = 128;
 constexpr size_t kPointsForElsewhere = 32;
 

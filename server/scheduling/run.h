@@ -34,7 +34,7 @@ struct Shortfall {
 
 struct RunRequest {
   int64_t key = 0;         // greater for a newer job
-  int64_t generation = 0;  // of the job among all that had this key in a store's life (backups!)
+  int64_t generation = 0;  // tells apart jobs that had this key (after a backup)
   std::string principal;   // the job's owner, for fair shares
   int32_t priority = 0;    // among the principal's; higher first
   EnsembleSpec spec;

@@ -128,13 +128,12 @@ void Scheduler::StopRun(Run& run, absl::Status why) {
 // again.
 void Scheduler::EndPilot(const Run& owner, const PilotPlace& place) {
   const auto found = pilots_.find(place);
-  if (found == pilots_.end() || found->second != owner.key())
-    return;  // another run has taken the pilot over
+  if (found == pilots_.end() || found->second != owner.key()) return;  // another run has it
   pilots_.erase(found);
   for (const auto& [key, run] : runs_) run->PilotIsKnown(place);
 }
 
-// Also ends the run's turns at leases of executors elsewhere.
+// Drops leases of the run. For executors elsewhere, also ends the run's turn at each of them.
 template <typename IsDropped>
 void Scheduler::DropLeases(const Run& run, IsDropped is_dropped) {
   for (size_t i = 0; i < executors_.size(); ++i) {

@@ -61,8 +61,7 @@ absl::StatusOr<Principal> AccessList::OfToken(absl::string_view token, absl::Tim
   if (token.empty() || token.size() > kLongestToken) return CredentialsInvalid();
   const TokenHash hash = HashOf(token);
   const Holder* found = nullptr;
-  for (const auto& [known, holder] :
-       tokens_) {  // always compares all, so that the time tells nothing
+  for (const auto& [known, holder] : tokens_) {  // compares all: constant time
     if (known == hash) found = &holder;
   }
   if (found == nullptr) return CredentialsInvalid();

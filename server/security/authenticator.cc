@@ -32,8 +32,7 @@ absl::StatusOr<Principal> OfUnixUser(const AccessList* list, const Principal& us
   if (user.role == Role::kAdmin) return user;
   if (list != nullptr) return list->OfUser(user.name, now);
   if (CheckPrincipalName(user.name).ok()) return user;
-  return UserNotListed(
-      user.name);  // for example LAB\ada, which is not a valid principal; a list can map it to one
+  return UserNotListed(user.name);  // such as LAB\ada; a list can map it to a principal
 }
 
 }  // namespace
@@ -53,8 +52,7 @@ absl::StatusOr<Principal> Authenticator::Authenticate(const Credentials& shown,
   if (shown.authorization.size() == 1) {
     return list->OfToken(BearerToken(shown.authorization[0]), now);
   }
-  if (!shown.authorization.empty())
-    return CredentialsInvalid();  // more than one header is ambiguous
+  if (!shown.authorization.empty()) return CredentialsInvalid();  // several: ambiguous
   if (shown.common_name) return list->OfCertificate(*shown.common_name, now);
   return CredentialsMissing();
 }

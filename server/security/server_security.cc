@@ -54,8 +54,7 @@ absl::Status CheckSocket(const SecurityOptions& options, const ListenAddress& ad
   }
   std::vector<std::string> given = Given(options);
   const bool has_list = !options.access_file.empty();
-  if (IsOpenSocket(options) && has_list)
-    given.erase(given.begin());  // removes the access file, which is first
+  if (IsOpenSocket(options) && has_list) given.erase(given.begin());  // removes the access file
   if (given.empty()) return CheckSocketMode(options);
   return Refused(absl::StrCat("--listen=", address.Text(),
                               ": over a Unix socket the kernel says who connects, by default only "

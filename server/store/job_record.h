@@ -29,7 +29,7 @@ struct JobRecord {
   std::optional<absl::Time> expired_time;  // its results are gone
   std::string error;                       // serialized google.rpc.Status, empty unless FAILED
   std::string engine_version;
-  int64_t restarts = 0;           // how often a newer engine started the job again
+  int64_t restarts = 0;           // how often another engine restarted the job
   std::string cancel_request_id;  // of the cancellation, or empty
   int64_t points = 0;
   int64_t points_done = 0;  // these two are up to date in ended jobs only

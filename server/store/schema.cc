@@ -284,8 +284,7 @@ absl::StatusOr<std::unique_ptr<Database>> OpenStoreFile(const std::string& path,
   if (!checked.ok()) return checked;
   auto database = Database::Open(path, Database::Mode::kReadWrite, vfs);
   if (!database.ok()) return absl::PermissionDeniedError(database.status().message());
-  bool unfinished =
-      false;  // checked again, because opening the file may have undone an interrupted change
+  bool unfinished = false;  // again: opening may have undone an interrupted change
   const absl::Status kind = CheckKind(path, **database, unfinished);
   if (!kind.ok()) return kind;
   const absl::Status prepared = Prepare(**database);

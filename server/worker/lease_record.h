@@ -24,7 +24,7 @@ namespace ballpiston::server {
 struct JobIdentity {
   std::string server = {};  // the data folder's identity
   int64_t job = 0;          // its sequence in the store
-  int64_t generation = 0;   // by newer engines
+  int64_t generation = 0;   // changes with the job and at a restart by another engine
   std::string engine_version = {};
 
   friend bool operator==(const JobIdentity&, const JobIdentity&) = default;

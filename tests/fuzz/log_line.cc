@@ -43,9 +43,7 @@ void CheckLogLine(const std::string& text) {
   RequireOneLine(Line(LogFormat::kText, message));
   const std::string json = Line(LogFormat::kJson, message);
   RequireOneLine(json);
-  if (IsOneIn(64, text))
-    RequireJson(json);  // 64 has no common divisor with the other selections, so some cut lines are
-                        // checked too
+  if (IsOneIn(64, text)) RequireJson(json);  // also some of the cut lines
 }
 
 std::vector<std::string> Texts() {

@@ -9,7 +9,7 @@
 namespace ballpiston::server {
 namespace {
 
-// SplitMix64: any three numbers make an unlike fourth.
+// SplitMix64 of the three numbers.
 double Uniform(uint64_t seed, uint64_t point, uint64_t sample) {
   uint64_t x = seed * 0x9e3779b97f4a7c15 + point * 0xbf58476d1ce4e5b9 + sample;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;

@@ -1,4 +1,4 @@
-// Experiments a test can hold up, break and count.
+// Experiments that a test can stop, make fail and count.
 #ifndef BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
 #define BALLPISTON_TESTS_SERVER_FAKE_EXPERIMENTS_H_
 
@@ -15,7 +15,7 @@
 
 namespace ballpiston::server {
 
-// Holds up those who pass until it is opened, or until they are told to stop.
+// Threads that pass the gate wait until it is opened or their stop is requested.
 class Gate {
  public:
   void Open();
@@ -49,11 +49,12 @@ ExperimentFactory FakeExperimentsBySeed(BeforeBlockOfSeed before_block);
 // Fake experiments. Blocks with the number `first_block` or a greater one wait at the gate.
 ExperimentFactory GatedExperiments(Gate& gate, uint64_t first_block = 0);
 
-// The core's experiments, held up at the start of each block, which is told by its first sample.
+// The core's experiments, with a call at the start of each block, which its first sample
+// identifies.
 using BeforeSample = std::function<void(size_t point, uint64_t first, std::stop_token stop)>;
 ExperimentFactory HeldUpExperiments(BeforeSample before_sample);
 
-// One rho, so many deltas, so many blocks each.
+// One rho, `points` deltas, `blocks` blocks each.
 EnsembleSpec FakeSpec(int points, int64_t blocks, uint64_t seed = 1);
 
 // The state of a fake point after its first blocks, and what they give, merged in order.

@@ -1,5 +1,5 @@
-// A channel with a connection of its own. Other channels to one address share a connection, also
-// one to a server that is gone.
+// A channel with a connection of its own. Other channels to the same address share a connection,
+// also a connection to a server that has ended.
 #ifndef BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
 #define BALLPISTON_TESTS_SERVER_OWN_CHANNEL_H_
 

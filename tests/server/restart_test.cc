@@ -24,7 +24,7 @@ TestServerOptions InFolder(const TemporaryFolder& folder, int workers = 2,
   return {.data_dir = folder.path(), .workers = workers, .factory = std::move(factory)};
 }
 
-// The model is named in all of these: held up, an experiment does not tell why it was chosen.
+// All these questions name the model, because a held-up experiment has no reason for its choice.
 v1::EnsembleSpec FirstHitByBilliard() {
   v1::EnsembleSpec spec = SmallFirstHit();
   spec.set_model(v1::EnsembleSpec::BILLIARD);
@@ -150,7 +150,7 @@ uint64_t HalfOf(const v1::EnsembleSpec& spec) {
   return static_cast<uint64_t>(target.has_samples() ? target.samples() : target.collisions()) / 2;
 }
 
-// The core's experiments, held up in the middle: half of point 1, and nothing of later ones.
+// The core's experiments, which wait after half of point 1.
 ExperimentFactory StuckInTheMiddle(Gate& gate, const v1::EnsembleSpec& spec) {
   return HeldUpExperiments(
       [&gate, half = HalfOf(spec)](size_t point, uint64_t first, std::stop_token stop) {

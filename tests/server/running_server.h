@@ -42,7 +42,7 @@ struct TestServerOptions {
   std::shared_ptr<grpc::ChannelCredentials> credentials = nullptr;  // the client's; null: none
 };
 
-// Connections are closed neither for silence nor for age.
+// Silent and old connections stay open.
 inline constexpr ConnectionTiming kOnlyClosedByAStop = {
     .handshake = std::chrono::hours(1),
     .ping_interval = std::chrono::hours(1),

@@ -51,7 +51,8 @@ TEST(StartStop, ADataFolderInUseIsRefused) {
     RunningServer server({.data_dir = folder.path()});
     ExpectStartRefused({.data_dir = folder.path(), .listen = "127.0.0.1:0"},
                        "in use by another ballpistond, which listens on " + server.address() + ";");
-    EXPECT_TRUE(std::filesystem::exists(folder.File("server.address")));  // still that one's
+    EXPECT_TRUE(
+        std::filesystem::exists(folder.File("server.address")));  // still the first server's
   }
   EXPECT_FALSE(std::filesystem::exists(folder.File("server.address")));
 }
@@ -59,7 +60,7 @@ TEST(StartStop, ADataFolderInUseIsRefused) {
 TEST(StartStop, ASocketOfAnotherServerIsRefused) {
   RunningServer server;
   ExpectStartRefused({.listen = server.address()}, "a server is listening there");
-  server.Submit(Equilibrium(1, 2));  // it still can be reached
+  server.Submit(Equilibrium(1, 2));  // the first server still answers
 }
 
 TEST(StartStop, AStaleSocketIsReplacedByOneOfMode0600) {
@@ -99,7 +100,7 @@ TEST(StartStop, AServerWithoutCallsAndJobsIsIdle) {
   RunningServer server({.factory = GatedExperiments(gate)});
   const std::string name = server.Submit(Equilibrium(1, 5));
   gate.AwaitWaiting(1);
-  EXPECT_EQ(server.server().IdleFor().count(), 0);  // it computes
+  EXPECT_EQ(server.server().IdleFor().count(), 0);  // the server computes
   gate.Open();
   server.AwaitEnd(name);
   while (server.server().IdleFor() < std::chrono::milliseconds(1)) std::this_thread::yield();

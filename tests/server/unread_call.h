@@ -18,11 +18,11 @@ class UnreadCall {
   UnreadCall(const UnreadCall&) = delete;
   UnreadCall& operator=(const UnreadCall&) = delete;
 
-  // The only one.
+  // Sends the only request.
   void Send(const std::string& request);
-  // Until the first answer is on its way.
+  // Waits until the server sends the first answer.
   void AwaitAnswer();
-  // Until the server has ended it, 10 min after its beginning at the latest.
+  // Waits until the server has ended the call, at most 10 min after its start.
   grpc::Status Finish();
 
  private:

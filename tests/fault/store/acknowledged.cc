@@ -75,7 +75,7 @@ class Comparison {
     if (service_.Results(IdOf(job)) != traced.results) Say(seed, "ended with other bytes");
   }
 
-  // The client that got no answer asks again, and one that got it may, too.
+  // A client without an answer retries. A client with an answer may retry, too.
   void Repeat(const TracedJob& traced) {
     if (traced.request_id.empty() || traced.remove.WasMade(cut_)) return;
     const uint64_t seed = traced.spec.seed();
@@ -94,7 +94,7 @@ class Comparison {
   std::vector<std::string> wrong_;
 };
 
-// While the service runs, as an operator would.
+// Checks the store while the service runs, as an operator does.
 void AddCheck(const FaultDisk& disk, std::vector<std::string>& wrong) {
   const auto summary = CheckStore(kStorePath, disk.vfs());
   if (!summary.ok()) return wrong.push_back(summary.status().ToString());

@@ -1,4 +1,4 @@
-// What a client was told in the course of a trace, and when: what a power cut must not undo.
+// The answers that a client got during a trace, and when. A power cut must not undo them.
 #ifndef BALLPISTON_TESTS_FAULT_STORE_ACKNOWLEDGED_H_
 #define BALLPISTON_TESTS_FAULT_STORE_ACKNOWLEDGED_H_
 
@@ -23,7 +23,7 @@ struct TracedCall {
   size_t made = kNever;
   size_t answered = kNever;
 
-  // Before a cut in the midst of operation `cut`.
+  // Whether the call was answered before a cut during operation `cut`.
   bool WasAnswered(size_t cut) const { return answered <= cut; }
   bool WasMade(size_t cut) const { return made <= cut; }
 };
@@ -45,9 +45,9 @@ struct Trace {
   std::map<uint64_t, TracedJob> jobs;  // by seed
 };
 
-// Opens what a cut left and says in sentences what is wrong with it: the store does not open, fails
-// its check, something acknowledged is lost, something deleted is back, a request was done twice, a
-// job does not end as it should or with other bytes. Empty: nothing.
+// Opens the files after a cut and describes all errors in sentences: the store does not open or
+// fails its check, acknowledged data is lost, deleted data is back, a request was executed twice, a
+// job has a wrong end or other bytes. Empty: no errors.
 std::vector<std::string> WhatIsWrongAfter(const Trace& trace, size_t cut, Survival survival,
                                           uint64_t seed);
 

@@ -1,5 +1,5 @@
-// The disk refuses a write or a flush, once or from then on: a call fails or has done its work,
-// never the one said and the other done, and what was computed is kept until the disk works again.
+// The disk rejects a write or a flush, once or from then on. A call either fails or succeeds, and
+// its answer is true. Computed results are kept until the disk works again.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -45,13 +45,13 @@ void ExpectDiskFailure(const absl::Status& status, Refusal refusal) {
                       full ? "STORE_FULL" : "STORE_FAILED"));
 }
 
-// A flush that succeeds does so when all that was pending is written.
+// Flush succeeds only when all pending writes are written.
 void AwaitWritten(Store& store) {
   while (!store.Flush().ok()) {
   }
 }
 
-// The job that a turnstile holds up, one that has ended, and the three calls that write.
+// A job that waits at a turnstile, a job that has ended, and the three calls that write.
 class Scene {
  public:
   Scene() : service_(std::make_unique<ServiceOnDisk>(disk_, &turnstile_)) {
@@ -83,14 +83,14 @@ class Scene {
   }
   bool IsDeleted() { return Count(*service_, 1) == 0; }
 
-  // Of a service, jobs with that seed.
+  // The number of the service's jobs with this seed.
   static int Count(ServiceOnDisk& service, uint64_t seed) {
     int count = 0;
     for (const EnsembleJob& job : service.List()) count += job.spec().seed() == seed ? 1 : 0;
     return count;
   }
 
-  // The files as a power cut now would leave them.
+  // The files after a power cut at this moment.
   DiskFiles CutNow(Survival survival) const {
     const std::vector<DiskOperation> operations = disk_.operations();
     return AfterPowerCut({}, operations, operations.size(), survival, 1);
@@ -147,8 +147,8 @@ class Refused {
     }
   }
 
-  // What was said is so after a power cut; a failed call is in doubt, and asked again does its work
-  // once.
+  // An acknowledged call survives a power cut. The outcome of a failed call is unknown, and its
+  // retry does the work once.
   void ExpectItSurvives() {
     for (const Survival survival : kSurvivals) {
       FaultDisk left(scene_.CutNow(survival));
@@ -167,7 +167,7 @@ class Refused {
     }
   }
 
-  // The disk works again: the repeated call does its work, and all goes on.
+  // The disk works again: the retry succeeds, and all jobs go on.
   void ExpectItGoesOn() {
     scene_.disk().StopRefusing();
     const absl::Status again = Call();
@@ -225,7 +225,7 @@ TEST(DiskFailure, ACallDuringALongDiskErrorFailsOrSucceeds) {
   });
 }
 
-// The transaction whose flush failed is on the disk all the same when the power goes.
+// The flush of the transaction failed, but its data is on the disk when the power is cut.
 TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
   Scene scene;
   scene.disk().Refuse(Refusal::kSyncError, scene.disk().operation_count());
@@ -235,7 +235,7 @@ TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
   const std::vector<DiskOperation> operations = scene.disk().operations();
   const auto failed = std::find_if(operations.begin(), operations.end(),
                                    [](const DiskOperation& done) { return done.refused; });
-  const auto cut = static_cast<size_t>(failed - operations.begin());  // not written over by a retry
+  const auto cut = static_cast<size_t>(failed - operations.begin());  // before the retry
   for (const Survival survival : {Survival::kNothing, Survival::kEverything}) {
     FaultDisk left(AfterPowerCut({}, operations, cut, survival, 0));
     ServiceOnDisk service(left);
@@ -243,7 +243,7 @@ TEST(DiskFailure, ACreateInDoubtIsFoundByItsRequestId) {
     EXPECT_OK(service.Create(Equilibrium(1, 2, 3), "request"));
     EXPECT_EQ(Scene::Count(service, 3), 1);
   }
-  EXPECT_THAT(before, testing::ElementsAre(0, 1));  // so it was in doubt
+  EXPECT_THAT(before, testing::ElementsAre(0, 1));  // both outcomes are possible
 }
 
 TEST(DiskFailure, ResultsAreStoredWhenTheDiskWorksAgain) {
@@ -268,10 +268,10 @@ TEST(DiskFailure, TheStoreNoticesByItselfThatTheDiskWorksAgain) {
   EXPECT_FALSE(scene.Create().ok());
   EXPECT_TRUE(scene.service().store().failing());
   const int64_t refusals = scene.disk().refusals();
-  while (scene.disk().refusals() < refusals + 3) std::this_thread::yield();  // it tries
+  while (scene.disk().refusals() < refusals + 3) std::this_thread::yield();  // the store retries
   EXPECT_TRUE(scene.service().store().failing());
   scene.disk().StopRefusing();
-  while (scene.service().store().failing()) std::this_thread::yield();  // nobody asks for anything
+  while (scene.service().store().failing()) std::this_thread::yield();  // without any call
   EXPECT_OK(scene.Create());
 }
 
@@ -281,7 +281,7 @@ absl::Status FailureToOpen(const FaultDisk& disk) {
   return status;
 }
 
-// It is not called damaged, nor is anybody told to move it away.
+// The error does not say that the store is damaged or must be moved away.
 TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   for (const FaultDisk::Refusal refusal : kRefusals) {
     FaultDisk disk;
@@ -295,7 +295,7 @@ TEST(DiskFailure, ADiskErrorAtTheStartIsNotReportedAsDamage) {
   }
 }
 
-// Not one more byte fits, but what the log held may be written over.
+// The disk is full, but the log can be overwritten.
 TEST(DiskFailure, OnAFullDiskJobsCanBeCancelledAndDeleted) {
   Scene scene;
   Store& store = scene.service().store();
@@ -338,7 +338,7 @@ TEST(DiskFailure, OnAFullDiskTheReserveLetsALargeJobBeDeleted) {
   EXPECT_OK(store->Read(count));
 }
 
-// Results too big for the disk wait, and do not hold up those who would make room.
+// Results that do not fit on the disk wait, and do not delay requests that free space.
 TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   Scene scene;
   Store& store = scene.service().store();
@@ -354,7 +354,7 @@ TEST(DiskFailure, OnAFullDiskRequestsGoBeforeRecordsThatDoNotFit) {
   EXPECT_EQ(store.pending_writes(), 0);
 }
 
-// Many records of which some fit: in smaller groups they are written.
+// Some of many records fit. The store writes them in smaller groups.
 TEST(DiskFailure, OnAFullDiskRecordsThatFitAreWritten) {
   Scene scene;
   Store& store = scene.service().store();
@@ -391,7 +391,7 @@ TEST(DiskFailure, WorkersWaitWhenTheirResultsTakeTooMuchMemory) {
   EXPECT_TRUE(has_room);
 }
 
-// A delay gathers small batches. It does not hold back those who wait for room.
+// The delay collects small batches. It does not delay threads that wait for room.
 TEST(DiskFailure, ManyWritesAreNotDelayed) {
   FaultDisk disk;
   Store::Options options;
@@ -408,9 +408,9 @@ TEST(DiskFailure, ManyWritesAreNotDelayed) {
   stored.get_future().wait();
 }
 
-// ---- a whole life with one refusal in it ----
+// ---- a whole life with one disk error ----
 
-// Asks until it is answered, as the client library does.
+// Retries until there is an answer, as the client library does.
 std::string CreateAtLast(ServiceOnDisk& service, uint64_t seed) {
   while (true) {
     const auto job = service.Create(Equilibrium(2, 3, seed), absl::StrCat("request-", seed));
@@ -418,14 +418,14 @@ std::string CreateAtLast(ServiceOnDisk& service, uint64_t seed) {
   }
 }
 
-// Submits and finishes three jobs; false if the disk refused nothing.
+// Submits and finishes three jobs. False if the disk rejected nothing.
 bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>& results) {
   FaultDisk disk;
   { ServiceOnDisk made(disk); }
   disk.Refuse(refusal, disk.operation_count() + at, 1);
   {
     ServiceOnDisk service(disk);
-    if (!service.status().ok()) return disk.refusals() > 0;  // refused to start: no false success
+    if (!service.status().ok()) return disk.refusals() > 0;  // the start failed, which is permitted
     service.WriteLogBackOften();
     for (const uint64_t seed : {7u, 8u, 9u}) {
       EXPECT_EQ(service.AwaitEnd(CreateAtLast(service, seed)).state(), EnsembleJob::SUCCEEDED);
@@ -449,7 +449,8 @@ bool LiveWithARefusal(Refusal refusal, size_t at, const std::vector<std::string>
   return disk.refusals() > 0;
 }
 
-// Wherever in a life the disk fails once, and the power goes at its end.
+// The disk fails once, at each operation of a life in turn, and the power is cut at the end of the
+// life.
 TEST(DiskFailure, AfterADiskErrorAtAnyCallAcknowledgedDataIsThere) {
   const size_t stride = std::getenv("BALLPISTON_TORTURE") != nullptr ? 1 : 3;
   FaultDisk undisturbed;

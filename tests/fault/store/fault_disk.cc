@@ -216,7 +216,7 @@ struct Methods {
     std::lock_guard guard(Of(handle).disk->mutex_);  // orders what was written before and after
   }
 
-  // With its last user the memory is gone, as SQLite's own empties the file for its first.
+  // The last user frees the memory. SQLite's own file system empties the file for its first user.
   static int ShmUnmap(sqlite3_file* handle, int) {
     OpenFile& open = Of(handle);
     std::lock_guard guard(open.disk->mutex_);

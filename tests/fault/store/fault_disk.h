@@ -1,12 +1,10 @@
-// A disk in memory for SQLite that keeps a log of all that is done to it, and can be told to
-// refuse.
+// A disk in memory for SQLite. It logs all operations, and rejects those that the test selects.
 //
 // It is a file system of SQLite's (`vfs()` is its name) and behaves as SQLite's own for Unix does:
 // the name of a log or journal is flushed with its first sync, bytes outside those written are
-// never touched, an empty file does not exist for those who ask, locks and the log's index are
-// shared by all connections of the process. Every write, truncation, sync, creation and deletion is
-// one operation, numbered from 0; power_cut.h says what a cut at any of them would leave.
-// Thread-safe.
+// never changed, an empty file counts as not existing, locks and the log's index are shared by all
+// connections of the process. Every write, truncation, sync, creation and deletion is one
+// operation, numbered from 0; power_cut.h says what a cut at any of them would leave. Thread-safe.
 #ifndef BALLPISTON_TESTS_FAULT_STORE_FAULT_DISK_H_
 #define BALLPISTON_TESTS_FAULT_STORE_FAULT_DISK_H_
 
@@ -55,7 +53,7 @@ class FaultDisk {
   // Refuses operations of that kind (a full disk and a write error: writes; a sync error: syncs)
   // among those with numbers first, first + 1, ..., first + count - 1.
   void Refuse(Refusal refusal, size_t first, size_t count = std::numeric_limits<size_t>::max() / 2);
-  // Files may not grow beyond this together.
+  // Limits the total size of all files.
   void SetCapacity(int64_t bytes);
   void StopRefusing();
 

@@ -13,8 +13,8 @@ using Kind = DiskOperation::Kind;
 
 constexpr size_t kDiskSectorBytes = 512;
 
-// By operation, whether it is safe. Read backwards: a sync makes safe what lies before it, back to
-// a sync of the same file that failed.
+// Whether each operation is safe. Goes backwards: a sync makes all earlier operations of its file
+// safe, back to a failed sync of the file.
 std::vector<bool> SafeOperations(const std::vector<DiskOperation>& operations, size_t cut) {
   std::vector<bool> safe(operations.size(), false);
   std::map<int, bool> synced;  // by file: whether the next sync succeeded

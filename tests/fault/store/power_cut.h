@@ -1,9 +1,9 @@
-// What is left on a disk after a power cut: pure functions of its log of operations.
+// The files that a power cut leaves. Pure functions of the disk's log of operations.
 //
 // A write or truncation is safe once a later sync of its file succeeded, a name once its folder was
-// flushed. Of the others, the one in progress included, any part may be there: `Survival` says
-// which. After a sync that failed nobody knows: what was written before it may be lost although a
-// later sync succeeds, unless it was written again.
+// flushed. Any part of the other operations, including the one in progress, may be on the disk:
+// `Survival` says which. After a failed sync, earlier writes may be lost although a later sync
+// succeeds, unless they were written again.
 #ifndef BALLPISTON_TESTS_FAULT_STORE_POWER_CUT_H_
 #define BALLPISTON_TESTS_FAULT_STORE_POWER_CUT_H_
 
@@ -16,10 +16,10 @@
 namespace ballpiston::server {
 
 enum class Survival {
-  kNothing,      // of what is not safe
-  kEverything,   // the disk had written it all
-  kOldest,       // what came before some moment
-  kNewest,       // what came after some moment: the disk wrote in another order
+  kNothing,      // no unsafe operation
+  kEverything,   // all operations
+  kOldest,       // the operations before some moment
+  kNewest,       // the operations after some moment: the disk reordered them
   kSectors,      // any sectors of 512 bytes, any names and truncations
   kTornSectors,  // the same, and some sectors are new up to their middle and old beyond it
 };

@@ -1,8 +1,8 @@
-// The power is cut at every write and sync of a trace: nothing acknowledged is lost, nothing
-// deleted comes back, and what was unfinished is finished to the same bytes.
+// The power is cut at every write and sync of a trace. No acknowledged data is lost, no deleted job
+// comes back, and unfinished jobs end with the same bytes.
 //
-// The trace runs once, on a disk that keeps a log of it; what a cut would leave is made from that
-// log, so every cut is one of the same trace.
+// The trace runs once, on a disk that logs it. The files after each cut are made from that log, so
+// all cuts are of the same trace.
 #include "tests/fault/store/power_cut.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ using v1::EnsembleJob;
 
 bool EveryCut() { return std::getenv("BALLPISTON_TORTURE") != nullptr; }
 
-// Of an undisturbed service.
+// The results of an undisturbed service.
 std::vector<std::string> UndisturbedResults(const v1::EnsembleSpec& spec) {
   FaultDisk disk;
   ServiceOnDisk service(disk);
@@ -43,7 +43,7 @@ std::vector<std::string> UndisturbedResults(const v1::EnsembleSpec& spec) {
   return service.Results(id);
 }
 
-// Does what clients do, and notes what they were told.
+// Makes the calls of clients, and records the answers.
 class Client {
  public:
   Client(FaultDisk& disk, Trace& trace) : disk_(disk), trace_(trace) {}
@@ -73,7 +73,7 @@ class Client {
     job.remove.made = disk_.operation_count();
     ASSERT_OK(service.Delete(job.id));
     job.remove.answered = disk_.operation_count();
-    service.store().AwaitSwept();  // what a later request writes comes after it
+    service.store().AwaitSwept();  // so that later requests write after it
   }
 
   void SeeSuccess(ServiceOnDisk& service, uint64_t seed) {
@@ -88,7 +88,7 @@ class Client {
   Trace& trace_;
 };
 
-// Only one job can run at any moment, so that what is written when does not depend on time.
+// Only one job can run at a time, so that the order of writes does not depend on time.
 void FirstLife(FaultDisk& disk, Client& client) {
   Turnstile turnstile;
   ServiceOnDisk service(disk, &turnstile);
@@ -221,7 +221,7 @@ TEST(PowerCut, TheTraceCheckpointsAndRestartsTheLog) {
   EXPECT_GT(headers, 5);
 }
 
-// The comparison sees it when a disk lies: it says that it has flushed, and has not.
+// The comparison detects a disk that reports a flush that it has not done.
 TEST(PowerCut, ADiskThatDoesNotFlushIsDetected) {
   Trace trace = SubmitToFinish();
   for (DiskOperation& operation : trace.operations) {

@@ -77,13 +77,13 @@ void Fill(const std::string& path, const Store::Change& change) {
   ASSERT_OK(store->Commit(change));
 }
 
-// What stands between the start of a server and its first answer.
+// The time from the start of a server to its first answer.
 double SecondsUntilReady(const std::string& path) {
   const auto start = std::chrono::steady_clock::now();
   const auto store = Store::Open(path, {});
   const double opened = SecondsSince(start);
   EXPECT_OK(store);
-  // Held up, so that what is measured is not what the jobs cost.
+  // Jobs wait, so that their computation is not measured.
   ThreadPool pool(2, FakeExperiments([](size_t, uint64_t, const std::stop_token& stop) {
                     Turnstile().Pass(stop);
                   }));

@@ -19,7 +19,7 @@ ExperimentFactory Factory(Turnstile* turnstile) {
       [turnstile](size_t, uint64_t, const std::stop_token& stop) { turnstile->Pass(stop); });
 }
 
-// Records wait until a request takes them along, so that a trace does not depend on time.
+// Records wait until a request is committed, so that a trace does not depend on time.
 Store::Options StoreOptions(const FaultDisk& disk) {
   Store::Options options;
   options.delay = std::chrono::hours(1);

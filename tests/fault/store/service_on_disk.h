@@ -1,5 +1,5 @@
-// One life of the server's insides, without gRPC, over a disk that can fail: store, book of jobs
-// and one worker with the fake experiments.
+// One life of a server without gRPC, over a disk that can fail: store, book of jobs and one worker
+// with the fake experiments.
 #ifndef BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
 #define BALLPISTON_TESTS_FAULT_STORE_SERVICE_ON_DISK_H_
 
@@ -28,7 +28,7 @@ inline constexpr char kStorePath[] = "/data/store.sqlite3";
 class Turnstile {
  public:
   void Pass(const std::stop_token& stop);
-  // So many more blocks may pass; returns when they have, and the next one waits.
+  // Lets `blocks` more blocks pass. Returns when they have passed and the next block waits.
   void Admit(int blocks);
   void AdmitAll();
   void AdmitNoMore();
@@ -49,9 +49,9 @@ class ServiceOnDisk {
  public:
   // A null turnstile lets everything through.
   explicit ServiceOnDisk(FaultDisk& disk, Turnstile* turnstile = nullptr);
-  ~ServiceOnDisk();  // stops as a server does that is told to
+  ~ServiceOnDisk();  // stops like a server after SIGTERM
 
-  // Of opening the store and resuming its jobs. Nothing else may be called unless it is OK.
+  // The status of opening the store and resuming its jobs. Call other functions only if it is OK.
   const absl::Status& status() const { return status_; }
   Store& store() { return *store_; }
   JobBook& book() { return *book_; }
@@ -63,12 +63,12 @@ class ServiceOnDisk {
   absl::StatusOr<v1::EnsembleJob> Get(const std::string& id);
   std::vector<v1::EnsembleJob> List();
 
-  // Returns when the job has ended, and how.
+  // Waits for the end of the job and returns the job.
   v1::EnsembleJob AwaitEnd(const std::string& id);
   // All points, each serialized.
   std::vector<std::string> Results(const std::string& id);
 
-  // Makes the log short, so that it is written back and begun anew within a small trace.
+  // Makes the log short, so that even a small trace writes it back and restarts it.
   void WriteLogBackOften();
 
  private:
@@ -83,7 +83,7 @@ class ServiceOnDisk {
   std::unique_ptr<JobBook> book_;
 };
 
-// The part of a job's name that the book knows it by.
+// The job's id, a part of its name.
 std::string IdOf(const v1::EnsembleJob& job);
 
 }  // namespace ballpiston::server

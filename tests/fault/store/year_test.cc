@@ -147,7 +147,7 @@ TEST_F(YearTest, TheStoreStaysWithinItsBounds) {
     const int64_t used = ReadFrom(*store_, UsedBytes);
     EXPECT_LE(used, kBound);
     EXPECT_LE(ReadFrom(*store_, FreePages), kMostFreePages);
-    EXPECT_TRUE(day < kRetainDays || used > 40'000'000) << used;  // what may stay has stayed
+    EXPECT_TRUE(day < kRetainDays || used > 40'000'000) << used;  // results that may stay are kept
     const double hold = prober.TakeLongest();
     longest = std::max(longest, hold);
     if (day % 5 == 4) {

@@ -1,6 +1,6 @@
-// The engine without the service: a question's first point, its blocks computed by so many threads
-// and merged in order, and nothing else. The measure of what the service costs, and of how fast the
-// machine is just now.
+// The engine without the service: threads compute the blocks of a question's first point, and the
+// blocks are merged in order. It is the reference for the cost of the service and for the present
+// speed of the machine.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_BARE_ENGINE_H_
 
@@ -26,7 +26,7 @@ class BareEngine {
 
   Window Run(std::chrono::milliseconds length);
 
-  // While the server is stopped.
+  // Runs while the server is stopped.
   Window RunInsteadOf(const ServerProcess& server, std::chrono::milliseconds length);
 
  private:

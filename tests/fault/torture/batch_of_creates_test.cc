@@ -47,7 +47,7 @@ std::string CreateInTheEnd(const std::shared_ptr<grpc::Channel>& channel,
   }
 }
 
-// All the names in the answers to one request id.
+// The names of jobs in all answers to one request id.
 std::set<std::string> NamesOfOneRequest(const Channels& channels, const v1::EnsembleSpec& spec,
                                         const std::string& request_id, ConnectedServer* to_kill) {
   std::vector<std::string> names(kAtOnce);
@@ -59,7 +59,7 @@ std::set<std::string> NamesOfOneRequest(const Channels& channels, const v1::Ense
       names[i] = CreateInTheEnd(channels[i % kConnectionsOfCreates], spec, request_id);
     });
   }
-  if (to_kill != nullptr) {  // armed beforehand
+  if (to_kill != nullptr) {  // its failpoint is armed before
     EXPECT_EQ(to_kill->AwaitEnd(), 128 + SIGKILL);
     to_kill->Start();
   }
@@ -69,7 +69,7 @@ std::set<std::string> NamesOfOneRequest(const Channels& channels, const v1::Ense
 
 class BatchOfCreates : public testing::Test {
  protected:
-  // `failpoint`: where the first server dies under them; empty: it lives.
+  // `failpoint`: where the first server is killed; empty: it is not killed.
   void Round(const v1::EnsembleSpec& spec, const std::string& failpoint) {
     server_.Spawn(failpoint);
     ASSERT_TRUE(server_.AwaitReady());
@@ -116,7 +116,7 @@ TEST_F(BatchOfCreates, MakesEachJobOnceThroughKills) {
                                                "store.after_commit:ready+1",
                                                "create.committed:1",
                                                "create.before_answer:1"};
-  // Every question is another one, so that none is answered from the store.
+  // Every question is different, so that the store has no answer.
   for (int round = 0; round < Size(6, 102); ++round) {
     v1::EnsembleSpec spec = ManyPoints(2, 1'000);
     spec.set_seed(static_cast<uint64_t>(10 * round));

@@ -1,4 +1,4 @@
-// To the client library a restart of the server is a short pause of a watch.
+// For the client library a restart of the server is a short pause of a watch.
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,4 +1,4 @@
-// What a test counted, and what it found wrong: printed as a table when the program ends.
+// A test's counts and errors. The program prints them as a table when it ends.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_FINDINGS_H_
 
@@ -14,14 +14,14 @@ namespace ballpiston::torture {
 class Findings {
  public:
   explicit Findings(std::string section) : section_(std::move(section)) {}
-  ~Findings();  // hands the counts to the table
+  ~Findings();  // adds the counts to the table
 
   void Count(const std::string& what, int64_t by = 1);
   void Note(const std::string& what, const std::string& value);  // a measured number, as text
   void Wrong(const std::string& what);                           // a broken promise
 
   int64_t count(const std::string& what) const;
-  // The first of what was wrong, one a line; empty if nothing was.
+  // The first errors, one a line; empty if there are none.
   std::string Report() const;
 
  private:
@@ -30,10 +30,10 @@ class Findings {
   std::map<std::string, int64_t> counts_;
   std::map<std::string, std::string> notes_;
   std::vector<std::string> wrong_;
-  mutable bool judged_ = false;  // somebody asked whether anything was wrong
+  mutable bool judged_ = false;  // Report was called
 };
 
-// Of all that has ended.
+// Prints the table of all tests that have ended.
 void PrintTable();
 
 }  // namespace ballpiston::torture

@@ -27,7 +27,7 @@ namespace {
 constexpr double kDrainSeconds = 1;
 constexpr char kPreface[] = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";  // of every HTTP/2 connection
 
-// A connection that sends these bytes and then nothing.
+// A connection that sends these bytes and nothing more.
 class HalfOpenConnection {
  public:
   HalfOpenConnection(const std::string& address, const std::string& bytes)
@@ -129,7 +129,7 @@ TEST_F(HungClients, CallsWithoutAMessageDoNotDelayTheStop) {
   const CallWithoutMessage create(channel, service + "CreateEnsembleJob");
   const CallWithoutMessage watch(channel, service + "WatchEnsembleJob");
   const CallWithoutMessage health(channel, "/grpc.health.v1.Health/Check");
-  // Answered after them, on the same connection: so they have arrived.
+  // This call uses the same connection. When it is answered, the earlier calls have arrived.
   ASSERT_OK(client::Client(channel).Get(name_));
   CheckStop("calls without a message");
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kNoWatch = 3;
 
-// Between which numbers of finished points the readers were to be silent.
+// The readers must get no message between these numbers of finished points.
 struct Silence {
   int first = 0;
   int last = 0;
@@ -34,7 +34,7 @@ struct Reader {
 
 std::unique_ptr<Reader> Open(const std::string& address, const std::string& job, bool reads) {
   grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // the server may send 64 KiB ahead, and no more
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);  // the server can send at most 64 KiB ahead
   auto reader = std::make_unique<Reader>();
   reader->stub = v1::EnsembleService::NewStub(server::OwnChannel(address, nullptr, arguments));
   v1::WatchEnsembleJobRequest request;

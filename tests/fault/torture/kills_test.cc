@@ -1,5 +1,5 @@
-// The server is killed again and again, at random times and at every failpoint, under clients that
-// ask for all it can do.
+// The server is killed again and again, at random times and at every failpoint, while clients call
+// all its methods.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -34,7 +34,7 @@ namespace {
 constexpr int kMostFurtherLives = 30;
 constexpr int kKilled = 128 + SIGKILL;
 
-// The server passes the most frequent failpoints at every block, the rarest once or twice in all.
+// The most frequent failpoints are passed at every block, the rarest once or twice in a life.
 int MostPasses(std::string_view failpoint) {
   if (failpoint.starts_with("store.") || failpoint.starts_with("checkpoint.")) return 30;
   if (failpoint.starts_with("block.") || failpoint == "resume.point") return 20;
@@ -185,7 +185,7 @@ void KillUnderVisitors(const Scene& scene, Findings& findings) {
     visitor.CheckAll();
     expected.merge(visitor.names());
   }
-  EXPECT_EQ(NamesOn(server), expected);  // none is lost, none is there twice, none is back
+  EXPECT_EQ(NamesOn(server), expected);  // no job is lost, doubled, or back after its deletion
   EXPECT_GT(findings.count("results compared byte by byte"), 0);
 }
 

@@ -124,7 +124,7 @@ class LiveWatchers : public testing::Test {
     }
   }
 
-  // Until each has heard so many messages.
+  // Waits until each watcher has received this many messages.
   void AwaitHeard(int messages) const {
     for (const LiveWatcher& watcher : watchers_) {
       while (watcher.heard() < messages) std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -1,4 +1,4 @@
-// What the service costs above the engine that it runs.
+// The cost of the service compared with the engine alone.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -17,11 +17,11 @@ namespace ballpiston::torture {
 namespace {
 
 constexpr double kMostOverhead = 0.02;
-// So many samples in a window, ten blocks, that one which is cut short at its end does not matter.
+// A window has at least ten blocks, so an incomplete block at its end does not matter.
 constexpr double kLeastSamples = 10 * 65536;
 
-// Whatever this thread begins meanwhile, programs and threads, runs on so many cores: neighbours
-// slow one core more than another.
+// Programs and threads that this thread starts meanwhile run on the first cores only, because other
+// programs may slow some cores more than others.
 class OnFirstCores {
  public:
   explicit OnFirstCores(int count) {
@@ -41,7 +41,7 @@ class OnFirstCores {
   cpu_set_t before_;
 };
 
-// The same question to both, in turn: while one computes the other is stopped.
+// Runs the same question on both in turn. While one computes, the other is stopped.
 void Compare(int workers, const std::string& name, Findings& findings) {
   const OnFirstCores pinned(workers);
   const v1::EnsembleSpec question = Endless();

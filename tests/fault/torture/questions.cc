@@ -57,7 +57,7 @@ EnsembleSpec FirstHit(const std::vector<double>& energies) {
   return spec;
 }
 
-// As many samples as its blocks have been planned to have: none missing, none twice.
+// Each point must have the planned number of samples: none missing, none twice.
 void CheckCounts(const EnsembleSpec& message, const std::vector<v1::PointResult>& points) {
   const ballpiston::EnsembleSpec spec = server::CheckSpec(message).spec;
   if (points.size() != PointCount(spec)) throw std::runtime_error("points are missing");

@@ -21,7 +21,7 @@ std::vector<v1::EnsembleSpec> Questions();
 // Questions of some seconds of one core.
 std::vector<v1::EnsembleSpec> LargeQuestions();
 
-// Many points, each of much the same cost.
+// Many points of similar cost.
 v1::EnsembleSpec ManyPoints(int points, int64_t samples);
 
 // Never ends by itself; saturates the workers with turns of some 50 ms.

@@ -1,17 +1,17 @@
-// How much the harness does: little by default, a few seconds each; all of it where
-// the environment says BALLPISTON_TORTURE=1 (`make torture`); BALLPISTON_TORTURE=0.1 does a tenth.
+// The size of the torture tests: by default a few seconds each; the full size with
+// BALLPISTON_TORTURE=1 in the environment (`make torture`), a tenth with 0.1.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_SIZES_H_
 
 namespace ballpiston::torture {
 
-// Of the full size; 0 in the short form.
+// The share of the full size; 0 in the short form.
 double ShareOfFullSize();
 
-// In the short form `brief`; else the share of `full`, and `brief` at least.
+// `brief` in the short form; otherwise the share of `full`, at least `brief`.
 int Size(int brief, int full);
 
-// Whether to hold the server to times, which a busy machine may miss through no fault of its own.
+// Whether to check times. A busy machine may miss them without an error of the server.
 bool HoldsToTimes();
 
 }  // namespace ballpiston::torture

@@ -1,4 +1,4 @@
-// Readers that stall cost the server bounded memory, and the engine nothing.
+// Stalled readers use bounded memory in the server, and no time of the engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ namespace {
 
 constexpr double kMostMiBEach = 8;
 constexpr double kMostLoss = 0.01;
-// Many points, so that what the readers do not read is much: 0.3 MB of specification, and every
-// finished point, of which so many are there to be told at once. Not more: what one principal's
-// readers leave unread of specifications, 32 MiB, would keep the last from their first message.
+// Many points, so that the unread data is large: 0.3 MB of specification and all finished points.
+// Not more points, because the unread specifications of one principal would reach 32 MiB, and the
+// last readers would not get their first message.
 constexpr int kPoints = 40'000;
 constexpr int kFinishedBefore = 600;
 constexpr int kFinishedMeanwhile = 10;
@@ -46,8 +46,8 @@ class StalledReaders : public testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 
-  // What a sample costs, as a multiple of what it costs the bare engine meanwhile: so the machine,
-  // which may be slower now than a minute ago, cancels out.
+  // The cost of a sample, relative to the bare engine at the same time, because the machine's speed
+  // changes.
   struct Costs {
     double processor = 0, time = 0;
   };
@@ -62,7 +62,7 @@ class StalledReaders : public testing::Test {
 
   struct Stalled {
     Costs costs;
-    int silent = 0;    // readers that were told nothing meanwhile
+    int silent = 0;    // readers that got no message meanwhile
     int finished = 0;  // points, meanwhile
   };
   Stalled LookWithReaders() {
@@ -71,14 +71,14 @@ class StalledReaders : public testing::Test {
     const int first = Finished();
     const Costs costs = Look();
     most_mib_ = std::max(most_mib_, (server_.ResidentMiB() - mib_without_) / readers_);
-    AwaitFinished(first + kFinishedMeanwhile);  // else silence would show nothing
+    AwaitFinished(first + kFinishedMeanwhile);  // otherwise silence would prove nothing
     const int last = Finished();
     // A message made at either of the two moments may have either number.
     return {costs, hung.WakeAndCountSilent(first, last), last - first};
   }
 
-  // With readers that have stalled. Shows that they have: where the server was too busy to send
-  // them so much in time, others get longer.
+  // Measures with stalled readers, and checks that they have stalled. If the server was too busy to
+  // send them enough in time, new readers get more time.
   Costs LookWithStalled() {
     Stalled stalled = LookWithReaders();
     while (stalled.silent < readers_ && to_stall_ < kLongestToStall) {
@@ -91,7 +91,7 @@ class StalledReaders : public testing::Test {
     return stalled.costs;
   }
 
-  // Now the one first, now the other, lest the question's becoming dearer look like a loss.
+  // The order alternates, because the cost of the question grows with time.
   void Round(bool stalled_first) {
     Costs stalled;
     if (stalled_first) stalled = LookWithStalled();

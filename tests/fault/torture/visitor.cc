@@ -18,9 +18,9 @@ namespace {
 using Stub = v1::EnsembleService::Stub;
 using client::HasEnded;
 
-// More would only wait for the two cores.
+// More active jobs would only wait for the two cores.
 constexpr size_t kMostActive = 3;
-// Enough to find in a list, few enough to look through at the end.
+// Enough jobs for the lists, few enough to check all at the end.
 constexpr size_t kMostKept = 40;
 constexpr std::chrono::seconds kPatience(20);  // for one call; after that the call is repeated
 
@@ -96,7 +96,7 @@ void Visitor::Create() {
   v1::CreateEnsembleJobRequest request;
   *request.mutable_spec() = exam_.questions[job.question];
   request.set_request_id(job.request_id);
-  request.set_fresh(true);  // not the answer of another one's job
+  request.set_fresh(true);  // not the answer of another client's job
   const auto made = UntilAnswered([&] { return Ask(*stub_, &Stub::CreateEnsembleJob, request); });
   if (!made.ok()) return Wrong(job, absl::StrCat("Create: ", made.status().ToString()));
   findings_.Count("jobs acknowledged");
@@ -220,7 +220,7 @@ void Visitor::Learn(OwnJob& job, const v1::EnsembleJob& seen, const char* from) 
   job.end_from = from;
 }
 
-// What the job says it computed is what its points say.
+// The job's number of samples must be the sum over its points.
 void Visitor::CheckSamples(const OwnJob& job, const v1::EnsembleJob& seen) {
   if (seen.state() != v1::EnsembleJob::SUCCEEDED) return;
   findings_.Count("jobs that succeeded");

@@ -1,8 +1,8 @@
 // One client among several, at random: creates jobs, looks them up, watches, cancels, deletes, and
 // fetches their results, while the server is killed under it. It repeats each call until it has an
-// answer, remembers every answer, and says which of them the server did not keep:
-//   1. a request id means one job, however often it is asked;
-//   2. a job that was acknowledged is there until its deletion was asked for;
+// answer, remembers every answer, and reports when the server breaks one of these rules:
+//   1. a request id means one job, also after retries;
+//   2. a job that was acknowledged exists until its deletion is requested;
 //   3. a cancellation that was acknowledged ends in CANCELLED;
 //   4. an end that was seen stays that end;
 //   5. a job that succeeded has the undisturbed answer, byte by byte, and its samples once.
@@ -31,7 +31,7 @@ struct Exam {
   std::vector<Answer> answers;
 };
 
-// Of one thread.
+// Not thread-safe.
 class Visitor {
  public:
   Visitor(std::shared_ptr<grpc::Channel> channel, const Exam& exam, uint64_t seed,
@@ -39,9 +39,9 @@ class Visitor {
 
   void VisitUntil(const std::atomic<bool>& enough);
 
-  // With a server that stays: waits for the end of every job and checks it.
+  // For a server that is not killed any more: waits for the end of every job and checks it.
   void CheckAll();
-  std::set<std::string> names() const;  // of the jobs that have to be there
+  std::set<std::string> names() const;  // of the jobs that must exist
 
  private:
   struct OwnJob {
@@ -50,7 +50,7 @@ class Visitor {
     std::string name;
     bool cancelled = false;  // and acknowledged
     v1::EnsembleJob::State end = v1::EnsembleJob::STATE_UNSPECIFIED;
-    const char* end_from = "";  // the call that told it
+    const char* end_from = "";  // the call that returned it
   };
 
   template <typename Call>

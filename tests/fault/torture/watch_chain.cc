@@ -33,7 +33,8 @@ bool WatchChain::Attach(v1::EnsembleService::StubInterface& stub, int messages) 
   v1::WatchEnsembleJobResponse message;
   int heard = 0;
   while (heard < messages && reader->Read(&message)) {
-    // If a new life began since, nobody knows in which the stream was opened: it counts as another.
+    // If the server was restarted since, the stream's life of the server is unknown: it counts as a
+    // new one.
     if (heard == 0) {
       life_of_stream_ = life_ == before ? before : -1 - before;
       of_ended_job_ = !message.has_job();
@@ -51,13 +52,13 @@ bool WatchChain::Attach(v1::EnsembleService::StubInterface& stub, int messages) 
   return heard > 0;
 }
 
-// A watch may begin with something else than the job only if the job has ended.
+// A watch may begin with another message than the job's only if the job has ended.
 void WatchChain::CheckThatItHasEnded(v1::EnsembleService::StubInterface& stub) {
   v1::GetEnsembleJobRequest request;
   request.set_name(job());
   grpc::ClientContext context;
   v1::EnsembleJob seen;
-  if (!stub.GetEnsembleJob(&context, request, &seen).ok()) return;  // killed under it
+  if (!stub.GetEnsembleJob(&context, request, &seen).ok()) return;  // the server was killed
   findings_.Count("watches that begin with points of an ended job");
   if (!client::HasEnded(seen.state())) {
     Wrong(absl::StrCat("begins without the job, which is ", NameOf(seen.state())));
@@ -112,7 +113,8 @@ void WatchChain::HearProgress(const v1::JobProgress& progress) {
 void WatchChain::CheckEnd(const absl::Status& end, bool cut) {
   if (end.ok() && !ended_) Wrong("OK before the terminal state");
   if (end.ok() || absl::IsUnavailable(end) || (cut && absl::IsCancelled(end))) return;
-  // So gRPC ends a stream that reaches a server as it stops; to the client library, too, it is cut.
+  // gRPC ends a stream this way if the server is stopping. The client library also treats it as
+  // cut.
   const bool dropped = absl::IsCancelled(end) && client::ErrorReason(end).empty();
   if (!dropped) return Wrong(end.ToString());
   findings_.Count("watches that gRPC cut as the server stopped");
@@ -127,7 +129,7 @@ void WatchChain::CheckFinishedPoints(v1::EnsembleService::StubInterface& stub) {
     grpc::ClientContext context;
     context.set_wait_for_ready(true);
     v1::ListResultsResponse page;
-    if (!stub.ListResults(&context, request, &page).ok()) continue;  // killed under it: again
+    if (!stub.ListResults(&context, request, &page).ok()) continue;  // the server was killed: retry
     for (const v1::PointResult& point : page.points()) stored.insert(point.index());
     request.set_page_token(page.next_page_token());
     if (page.next_page_token().empty()) break;

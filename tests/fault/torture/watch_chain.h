@@ -1,10 +1,11 @@
-// One watch of a job, cut at random and taken up again with the last token, as one story:
-//   1. each attachment begins with the job, or, if that has ended, with finished points left to
-//   tell;
-//   2. the job's state never goes back, but for one that runs, which a restart may find queued;
-//   3. each finished point is told once over the whole chain, and all are, before the end;
+// Watches of one job, cut at random and resumed with the last token, checked as one sequence:
+//   1. each watch begins with the job or, if the job has ended, with the finished points that were
+//   not sent yet;
+//   2. the job's state never goes back, except from RUNNING to QUEUED at a restart;
+//   3. each finished point is sent once over the whole chain, before the end;
 //   4. points done and samples never go back within one life of the server;
-//   5. the terminal state is told once, as the last message, before OK, and nothing is OK without.
+//   5. the terminal state is sent once, as the last message, before OK; no watch ends with OK
+//      without it.
 #ifndef BALLPISTON_TESTS_FAULT_TORTURE_WATCH_CHAIN_H_
 #define BALLPISTON_TESTS_FAULT_TORTURE_WATCH_CHAIN_H_
 
@@ -19,19 +20,20 @@
 
 namespace ballpiston::torture {
 
-// Of one thread.
+// Not thread-safe.
 class WatchChain {
  public:
   // `life` counts the server's lives.
   WatchChain(std::string job, const std::atomic<int>& life, Findings& findings);
 
-  // Attaches, reads at most so many messages, and cuts. False if the server could not be reached.
+  // Opens a watch, reads at most this many messages, and cuts it. False if the server could not be
+  // reached.
   bool Attach(v1::EnsembleService::StubInterface& stub, int messages);
 
   bool ended() const { return ended_.has_value(); }
   const std::string& job() const { return request_.name(); }
 
-  // Of an ended chain: compares with the points that the store has.
+  // After the end: compares the received points with those in the store.
   void CheckFinishedPoints(v1::EnsembleService::StubInterface& stub);
 
  private:

@@ -1,4 +1,4 @@
-// Watches that are cut, of jobs on a server that is stopped and killed.
+// Watches that are cut, while the server is stopped and killed.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -25,7 +25,7 @@ constexpr int kChains = 24;
 constexpr int kClientWatches = 4;
 constexpr int kMostMessages = 4;
 
-// The job that is watched now; a new one when it has ended.
+// The job that is watched now. When it has ended, a new job replaces it.
 class WatchedJob {
  public:
   explicit WatchedJob(ConnectedServer& server) : client_(server.Connect()) { Next(""); }
@@ -35,7 +35,7 @@ class WatchedJob {
     return name_;
   }
 
-  // Whoever is the first to see the end of `ended` makes the next.
+  // The first thread that sees the end of `ended` creates the next job.
   void Next(const std::string& ended) {
     const std::lock_guard lock(mutex_);
     if (name_ != ended) return;
@@ -72,7 +72,7 @@ class Watches : public testing::Test {
     }
   }
 
-  // To the client library a restart is a pause.
+  // For the client library a restart is a pause.
   void FollowToTheEnd() {
     const client::Client client(server_.Connect());
     while (!enough_) {
@@ -95,7 +95,7 @@ class Watches : public testing::Test {
     }
   }
 
-  // kill -9 and SIGTERM in turn, until there were as many and the watches were cut often enough.
+  // kill -9 and SIGTERM in turn, until there were enough restarts and cuts.
   void Restart(int restarts, int cuts) {
     std::mt19937_64 random(4);
     for (int i = 0; i < restarts || findings_.count("watches cut") < cuts; ++i) {

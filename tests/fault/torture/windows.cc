@@ -28,7 +28,8 @@ Reading Read(const ServerProcess& server, const client::Client& client, const st
   return {now.progress().samples(), server.ProcessorSeconds(), Clock::now()};
 }
 
-// Of a normal law: its deviation in median deviations, and a median's error in a mean's.
+// For a normal law: standard deviation / median deviation, and standard error of the median / that
+// of the mean.
 constexpr double kDeviations = 1.4826, kMedianError = 1.2533;
 
 constexpr size_t kGroups = 10;

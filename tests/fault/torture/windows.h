@@ -28,15 +28,16 @@ struct Window {
   }
 };
 
-// What the server spends, all of its threads, and what a job of its gets done meanwhile: for so
-// long, and on until it is as much as `least_samples`, for the machine may be busy.
+// Measures the processor time of all the server's threads, and the samples of a job in this time.
+// The window has this length, but goes on until `least_samples` are done, because the machine may
+// be busy.
 Window ServerWindow(const ServerProcess& server, const client::Client& client,
                     const std::string& job, std::chrono::milliseconds length,
                     double least_samples = 1);
 
-// First over second. The pairs are added up in ten groups, because a window begins and ends within
-// blocks that are only counted whole; the ratio is the groups' median, because something else may
-// have disturbed some of them.
+// The ratio of the first to the second. The pairs are added up in ten groups, because a window
+// begins and ends within blocks that are only counted whole; the ratio is the groups' median,
+// because something else may have disturbed some of them.
 class PairedRatio {
  public:
   void Add(double first, double second);

@@ -30,7 +30,7 @@ namespace {
 using google::protobuf::DescriptorPool;
 using google::protobuf::MethodDescriptor;
 
-// What each method needs at least. A new method has to be entered here: the test fails until it is.
+// The least role of each method. A new method must be added here, or the test fails.
 const std::map<std::string, Role>& LeastRoles() {
   static const auto* const roles = new std::map<std::string, Role>{
       {"CreateEnsembleJob", Role::kSubmit}, {"GetEnsembleJob", Role::kRead},
@@ -43,9 +43,9 @@ const std::map<std::string, Role>& LeastRoles() {
   return *roles;
 }
 
-// Of every proto file of the API, as the source tree has them.
+// The methods of all proto files of the API in the source tree.
 std::vector<const MethodDescriptor*> AllMethods() {
-  // Links the files that nothing else here names.
+  // Links the proto files that no other code here uses.
   v1::GetServerStatusRequest::descriptor();
   v1::WatchProgress::descriptor();
   v1::SavedResult::descriptor();
@@ -70,7 +70,7 @@ const google::protobuf::FieldDescriptor* JobField(const MethodDescriptor& method
   return name != nullptr ? name : method.input_type()->FindFieldByName("parent");
 }
 
-// Empty but for the name of the job, or of its first result, where there is one.
+// A request that has only the name of the job or of its first result, if the method needs one.
 std::string RequestFor(const MethodDescriptor& method, const std::string& job) {
   google::protobuf::DynamicMessageFactory factory;
   const std::unique_ptr<google::protobuf::Message> request(
@@ -147,7 +147,7 @@ TEST_F(AccessTable, EveryCredentialHasExactlyTheRightsOfItsRole) {
     EXPECT_EQ(foreign, of_a_job ? "JOB_NOT_FOUND" : right) << method->name();
     EXPECT_EQ(reads, least == Role::kRead ? right : "ROLE_TOO_LOW") << method->name();
     EXPECT_EQ(admin, right) << method->name();
-    // An empty request may be invalid, a job may have ended: that is past the door.
+    // Other errors (an invalid request, an ended job) come after authorisation.
     for (const char* closed : {"ROLE_TOO_LOW", "JOB_NOT_FOUND", "CREDENTIALS_MISSING",
                                "CREDENTIALS_INVALID", "CREDENTIALS_EXPIRED"}) {
       EXPECT_NE(right, closed) << method->name();
@@ -251,7 +251,7 @@ TEST_F(ForeignTokens, EachPrincipalHasItsOwnRequestIds) {
   EXPECT_NE(same.name(), alices);
   EXPECT_EQ(same.principal(), "bob");
   EXPECT_FALSE(same.answered_from_store());
-  // And an administrator, who may see both, makes a third, of another question.
+  // An administrator, who may see both, creates a third job with another question.
   const v1::EnsembleJob third = ops_.Created(CreateRequest(Equilibrium(1, 2, 2), kUuid));
   EXPECT_NE(third.name(), alices);
   EXPECT_EQ(third.principal(), "ops");
@@ -262,7 +262,7 @@ TEST_F(ForeignTokens, AnothersCancellationCannotBeRepeated) {
   EXPECT_EQ(ReasonOf(bob_.Cancel(alices, kUuid)), "JOB_NOT_FOUND");
   EXPECT_OK(alice_.Cancel(alices, kUuid));
   EXPECT_EQ(ReasonOf(bob_.Cancel(alices, kUuid)), "JOB_NOT_FOUND");
-  EXPECT_OK(alice_.Cancel(alices, kUuid));  // a replay
+  EXPECT_OK(alice_.Cancel(alices, kUuid));  // a retry
 }
 
 TEST_F(AccessTable, HeadersOtherThanOneBearerTokenAreInvalid) {

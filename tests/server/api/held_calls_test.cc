@@ -1,4 +1,4 @@
-// What calls hold whose answers nobody reads, by itself and through the API.
+// The memory that calls with unread answers hold: the class HeldCalls, and through the API.
 #include "server/api/held_calls.h"
 
 #include <memory>

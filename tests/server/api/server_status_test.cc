@@ -28,7 +28,7 @@
 namespace ballpiston::server {
 namespace {
 
-// What stands behind the API, without gRPC: so a test says itself who calls.
+// The objects behind the API, without gRPC, so that a test can set the caller.
 class ServerStatusTest : public testing::Test {
  protected:
   explicit ServerStatusTest(const Store::Options& options = {})
@@ -139,7 +139,7 @@ TEST_F(ServerStatusTest, OnlyAnAdministratorSeesOtherPrincipals) {
     ASSERT_EQ(own.principals_size(), 1);
     EXPECT_EQ(own.principals(0).principal(), "alice");
     EXPECT_EQ(own.DebugString().find("bob"), std::string::npos);
-    EXPECT_EQ(own.queued_jobs(), 2);  // of all, as the queue is what one waits in
+    EXPECT_EQ(own.queued_jobs(), 2);  // of all principals, because they share the queue
   }
   EXPECT_EQ(AskedBy("carol", Role::kSubmit).principals_size(), 0);
 }
@@ -196,7 +196,7 @@ TEST_F(HangingDiskTest, TheStateIsStoreFailing) {
   EXPECT_EQ(AskedBy("root", Role::kAdmin).state(), v1::ServerStatus::STORE_FAILING);
 }
 
-// One thread runs the calls: any that waited would be the last.
+// One thread runs the calls, so a call that waited would block all later ones.
 TEST_F(HangingDiskTest, CallsThatWriteAreRefusedAtOnceAndReadsAnswered) {
   EnsembleService service(context_);
   const std::string address = "unix:" + folder_.File("socket");

@@ -29,7 +29,7 @@ namespace {
 using ::testing::Not;
 using v1::EnsembleJob;
 
-// So many blocks may be computed as permits are given.
+// Each permit lets one block be computed.
 class Permits {
  public:
   void Give(int count) {
@@ -54,10 +54,10 @@ bool TellsFinished(const WatchMessage& message) {
   return message.snapshot().finished_points_size() > 0;
 }
 
-// What a watch, and those that go on with its tokens, told.
+// The messages of a watch and of the watches that resume it.
 class Chain {
  public:
-  // Watches until a message is like that, or to the end. What was sent beyond it is lost.
+  // Watches until a message meets the condition, or to the end. Later messages are lost.
   template <typename Condition>
   void Watch(RunningServer& server, const std::string& name, Condition is_enough) {
     WatchStream stream(server, name, token_);
@@ -72,7 +72,7 @@ class Chain {
     Watch(server, name, [](const WatchMessage&) { return false; });
   }
 
-  // The next watch is of another life of the server: what is not stored may be lost.
+  // The server is restarted before the next watch, so progress that is not stored may be lost.
   void ExpectRestart() { progress_.Clear(); }
 
   const std::vector<int>& finished() const { return finished_; }
@@ -101,7 +101,7 @@ class Chain {
     }
   }
   void TakeState(const EnsembleJob& job) {
-    // In the order of their numbers; one that was overtaken is left out.
+    // States come in the order of their numbers. Some may be skipped.
     EXPECT_GE(job.state(), state_) << StateName(state_) << " -> " << StateName(job.state());
     state_ = job.state();
     terminal_messages_ += HasEnded(state_);
@@ -110,7 +110,7 @@ class Chain {
   void TakeProgress(const v1::JobProgress& progress) {
     EXPECT_GE(progress.points_done(), progress_.points_done());
     EXPECT_GE(progress.samples(), progress_.samples());
-    // The store does not know what was begun of points that a cancelled job leaves unfinished.
+    // The store does not have the progress in unfinished points of a cancelled job.
     if (!HasEnded(state_)) {
       // Shares of points are added up as blocks come, which rounds.
       EXPECT_GE(progress.fraction(), progress_.fraction() - 1e-12);
@@ -317,7 +317,7 @@ TEST_F(WatchTest, WithoutAValidTokenAllIsSent) {
   }
 }
 
-// Even if this engine computed it at first, and another one since.
+// Also if this engine computed the job at first, and another engine later.
 TEST_F(WatchTest, AfterARestartForAnotherEngineAllIsSentAgain) {
   RunningServer& server = Start();
   const std::string name = server.Submit(Equilibrium(3, 1));
@@ -347,11 +347,11 @@ TEST_F(WatchTest, AQuietJobHasAHeartbeat) {
 TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
   RunningServer& server = Start(7, std::chrono::milliseconds(20));
   const std::string name = server.Submit(Equilibrium(1, 100));
-  gate_.AwaitWaiting(2);  // seven blocks are done, and no more will be
+  gate_.AwaitWaiting(2);  // seven blocks are done; the others wait
   std::string token;
   {
     WatchStream stream(server, name);
-    // All seven blocks are told, then nothing is new.
+    // All seven blocks are sent; then there is nothing new.
     token = stream
                 .Until([](const WatchMessage& message) {
                   return HasPoints(message) &&
@@ -366,13 +366,14 @@ TEST_F(WatchTest, WithATokenOnlyNewerStateIsSent) {
     EXPECT_FALSE(HasPoints(message));
     return message.has_heartbeat();
   });
-  WatchStream unknown(server, name, "b3RoZXI6MTox");  // by another server: all is sent
+  WatchStream unknown(server, name,
+                      "b3RoZXI6MTox");  // of another server: all is sent
   unknown.Until(HasPoints);
 }
 
 TEST_F(WatchTest, ASlowReaderGetsEveryFinishedPoint) {
   RunningServer& server = Start();
-  // Points enough that all of them would be far more than a stalled stream takes in.
+  // Many points, far more than a stalled stream can hold.
   const std::string name = server.Submit(Equilibrium(20'000, 1));
   WatchStream slow(server, name);
   ASSERT_TRUE(slow.Next());
@@ -496,7 +497,7 @@ TEST(WatchRegistry, CountsStreamsByPrincipal) {
   EXPECT_THAT(registry.Add(&c, "ann", limits), StatusIs(absl::StatusCode::kResourceExhausted));
   EXPECT_OK(registry.Add(&c, "bob", limits));
   EXPECT_THAT(registry.Add(&d, "bob", limits), StatusIs(absl::StatusCode::kResourceExhausted));
-  registry.Remove(&d);  // was not taken in
+  registry.Remove(&d);  // was not added
   EXPECT_EQ(registry.size(), 3u);
   EXPECT_THAT(registry.StreamsByPrincipal(),
               testing::ElementsAre(testing::Pair("ann", 2), testing::Pair("bob", 1)));

@@ -508,7 +508,7 @@ TEST(PointResult, DamagedCodeOfAShapeIsLeftOut) {
   EXPECT_EQ(PointResultMessage(record).parameters().cells(), "4x3");
 }
 
-// They are functions of the parameters alone, and are not stored.
+// Expected probabilities depend only on the parameters, and are not stored.
 TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   const CheckedSpec checked = CheckSpec(OneFirstHit());
   const auto experiment = PointExperiment::Create(checked.spec, 0);
@@ -528,7 +528,8 @@ TEST(PointResult, ExpectedProbabilitiesAreComputedWhenRead) {
   EXPECT_NEAR(sum, 1, 1e-12);  // rounding of a thousand summands
 }
 
-// Relative in an answer, absolute in a result; of the first estimate alone, unless it is 0.
+// The model's error is relative in an answer and absolute in a result. Only the first estimate has
+// it, unless it is 0.
 TEST(PointResult, TheModelsErrorAndReasonComeFromTheAnswer) {
   EnsembleSpec spec;
   spec.experiment = &kEnergyRelaxation;
@@ -579,7 +580,7 @@ TEST(Errors, AToleranceThatWasNotReachedNamesPointToleranceBudgetAndError) {
                        "reached 0.005"));
   const absl::Status without = ToleranceNotReached(spec, 0, {.name = "time", .value = 8});
   EXPECT_THAT(std::string(without.message()), HasSubstr("reached an unknown error"));
-  // A job that ends with it keeps its reason; one without gets that of a failed computation.
+  // A job's error keeps its reason. An error without a reason gets that of a failed computation.
   EXPECT_EQ(ReasonOf(WithDefaultReason(missed, "COMPUTATION_FAILED")), "TOLERANCE_NOT_REACHED");
   EXPECT_EQ(ReasonOf(WithDefaultReason(absl::InternalError("lost"), "COMPUTATION_FAILED")),
             "COMPUTATION_FAILED");

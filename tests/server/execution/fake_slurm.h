@@ -28,15 +28,16 @@ class FakeSlurm {
 
   // ---- how it behaves from now on ----
 
-  // What a submission answers. It is accepted if `accepts`, whatever the answer.
+  // Sets the status that a submission returns. Slurm accepts the array if `accepts`, also with an
+  // error.
   void Answer(const absl::Status& submission, bool accepts);
   void AnswerQuery(const absl::Status& query);
   void SetReason(const std::string& reason);  // why tasks wait
 
   // ---- what the test does ----
 
-  void Add(const std::string& name, size_t tasks);   // an array that nobody here submitted
-  void Start(const std::string& name, size_t task);  // it runs, and has left no file yet
+  void Add(const std::string& name, size_t tasks);   // an array that this server did not submit
+  void Start(const std::string& name, size_t task);  // the task runs and has left no file yet
   // The task has ended, whatever its files say. Without an index, all tasks of all arrays.
   void Lose(const std::string& name, size_t task);
   void LoseAll();

@@ -370,7 +370,7 @@ TEST_F(SlurmExecutorTest, TasksThatLeaveNoFileAreAProblem) {
   AwaitThat([&] { return server_->Status().problem.empty(); });
 }
 
-// The first attempt runs on, although Slurm took it for dead, and both leave files.
+// The first attempt goes on, although Slurm reported it as ended, and both attempts leave files.
 TEST_F(SlurmExecutorTest, AChunkThatIsComputedTwiceCountsOnce) {
   SubmitRun();
   const ArraySubmission first = slurm_.submissions().at(0);
@@ -383,7 +383,7 @@ TEST_F(SlurmExecutorTest, AChunkThatIsComputedTwiceCountsOnce) {
   RunToRightEnd();
 }
 
-// Slurm does not answer: that says nothing of the tasks.
+// If Slurm does not answer, the tasks do not count as lost.
 TEST_F(SlurmExecutorTest, NothingIsLostWhileSlurmDoesNotAnswer) {
   SubmitRun();
   slurm_.AnswerQuery(absl::UnavailableError("squeue: Unable to contact slurm controller"));
@@ -690,7 +690,7 @@ TEST_F(SlurmExecutorTest, SlurmIsQueriedOnlyWhileThereAreTasks) {
   RunToRightEnd();
   server_->AwaitIdle();
   const size_t before = slurm_.queries().size();
-  // A few intervals; what would be wrong is a query more.
+  // Waits a few intervals. A further query would be an error.
   std::this_thread::sleep_for(5 * options_.query_interval);
   EXPECT_LE(slurm_.queries().size(), before + 1);
 }

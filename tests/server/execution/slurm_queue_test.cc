@@ -122,7 +122,7 @@ TEST(SlurmQueue, AReasonMayHoldAnyCharacter) {
   EXPECT_THAT(OnlyArray("1|0|bp-a|PENDING|a|b\n").reasons, ElementsAre("a|b"));
 }
 
-// The job of another user program may be called so; its line has one field more.
+// Another program's job may have such a name. Its line has one field more.
 TEST(SlurmQueue, ANameWithABarIsIgnored) {
   EXPECT_THAT(ParseQueue("1|0|bp-a|x|RUNNING|None\n", "bp-"), IsEmpty());
 }

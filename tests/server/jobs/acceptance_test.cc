@@ -1,5 +1,5 @@
-// What one Create comes to: a new job, an earlier one, or a refusal. At the book of jobs, where
-// principals are; what the API adds is at the end.
+// The outcome of one Create: a new job, an earlier one, or an error. Most tests use the book of
+// jobs, which has the principals; the last ones use the API.
 #include "server/jobs/acceptance.h"
 
 #include <condition_variable>
@@ -88,7 +88,7 @@ class AcceptanceTest : public testing::Test {
     return book_->Create(caller, request, checked);
   }
 
-  // The name of a job that has to be made, or answered with.
+  // The name of the created or returned job.
   std::string Name(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
     const auto job = Create(caller, request);
     EXPECT_OK(job);
@@ -108,14 +108,14 @@ class AcceptanceTest : public testing::Test {
     return job.ok() ? *std::move(job) : EnsembleJob();
   }
 
-  // A job that SUCCEEDED in answering.
+  // Creates a job, waits for SUCCEEDED, and returns its name.
   std::string Answered(const Principal& caller, const v1::CreateEnsembleJobRequest& request) {
     const std::string name = Name(caller, request);
     EXPECT_EQ(AwaitEnd(name).state(), EnsembleJob::SUCCEEDED);
     return name;
   }
 
-  // That the request made a job of its own.
+  // Expects that the request creates a new job.
   void ExpectComputed(const Principal& caller, const v1::CreateEnsembleJobRequest& request,
                       const std::string& earlier) {
     ASSERT_OK_AND_ASSIGN(const auto job, Create(caller, request));
@@ -151,7 +151,7 @@ TEST_F(AcceptanceTest, TheSameQuestionIsAnsweredByTheJobThatSucceeded) {
   EXPECT_EQ(again.state(), EnsembleJob::SUCCEEDED);
   EXPECT_TRUE(again.answered_from_store());
   EXPECT_EQ(Jobs(), 1u);
-  // Nobody but who asked is told so.
+  // Only the answer to Create says so.
   EXPECT_FALSE(book_->Get(kAnn, IdOf(first))->answered_from_store());
   StartAgain();
   EXPECT_TRUE(Create(kAnn, CreateRequest(Question()))->answered_from_store());
@@ -191,7 +191,7 @@ TEST_F(AcceptanceTest, AnotherQuestionIsComputed) {
 TEST_F(AcceptanceTest, AnswersAreOnlyForTheirPrincipal) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   ExpectComputed(kBen, CreateRequest(Question()), first);
-  // An administrator sees it, but did not ask it.
+  // An administrator can see the job, but it is the answer to another principal.
   ExpectComputed({"root", Role::kAdmin}, CreateRequest(Question()), first);
 }
 
@@ -282,8 +282,8 @@ void SetOther(google::protobuf::Message& message, const FieldDescriptor& field) 
   }
 }
 
-// Calls `visit` with a copy of `whole` for each field of it, and of what it holds, in which that
-// field alone is another one.
+// Calls `visit` for each field of `whole` and of its messages, with a copy in which only this field
+// differs.
 void WithEachFieldChanged(
     const v1::EnsembleSpec& whole, const std::vector<int>& path,
     const google::protobuf::Descriptor& type,
@@ -315,7 +315,7 @@ TEST(Question, EveryFieldOfTheSpecificationIsPartOfIt) {
                          ++changes;
                          const std::string question = QuestionOf(changed, "1");
                          if (changed.target().has_budget()) {
-                           EXPECT_EQ(question, "") << field.full_name();  // that is nobody's
+                           EXPECT_EQ(question, "") << field.full_name();  // it has no answer
                            return;
                          }
                          EXPECT_NE(question, "");
@@ -360,7 +360,7 @@ TEST(Payload, EveryFieldExceptTheIdIsPartOfTheHash) {
   const google::protobuf::Descriptor& type = *v1::CreateEnsembleJobRequest::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
-    // validate_only makes nothing that a payload could be of.
+    // validate_only stores no request, so its payload does not matter.
     if (field.name() == "spec" || field.name() == "request_id" || field.name() == "validate_only") {
       continue;
     }
@@ -408,7 +408,7 @@ TEST_F(AcceptanceTest, ARetryReturnsTheSameJobAfterARestart) {
   EXPECT_EQ(Jobs(), 1u);
 }
 
-// What was said the first time is said again.
+// A retry returns the same answer as the first request.
 TEST_F(AcceptanceTest, ARetryOfAStoredAnswerReturnsTheSameJob) {
   const std::string first = Answered(kAnn, CreateRequest(Question()));
   for (int i = 0; i < 2; ++i) {
@@ -478,10 +478,10 @@ TEST_F(LimitTest, AFullQueueRefusesOnlyNewJobs) {
   for (const Principal& caller : {kAnn, kBen}) {
     ExpectRefused(Create(caller, CreateRequest(Question(2))), "QUEUE_FULL", "max-active-jobs", "2");
   }
-  // A replay, and what the store can answer.
+  // A retry, and a question that the store can answer.
   EXPECT_EQ(Name(kAnn, FreshRequest(Question(kHeldSeed), kUuid)), first);
   EXPECT_EQ(Name(kAnn, CreateRequest(Question())), answered);
-  // And with another request its id is refused for what it is.
+  // Another request with the same id is rejected because of the id.
   EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(Question(3), kUuid))), "REQUEST_ID_REUSED");
   EXPECT_EQ(Jobs(), 3u);
   ASSERT_OK(book_->Cancel(kAnn, IdOf(first), ""));
@@ -497,7 +497,7 @@ TEST_F(LimitTest, JobsAreCountedByPrincipal) {
   EXPECT_OK(Create(kBen, CreateRequest(Question())));
 }
 
-// The id is free: nothing was made with it.
+// The id can be used again, because no job was created with it.
 TEST_F(LimitTest, ARefusedRequestCanBeRetried) {
   Limit({.max_active_jobs = 1});
   const std::string first = Hold(kAnn);
@@ -522,7 +522,7 @@ TEST_F(LimitTest, AJobMayNotTakeTooManySamples) {
   v1::EnsembleSpec by_default = Equilibrium(5, 1);
   by_default.clear_target();
   EXPECT_EQ(ReasonOf(Create(kAnn, CreateRequest(by_default))), "TOO_MANY_SAMPLES");
-  // How many these take is not known before.
+  // The number of samples is not known in advance.
   v1::EnsembleSpec tolerance = Equilibrium(5, 1);
   tolerance.mutable_target()->set_tolerance(0.1);
   EXPECT_OK(Create(kAnn, CreateRequest(tolerance)));
@@ -551,7 +551,7 @@ TEST_F(LimitTest, ThePointsOfActiveJobsAreLimited) {
   EXPECT_OK(Create(kAnn, held(3)));
 }
 
-// What is not made takes no room.
+// A job that is not created does not count.
 TEST_F(LimitTest, PointsOfJobsThatAreNotCreatedDoNotCount) {
   Limit({.max_active_points = 4, .max_active_points_per_principal = 0});
   const std::string answered = Answered(kAnn, CreateRequest(Equilibrium(3, 5)));
@@ -573,7 +573,7 @@ TEST(ActivePointsTest, AJobCountsOnce) {
   EXPECT_FALSE(points.Check("ann", 6, limits).ok());
 }
 
-// Of the requests that one job answers a thousand are remembered; the answer is the same.
+// A thousand requests with the same job are stored. Later ones get the same answer.
 TEST_F(AcceptanceTest, AJobRemembersAThousandRequests) {
   const std::string name = Answered(kAnn, CreateRequest(Question()));
   const auto requests = [&] {
@@ -667,7 +667,7 @@ TEST(AcceptanceRpc, ValidateOnlyReturnsAStoredAnswer) {
   EXPECT_EQ(job.name(), answered);
   EXPECT_TRUE(job.answered_from_store());
   EXPECT_EQ(server.List().jobs_size(), 1);
-  // Nothing was kept of the id: it is free for another question.
+  // The id was not stored, so another question can use it.
   const EnsembleJob another = server.Created(CreateRequest(Question(2), kUuid));
   EXPECT_NE(another.name(), answered);
   server.AwaitEnd(another.name());

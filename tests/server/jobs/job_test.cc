@@ -210,7 +210,7 @@ TEST_F(JobJournalTest, TheStoreHasThePointsUnderTheSameNumbers) {
   EXPECT_EQ(job_->last_finished(), 3);
 }
 
-// The results are told, and counted as told, only after the end was written down.
+// The points are stored only after Ended was called.
 TEST_F(JobJournalTest, TheEndCountsPointsThatAreNotStoredYet) {
   for (const size_t point : {0u, 1u, 2u}) Finish(point);
   journal_->Ended(absl::OkStatus());

@@ -167,8 +167,8 @@ TEST_F(StoredLimitsTest, JobsThatExpireSoonAreCounted) {
   EXPECT_EQ(book_->CountExpiring(absl::Now() + 24 * kDay), 1);
 }
 
-// The oldest results go first. Then expired jobs go; then, if what is pinned is too much, no job is
-// accepted.
+// The oldest results expire first. Then expired jobs are deleted. If pinned jobs still take too
+// much, no job is accepted.
 TEST_F(StoredLimitsTest, TheStoreKeepsItsBound) {
   constexpr int64_t kBound = 600'000;
   Start({.max_store_bytes = kBound});
@@ -213,7 +213,7 @@ TEST_F(StoredLimitsTest, ThePrincipalsByteLimitRejectsOnlyItsJobs) {
   Done(kBob, 2);
   Start({.max_store_bytes_per_principal = 20'000});  // and after a restart
   EXPECT_EQ(ReasonOf(Create(kAlice, 2).status()), "TOO_MANY_STORED_BYTES");
-  EXPECT_EQ(Create(kAlice, 1, 300)->name(), JobName(first));  // the answer is there
+  EXPECT_EQ(Create(kAlice, 1, 300)->name(), JobName(first));  // the store has the answer
   ASSERT_OK(book_->Delete(kAlice, first));
   EXPECT_EQ(book_->usage().Of("alice", absl::Now()).bytes, 0);
   Done(kAlice, 2);

@@ -24,7 +24,7 @@ std::set<std::string> MetricsNamedIn(const std::string& rules) {
           std::sregex_token_iterator()};
 }
 
-// Of a server with TLS and a cluster.
+// The metrics of a server with TLS and a cluster.
 std::set<std::string> ServedMetrics() {
   ServerSnapshot snapshot;
   snapshot.slurm.emplace();

@@ -1,4 +1,4 @@
-// What the log says of calls and jobs.
+// The log lines of calls and jobs.
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -32,7 +32,7 @@ class CallLog : public testing::Test {
   CallLog() { SetLogOptions({.format = LogFormat::kJson}); }
   ~CallLog() override { SetLogOptions({}); }
 
-  // What was written while `act` ran.
+  // The lines that were written while `act` ran.
   template <typename Act>
   static std::vector<Struct> LinesOf(Act act) {
     testing::internal::CaptureStderr();
@@ -74,7 +74,7 @@ TEST_F(CallLog, AJobsLifeIsLoggedWithJobPrincipalAndRequest) {
         server.ensemble().CreateEnsembleJob(&context, CreateRequest(Equilibrium(2, 3)), &job));
     name = job.name();
     server.AwaitEnd(name);
-    server.Get(name);  // reading is not told
+    server.Get(name);  // reading is not logged
     ASSERT_OK(server.Delete(name));
   });
   EXPECT_THAT(Messages(lines), testing::UnorderedElementsAre("job accepted", "job running",
@@ -161,7 +161,7 @@ TEST_F(CallLog, AllRefusedCallsAreCountedAndSomeAreLogged) {
   EXPECT_THAT(
       prometheus::TextSerializer().Serialize(calls.metrics().Collect()),
       HasSubstr("ballpiston_failed_authentications_total{reason=\"CREDENTIALS_INVALID\"} 500\n"));
-  // Lines of refusals do not use up those of failures.
+  // Rejected calls and failed calls have separate budgets of lines.
   EXPECT_EQ(LinesOf([&] { calls.Failed(Failure(absl::StatusCode::kInternal, "")); }).size(), 1u);
 }
 

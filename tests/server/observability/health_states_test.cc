@@ -12,7 +12,7 @@
 namespace ballpiston::server {
 namespace {
 
-// Remembers what was set; as gRPC's own, takes no SERVING after Shutdown.
+// Records the states. Like gRPC's own, it ignores SERVING after Shutdown.
 class FakeHealth : public grpc::HealthCheckServiceInterface {
  public:
   void SetServingStatus(const std::string& name, bool serving) override {

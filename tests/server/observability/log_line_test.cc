@@ -39,7 +39,7 @@ std::string Text(const std::string& message, LogFields fields = {}) {
   return LogLine(LogFormat::kText, kNow, Severity::kWarning, message, fields);
 }
 
-// What somebody might send to have a line of their own, or a terminal do their bidding.
+// Texts that try to add a line to the log or to control a terminal.
 std::vector<std::string> HostileTexts() {
   std::vector<std::string> texts = {"a\nballpistond: error: a false line",
                                     "a\r\n{\"severity\":\"ERROR\"}",

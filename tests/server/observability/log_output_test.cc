@@ -1,4 +1,4 @@
-// A log that somebody reads slowly, or not at all.
+// A log whose reader is slow or does not read.
 #include "server/observability/log_output.h"
 
 #include <fcntl.h>
@@ -84,7 +84,7 @@ TEST_F(LogSocketTest, AnIncompleteLineGetsItsNewline) {
   output.Write("next\n", Loss);
   const std::string after = Read();
   EXPECT_THAT(after, testing::EndsWith(" lost\nnext\n"));
-  // Only the last may be in pieces, and then it has an end of its own.
+  // Only the last line may be incomplete; then a newline follows it.
   EXPECT_EQ(before.size() % 4000 == 0, after[0] != '\n');
 }
 

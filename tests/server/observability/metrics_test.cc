@@ -33,7 +33,7 @@ constexpr char kCreated[] =
 constexpr char kSample[] =
     R"(^[a-zA-Z_:][a-zA-Z0-9_:]*(\{([a-zA-Z_][a-zA-Z0-9_]*="([^"\\]|\\.)*",?)*\})? [^ ]+$)";
 
-// By name with labels. A test failure where a line is not of the text format.
+// The values by name with labels. The test fails if a line is not in the text format.
 std::map<std::string, double> Samples(const std::string& page) {
   std::map<std::string, double> samples;
   std::istringstream lines(page.substr(page.find("\r\n\r\n") + 4));
@@ -59,7 +59,7 @@ class MetricsTest : public testing::Test {
   std::string Address() { return server_->server().metrics_address(); }
   std::string Page() { return HttpGet(Address(), "/metrics"); }
   std::map<std::string, double> Metrics() { return Samples(Page()); }
-  // A job or a stream is told to have ended just before it is counted.
+  // A client sees the end of a job or a stream just before it is counted.
   void Await(const std::string& metric, double value) {
     while (Metrics().at(metric) != value) std::this_thread::yield();
   }
@@ -245,7 +245,7 @@ TEST_F(MetricsTest, OnlyLoopbackAddressesAreAccepted) {
   }
 }
 
-// The HTTP server takes no names.
+// The HTTP server accepts no names.
 TEST_F(MetricsTest, LocalhostIsAnAddress) {
   RunningServer server({.metrics_listen = "localhost:0"});
   EXPECT_THAT(server.server().metrics_address(), StartsWith("127.0.0.1:"));

@@ -1,4 +1,4 @@
-// The scheduler with executors elsewhere: which leases they get, and what becomes of their reports.
+// The scheduler with executors elsewhere: which leases they get, and how their reports are merged.
 // The local executor takes its turns when the test says so, so every schedule can be repeated.
 #include <algorithm>
 #include <cstdint>
@@ -200,7 +200,7 @@ TEST(Scheduler, APartialChunkFromElsewhereIsDropped) {
   ExpectComplete(SixChunks(), *journal);
 }
 
-// Right chunks of the point that another lease has: nobody else has to compute them.
+// Valid chunks of the point that belong to another lease are merged and not computed again.
 TEST(Scheduler, AChunkOutsideItsLeaseIsMerged) {
   Cluster cluster;
   const auto journal = cluster.Begin(SixChunks());
@@ -278,7 +278,7 @@ TEST(Scheduler, AChunkStaysLocalAfterFiveAttempts) {
   ExpectComplete(SixChunks(), *journal);
 }
 
-// The chunks are somebody else's by then.
+// Another executor has the chunks by then.
 TEST(Scheduler, ASecondReturnHasNoEffect) {
   Cluster cluster(kWholePoint);
   cluster.Begin(SixChunks());
@@ -379,7 +379,7 @@ TEST(Scheduler, AHungryExecutorDoesNotDelayOthers) {
   Cluster cluster(kWholePoint);
   const EnsembleSpec spec = SixChunks(3000);
   cluster.Begin(spec);
-  cluster.TakeAll();  // now it is hungry, and asks no more
+  cluster.TakeAll();  // now it is hungry, and requests no more leases
   size_t opened = 1;
   while (const auto lease = cluster.local.Begin()) {
     opened += lease->opens.size();
@@ -392,7 +392,7 @@ TEST(Scheduler, AHungryExecutorDoesNotDelayOthers) {
 }
 
 // The next chunk beyond the expected end can be leased when the chunks before it are merged. The
-// executors that found nothing have to hear of that, even if the one elsewhere takes no more.
+// idle executors must be woken, even if the executor elsewhere takes no more.
 TEST(Scheduler, AReportFromElsewhereWakesTheExecutors) {
   Cluster cluster(kWholePoint);
   RemoteExecutor waiting(cluster.scheduler);

@@ -15,7 +15,8 @@ int64_t FirstRun(const FairShare& share) {
   return share.First([](int64_t) { return true; }).value_or(-1);
 }
 
-// One worker; each run's blocks take their time, 0.1 s if none is given. What the runs got.
+// Runs one worker, whose blocks take 0.1 s unless `block_seconds` has another time. Returns the
+// seconds that each run got.
 SecondsByRun Served(FairShare& share, double seconds, const SecondsByRun& block_seconds = {},
                     const std::set<int64_t>& without_task = {}) {
   SecondsByRun served;
@@ -74,7 +75,7 @@ TEST(FairShare, AHigherPriorityGoesFirstWithinItsPrincipal) {
   EXPECT_EQ(FirstRun(share), 1);
 }
 
-// What those of the highest priority cannot use goes to the next.
+// Time that runs of the highest priority cannot use goes to the next priority.
 TEST(FairShare, RunsWithoutATaskAreSkipped) {
   FairShare share;
   AddRuns(share, {1}, "a", 1);
@@ -115,8 +116,8 @@ TEST(FairShare, ANewRunStartsAtTheLeastCharge) {
   EXPECT_NEAR(served.at(2), 50, 0.2);
 }
 
-// A run that opens a point for a long time, say, and leaves the other workers to the others: when
-// it goes on they need not wait until it has caught up.
+// A run that opens a point for a long time leaves the other workers to other runs. When it goes on,
+// the others do not wait until it has caught up.
 TEST(FairShare, UnusedTimeGivesNoCredit) {
   for (const bool of_one_principal : {false, true}) {
     FairShare share;
@@ -129,7 +130,7 @@ TEST(FairShare, UnusedTimeGivesNoCredit) {
   }
 }
 
-// A row of jobs of one long block each, every one of them new.
+// A sequence of new jobs with one long block each.
 TEST(FairShare, AReturningPrincipalKeepsItsLead) {
   FairShare share;
   AddRuns(share, {1}, "steady");
@@ -149,7 +150,7 @@ TEST(FairShare, AReturningPrincipalKeepsItsLead) {
   EXPECT_NEAR(served.at(1) / served.at(2), 1, 0.1);
 }
 
-// While nobody else was there it took nothing from anybody.
+// A principal that was alone owes nothing to others.
 TEST(FairShare, TheSharesStartAgainWhenAllRunsHaveEnded) {
   FairShare share;
   AddRuns(share, {1}, "a");

@@ -133,7 +133,7 @@ TEST_F(ModelLadderTest, APlanRunsNoPilotAndSaysWhetherThereIsOne) {
   const Ladder after = ladder.LadderOf(spec, PointAt(spec, 0));
   EXPECT_THAT(after.answer.reason, HasSubstr("two sigma of a pilot at delta = "));
   EXPECT_EQ(runs_, 1);
-  // What a pilot has established, it need not cost again.
+  // After the pilot, the plan's work does not include a pilot.
   EXPECT_LT(*after.Chosen().work, *before.Chosen().work);
 }
 

@@ -1,4 +1,5 @@
-// Pilots in the scheduler: which run computes one, who waits for it, and who pays.
+// Pilots in the scheduler: which run computes a pilot, which runs wait for it, and which run is
+// charged.
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -139,8 +140,8 @@ TEST_F(PilotsTest, APilotThatFailsEndsItsRunOnly) {
   EXPECT_EQ(opener.opened(), 2);
 }
 
-// The first run is cancelled while it opens the pilot, the second begins it anew, and only then the
-// first run gives it up. The third waits for the pilot of the second.
+// The first run is cancelled while it opens the pilot, the second starts the pilot again, and only
+// then the first run drops it. The third waits for the pilot of the second.
 TEST_F(PilotsTest, ACancelledRunLeavesThePilotToTheNextRun) {
   SteppedExecutor others(scheduler_);
   std::vector<JournalPointer> journals;

@@ -100,7 +100,7 @@ TEST(Scheduler, ACheckpointOfAnotherShapeEndsTheRun) {
   EXPECT_TRUE(journal->finished.empty());
 }
 
-// How far the pool is when it is shut down, a later one goes on from.
+// A later pool continues from the state at the shutdown of the first one.
 TEST(Scheduler, AShutdownWritesACheckpoint) {
   const EnsembleSpec spec = FakeSpec(1, 80);
   Gate gate;
@@ -183,7 +183,7 @@ TEST(Scheduler, APointDoesNotRunFarAheadOfASlowBlock) {
 
 // ---- budgets ----
 
-// Spent when the first block is merged, however fast the machine: a block takes some time.
+// This budget is spent when the first block is merged, on every machine.
 constexpr double kSpentAtOnce = 1e-12;
 
 EnsembleSpec FakeBudget(int points) {
@@ -276,7 +276,7 @@ TEST(Scheduler, APointWithoutBlocksFinishesAtOnceBesideOthers) {
 }
 
 TEST(Scheduler, ProcessorTimeIsReportedOfPilotsAndBlocksAlike) {
-  // Some of the thread's own time, whoever else computes.
+  // Uses some processor time of the thread, also on a busy machine.
   const auto compute = [] {
     timespec begin{}, now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
@@ -336,7 +336,7 @@ TEST(Scheduler, AFactoryThatThrowsFailsItsRun) {
   EXPECT_THAT(std::string(journal->AwaitEnd().message()), HasSubstr("no such experiment"));
 }
 
-// A short run beside a long one that came first: it has ended when the long one has not.
+// A short run that is added after a long one ends before it.
 TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
   Gate gate;
   ThreadPool pool(
@@ -351,7 +351,7 @@ TEST(Scheduler, AShortRunDoesNotWaitForALongOne) {
   EXPECT_EQ(long_run->ends, 0);
 }
 
-// Added while the only worker is held up by a first run, so that all of them are there when it goes
+// The runs are added while a first run blocks the only worker, so that all are present when it goes
 // on.
 TEST(Scheduler, AHigherPriorityIsServedFirst) {
   Gate gate;
@@ -379,7 +379,7 @@ TEST(Scheduler, AHigherPriorityIsServedFirst) {
   EXPECT_EQ(begun, expected);
 }
 
-// The first has a point that takes long to be opened; nothing but that keeps it from working.
+// Opening a point of the first run takes long. Nothing else delays that run.
 TEST(Scheduler, ARunWithoutTasksIsSkipped) {
   Gate gate;
   ThreadPool pool(2, [&](const EnsembleSpec& spec, size_t index) {

@@ -120,7 +120,7 @@ TEST(AccessList, AFormattedEntryIsReadBack) {
   }
 }
 
-// In every place of a line where somebody may have put a token.
+// A token at every place of a line.
 TEST(AccessList, ErrorsNameTheLineAndDoNotQuoteIt) {
   const std::string secret = "hunter2hunter2";
   const std::string good = HashText("one");

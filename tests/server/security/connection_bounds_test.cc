@@ -1,4 +1,4 @@
-// What clients may take before it is known who they are: descriptors, streams, threads.
+// Limits for clients that are not authenticated yet: descriptors, streams, threads.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -55,8 +55,8 @@ TEST(ConnectionBounds, AQuarterOfAFewDescriptorsIsReservedAndNoMoreThan32) {
   EXPECT_EQ(ReservedDescriptors(1'000'000), 32u);
 }
 
-// As many connections as the process has descriptors, and more: the surplus is closed, the process
-// can still open files, and when they have gone the server serves as before.
+// More connections than the process has descriptors: the server closes the surplus, the process can
+// still open files, and afterwards the server answers as before.
 TEST(ConnectionBounds, AFloodOfConnectionsLeavesDescriptorsFree) {
   constexpr rlim_t kFlood = 100;
   RunningServer server({.listen = "127.0.0.1:0"});
@@ -98,8 +98,8 @@ class EndlessRequests {
     connection_.Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + Frame(kSettings, 0, 0, ""));
   }
 
-  // Begins a request, and sends `bytes` of it, as fast as the server takes them. Whether it does:
-  // false if it ended a request of this client.
+  // Begins a request and sends `bytes` of it, as fast as the server reads. False if the server
+  // ended a request of this client.
   bool Send(size_t bytes) {
     const uint32_t stream = next_stream_;
     next_stream_ += 2;
@@ -144,7 +144,7 @@ class EndlessRequests {
     return all;
   }
 
-  // Of the stream's own window no more is used than each has from the start.
+  // Uses only the initial window of each stream.
   void Send(uint32_t stream, const std::string& data) {
     while (window_ < static_cast<int64_t>(data.size()) && !ended_) ReadFrame();
     if (ended_) return;
@@ -190,7 +190,7 @@ TEST(ConnectionBounds, EndlessRequestsAreEndedWhenMemoryIsUsedUp) {
   for (int begun = 0; begun < 900 && client.Send(kOfEach); ++begun) {
   }
   EXPECT_TRUE(client.EndsOne());
-  // Others come in again, if not at once: there is room for a moment only.
+  // Other clients can connect again after a while. There is room only for moments.
   while (!CallByName(server.channel(), kListJobs).ok()) {
   }
 }
@@ -208,7 +208,7 @@ TEST(ConnectionBounds, ReflectionUsesLimitedThreadsAndOtherCallsGoOn) {
   for (int i = 0; i < 60; ++i) {
     streams.push_back(std::make_unique<UnreadCall>(server.channel(), kReflection));
   }
-  // The last is refused, in a moment; it would be open as long as the client likes.
+  // The server rejects the last stream. Without the limit it would stay open.
   EXPECT_THAT(streams.back()->Finish(), StatusIs(grpc::StatusCode::RESOURCE_EXHAUSTED));
   EXPECT_LT(ThreadsOfThisProcess(), before + 50);  // the client's own may be among them
   EXPECT_OK(CallByName(server.channel(), kListJobs));

@@ -39,7 +39,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The flags that are given, as letters: a(ccess file), c(ertificate), k(ey), m(utual: client CA).
+// The given flags, as letters: a(ccess file), c(ertificate), k(ey), m(utual: client CA).
 SecurityOptions Flags(const std::string& letters) {
   const auto path = [&](char letter) { return letters.find(letter) == letters.npos ? "" : "f"; };
   return {.access_file = path('a'),
@@ -264,7 +264,7 @@ TEST(PublishedFile, IsExchangedAsAWhole) {
   ASSERT_OK(file.Publish("b"));
   EXPECT_EQ(file.Path(), path);
   EXPECT_EQ(Contents(path), "b");
-  // Who was reading the old content goes on with it.
+  // A reader that has begun continues with the old content.
   begun.append(std::istreambuf_iterator<char>(reading), {});
   EXPECT_EQ(begun, std::string(100'000, 'a'));
 }
@@ -281,7 +281,7 @@ TEST(PublishedFile, EachContentHasALaterSecond) {
   }
 }
 
-// What is in the files in memory of this process.
+// The contents of this process's files in memory.
 std::string Published() {
   std::string all;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -371,7 +371,7 @@ TEST_F(SecureServer, AnInvalidAccessFileKeepsThePreviousOne) {
   EXPECT_OK(List(channel, kAlice));
 }
 
-// The old connection is not disturbed; new ones see the new certificate, as soon as gRPC looks.
+// The existing connection goes on. New connections get the new certificate when gRPC has read it.
 TEST_F(SecureServer, ACertificateIsExchangedWhileAConnectionLives) {
   const auto channel = Channel();
   ASSERT_OK(List(channel, kAlice));
@@ -395,7 +395,8 @@ TEST_F(SecureServer, AnInvalidCertificateKeepsThePreviousOne) {
   EXPECT_OK(List(Channel(), kAlice));
 }
 
-// Neither a certificate that has expired nor one that is early, as it is to a clock that is late.
+// Neither an expired certificate nor one that is not valid yet, for example because the clock is
+// slow.
 TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
   using std::chrono::hours;
   for (const Validity validity : {Validity{hours(-2), hours(-1)}, Validity{hours(1), hours(2)}}) {
@@ -405,11 +406,11 @@ TEST_F(SecureServer, AnExpiredOrFutureCertificateDoesNotReplaceAValidOne) {
   }
 }
 
-// ---- a start before the clock is set: to the server its certificate is early, or has expired ----
+// ---- a start before the clock is set: the certificate seems not valid yet, or expired ----
 
 class ClockNotSet : public ::testing::Test {
  protected:
-  // Of a server with a certificate of this validity.
+  // Starts a server whose certificate has this validity.
   void Start(Validity validity) {
     files_.WriteCertificate(files_.authority().Issue("out-of-time", validity));
     ::testing::internal::CaptureStderr();
@@ -454,7 +455,7 @@ TEST_F(ClockNotSet, ANotYetValidCertificateReplacesAnother) {
   }
 }
 
-// Of 24 hours, as these are, and then of a year.
+// First a certificate of 24 hours, like the others here, then one of a year.
 TEST_F(SecureServer, ACertificateThatEndsSoonIsLogged) {
   const auto reload = [this] {
     ::testing::internal::CaptureStderr();

@@ -47,7 +47,7 @@ int ConnectTo(const std::string& path) {
   return -1;
 }
 
-// Whether the other side closes without a word.
+// Whether the other side closes the connection without sending data.
 bool IsClosed(int descriptor) {
   char byte;
   const bool closed = read(descriptor, &byte, 1) == 0;
@@ -149,12 +149,12 @@ TEST_F(Socket, APathWithoutAFolderIsRefused) {
   EXPECT_THAT(listener, StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("No such file")));
 }
 
-// A real other user, which takes root.
+// A real other user; the test needs root.
 TEST_F(Socket, AProcessOfAnotherUserIsClosed) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can be somebody else";
   Listen({0});
   chmod(folder_.path().c_str(), 0755);
-  chmod(path_.c_str(), 0666);  // so that only the check of the user stands in the way
+  chmod(path_.c_str(), 0666);  // so that only the check of the user can reject
   const pid_t child = fork();
   if (child == 0) _exit(setuid(kStranger) == 0 && IsClosed(ConnectTo(path_)) ? 0 : 1);
   int status = 0;

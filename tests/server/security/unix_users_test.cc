@@ -43,10 +43,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Users that every Debian has, one without a name, and the one that stands for unknown ones.
+// Users of every Debian system, a user without a name, and the number for unmapped users.
 constexpr uid_t kDaemon = 1, kBin = 2, kNameless = 54'321, kUnmapped = 65'534;
 
-// ---- without a server: connections of users that are made up ----
+// ---- without a server: connections of invented users ----
 
 // Answers each call, and remembers who made it: "daemon submit".
 class Listening : public v1::ServerService::Service {
@@ -109,7 +109,7 @@ class UnixUsersTest : public ::testing::Test {
     return ends;
   }
 
-  // A channel over a connection that gRPC is told to be this user's.
+  // A channel over a connection that gRPC treats as this user's.
   std::shared_ptr<grpc::Channel> As(uid_t user) {
     const Ends ends = Connect();
     users_->Receive(ends.server, user);

@@ -33,7 +33,7 @@ class BackupTest : public testing::Test {
   std::string Store() const { return folder_.File("store.sqlite3"); }
   std::string Copy() const { return folder_.File("copy"); }
 
-  // With a job that has succeeded, and one in the midst of it with a checkpoint in the store.
+  // Makes a store with a job that has succeeded and an unfinished job with a checkpoint.
   void MakeStore() {
     Gate gate;
     RunningServer server(
@@ -44,7 +44,7 @@ class BackupTest : public testing::Test {
     finished_ = server.Succeeded(Equilibrium(2, 3));
     results_ = server.ResultBytes(finished_);
     unfinished_ = server.Submit(Equilibrium(3, 6));
-    gate.AwaitWaiting(2);  // both workers: all before is done
+    gate.AwaitWaiting(2);  // both workers wait: all earlier blocks are done
   }
 
   std::vector<std::string> Problems() {
@@ -224,7 +224,7 @@ TEST_F(BackupTest, TheSizeIncludesTheLog) {
   EXPECT_EQ(static_cast<uintmax_t>(summary.bytes), std::filesystem::file_size(Store()) + log);
 }
 
-// Neither the file nor its log, which a checkpoint would write back.
+// Neither the file nor its log changes. A checkpoint would write the log back.
 TEST_F(BackupTest, TheStoreIsNotWrittenByCopyingAndChecking) {
   MakeStore();
   RunningServer server({.data_dir = folder_.path()});

@@ -88,7 +88,7 @@ TEST_F(DataFolder, AnOpenFolderOfAServerIsClosedWhateverElseIsInIt) {
   }
 }
 
-// A client that starts a server has made its log before.
+// A client that starts a server creates the log file before.
 TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
   Make(0755);
   WriteFile(path_ + "/server.log", "");
@@ -96,7 +96,7 @@ TEST_F(DataFolder, AnOpenFolderWithOnlyAClientsLogIsClosed) {
   EXPECT_EQ(Mode(), 0700u);
 }
 
-// Somebody else may be reading them.
+// Other users may read these files.
 TEST_F(DataFolder, AnOpenFolderWithOtherFilesIsRefusedAndUnchanged) {
   Make(0755);
   WriteFile(path_ + "/thesis.tex", "");

@@ -193,7 +193,7 @@ TEST_F(StoreTest, ADamagedPageIsRefusedAndUntouched) {
   }
   std::string contents = Contents(File());
   ASSERT_GT(contents.size(), 20000u);
-  // The second page on: the first holds the schema.
+  // From the second page on, because the first page has the schema.
   contents.replace(4096, contents.size() - 4096, contents.size() - 4096, '\x55');
   WriteFile(File(), contents);
   const auto store = Store::Open(File(), {});
@@ -210,7 +210,7 @@ TEST_F(StoreTest, ATruncatedFileIsRefused) {
   EXPECT_THAT(Store::Open(File(), {}), StatusIs(absl::StatusCode::kFailedPrecondition));
 }
 
-// All that lies in the folder, by name.
+// The contents of all files in the folder, by name.
 std::map<std::string, std::string> ContentsOfFolder(const std::string& folder) {
   std::map<std::string, std::string> contents;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -289,7 +289,7 @@ TEST_F(StoreTest, AnEmptyFileBecomesAStore) {
 TEST_F(StoreTest, TheLogOfAnotherStoreIsRejected) {
   TemporaryFolder other;
   MakeStore(other.File("store.sqlite3"), 20);
-  // Its log has some of its pages; one that had all of them would be a whole store.
+  // The log has only some of the store's pages. A log with all pages would be a whole store.
   const auto used = Store::Open(other.File("store.sqlite3"), {});
   Insert(**used, Record("other"));
   MakeStore(File(), 200);
