@@ -27,22 +27,22 @@ demo: build ## Run the paper's sweep with a real server and client (1 minute)
 chart: build ## Chart speed against accuracy for every method, on this machine (2 minutes)
 	@scripts/chart.sh build/release/bin
 
-ladder: build ## Compare planned and measured cost and error of a dozen questions, on this machine (1 minute)
+ladder: build ## Compare planned and measured cost and error of a dozen specifications, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
 bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchmarks on one core
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.$(PRESETS_PREFIX)programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
+stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## The same, written into core/README.md (10 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into core/README.md
 
-torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
+torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/torture_test --gtest_brief=1
@@ -65,19 +65,19 @@ asan: test-asan ## Run the fast tests under the address and undefined-behaviour 
 # gRPC is not instrumented: tests/sanitizer tells of what it orders.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-aarch64: ## Compile the core for AArch64 and run its tests under an emulator: its bits are those of x86 (15 minutes)
+aarch64: ## Compile the core for AArch64 and run its tests under an emulator: the results have the same bits as on x86 (15 minutes)
 	@scripts/setup.sh $(AARCH64_PACKAGES)
 	@$(MAKE) build/aarch64/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset aarch64
 	@ctest --preset aarch64 -j$(TEST_JOBS)
 
-fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds a target
+fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds per target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-thread-safety: ## Check with Clang that the server holds the right mutexes, in their order (1 minute)
+thread-safety: ## Check with Clang that the server locks the right mutexes, in the right order (1 minute)
 	@scripts/setup.sh clang
 	@scripts/thread-safety.sh
 

@@ -3,8 +3,7 @@
 //
 // Each step moves both along straight lines. Then
 //   - a ball inside a disc is pushed out along the normal, and its velocity is reflected if it
-//   heads
-//     inward;
+//     heads inward;
 //   - a piston beyond its wall is folded back, which is exact;
 //   - a ball that has passed the piston collides with it, up to a step too late.
 // On average a hit is half a step late. Therefore times have a bias of first order in the step,

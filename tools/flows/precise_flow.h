@@ -4,8 +4,7 @@
 //   float         24 bits
 //   long double   64 bits on x86, in hardware
 //   Quadruple    113 bits, about 20 ns per operation
-//   TwinNumber   256 bits, about 150 ns per operation; for the twins of orbits in the other
-//   precisions
+//   TwinNumber   256 bits, about 150 ns per operation; for twins of orbits in other precisions
 //
 // Include it only to compare precisions: it includes Boost's numbers.
 #ifndef BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_

@@ -31,8 +31,7 @@
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
 //                  that dominate the mean (long_returns.h), from a larger sample by kLanes.
 //   kIngoingLaw    from the chi-squared law, sqrt((cells - 1)/2)/samples. For a biased law, which
-//   has
-//                  a larger divergence, sqrt(2 value/samples) is added in quadrature.
+//                  has a larger divergence, sqrt(2 value/samples) is added in quadrature.
 //   kTrajectory    from the scatter of the orbits.
 //   kRelaxationTime
 //                  from the scatter of the measured orbits and of the truth's orbits:

@@ -96,7 +96,7 @@ bool Deliver(const Options& options, const std::string& text, std::ostream& out,
   return false;
 }
 
-// Empty if it cannot be made; then `error` says why.
+// The report; empty if it cannot be made, and then the reason is written to `error`.
 std::optional<Report> Made(const std::function<Report(double effort)>& make_report, double effort,
                            std::ostream& error) {
   try {
