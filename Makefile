@@ -1,4 +1,4 @@
-# The front door. On a fresh Debian 12 each of these does its own set-up first.
+# The main commands. On a fresh Debian 12 each command first installs the packages that it needs.
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
 TEST_JOBS ?= $(shell nproc)
@@ -62,7 +62,7 @@ test-web: build ## Test the page of ballpiston web in headless Chromium, with np
 
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
-# gRPC is not instrumented: tests/sanitizer tells of what it orders.
+# gRPC is not instrumented: tests/sanitizer tells the sanitizer how gRPC orders accesses.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
 aarch64: ## Compile the core for AArch64 and run its tests under an emulator: the results have the same bits as on x86 (15 minutes)
@@ -117,9 +117,9 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@cmake --build build/$* --target fast_tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
-# Stamps in build/PRESET: .programs if it is configured, perhaps without the tests; .tests if with the
-# tests; .benchmarks if with both. The prefix of the presets is part of a stamp's name, so each prefix
-# configures again. A failed attempt leaves no stamp.
+# Stamps in build/PRESET: .programs if the preset is configured, perhaps without the tests; .tests if it
+# is configured with the tests; .benchmarks if with tests and benchmarks. The prefix of the presets is
+# part of a stamp's name: each prefix configures again. A failed attempt leaves no stamp.
 configure = mkdir -p $(@D); \
   rm -f $(foreach prefix,'' ci-,$(foreach stamp,programs tests benchmarks,$(@D)/.$(prefix)$(stamp))); \
   cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \
