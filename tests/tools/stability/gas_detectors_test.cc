@@ -212,7 +212,7 @@ TEST_F(GasLookBack, OtherEnergiesArePhantoms) {
   EXPECT_EQ(failures.missed, 0u);
 }
 
-TEST(GasDetectors, ANegativeOrInfiniteEnergyIsAnEscape) {
+TEST(GasDetectors, ANegativeInfiniteOrNanEnergyIsAnEscape) {
   const GasState state = AReplica(Ring()).state;
   const double start = GasMeter(Ring(), state).TotalEnergy();
   for (const double energy : {-1.0, std::nan(""), HUGE_VAL}) {
