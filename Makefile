@@ -1,4 +1,4 @@
-# The front door. On a fresh Debian 12 each of these does its own set-up first.
+# The main commands. On a fresh Debian 12 each command first installs the packages that it needs.
 MAKEFLAGS += --no-print-directory
 SHELL := /bin/bash
 TEST_JOBS ?= $(shell nproc)
@@ -28,22 +28,22 @@ demo: build ## Run the paper's sweep with a real server and client (1 minute)
 chart: build ## Chart speed against accuracy for every method, on this machine (2 minutes)
 	@scripts/chart.sh build/release/bin
 
-ladder: build ## Compare planned and measured cost and error of a dozen questions, on this machine (1 minute)
+ladder: build ## Compare planned and measured cost and error of a dozen specifications, on this machine (1 minute)
 	@scripts/ladder.sh build/release/bin
 
 bench: build/release/.$(PRESETS_PREFIX)benchmarks ## Build, then run the benchmarks on one core
 	@cmake --build build/release --target benchmarks
 	@scripts/bench.sh build/release/bin
 
-stability: build/release/.$(PRESETS_PREFIX)programs ## Count where methods fail, and which do; write STABILITY_OUT, by default stability.md (10 minutes)
+stability: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write STABILITY_OUT, by default stability.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --out '$(STABILITY_OUT)'
 
-stability-table: build/release/.$(PRESETS_PREFIX)programs ## The same, written into core/README.md (10 minutes)
+stability-table: build/release/.$(PRESETS_PREFIX)programs ## Count the failures of all methods; write the tables into core/README.md (10 minutes)
 	@cmake --build build/release --target stability
 	@build/release/bin/stability --into core/README.md
 
-torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print what was counted (half an hour)
+torture: build/release/.$(PRESETS_PREFIX)tests ## Cut the power, kill the server a thousand times, cut its watches, stall its readers; print the counts (half an hour)
 	@cmake --build build/release --target ballpistond store_fault_test torture_test
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/store_fault_test --gtest_brief=1
 	@BALLPISTON_TORTURE=1 BALLPISTON_TEST_TIME_SCALE=30 build/release/bin/torture_test --gtest_brief=1
@@ -63,16 +63,16 @@ test-web: build ## Test the page of ballpiston web in headless Chromium, with np
 
 asan: test-asan ## Run the fast tests under the address and undefined-behaviour sanitizers
 
-# gRPC is not instrumented: tests/sanitizer tells of what it orders.
+# gRPC is not instrumented: tests/sanitizer tells the sanitizer how gRPC orders accesses.
 tsan: test-tsan ## Run the fast tests under the thread sanitizer
 
-aarch64: ## Compile the core for AArch64 and run its tests under an emulator: its bits are those of x86 (15 minutes)
+aarch64: ## Compile the core for AArch64 and run its tests under an emulator: the results have the same bits as on x86 (15 minutes)
 	@scripts/setup.sh $(AARCH64_PACKAGES)
 	@$(MAKE) build/aarch64/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset aarch64
 	@ctest --preset aarch64 -j$(TEST_JOBS)
 
-fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds a target
+fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FUZZ_RUNS runs or FUZZ_SECONDS seconds per target
 	@scripts/setup.sh clang libclang-rt-14-dev
 	@$(MAKE) build/fuzz/.$(PRESETS_PREFIX)tests
 	@cmake --build --preset fuzz
@@ -126,9 +126,9 @@ test-asan test-tsan: test-%: build/%/.$(PRESETS_PREFIX)tests
 	@cmake --build build/$* --target fast_tests
 	@ctest --preset $* -j$(TEST_JOBS)
 
-# Stamps in build/PRESET: .programs if it is configured, perhaps without the tests; .tests if with the
-# tests; .benchmarks if with both. The prefix of the presets is part of a stamp's name, so each prefix
-# configures again. A failed attempt leaves no stamp.
+# Stamps in build/PRESET: .programs if the preset is configured, perhaps without the tests; .tests if it
+# is configured with the tests; .benchmarks if with tests and benchmarks. The prefix of the presets is
+# part of a stamp's name: each prefix configures again. A failed attempt leaves no stamp.
 configure = mkdir -p $(@D); \
   rm -f $(foreach prefix,'' ci-,$(foreach stamp,programs tests benchmarks,$(@D)/.$(prefix)$(stamp))); \
   cmake --preset $(PRESETS_PREFIX)$(*) $(1) >$(@D)/configure.log 2>&1 \

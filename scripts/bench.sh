@@ -1,6 +1,6 @@
 #!/bin/bash
-# Runs the benchmarks, one after the other, pinned to the first core this process may use; then what
-# a second core adds, if there is one.
+# Runs the benchmarks one after the other, pinned to the first core that this process may use. Then
+# runs engine_benchmark on two cores, if there are two.
 #
 #   scripts/bench.sh FOLDER_OF_PROGRAMS [BENCHMARK_FLAG...]
 set -euo pipefail

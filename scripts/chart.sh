@@ -1,11 +1,11 @@
 #!/bin/bash
 # Charts speed against accuracy: every method of computing the pair, from a naive one with fixed
-# time steps to the closed form and the limit of rare collisions, and of a small gas. Takes some two
-# minutes.
+# time steps to the closed form and the limit of rare collisions, and of a small gas. Takes about
+# two minutes.
 #
 #   scripts/chart.sh FOLDER_OF_PROGRAMS
 #
-# The times are those of this machine, so nothing else should be busy on it.
+# The times are measured on this machine: no other program should be busy.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly RESULTS=chart

@@ -3,11 +3,12 @@
 #
 #   scripts/demo.sh FOLDER_OF_PROGRAMS
 #
-# Asks for the three mean free times in equilibrium and for the conditional mean free time at the
-# paper's 59 energies, at its rho and three values of delta, 10^4 first returns each; prints every
-# number with its exact value and z-score; draws the paper's figure. Fails if the largest |z| is not
-# credible for their number. The numbers follow from the seed alone: the demo never flickers. The
-# billiard is asked for by name: left to choose, the service would answer with the closed forms.
+# Computes the three mean free times in equilibrium, and the conditional mean free time at the
+# paper's 59 energies, at its rho and three values of delta, with 10^4 first returns each. Prints
+# every number with its exact value and z-score, and draws the paper's figure. Fails if the largest
+# |z| is too large for the number of z-scores. The numbers depend only on the seed: the demo always
+# gives the same result. The model billiard is given, because by default the service would answer
+# with the closed forms.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly RESULTS=demo
@@ -35,7 +36,8 @@ stop_server() {
   rm -rf "$data"
 }
 
-# ask NAME EXPERIMENT FLAG...: submits, watches, prints the table, and keeps the numbers in NAME.csv.
+# ask NAME EXPERIMENT FLAG...: submits, watches, prints the table, and keeps the numbers in
+# NAME.csv.
 ask() {
   local name=$1 job
   shift
@@ -47,7 +49,7 @@ ask() {
 }
 
 # The largest of m |z| exceeds the threshold once in a thousand such demos (Bonferroni, two-sided):
-# each one alone may do so with probability 1e-3/m.
+# each single |z| exceeds it with probability 1e-3/m.
 check_z_scores() {
   awk -F, -v expected="$COUNT" '
     function tail(z,   i, c) {  # P(Z > z), Laplace'"'"'s continued fraction
@@ -81,7 +83,7 @@ check_z_scores() {
       }
       limit = threshold(m)
       printf "%d z-scores, mean square %.2f; largest |z| = %.2f (%s)\n", m, sum / m, largest, where
-      printf "threshold %.2f: passed by chance in 1 of 1000 such demos (Bonferroni, two-sided)\n", limit
+      printf "threshold %.2f: exceeded by chance in 1 of 1000 such demos (Bonferroni, two-sided)\n", limit
       if (largest > limit) {
         print "demo: the largest |z| is not credible"
         exit 1

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Formats the C++ and proto files of the project, or with --check only says which lines are off.
-# The files under proto/google/ are others' and stay as they are.
+# Formats the C++ and proto files of the project. With --check it only prints the lines that are not
+# formatted. The third-party files under proto/google/ are not formatted.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh clang-format

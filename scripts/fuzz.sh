@@ -1,11 +1,12 @@
 #!/bin/bash
-# Runs fuzz targets one after the other, each from its seeds, and prints a table.
+# Runs fuzz targets one after the other, each with its seeds, and prints a table.
 #
 #   scripts/fuzz.sh FOLDER_OF_PROGRAMS [TARGET...]
 #
-# FUZZ_RUNS (100000) is the number of executions of each; with FUZZ_SECONDS each runs for that time
-# instead. FUZZ_SEED (1) makes a number of executions repeatable. Inputs that broke something stay in build/fuzz/found,
-# the others that it went on from in build/fuzz/corpus. Exits with 1 if any target failed.
+# FUZZ_RUNS (100000) is the number of executions per target; with FUZZ_SECONDS each target runs for
+# that time instead. With the same FUZZ_SEED (1), a number of executions is repeatable. Inputs that
+# caused a failure are kept in build/fuzz/found, the other new inputs in build/fuzz/corpus. Exits
+# with 1 if any target failed.
 set -euo pipefail
 folder=$1
 shift
@@ -13,11 +14,11 @@ readonly SEED=${FUZZ_SEED:-1}
 limit=(-runs="${FUZZ_RUNS:-100000}")
 [[ -z ${FUZZ_SECONDS:-} ]] || limit=(-max_total_time="$FUZZ_SECONDS")
 readonly SEEDS=tests/fuzz/seeds CORPUS=build/fuzz/corpus FOUND=build/fuzz/found
-# Longer ones only repeat what shorter ones show.
+# Longer inputs find nothing new.
 declare -A max_len=([stored_fold]=3000 [log_line]=64 [access_list]=320 [number_list]=80
                     [server_address]=160)
 readonly MAX_LEN=300
-# Stacks of allocations and freed memory that is kept for long cost more time than all else.
+# Stacks of allocations, and a long quarantine of freed memory, would take most of the time.
 export ASAN_OPTIONS=malloc_context_size=0:quarantine_size_mb=1:thread_local_quarantine_size_kb=64:max_malloc_fill_size=16
 export UBSAN_OPTIONS=print_stacktrace=1
 

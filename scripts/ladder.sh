@@ -1,11 +1,12 @@
 #!/bin/bash
-# Ten questions and more to the ladder of models: what is planned, and what it then takes.
+# Runs about a dozen specifications on the ladder of models, and compares the plan with the run.
 #
 #   scripts/ladder.sh FOLDER_OF_PROGRAMS
 #
-# Prints a table in Markdown: the model that answers, predicted and measured processor time, predicted
-# and measured relative error of the first estimate. A private server of its own, in a folder that
-# goes at the end. The times are those of this machine, so nothing else should be busy on it.
+# Prints a table in Markdown: the chosen model, the predicted and measured processor time, and the
+# predicted and measured relative error of the first estimate. Starts a separate private server, in
+# a folder that is deleted at the end. The times are measured on this machine: no other program
+# should be busy.
 set -euo pipefail
 PATH=$(cd "$1" && pwd):$PATH
 readonly RHO=0.529561127988977
@@ -19,7 +20,7 @@ trap stop_server EXIT
 BALLPISTON_SERVER=$(ballpiston server start --data-dir "$data")
 export BALLPISTON_SERVER
 
-# Of a plan: work of all of it, and the first point's chosen model, statistical error, model error.
+# Of a plan: its whole work, and the first point's chosen model, statistical error and model error.
 planned() {
   ballpiston plan "$@" --format json | number work | tail -n 1
   ballpiston plan "$@" --format csv |
@@ -28,10 +29,10 @@ planned() {
     }'
 }
 
-# The values of a field of JSON, one a line.
+# The values of a JSON field, one per line.
 number() { tr ',' '\n' | sed -n 's/.*"'"$1"'": *\([-+0-9.e]*\).*/\1/p'; }
 
-# Relative standard error of the first estimate, or - where there is none.
+# The relative standard error of the first estimate, or - if there is none.
 measured_error() {
   awk -F, 'NR == 2 { if ($9 == "") print "-"; else { e = $9 / $8; print (e < 0 ? -e : e) } }'
 }

@@ -7,8 +7,8 @@
 # A package for another architecture is written as PACKAGE:ARCHITECTURE. It is installed beside this
 # machine's own packages.
 #
-# With SKIP_SETUP=1 in the environment it installs nothing: for those who bring the libraries
-# themselves. A CMake that is too old is refused all the same.
+# With SKIP_SETUP=1 in the environment it installs nothing: then you install the libraries yourself.
+# It still rejects a CMake that is too old.
 set -euo pipefail
 
 readonly LEAST_CMAKE=3.25
@@ -26,7 +26,7 @@ readonly PACKAGES=(
   libzip-dev                                                   # results as NumPy's archives
   gnuplot-nox)                                                 # the client's figures
 
-# The version of the installed CMake or, without one, of the package; empty if neither is known.
+# The version of the installed CMake; without CMake, the version of its package; empty if unknown.
 cmake_version() {
   if command -v cmake >/dev/null; then
     cmake --version | awk 'NR == 1 {print $3}'
@@ -60,7 +60,7 @@ apt_get() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Acquire::Retries=3 \
     -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" >"$log" 2>&1 && return
   cat "$log" >&2
-  echo "setup: apt-get $1 failed (its words are above)" >&2
+  echo "setup: apt-get $1 failed (its messages are above)" >&2
   exit 1
 }
 
@@ -75,7 +75,7 @@ add_architectures() {
 require_cmake
 [[ ${SKIP_SETUP:-0} != 1 ]] || exit 0
 if ! command -v dpkg-query >/dev/null; then
-  echo "setup: not a Debian system; these packages, or what holds the same, must be there:" \
+  echo "setup: not a Debian system; install these packages, or the same libraries, yourself:" \
     "${PACKAGES[*]} $*" >&2
   exit 0
 fi
@@ -84,7 +84,7 @@ mapfile -t missing < <(missing_of "${PACKAGES[@]}" "$@")
 ((${#missing[@]})) || exit 0
 
 if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
-  echo "setup: packages are missing, and there is neither root nor sudo to install them." >&2
+  echo "setup: packages are missing; to install them, root or sudo is needed." >&2
   echo "setup: as root, run:  apt-get install ${missing[*]}" >&2
   exit 1
 fi

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Checks the alert rules for Prometheus and runs their tests, with promtool. Without a promtool on the
-# PATH, it unpacks the one of Debian's package prometheus into build/promtool and keeps it there.
-# Installing the package would start a Prometheus on this machine.
+# Checks the alert rules for Prometheus and runs their tests, with promtool. If PATH has no
+# promtool, it unpacks promtool from Debian's package prometheus into build/promtool and keeps it
+# there. It does not install the package, because that would start a Prometheus on this machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly FOLDER=build/promtool

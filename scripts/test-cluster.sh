@@ -1,8 +1,8 @@
 #!/bin/bash
-# A whole Slurm cluster on this machine, for tests: munged, one slurmctld, and two nodes (one slurmd
-# each). Needs no root, no systemd and no cgroups: everything runs as the current user, for the jobs
-# of this user. Everything is kept below DIR: configuration, state, spool, logs, keys.
-# The daemons listen on 127.0.0.1 only, at free ports, so several clusters can run at the same time.
+# A Slurm cluster on this machine, for tests: munged, one slurmctld, and two nodes (one slurmd
+# each). It needs no root, no systemd and no cgroups: all daemons run as the current user and accept
+# only jobs of this user. All files are in DIR: configuration, state, spool, logs, keys. The daemons
+# listen only on 127.0.0.1, at free ports: several clusters can run at the same time.
 #
 #   scripts/test-cluster.sh start DIR [--cpus N] [PARAMETER=VALUE...]
 #     Starts the cluster, waits until both nodes are idle, and prints the `export` lines for the
@@ -10,26 +10,26 @@
 #     --cpus: the CPUs that each node claims to have, by default 4.
 #     PARAMETER=VALUE: a line of slurm.conf, for instance MaxArraySize=100 or MinJobAge=5.
 #   scripts/test-cluster.sh stop DIR
-#     Ends the processes of the cluster and of its jobs. Leaves the files. May be repeated.
+#     Ends the processes of the cluster and of its jobs. Keeps the files. May be repeated.
 #
-# For tests of failures, on a cluster that was started:
-#   kill-controller DIR      Kills slurmctld at once: what it saved last may be 5 s old.
-#   stop-controller DIR      Ends slurmctld in good order: it saves its state.
+# For tests of failures, on a running cluster:
+#   kill-controller DIR      Kills slurmctld at once: its saved state may be 5 s old.
+#   stop-controller DIR      Ends slurmctld cleanly: it saves its state.
 #   start-controller DIR     Starts slurmctld again, and waits until it answers.
-#   pause-controller DIR     Stops slurmctld's process (SIGSTOP): connections open, no answer comes.
+#   pause-controller DIR     Stops slurmctld's process (SIGSTOP): connections open, but get no answer.
 #   resume-controller DIR
 #   lose-state DIR           Deletes the saved state. slurmctld must not run.
 #   kill-node DIR n1         Kills slurmd and all processes of its jobs, as a power cut does. The node
 #                            is down, and its jobs are requeued, within about 30 s. If start-node comes
 #                            earlier, jobs younger than 20 s stay RUNNING for a while.
-#   kill-slurmd DIR n1       Kills slurmd alone. Its jobs run on, also while slurmctld starts them again
-#                            elsewhere.
+#   kill-slurmd DIR n1       Kills only slurmd. Its jobs continue, even while slurmctld starts them again
+#                            on another node.
 #   start-node DIR n1        Starts slurmd again, and waits until slurmctld regards the node as up.
 #   kill-munge DIR, start-munge DIR
 #   logs DIR                 Prints the last lines of all logs.
 #
-# The partitions: main (the default, at most an hour a job), spare and urgent. A job in urgent
-# pre-empts (requeues) jobs in spare, and none in main.
+# The partitions: main (the default, at most an hour per job), spare and urgent. A job in urgent
+# pre-empts (requeues) jobs in spare, but not in main.
 set -euo pipefail
 
 readonly NODES=(n1 n2)
@@ -57,7 +57,7 @@ fail_with_logs() {
   fail "$*"
 }
 
-# wait_until WORDS COMMAND...: repeats the command until it succeeds. After the limit, fails.
+# wait_until WORDS COMMAND...: repeats the command until it succeeds. Fails after the time limit.
 wait_until() {
   local words=$1 end=$((SECONDS + LIMIT))
   shift
@@ -69,16 +69,16 @@ wait_until() {
 
 # --- Processes -----------------------------------------------------------------------------------
 
-# A daemon's pid file holds its process number. Numbers are given out again, so a process counts as
-# the daemon only if its environment holds the mark of this cluster.
+# A daemon's pid file contains its process id. The system reuses ids: therefore a process counts as
+# the daemon only if its environment contains the mark of this cluster.
 mark_of() { echo "BALLPISTON_TEST_CLUSTER=$dir/$1"; }
 
 has_in_environment() {  # PID LINE
   grep -aqszxF -- "$2" "/proc/$1/environ"
 }
 
-# Prints the process number of a daemon: munged, slurmctld or the name of a node. Fails if it does
-# not run.
+# Prints the process id of a daemon: munged, slurmctld or the name of a node. Fails if the daemon
+# does not run.
 pid_of() {
   local pid
   { read -r pid <"$dir/pids/$1"; } 2>/dev/null || return 1
@@ -89,7 +89,7 @@ runs() { pid_of "$1" >/dev/null; }
 
 ended() { ! kill -0 "$1" 2>/dev/null || [[ $(ps -o stat= -p "$1") == Z* ]]; }
 
-# launch NAME COMMAND...: starts a daemon in a session of its own.
+# launch NAME COMMAND...: starts a daemon in a new session.
 launch() {
   local name=$1
   shift
@@ -118,8 +118,8 @@ end() {
   rm -f "$dir/pids/$1"
 }
 
-# The processes of a node's jobs have in their environment the configuration of this node's slurmd.
-# Their descendants count too.
+# A process belongs to a node's jobs if its environment names the configuration of this node's
+# slurmd. Its descendants belong to the jobs too.
 pids_of_jobs() {
   local node=$1 own
   own=$(grep -alszxF -- "SLURM_CONF=$(conf_of "$node")" /proc/[0-9]*/environ | tr -dc '0-9\n') || true
@@ -151,12 +151,12 @@ kill_node() {
 
 # --- Configuration -------------------------------------------------------------------------------
 
-# Each slurmd reads the same file by another name, which marks the processes of its jobs.
+# Each slurmd reads the same file under a different name, which marks the processes of its jobs.
 conf_of() { echo "$dir/$1/slurm.conf"; }
 
 port_is_free() { ! (: <"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
 
-# Ports below those that the kernel gives to clients.
+# Ports below the range that the kernel gives to clients.
 choose_ports() {
   local port
   ports=()
@@ -209,7 +209,7 @@ TaskPlugin=task/none
 END
   )
   {
-    # The last line with a parameter's name wins; Slurm itself does not distinguish their case.
+    # The last line with a parameter's name is used. As in Slurm, the case of names does not matter.
     printf '%s\n' "$own" "$@" |
       awk -F= '{ key = tolower($1); line[key] = $0 } END { for (key in line) print line[key] }' | sort
     for i in "${!NODES[@]}"; do
@@ -226,8 +226,8 @@ END
 
 controller_answers() { scontrol ping >/dev/null 2>&1; }
 
-# node_is STATES NODE: its state is one of these, and slurmctld reaches it (otherwise the state has
-# an asterisk).
+# node_is STATES NODE: succeeds if the node has one of these states and slurmctld reaches it (if
+# not, the state has an asterisk).
 node_is() {
   local state
   state=$(sinfo --noheader --nodes="$2" --partition=main --format=%T 2>/dev/null) || return 1
@@ -236,7 +236,7 @@ node_is() {
 
 port_is_taken() { grep -qsi 'address already in use' "$dir"/log/*.log; }
 
-# answers NAME COMMAND...: succeeds also if the daemon has ended, which the caller finds.
+# answers NAME COMMAND...: succeeds also if the daemon has ended; the caller checks this.
 answers_or_ended() {
   local name=$1
   shift
@@ -330,7 +330,8 @@ start() {
   printf 'export SLURM_CONF=%q\n' "$dir/slurm.conf"
 }
 
-# The nodes first: slurmctld would requeue jobs. Signals are sent to all before any is waited for.
+# Ends the nodes first, because slurmctld would requeue jobs. Sends signals to all nodes before it
+# waits for any of them.
 stop() {
   local name
   for name in slurmctld munged; do
@@ -352,7 +353,7 @@ mkdir -p "$2"
 dir=$(cd "$2" && pwd -P)
 shift 2
 [[ $dir != *[[:space:],%]* ]] || fail "'$dir': the name must not contain white space, commas or %"
-# The caller may have set others for another cluster.
+# The caller may have set these variables for another cluster.
 unset "${!SLURM_@}" "${!SBATCH_@}" "${!SQUEUE_@}" "${!SINFO_@}"
 export SLURM_CONF=$dir/slurm.conf
 ports=()

@@ -1,8 +1,8 @@
 #!/bin/bash
-# Checks the server's locks with Clang: which mutex guards what, and which is taken first
-# (server/mutex.h). Clang only parses, all sources of a folder together, if the folder has a
-# mutex. First it has to report the seeded faults of tests/sanitizer/. Exits with 1 if anything is
-# wrong.
+# Checks the server's locks with Clang: which mutex guards which data, and the order of the mutexes
+# (server/mutex.h). Clang only parses. It parses all sources of a folder together, if the folder has
+# a mutex. First it must report the seeded faults of tests/sanitizer/. Exits with 1 after any
+# failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly GENERATED=build/thread-safety
@@ -16,7 +16,7 @@ generate_messages() {
       --plugin=protoc-gen-grpc="$(command -v grpc_cpp_plugin)"
 }
 
-# The source says in comments which warnings are expected, and where; there may be no others.
+# Comments in the source mark the expected warnings and their lines. Other warnings are failures.
 check_seeded() {
   "${CLANG[@]}" -Xclang -verify "$1" && return
   echo "thread-safety: $1: not reported as expected" >&2

@@ -23,8 +23,7 @@ absl::StatusOr<v1::EnsembleJob> CreateJob(const Connection& connection,
                                           const Terminal& terminal);
 
 // The note for a job with answered_from_store:
-//   answered from the store: ensembleJobs/ID, computed 2026-11-21 12:00 UTC (--fresh computes it
-//   again)
+//   answered from the store: NAME, computed 2026-11-21 12:00 UTC (--fresh computes it again)
 std::string FromStoreText(const v1::EnsembleJob& job);
 
 }  // namespace ballpiston::client

@@ -49,10 +49,9 @@ class Attributes {
     posix_spawnattr_setsigmask(&attributes_, &signals);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&signals, signal);
     posix_spawnattr_setsigdefault(&attributes_, &signals);
-    int flags =
-        POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;  // the default group is the child's own
+    int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
     if (child.detached) flags |= POSIX_SPAWN_SETSID;
-    if (child.own_group) flags |= POSIX_SPAWN_SETPGROUP;
+    if (child.own_group) flags |= POSIX_SPAWN_SETPGROUP;  // pgroup 0, the default: a new group
     posix_spawnattr_setflags(&attributes_, static_cast<short>(flags));
   }
   ~Attributes() { posix_spawnattr_destroy(&attributes_); }

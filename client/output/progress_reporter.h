@@ -1,8 +1,7 @@
 // Shows the progress of a watched job on standard error.
 //
-//   bar   one line, redrawn: bar, points, samples per second, time left, and the current estimate
-//   of
-//         the point that changed last
+//   bar   one line, redrawn: bar, points, samples per second, time left, and the current
+//         estimate of the point that changed last
 //   json  one v1.WatchProgress per line, with the points that changed: the unfinished points first,
 //         then the finished points; within each group the newest first
 //   none  only notes

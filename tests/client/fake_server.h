@@ -29,17 +29,17 @@ struct WatchScript {
 class FakeEnsembleService final : public v1::EnsembleService::Service {
  public:
   // The answers. Tests set them before they use the server.
-  std::vector<WatchScript> watches;  // one for each watch; the last one also for further watches
+  std::vector<WatchScript> watches;  // one per watch; further watches use the last script
   std::vector<v1::EnsembleJob> jobs;
   std::vector<v1::PointResult> points;
   v1::PlanEnsembleJobResponse plan;
   grpc::Status plan_end;
-  int unavailable_attempts = 0;  // of create, cancel, pin and delete, this many fail first
+  int unavailable_attempts = 0;  // the first attempts of create, cancel, pin or delete that fail
   grpc::Status create_end;
   std::vector<v1::EnsembleJob::State> created_states;  // of the jobs that Create makes, in order
   bool answers_from_store = false;  // Create answers with this value of answered_from_store
-  int page_size = 2;                // at most, whatever the client asks for
-  int unavailable_later_pages = 0;  // this many attempts to list a page after the first one fail
+  int page_size = 2;                // the largest page, whatever size the client requests
+  int unavailable_later_pages = 0;  // failing attempts to list a page after the first page
 
   // The requests so far.
   struct Requests {
@@ -138,18 +138,18 @@ class FakeServer {
 
   std::string Address() const { return "unix:" + SocketPath(); }
   std::string SocketPath() const { return folder_.File("socket"); }
-  std::shared_ptr<grpc::Channel> Channel() const;  // as OpenChannel makes it
-  void Start();                                    // listens; set the answers before
+  std::shared_ptr<grpc::Channel> Channel() const;  // made by OpenChannel
+  void Start();                                    // set the answers before this call
 
  private:
   const TemporaryFolder folder_;
   std::unique_ptr<grpc::Server> server_;
 };
 
-// INVALID_ARGUMENT with the details a server attaches: one violation.
+// INVALID_ARGUMENT with the details that a server attaches: one violation.
 grpc::Status InvalidSpec(const std::string& field, const std::string& description);
 
-// RESOURCE_EXHAUSTED with the details a server attaches.
+// RESOURCE_EXHAUSTED with the details that a server attaches.
 grpc::Status LimitExceeded(const std::string& reason, const std::string& message);
 
 // NOT_FOUND with the details a server attaches.
@@ -158,8 +158,8 @@ grpc::Status JobNotFound(const std::string& name);
 // NOT_FOUND with the details a server attaches.
 grpc::Status ResultNotFound(const std::string& name);
 
-// FAILED_PRECONDITION with the details a server attaches. The server's answer if a test sets
-// results_expired of the job.
+// FAILED_PRECONDITION with the details that a server attaches. The fake server answers with it if a
+// test sets results_expired of the job.
 grpc::Status ResultsExpired(const std::string& name);
 
 inline constexpr char kJobName[] = "ensembleJobs/abc";  // the name that JobIn gives

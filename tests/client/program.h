@@ -1,4 +1,4 @@
-// The whole program but its main function, in a home without files.
+// The whole program without its main function, in an empty home folder.
 #ifndef BALLPISTON_TESTS_CLIENT_PROGRAM_H_
 #define BALLPISTON_TESTS_CLIENT_PROGRAM_H_
 
@@ -30,8 +30,8 @@ inline Outcome Ballpiston(const std::vector<std::string>& words) {
   return {static_cast<int>(code), out.str(), err.str()};
 }
 
-// A home of its own, and no variable of the program: the user's files and settings have no effect.
-// The program of the private server is /bin/false.
+// An empty home folder, and no variables of the program: the user's files and settings have no
+// effect. The program of the private server is /bin/false.
 class EmptyHome {
  public:
   EmptyHome() {
@@ -43,12 +43,12 @@ class EmptyHome {
     std::filesystem::create_directory(File("ballpiston"));
   }
 
-  // XDG_CONFIG_HOME and XDG_STATE_HOME are the home too.
+  // XDG_CONFIG_HOME and XDG_STATE_HOME are also this folder.
   std::string File(const std::string& name) const { return folder_.File(name); }
   void WriteConfig(const std::string& text) const {
     WriteFile(File("ballpiston/config.toml"), text);
   }
-  // The private server is the one at this address.
+  // Makes the server at this address the private server.
   void UseAsPrivateServer(const std::string& address) const {
     std::filesystem::create_symlink(address.substr(std::string("unix:").size()),
                                     File("ballpiston/server.socket"));
@@ -63,7 +63,7 @@ class EmptyHome {
   std::map<std::string, ScopedVariable> variables_;
 };
 
-// With a server that has one job, which succeeded, with one point. A test starts it.
+// Adds a server with one succeeded job of one point. The test starts the server.
 class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest() {

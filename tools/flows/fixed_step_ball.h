@@ -35,7 +35,7 @@ class FixedStepBall {
     return true;
   }
 
-  // The ball has made steps outside all discs.
+  // To be called after steps outside all discs.
   void MovedFreely() { steps_inside_ = 0; }
 
   // The ball has left the unit cell, or is wedged between two discs.
@@ -48,12 +48,12 @@ class FixedStepBall {
   Eigen::Vector2d velocity;
 
  private:
-  // A ball that is repaired this often in succession is pushed to and fro between two discs: a
-  // grazing one skips out of the disc after a few.
+  // After so many repairs in succession a ball is wedged: two discs push it to and fro. A grazing
+  // ball leaves the disc after a few repairs.
   static constexpr int kWedged = 1000;
 
   double rho_;
-  int steps_inside_ = 0;  // a disc, one after the other
+  int steps_inside_ = 0;  // successive steps inside a disc
 };
 
 }  // namespace ballpiston

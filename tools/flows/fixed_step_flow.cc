@@ -25,7 +25,8 @@ FixedSteps FixedStepFlow::Advance(uint64_t most) {
   return result;
 }
 
-// The disc in the ball's own quadrant is the nearest one. All in registers: this is the whole cost.
+// The disc in the ball's quadrant is the nearest disc. This loop is the whole cost of the flow:
+// everything is in registers.
 uint64_t FixedStepFlow::MoveFreely(uint64_t most) {
   double x = ball_.position.x(), y = ball_.position.y(), piston = piston_;
   const double dx = ball_.velocity.x() * time_step_, dy = ball_.velocity.y() * time_step_;

@@ -1,14 +1,13 @@
-// The naive way to move ball and piston: by a fixed time step, repairing what penetrated. What a
-// program does that knows forces but no events; the baseline that the event-driven flows are
-// compared with.
+// The naive method for ball and piston: a fixed time step, and a repair of each overlap. Programs
+// that integrate forces work in this way. It is the baseline for the event-driven flows.
 //
-// Each step moves both along straight lines, then
-//   - a ball inside a disc is pushed out along the normal, and its velocity reflected if it heads
-//     inward;
+// Each step moves both along straight lines. Then
+//   - a ball inside a disc is pushed out along the normal, and its velocity is reflected if it
+//     heads inward;
 //   - a piston beyond its wall is folded back, which is exact;
-//   - a ball that has passed the piston is a collision, found up to a step too late.
-// A hit is on average half a step late, so times are biased to first order in the step, by more
-// than the step over the mean flight; contacts shorter than a step are missed.
+//   - a ball that has passed the piston collides with it, up to a step too late.
+// On average a hit is half a step late. Therefore times have a bias of first order in the step,
+// larger than the step divided by the mean flight. Contacts shorter than a step are missed.
 // Properties, each with a test of its name: 1. EnergyStaysExact, to rounding.
 // 2. TimeIsBiasedToFirstOrderInTheStep.
 //
@@ -24,12 +23,12 @@
 
 namespace ballpiston {
 
-// What happened in the last of some time steps; nothing at all may have.
+// The events in the last of several time steps. There may be none.
 struct FixedSteps {
   uint64_t steps = 0;
   bool ball_wall = false;
   bool piston_wall = false;
-  bool ball_piston = false;  // still approaching: ExchangeComponents() before the next step
+  bool ball_piston = false;  // they still approach: call ExchangeComponents() before the next step
   bool lost = false;         // the ball left the unit cell, or is wedged between two discs
 };
 
@@ -38,7 +37,7 @@ class FixedStepFlow {
   // time_step > 0.
   FixedStepFlow(const PairGeometry& geometry, const PairState& state, double time_step);
 
-  // Makes steps until there is something to repair, but not more than `most`, at least 1.
+  // Makes steps until a repair is needed, but at most `most` steps; `most` >= 1.
   FixedSteps Advance(uint64_t most);
   void ExchangeComponents();
 

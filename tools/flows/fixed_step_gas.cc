@@ -50,7 +50,7 @@ void FixedStepGas::MoveBall(int64_t number) {
   }
 }
 
-// If the ball has passed the piston and they still approach.
+// Exchanges energy if the ball has passed the piston and they still approach.
 void FixedStepGas::Meet(int64_t number, Direction direction) {
   FixedStepBall& ball = balls_[static_cast<size_t>(number)].moving;
   const int64_t piston_number = geometry_.PistonOf(number, direction);

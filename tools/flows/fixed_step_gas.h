@@ -1,9 +1,9 @@
-// The naive way to move a gas: FixedStepFlow's rules (fixed_step_flow.h) for all balls and pistons.
+// The naive method for a gas: FixedStepFlow's rules (fixed_step_flow.h) for all balls and pistons.
 //
-// In each step the pistons move, one that is beyond its wall is folded back, and at a thermal wall
-// it gets a new speed. Then the balls move, one that is inside a disc is pushed out, and a ball
-// that has passed a piston exchanges with it, up to a step too late. A lost ball stops. Properties,
-// each with a test of its name: 1. KeepsItsEnergy, to rounding.
+// In each step the pistons move. A piston beyond its wall is folded back; at a thermal wall it gets
+// a new speed. Then the balls move. A ball inside a disc is pushed out. A ball that has passed a
+// piston exchanges energy with it, up to a step too late. A lost ball stops. Properties, each with
+// a test of its name: 1. KeepsItsEnergy, to rounding.
 // 2. ABallThatHasPassedAPistonExchanges, in each direction. 3. ThermalWallsGiveNewSpeeds.
 //
 // One object is one gas; not for sharing between threads.
@@ -28,7 +28,7 @@ class FixedStepGas {
   FixedStepGas(const GasGeometry& geometry, const GasState& start, ThermalWalls walls,
                double time_step);
 
-  // One time step. Returns its events, mostly none; their time is the end of the step.
+  // One time step. Returns its events (usually none); their time is the end of the step.
   const std::vector<GasEvent>& Advance();
 
   double time() const { return static_cast<double>(steps_) * time_step_; }

@@ -1,12 +1,12 @@
-// The billiard flow in other precisions than double: to see what rounding does to an orbit, and to
-// know the orbit beyond the reach of a double. event_flow.h says what it does and promises.
+// The billiard flow in other precisions than double. It shows the effect of rounding on an orbit,
+// and gives orbits beyond the precision of a double. event_flow.h describes the flow.
 //
 //   float         24 bits
-//   long double   64 bits on x86, the processor's own
-//   Quadruple    113 bits, some 20 ns an operation
-//   TwinNumber   256 bits, some 150 ns an operation; a twin for orbits in any of the others
+//   long double   64 bits on x86, in hardware
+//   Quadruple    113 bits, about 20 ns per operation
+//   TwinNumber   256 bits, about 150 ns per operation; for twins of orbits in other precisions
 //
-// Only for those who compare precisions: it includes Boost's numbers.
+// Include it only to compare precisions: it includes Boost's numbers.
 #ifndef BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_
 #define BALLPISTON_TOOLS_FLOWS_PRECISE_FLOW_H_
 
@@ -21,7 +21,8 @@
 
 namespace ballpiston {
 
-// GCC's own 113 bits on x86: measured, products four and roots nine times as fast as Boost's.
+// GCC's own 113 bits on x86. As measured, its products are four times and its roots nine times as
+// fast as Boost's.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 using Quadruple = boost::multiprecision::float128;
 #else

@@ -26,12 +26,12 @@ class EnergyRelaxationRuns {
   // a factor of three.
   double PredictedSecondsPerOrbit() const;
 
-  // By kLanes or kMarkov. Escaped orbits are not counted.
+  // Runs kLanes or kMarkov. Escaped orbits are not counted.
   PointEstimate Run(Method method, const SampleRange& samples) const;
 
-  // The relaxation time of the limit; the error is that of its discretisation. `seconds` is the
-  // time of one evaluation. It does not include the computation of the spectrum (some 0.1 s), which
-  // is done once for all geometries.
+  // The relaxation time of the limit, with its discretisation error. `seconds` is the time of one
+  // evaluation, without the computation of the spectrum (about 0.1 s), which is done once for all
+  // geometries.
   PointEstimate BySpectrum() const;
 
  private:

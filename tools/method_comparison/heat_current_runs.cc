@@ -22,7 +22,7 @@ Model ModelOf(Method method) {
   }
 }
 
-// gas-conduction, which is a GasExperiment. The fixed steps measure as the billiard does.
+// The experiment gas-conduction. The fixed steps are measured in the same way as the billiard.
 std::unique_ptr<const PointExperiment> ExperimentOf(double rho, double delta, uint64_t seed,
                                                     Method method) {
   const EnsembleSpec spec = {.experiment = &kGasConduction,
@@ -40,11 +40,12 @@ const GasExperiment& AsGas(const PointExperiment& experiment) {
   return static_cast<const GasExperiment&>(experiment);
 }
 
-// The gas tells its energies only at the end of the step, after all of its events. In a chain this
-// does no harm: a ball's two pistons are on opposite sides, so in a step it exchanges with one of
-// them at most, and its energy, from which the current is measured, is that after its exchange. A
-// piston may have several events in a step; its energies between them last no time. In a lattice a
-// ball may exchange with two pistons in a step, and the energy carried would be wrong.
+// The gas gives its energies only at the end of the step, after all events. In a chain this does no
+// harm: the two pistons of a ball are on opposite sides, and the ball exchanges with at most one of
+// them in a step. The current is measured from the ball's energy, which is then its energy after
+// the exchange. A piston may have several events in a step; its energies between them last no time.
+// In a lattice a ball may exchange with two pistons in a step, and the transported energy would be
+// wrong.
 void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
   if (event.kind == EventKind::kBallPiston) {
     meter.Exchange({event.time, event.ball, event.piston, event.direction,
@@ -56,7 +57,7 @@ void Tell(const FixedStepGas& gas, const GasEvent& event, GasMeter& meter) {
   }
 }
 
-// Not further than to where a ball is lost.
+// Stops earlier if a ball is lost.
 void AdvanceTo(double time, FixedStepGas& gas, GasMeter& meter) {
   while (gas.time() < time && meter.escapes() == 0) {
     for (const GasEvent& event : gas.Advance()) Tell(gas, event, meter);

@@ -1,9 +1,9 @@
 // Measures the heat current of one cell between two reservoirs, and its cost, by the methods that
 // can run a gas (experiment/gas_conduction.cc). A sample is a replica.
 //
-// All methods run the same replicas for the same times. Of the fixed time steps, a replica that
-// loses a ball is not counted. The jump process has the limit's current, not the billiard's.
-// Property, with a test of its name: 1. AllMethodsAgree, as far as they should.
+// All methods run the same replicas for the same times. A replica of the fixed time steps that
+// loses a ball is not counted. The jump process has the current of the limit, not of the billiard.
+// Property, with a test of its name: 1. AllMethodsAgree, within their errors and biases.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_HEAT_CURRENT_RUNS_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_HEAT_CURRENT_RUNS_H_
 
@@ -15,25 +15,25 @@
 
 namespace ballpiston::method_comparison {
 
-// A ball between two pistons. At the same work the error grows as the number of cells, and with
-// more cells it would hide the limit's bias.
+// A ball between two pistons. At the same work the error grows as the number of cells. With more
+// cells the error would hide the bias of the limit.
 inline constexpr GasShape kComparedChain = {.columns = 1};
 inline constexpr double kComparedHot = 1.5;
 inline constexpr double kComparedCold = 0.5;
 
 class HeatCurrentRuns {
  public:
-  // delta has to be one of a gas.
+  // `delta` must be valid for a gas.
   HeatCurrentRuns(double rho, double delta, uint64_t seed)
       : rho_(rho), delta_(delta), seed_(seed) {}
 
   double delta() const { return delta_; }
 
-  // Of kFixedStep, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
+  // For kFixedStep, kReference, kLanes and kMarkov, on a processor of about 3 GHz, within a factor
   // of three.
   double PredictedSecondsPerReplica(const MethodVariant& variant) const;
 
-  // By one of these methods.
+  // Runs one of these methods.
   PointEstimate Run(const MethodVariant& variant, const SampleRange& samples) const;
 
  private:

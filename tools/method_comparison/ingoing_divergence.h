@@ -1,5 +1,5 @@
-// The ingoing angles of returns, counted in the cells of `first-hit`: kIngoingBins bins of alpha
-// for each allowed sign of the piston's velocity.
+// Histograms of the ingoing angles of returns, with the cells of `first-hit`: kIngoingBins bins of
+// alpha for each allowed sign of the piston's velocity.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_INGOING_DIVERGENCE_H_
 
@@ -24,7 +24,7 @@ class IngoingCounts {
   std::vector<uint64_t> Counts() const;
 
  private:
-  std::vector<Histogram> histograms_;  // by sigma: -1, then +1 where it is allowed
+  std::vector<Histogram> histograms_;  // sigma = -1, then +1 if it is allowed
 };
 
 }  // namespace ballpiston::method_comparison

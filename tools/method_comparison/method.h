@@ -1,12 +1,11 @@
-// The methods of computing the ball-piston pair and the gas that are compared, and the compared
-// quantities.
+// The compared methods of computing the ball-piston pair and the gas, and the compared quantities.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_H_
 
 namespace ballpiston::method_comparison {
 
 enum class Method {
-  kFixedStep,  // naive: moves by a fixed time step, repairs what penetrated
+  kFixedStep,  // naive: a fixed time step, and a repair of each overlap
   kReferenceSingle,
   kReference,
   kReferenceLongDouble,  // 64 bits
@@ -15,7 +14,7 @@ enum class Method {
   kLanesSingle,
   kClosedForm,
   kMarkov,    // the jump process of the limit delta -> 0, sampled
-  kSpectrum,  // the same limit by its generator's eigenvalues, without samples
+  kSpectrum,  // the same limit from the eigenvalues of its generator, without samples
 };
 
 enum class Quantity {
@@ -27,7 +26,7 @@ enum class Quantity {
   kLimitFloor
 };
 
-// As the output spells them.
+// The names in the output.
 inline const char* Name(Method method) {
   constexpr const char* kNames[] = {"fixed-step",
                                     "billiard-reference-single",
@@ -47,13 +46,13 @@ inline const char* Name(Quantity quantity) {
   return kNames[static_cast<int>(quantity)];
 }
 
-// Distance in cells from which an orbit counts as parted from its twin.
+// At this distance, in cells, an orbit counts as parted from its twin.
 inline constexpr double kParted = 1e-3;
 
 // One curve of the chart: a method, and for kFixedStep its time step in cells per unit speed.
 struct MethodVariant {
   Method method;
-  double time_step = 0;  // 0 for the others
+  double time_step = 0;  // 0 for the other methods
 };
 
 }  // namespace ballpiston::method_comparison

@@ -41,7 +41,7 @@ constexpr uint64_t kFewestReturns = 16;
 constexpr size_t kFewestOrbits = 64;
 
 // A rung is run if its expected work is at most this many times seconds_per_curve. Then the largest
-// rung takes between half of seconds_per_curve and twice of it.
+// rung takes between 0.5 and 2 times seconds_per_curve.
 constexpr double kOverrun = 2;
 
 // The truth of a relaxation time, or of a heat current, may take about this many times
@@ -168,7 +168,7 @@ class Comparison {
     return std::sqrt(VarianceOfTimes() / count);
   }
 
-  // Of as many returns as can tell it, or as time permits.
+  // The variance from enough returns to determine it, or from as many returns as the time permits.
   double VarianceOfTimes() {
     constexpr double kFewest = 256, kMost = 65536;
     if (variance_of_times_) return *variance_of_times_;
@@ -191,7 +191,7 @@ class Comparison {
             .value = kMeanFreeTimeRelativeError + kConditionalRateRelativeError};
   }
 
-  // The divergence of a law whose cells are off by e each, relatively, is at most e^2/2.
+  // If each cell of a law has a relative error e, the divergence of the law is at most e^2/2.
   MethodMeasurement ClosedIngoingLaw() const {
     return {.method = Method::kClosedForm,
             .quantity = Quantity::kIngoingLaw,
@@ -200,7 +200,7 @@ class Comparison {
             .value = kIngoingLawRelativeError * kIngoingLawRelativeError / 2};
   }
 
-  // All methods share the twins, and the twins cost more than any method, so they determine the
+  // All methods use the same twins. The twins cost more than any method and therefore determine the
   // number of orbits.
   void CompareTrajectories() {
     std::vector<TwinOrbits> rungs;
@@ -257,28 +257,28 @@ class Comparison {
                              runs.Run({Method::kLanes}, TruthOf(replicas))};
     for (const MethodVariant& variant : GasVariants()) {
       const double expected = runs.PredictedSecondsPerReplica(variant) * kFewestOrbits;
-      // The truth takes long enough for the fewest replicas by any engine.
+      // The truth's time is long enough for the smallest number of replicas of any engine.
       Climb(subject, variant, variant.method == Method::kFixedStep ? expected : 0,
             [&](const SampleRange& samples) { return runs.Run(variant, samples); });
     }
   }
 
   // The power of two whose logarithm is nearest. It follows from the predicted cost, not from a
-  // measured one, so the truth depends on the spec alone.
+  // measured cost. Therefore the truth depends only on the spec.
   uint64_t SamplesOfTruth(double seconds_per_sample) const {
     const double samples = kTruthTimes * spec_.seconds_per_curve / seconds_per_sample;
     return std::bit_floor(static_cast<uint64_t>(std::numbers::sqrt2 * samples));
   }
 
-  // What is compared with a truth.
+  // A quantity that is compared with a truth.
   struct Subject {
     Quantity quantity;
     double delta;
     PointEstimate truth;
   };
 
-  // Runs of more and more samples; `expected` are the seconds of the first one, 0 if it is to run
-  // anyway. Returns the longest.
+  // Makes runs of increasing numbers of samples and returns the longest run. `expected`: the
+  // seconds of the first run; 0 if the first run is always made.
   template <typename Run>
   MethodMeasurement Climb(const Subject& subject, const MethodVariant& variant, double expected,
                           const Run& run) const {
@@ -286,7 +286,7 @@ class Comparison {
     for (uint64_t samples = kFewestOrbits; expected <= Limit(); samples *= kRungFactor) {
       const PointEstimate measured = run(RunOf(samples));
       expected = measured.seconds * kRungFactor;
-      if (measured.error == 0) continue;  // nearly all were lost
+      if (measured.error == 0) continue;  // nearly all samples were lost
       longest = Compared(subject, variant, measured);
       Tell(longest);
     }
@@ -315,7 +315,7 @@ class Comparison {
   const double exact_;
   const std::vector<double> probabilities_;
   std::optional<double> variance_of_times_;
-  std::map<uint64_t, DivergenceNoise> noise_;  // by samples: the same for all methods
+  std::map<uint64_t, DivergenceNoise> noise_;  // by the number of samples; the same for all methods
   std::map<double, MethodMeasurement, std::greater<>> floors_;  // by delta
 };
 
@@ -334,7 +334,7 @@ class Check {
   std::vector<std::string> violations_;
 };
 
-// As far as can be told if rho itself is not permitted. `validate` needs a valid rho.
+// If rho is not permitted, checks only what does not depend on rho. `validate` needs a valid rho.
 absl::Status ValidateDelta(double rho, double delta,
                            absl::Status (*validate)(double, double) = ValidatePairDelta) {
   return ValidateRho(rho).ok() ? validate(rho, delta) : ValidateSomeDelta(delta);

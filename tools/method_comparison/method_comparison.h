@@ -1,14 +1,14 @@
 // Speed against accuracy: measures the error and the work of every method of computing the pair,
 // and the gas.
 //
-// There are five quantities. Each method computes those that it can, with more and more samples
-// until its time is spent:
+// There are five quantities. Each method computes the quantities that it can, with increasing
+// numbers of samples until its time is used:
 //   kMeanFreeTime  the conditional mean free time of ball and piston at epsilon (eq. numft). A
 //                  sample is one return. value = |measured - exact|/exact.
-//   kIngoingLaw    the law of the ingoing angle of first hits begun from h^(1), histogrammed as
-//                  `first-hit` does. value = its Kullback-Leibler divergence from the exact law
-//                  minus the mean divergence of samples from that law: the noise floor
-//                  (cells - 1)/(2 samples), or its value for few samples a cell
+//   kIngoingLaw    the law of the ingoing angle of first hits that start from h^(1), as a histogram
+//                  with the cells of `first-hit`. value = its Kullback-Leibler divergence from the
+//                  exact law minus the noise floor, which is the mean divergence of samples from
+//                  the exact law: (cells - 1)/(2 samples), or its value for few samples per cell
 //                  (ingoing_divergence.h). The difference can be negative.
 //   kTrajectory    single orbits of the ball against a twin of 256 bits. A sample is one orbit.
 //                  value = mean number of wall hits until they are kParted apart; work/wall_hits is
@@ -18,49 +18,50 @@
 //                  (experiment/energy_relaxation.h), at each of several delta: by kLanes, and by
 //                  kMarkov and kSpectrum, which are exact only in the limit delta -> 0. A sample is
 //                  one orbit. value = |measured - truth|/truth. The truth comes from many more
-//                  orbits by kLanes, so the curves of the limit tend to the limit's bias.
+//                  orbits by kLanes: the curves of the limit tend to the limit's bias.
 //   kHeatCurrent   the heat current of one cell between reservoirs at 1.5 and 0.5
 //                  (heat_current_runs.h): by kFixedStep, kReference and kLanes, and by kMarkov,
-//                  whose bias is that of the limit. A sample is a replica. The value and the truth
-//                  are as for kRelaxationTime.
+//                  which has the bias of the limit. A sample is a replica. The value and the truth
+//                  are defined as for kRelaxationTime.
 // A sixth quantity follows from the relaxation times:
 //   kLimitFloor    the limit's bias at one delta, or an upper bound of it. work = the work at which
-//                  the billiard is as exact (limit_floor.h). By kSpectrum, without samples.
+//                  the billiard has the same error (limit_floor.h). By kSpectrum, without samples.
 // statistical_error is one standard error of `value` (before its absolute value is taken). A value
 // within kResolved standard errors shows no bias, only an upper bound of the bias.
 //   kMeanFreeTime  from the scatter of the sample. If the sample has too few of the long returns
 //                  that dominate the mean (long_returns.h), from a larger sample by kLanes.
-//   kIngoingLaw    that of chi-squared, sqrt((cells - 1)/2)/samples. For a biased law, which has a
-//                  larger divergence, sqrt(2 value/samples) is added in quadrature.
+//   kIngoingLaw    from the chi-squared law, sqrt((cells - 1)/2)/samples. For a biased law, which
+//                  has a larger divergence, sqrt(2 value/samples) is added in quadrature.
 //   kTrajectory    from the scatter of the orbits.
 //   kRelaxationTime
 //                  from the scatter of the measured orbits and of the truth's orbits:
 //                  hypot(error, measured/truth * error of the truth)/truth. For the spectrum this
-//                  is in effect the error of the truth, which all methods at one delta share.
-//                  own_error is the run's own part, error/truth: what more orbits make smaller.
-//   kHeatCurrent   the same, by the scatter of the replicas.
+//                  is in effect the error of the truth, which is the same for all methods at one
+//                  delta. own_error is the run's own part, error/truth, which falls with more
+//                  orbits.
+//   kHeatCurrent   the same, from the scatter of the replicas.
 // Orbits that a method loses (fixed steps through a tip) are not among its samples; their hits and
 // their work are counted.
 // The closed form has no samples and no statistical error. Its value is the bound of its rounding
-// error. Its work is that of one evaluation: of one mean, or of the probabilities of all cells. It
-// computes no orbits. The spectrum computes no orbits either. Its work is that of one evaluation,
-// without the computation of its eigenvalues, which takes 0.1 s once for all parameters.
+// error. Its work is the work of one evaluation: of one mean, or of the probabilities of all cells.
+// It computes no orbits. The spectrum computes no orbits either. Its work is the work of one
+// evaluation, without the computation of its eigenvalues, which takes 0.1 s once for all
+// parameters.
 //
 // All methods start from the same states. The states of rung k are samples of stream k under the
-// seed, so a curve's points are independent, and only the methods differ. The rungs are 16, 64,
-// 256, ... samples (orbits: from 64). The work of the last rung is expected within a factor of two
-// of seconds_per_curve. A method is left out if by a rough prediction even 16 samples take longer.
-// The truth of a relaxation time takes about 8 times seconds_per_curve. A delta is left out if the
-// truth would not reach kFewestTruthOrbits in this time. For kHeatCurrent the same holds: its truth
-// takes about as long, and the quantity is left out below kFewestTruthReplicas. So for any valid
-// spec the program takes
-// some 50 times seconds_per_curve, 20 times more for the heat current, and 10 times more for each
-// delta of a relaxation time.
+// seed. Therefore the points of a curve are independent, and at each rung only the methods differ.
+// The rungs are 16, 64, 256, ... samples (orbits: from 64). The work of the last rung is expected
+// within a factor of two of seconds_per_curve. A method is left out if, by a rough prediction, even
+// 16 samples take longer. The truth of a relaxation time takes about 8 times seconds_per_curve. A
+// delta is left out if the truth would not reach kFewestTruthOrbits in this time. The truth of
+// kHeatCurrent takes about as long, and the quantity is left out below kFewestTruthReplicas.
+// Therefore, for any valid spec, the program takes about 50 times seconds_per_curve, 20 times more
+// for the heat current, and 10 times more for each delta of a relaxation time.
 //
 // The orbits of kRelaxationTime and the replicas of kHeatCurrent are samples of the point's own
-// stream (point_stream.h) under the seed. Each rung has its own samples, and so has the truth.
+// stream (point_stream.h) under the seed. Each rung and the truth have different samples.
 //
-// Work is processor time, so other programs do not count (but they affect caches and shared cores).
+// Work is processor time: other programs do not count, but they affect caches and shared cores.
 // Values are functions of the spec; the number of rungs also depends on the work.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_COMPARISON_H_
@@ -84,14 +85,14 @@ inline constexpr size_t kMaxRelaxationDeltas = 8;
 inline constexpr uint64_t kFewestTruthOrbits = 256;
 inline constexpr uint64_t kFewestTruthReplicas = 64;
 
-// Statistical errors from which on a deviation is a bias: chance alone exceeds them once in 400.
+// A deviation of more statistical errors than this is a bias: by chance it happens once in 400.
 inline constexpr double kResolved = 3;
 
 struct MethodComparisonSpec {
   double rho = kPaperRho;
   double delta = 0.1;
   double epsilon = 0.125;        // the piston's energy, inside (0, 1/2)
-  double seconds_per_curve = 1;  // work of each method's largest run, about
+  double seconds_per_curve = 1;  // approximate work of each method's largest run
   uint64_t seed = 0;
   std::vector<double> relaxation_deltas = {};  // for kRelaxationTime; if empty, it is left out
   double gas_delta = 0;                        // for kHeatCurrent; if 0, it is left out
@@ -99,20 +100,20 @@ struct MethodComparisonSpec {
 
 struct MethodMeasurement {
   Method method = Method::kReference;
-  double time_step = 0;  // of kFixedStep, in cells per unit speed; 0 for the others
+  double time_step = 0;  // of kFixedStep, in cells per unit speed; 0 for the other methods
   Quantity quantity = Quantity::kMeanFreeTime;
   double delta = 0;      // of the pair, or of the gas; one of relaxation_deltas for kRelaxationTime
   uint64_t samples = 0;  // 0 for the closed form and the spectrum
-  uint64_t wall_hits = 0;  // the ball's, in all samples; not counted (0) from kRelaxationTime on
+  uint64_t wall_hits = 0;  // of the ball, in all samples; 0 from kRelaxationTime on (not counted)
   std::optional<double> work = 0;  // seconds; empty for a kLimitFloor that no run determines
   double value = 0;
   double statistical_error = 0;
-  double own_error = 0;                    // without that of the truth, where there is one
-  std::optional<bool> bias_resolved = {};  // empty for kTrajectory, whose value is no deviation
+  double own_error = 0;                    // without the error of the truth
+  std::optional<bool> bias_resolved = {};  // empty for kTrajectory: its value is not a deviation
 };
 
 // One sentence for each value that is not permitted. It begins with the program's flag, or with
-// gas_delta, which has none: the program takes DefaultGasDelta.
+// gas_delta, which has no flag: the program uses DefaultGasDelta.
 std::vector<std::string> Violations(const MethodComparisonSpec& spec);
 
 // The values among 0.2, 0.1, 0.05 and 0.025 that rho permits.
@@ -123,8 +124,8 @@ double DefaultGasDelta(double rho);
 
 // Calls `tell` with each measurement as soon as it is made. The order is by quantity, then delta
 // (in the order of the list), then method, then time step (descending), then samples (ascending).
-// At the end comes one kLimitFloor for each delta that has relaxation times, by descending delta.
-// The spec must have no violations.
+// The last measurements are one kLimitFloor for each delta with relaxation times, by descending
+// delta. The spec must have no violations.
 void CompareMethods(const MethodComparisonSpec& spec,
                     const std::function<void(const MethodMeasurement&)>& tell);
 

@@ -6,7 +6,7 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-// One orbit of a flow in whatever precision, one event a call of Advance.
+// One orbit of a flow in any precision. Each call of Advance makes one event.
 template <typename Real>
 class EventOrbit {
  public:
@@ -25,7 +25,7 @@ class EventOrbit {
   void ExchangeComponents() { flow_.ExchangeComponents(); }
 
  private:
-  static constexpr int kStandsStill = 1000;  // events without time between them
+  static constexpr int kStandsStill = 1000;  // successive events at the same time
 
   EventFlow<Real> flow_;
   int standing_ = 0;

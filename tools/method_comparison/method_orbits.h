@@ -1,5 +1,5 @@
-// Orbits of many pairs by any of the methods, from collision to collision; see billiard/orbits.h.
-// An orbit that is lost, or whose time no longer advances, ends with an escape.
+// Orbits of many pairs by any method, from collision to collision (see billiard/orbits.h). An orbit
+// that is lost, or whose time no longer advances, ends with an escape.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_ORBITS_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_METHOD_ORBITS_H_
 
@@ -12,7 +12,7 @@
 namespace ballpiston::method_comparison {
 
 // Not for kClosedForm, kMarkov and kSpectrum, which have no such orbits. Starts and collisions are
-// passed as doubles; between them all numbers have the method's precision.
+// doubles; between them all numbers have the method's precision.
 void RunMethodOrbits(const MethodVariant& variant, const PairGeometry& geometry, uint64_t orbits,
                      NumberedOrbits& source);
 

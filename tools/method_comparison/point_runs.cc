@@ -8,7 +8,7 @@
 namespace ballpiston::method_comparison {
 
 SampleRange TruthOf(uint64_t samples) {
-  // Runs are [4^k, 2 4^k): from 2 4^k on there is room for as many.
+  // The runs are [4^k, 2 4^k). The gap that starts at 2 4^k has the same length.
   const bool is_start_of_run = std::countr_zero(samples) % 2 == 0;
   return {is_start_of_run ? 2 * samples : samples, samples};
 }

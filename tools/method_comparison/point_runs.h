@@ -1,9 +1,9 @@
-// Runs samples of a point of an experiment as the service would, and measures what they cost.
+// Runs samples of a point of an experiment as the service would, and measures their cost.
 //
-// A run of n samples has the samples n ... 2 n - 1 of the point's stream, so runs of 64, 256, 1024,
-// ... samples have no sample in common. The samples of the truth lie between those of the runs. A
-// run is one block; it is not divided into chunks and blocks like a job. Property, with a test of
-// its name: 1. RunsHaveNoSampleInCommon, truth included.
+// A run of n samples has the samples n ... 2 n - 1 of the point's stream. Therefore runs of 64,
+// 256, 1024, ... samples have no sample in common. The samples of the truth are in the gaps between
+// the runs. A run is one block; it is not divided into chunks and blocks like a job. Property, with
+// a test of its name: 1. RunsHaveNoSampleInCommon, truth included.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_POINT_RUNS_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_POINT_RUNS_H_
 
@@ -17,7 +17,7 @@ namespace ballpiston::method_comparison {
 // The first estimate of a point.
 struct PointEstimate {
   double value = 0;
-  double error = 0;      // one standard error; 0 if too few samples tell it
+  double error = 0;      // one standard error; 0 if there are too few samples
   uint64_t samples = 0;  // 0 if the value was computed without samples
   double seconds = 0;    // of processor time
 };
@@ -25,7 +25,7 @@ struct PointEstimate {
 // Samples first ... first + count - 1 of a point's stream.
 struct SampleRange {
   uint64_t first;
-  uint64_t count;  // a power of two, as first is
+  uint64_t count;  // a power of two, like first
 
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
@@ -37,7 +37,7 @@ SampleRange TruthOf(uint64_t samples);
 
 PointEstimate RunSamples(const PointExperiment& experiment, const SampleRange& samples);
 
-// What was measured, in that time.
+// The estimate of the merged block, with its processor time.
 PointEstimate EstimateOf(const PointExperiment& experiment, const BlockResult& merged,
                          double seconds);
 

@@ -47,12 +47,12 @@ void AddFlags(CLI::App& app, MethodComparisonSpec& spec, std::string& progress) 
   app.add_option("--epsilon", spec.epsilon, "energy of the piston, between 0 and 1/2")
       ->capture_default_str();
   app.add_option("--relaxation-delta", spec.relaxation_deltas,
-                 "LIST a,b,c of at most 8 delta at which relaxation times are compared; if not "
-                 "given or empty those of 0.2,0.1,0.05,0.025 that rho permits")
+                 "LIST a,b,c of at most 8 delta at which relaxation times are compared; by default "
+                 "(or if empty) 0.2,0.1,0.05,0.025, as far as rho permits them")
       ->delimiter(',')
       ->expected(0, -1);
   app.add_option("--seconds", spec.seconds_per_curve,
-                 "work of each method's largest run, 0.01 to 60. The program takes some 70 times "
+                 "work of each method's largest run, 0.01 to 60. The program takes about 70 times "
                  "as long, and 10 times more for each delta of a relaxation time")
       ->capture_default_str();
   app.add_option("--seed", spec.seed, "of the random numbers")->capture_default_str();
@@ -69,7 +69,7 @@ std::set<Quantity> Print(const MethodComparisonSpec& spec, bool bar, std::ostrea
   int measurements = 0;
   out << kHeader << std::endl;
   CompareMethods(spec, [&](const MethodMeasurement& m) {
-    out << Row(spec, m) << std::endl;  // flushed: a reader gets each row at once
+    out << Row(spec, m) << std::endl;  // std::endl flushes: a reader gets each row at once
     if (m.samples >= kFewestDrawn) drawn.insert(m.quantity);
     if (bar)
       error << absl::StrFormat("\r%3d measurements  %s\x1b[K", ++measurements, ProgressText(m));
@@ -83,8 +83,8 @@ std::set<Quantity> Print(const MethodComparisonSpec& spec, bool bar, std::ostrea
 int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostream& error) {
   MethodComparisonSpec spec;
   CLI::App app(
-      "Measures what every method of computing the ball-piston pair, and the gas, gives for how\n"
-      "much work, on one core of this machine, and prints CSV with a row for each measurement.",
+      "Measures the error and the work of every method of computing the ball-piston pair, and the\n"
+      "gas, on one core of this machine, and prints CSV with a row for each measurement.",
       "method_comparison");
   std::string progress = isatty(STDERR_FILENO) != 0 ? "bar" : "none";
   AddFlags(app, spec, progress);

@@ -6,14 +6,14 @@
 //   0.53,0.1,0.125,billiard,0,mean-free-time,4096,301923,0.0031,0.012,...
 //
 // The last columns are statistical_error, own_error and bias_resolved (1 or 0). rho and epsilon are
-// those of the spec; method_comparison.h explains the other columns, method.h the names. A number
-// reads back as the same double. A value that is not known is an empty field.
+// the values of the spec; method_comparison.h explains the other columns, method.h the names. A
+// number reads back as the same double. The field of an unknown value is empty.
 //
 // Progress is one line on standard error, which is redrawn and cleared at the end.
 //
 // Exit status: 0 success; 1 standard output cannot be written, or a quantity has no measurement of
-// kFewestDrawn samples, so its panel of the chart is empty (all rows are printed nevertheless); 2 a
-// wrong flag or value: standard error names each value that is not permitted.
+// kFewestDrawn samples: then its panel of the chart is empty, but all rows are printed; 2 a wrong
+// flag or value: standard error names each value that is not permitted.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_PROGRAM_H_
 
@@ -22,7 +22,7 @@
 
 namespace ballpiston::method_comparison {
 
-// Errors estimated from fewer samples are mostly chance themselves; the chart does not draw them.
+// Errors from fewer samples are too uncertain; the chart does not draw them.
 inline constexpr uint64_t kFewestDrawn = 64;
 
 // `out` and `error` are the program's standard output and standard error.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kInvariantExponent = 1;
 
-// Returns at a time: in lanes so many that these are full but for the last few, and few enough for
-// memory.
+// The number of returns that run together. For lanes it is large, so that all lanes are full except
+// at the end, but small enough for the memory.
 uint64_t BatchSize(Method method) {
   return method == Method::kLanes || method == Method::kLanesSingle ? 1 << 17 : 1 << 8;
 }
@@ -43,7 +43,7 @@ class CountedReturns : public NumberedOrbits {
   uint64_t wall_hits_ = 0;
 };
 
-// Of one event, or one time step.
+// The predicted time of one event, or of one time step.
 double PredictedSecondsPerEvent(Method method) {
   switch (method) {
     case Method::kFixedStep:

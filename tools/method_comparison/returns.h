@@ -1,5 +1,5 @@
-// Returns to the collision surface at fixed energies from the invariant law, by any of the methods:
-// their times, their ingoing angles and their cost.
+// Returns to the collision surface at fixed energies, with starts from the invariant law, by any
+// method: their times, their ingoing angles and their cost.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_RETURNS_H_
 
@@ -17,11 +17,11 @@ namespace ballpiston::method_comparison {
 struct ReturnStatistics {
   Moments times;
   IngoingCounts ingoing;
-  uint64_t wall_hits = 0;  // the ball's
+  uint64_t wall_hits = 0;  // of the ball
   double seconds = 0;      // of processor time
 };
 
-// Samples 0 ... samples - 1 of the stream. Not for kClosedForm, kMarkov, kSpectrum.
+// Runs the samples 0 ... samples - 1 of the stream. Not for kClosedForm, kMarkov, kSpectrum.
 ReturnStatistics RunReturns(const MethodVariant& variant, const PairGeometry& geometry,
                             double epsilon, const RandomStream& random, uint64_t samples);
 

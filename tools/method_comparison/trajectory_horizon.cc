@@ -12,13 +12,13 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-// Places of every orbit after each of its hits; fewer if it was lost.
+// The positions of every orbit after each of its hits; a lost orbit has fewer.
 struct Itineraries {
   std::vector<std::vector<BallAt>> orbits;
   double seconds = 0;
 };
 
-// Flies one orbit after the other by `fly`, which fills an itinerary from a start.
+// Runs one orbit after the other with `fly`, which fills an itinerary from a start.
 template <typename Start, typename Fly>
 Itineraries FlyEach(const std::vector<Start>& starts, uint64_t hits, const Fly& fly) {
   Itineraries result;
@@ -77,7 +77,8 @@ Itineraries FlyFixedSteps(const PairGeometry& geometry, double time_step, const 
 using LaneFlights = void(const PairGeometry&, std::span<const LaneFrame>, uint64_t,
                          std::span<LaneHit>);
 
-// The flights are timed without their records, which the lanes are too fast to carry along.
+// The measured time does not include the records of the positions: the lanes are so fast that the
+// records would dominate.
 Itineraries FlyLanes(LaneFlights& fly, const PairGeometry& geometry, const TwinOrbits& twins,
                      uint64_t hits) {
   std::vector<LaneFrame> frames;
@@ -124,7 +125,7 @@ Itineraries Fly(const MethodVariant& variant, const PairGeometry& geometry, cons
   return {};
 }
 
-// Hits before the parting; empty if orbit and twin are together at the end of all `hits`.
+// The number of hits before the parting; empty if orbit and twin are still together after `hits`.
 std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t hits, size_t orbit,
                                      TwinOrbits& twins) {
   for (size_t k = 0; k < places.size(); ++k) {
@@ -136,8 +137,8 @@ std::optional<uint64_t> HitsTogether(const std::vector<BallAt>& places, uint64_t
   return std::nullopt;
 }
 
-// The horizons, empty if some orbit is with its twin to the end; then at the most hits that counts
-// as its horizon.
+// The horizons; empty if an orbit is with its twin to the end. At the largest number of hits this
+// number counts as the horizon of such an orbit.
 std::optional<Moments> Horizons(const Itineraries& itineraries, uint64_t hits, TwinOrbits& twins) {
   Moments moments;
   for (size_t i = 0; i < itineraries.orbits.size(); ++i) {

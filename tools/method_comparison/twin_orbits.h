@@ -1,7 +1,7 @@
-// Orbits of the ball alone in 256 bits: the twins that orbits of fewer bits are compared with.
+// Orbits of the ball alone in 256 bits: the twins of orbits with fewer bits.
 //
-// An error grows some e-fold a wall hit, so a twin is right for about 170 hits, more than twice as
-// long as an orbit in 113 bits.
+// An error grows by about a factor of e per wall hit. Therefore a twin is correct for about 170
+// hits, more than twice as long as an orbit in 113 bits.
 #ifndef BALLPISTON_TOOLS_METHOD_COMPARISON_TWIN_ORBITS_H_
 #define BALLPISTON_TOOLS_METHOD_COMPARISON_TWIN_ORBITS_H_
 
@@ -18,7 +18,7 @@ namespace ballpiston::method_comparison {
 
 inline constexpr size_t kMostTwinHits = 256;
 
-// A place on an orbit.
+// A point of an orbit.
 struct BallAt {
   double time = 0;  // cells at unit speed, since the start
   Eigen::Vector2d position = {0, 0};
@@ -28,25 +28,25 @@ class TwinOrbits {
  public:
   using State = PairStateOf<TwinNumber>;
 
-  // Starts from samples 0 ... count - 1 of the stream: in equilibrium, at unit speed, on the wall
-  // that is hit first; the piston rests at its right wall, where the ball never comes.
+  // Starts from the samples 0 ... count - 1 of the stream: in equilibrium, at unit speed, on the
+  // wall that the ball hits first. The piston rests at its right wall, out of the ball's reach.
   TwinOrbits(const PairGeometry& geometry, const RandomStream& random, size_t count);
 
   size_t Count() const { return orbits_.size(); }
   const State& Start(size_t orbit) const { return orbits_[orbit].start; }
 
-  // Flies the first `hits` hits of every orbit.
+  // Computes the first `hits` hits of every orbit.
   void FlyAhead(size_t hits);
 
-  // Where the twin is then, time >= 0; flies on as far as needed, up to its hit kMostTwinHits.
-  // Empty if it takes more.
+  // The twin's position at this time, time >= 0. Computes further hits as needed, at most up to the
+  // hit kMostTwinHits; empty if more are needed.
   std::optional<Eigen::Vector2d> PositionAt(size_t orbit, double time);
 
  private:
   struct Orbit {
     State start;
     EventFlow<TwinNumber> flow;
-    std::vector<BallAt> places;  // the start, and after each hit
+    std::vector<BallAt> places;  // at the start and after each hit
   };
 
   static void Step(Orbit* orbit);

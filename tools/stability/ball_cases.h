@@ -1,4 +1,4 @@
-// The places where methods fail that need no piston, and how each method does there.
+// The situations without a piston in which methods fail, and the failures of each method there.
 #ifndef BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
 #define BALLPISTON_TOOLS_STABILITY_BALL_CASES_H_
 
@@ -23,12 +23,13 @@ struct BallCase {
   std::string name;
   std::vector<Radius> radii;
   PairState (*start)(const PairGeometry& geometry, CounterRandom& random);
-  uint64_t hits;  // of each; 0: until no tip can hold the ball any more
+  uint64_t hits;  // per start; 0: until no tip can hold the ball any longer
 };
 
 const std::vector<BallCase>& BallCases();
 
-// All starts of the case times `effort` and the method's share, the same ones for every method.
+// Runs the case's number of starts, times `effort` and the method's share. All methods have the
+// same starts.
 Failures FlyCase(const BallCase& ball_case, const BallMethod& method, double effort);
 
 }  // namespace ballpiston::stability

@@ -1,5 +1,5 @@
-// The methods that fly a ball alone, behind one function each: the engines in every precision, and
-// the naive methods beside them.
+// The methods that move a ball alone: the engines in every precision, and the naive methods. Each
+// method is one function.
 #ifndef BALLPISTON_TOOLS_STABILITY_BALL_METHODS_H_
 #define BALLPISTON_TOOLS_STABILITY_BALL_METHODS_H_
 
@@ -16,15 +16,15 @@ namespace ballpiston::stability {
 
 struct BallMethod {
   std::string name;
-  double share;   // of a case's starts: all for what is promised to hold, fewer for slow methods
-  bool promised;  // to show zeros everywhere
+  double share;   // of a case's starts; less than 1 for slow methods
+  bool promised;  // the method promises zeros everywhere
   bool naive;
 
-  // Each ball makes that many wall hits, watched one by one.
+  // Each ball makes `hits` wall hits. Every hit is checked.
   Failures (*fly)(const PairGeometry& geometry, std::span<const PairState> starts, uint64_t hits);
 
-  // Where each ball is after that many hits, back again after as many with its velocity reversed.
-  // The distance from its start; starts are on a wall.
+  // Each ball makes `hits` wall hits, is reversed, and makes as many hits back. Returns the
+  // distance of each ball from its start; starts are on a wall.
   std::vector<double> (*there_and_back)(const PairGeometry& geometry,
                                         std::span<const PairState> starts, uint64_t hits);
 };

@@ -9,16 +9,17 @@
 namespace ballpiston::stability {
 namespace {
 
-// Two discs that are this near are both touched: at a tip either may be the one that was hit.
+// If two discs are nearer than this, the ball touches both: at a tip it may have hit either of
+// them.
 constexpr double kTouching = 1e-7;
 
-// Of the disc in the ball's quadrant, the nearest, and of its neighbours.
+// The centres of the nearest disc, which is in the ball's quadrant, and of its two neighbours.
 std::array<Eigen::Vector2d, 3> NearestCentres(const Eigen::Vector2d& position) {
   const double x = std::copysign(0.5, position.x()), y = std::copysign(0.5, position.y());
   return {Eigen::Vector2d(x, y), Eigen::Vector2d(x, -y), Eigen::Vector2d(-x, y)};
 }
 
-// Not a number is outside too.
+// False also if a coordinate is not a number.
 bool InsideSquare(const Eigen::Vector2d& position) {
   return std::fabs(position.x()) <= 0.5 && std::fabs(position.y()) <= 0.5;
 }

@@ -13,7 +13,8 @@
 namespace ballpiston::stability {
 namespace {
 
-// One geometry: naively, by the library, and with 113 bits, of which cancellation leaves enough.
+// One geometry computed in three ways: naively, by the library, and with 113 bits, which leave
+// enough bits after the cancellation.
 struct ThreeWays {
   explicit ThreeWays(const PairGeometry& geometry)
       : printed(MeasuresAsPrinted(geometry.rho(), geometry.delta(), std::numbers::pi)),

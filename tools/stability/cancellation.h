@@ -1,4 +1,4 @@
-// The closed forms where their printed formulas cancel.
+// Errors of the closed forms at parameters where terms of the printed formulas cancel.
 #ifndef BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
 #define BALLPISTON_TOOLS_STABILITY_CANCELLATION_H_
 

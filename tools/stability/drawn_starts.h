@@ -1,4 +1,4 @@
-// Starts of a case: the i-th is the same whatever is drawn before it.
+// Starts of a case. The i-th start does not depend on earlier draws.
 #ifndef BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
 #define BALLPISTON_TOOLS_STABILITY_DRAWN_STARTS_H_
 
@@ -13,7 +13,7 @@ namespace ballpiston::stability {
 
 using DrawStart = PairState(const PairGeometry& geometry, CounterRandom& random);
 
-// Numbers first ... first + count - 1.
+// The starts with the numbers first ... first + count - 1.
 inline std::vector<PairState> DrawnStarts(DrawStart& draw, const PairGeometry& geometry,
                                           uint64_t seed, uint64_t first, uint64_t count) {
   std::vector<PairState> starts;

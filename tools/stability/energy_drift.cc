@@ -33,7 +33,7 @@ double Share(uint64_t part, uint64_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// One vector of balls alone: |u|^2 - 1, which is all the energy there is. Looked at every thousand
+// One vector of balls alone. The error of their energy is |u|^2 - 1, checked every thousand
 // flights.
 EnergyRecord BallsInLanes(FlyLanes fly, uint64_t hits) {
   constexpr uint64_t kBetweenLooks = 1000;
@@ -56,7 +56,7 @@ EnergyRecord BallsInLanes(FlyLanes fly, uint64_t hits) {
   return record;
 }
 
-// Pairs in equilibrium, looked at in every collision.
+// Pairs in equilibrium, checked at every collision.
 class PairsInEquilibrium : public NumberedOrbits {
  public:
   PairsInEquilibrium(uint64_t orbits, uint64_t hits_each)
@@ -146,7 +146,7 @@ double EnergyRecord::DriftError() const {
 
 bool Drifts(const EnergyRun& run) {
   const double drift = std::fabs(run.record.Drift());
-  // As a negation, so that a drift that is not a number is one.
+  // Written as a negation, so that a drift that is not a number counts as a trend.
   return !(drift <= 4 * run.record.DriftError() || drift <= 2.2e-16);
 }
 

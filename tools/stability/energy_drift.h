@@ -1,4 +1,4 @@
-// What is left of the energy after a long run, and whether it drifts.
+// The error of the energy after a long run, and its drift.
 #ifndef BALLPISTON_TOOLS_STABILITY_ENERGY_DRIFT_H_
 #define BALLPISTON_TOOLS_STABILITY_ENERGY_DRIFT_H_
 
@@ -15,7 +15,8 @@ class EnergyRecord {
   void Add(double share_of_run, double error);
 
   double Worst() const { return worst_; }  // infinite if an error is not a number
-  // What a straight line through the stretches' means gains over the run, and its standard error.
+  // The change over the run of a straight line through the means of the stretches, and its standard
+  // error.
   double Drift() const;
   double DriftError() const;
 
@@ -35,16 +36,16 @@ class EnergyRecord {
 
 struct EnergyRun {
   std::string method;
-  std::string what;  // is flown and measured
-  uint64_t hits;     // of the ball on walls, one orbit or all together
+  std::string what;  // the moving bodies and the measured quantity
+  uint64_t hits;     // wall hits of all orbits together
   uint64_t orbits;
-  bool promised;  // to keep |dE/E| <= 1e-14 without a trend
+  bool promised;  // the method promises |dE/E| <= 1e-14 without a trend
   EnergyRecord record;
 };
 
-// A drift is one if it is more than four of its standard errors and more than an ulp, or not a
-// number. The standard error is that of twenty stretches about a line: Student's t with 18 degrees
-// of freedom, 8e-4 false alarms a run.
+// A drift counts as a trend if it is more than four of its standard errors and more than an ulp, or
+// not a number. The standard error comes from the scatter of twenty stretches about a line:
+// Student's t with 18 degrees of freedom, 8e-4 false alarms per run.
 bool Drifts(const EnergyRun& run);
 
 std::vector<EnergyRun> EnergyRuns(double effort);

@@ -1,5 +1,5 @@
-// The size of an error of the energy. An error that is not a number is infinite: std::max drops
-// NaN, and a comparison with NaN is false, so a NaN would pass every limit.
+// The size of an error of the energy. An error that is not a number becomes infinite. Otherwise it
+// would pass every limit: std::max drops NaN, and a comparison with NaN is false.
 #ifndef BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
 #define BALLPISTON_TOOLS_STABILITY_ERROR_SIZE_H_
 

@@ -1,5 +1,5 @@
-// A ball flown by a flow that resolves one event after the other: EventFlow in any precision, or
-// one of the naive flows with its interface.
+// A ball moved by a flow that computes one event after the other: EventFlow in any precision, or a
+// naive flow with the same interface.
 #ifndef BALLPISTON_TOOLS_STABILITY_EVENT_METHODS_H_
 #define BALLPISTON_TOOLS_STABILITY_EVENT_METHODS_H_
 
@@ -24,13 +24,14 @@ using StateOf = std::remove_cvref_t<decltype(std::declval<Flow>().state())>;
 template <typename Flow>
 using RealOf = std::remove_cvref_t<decltype(StateOf<Flow>().ball_speed)>;
 
-// Slacks below a double's are not looked for: the watch itself is in double.
+// At least the epsilon of a double: the watch itself computes in double.
 template <typename Flow>
 inline constexpr double kEpsilon = std::is_same_v<RealOf<Flow>, float>
                                        ? std::numeric_limits<float>::epsilon()
                                        : std::numeric_limits<double>::epsilon();
 
-// 2 E - 1. Of a double or a float in 64 bits, which leaves their own rounding; else in its own.
+// 2 E - 1. For float and double it is computed in 64 bits, so that only the rounding of the state
+// remains; else in the number's own precision.
 template <typename Real>
 double SignedEnergyError(const PairStateOf<Real>& s) {
   using Wide = std::conditional_t<std::is_floating_point_v<Real>, long double, Real>;
@@ -76,7 +77,7 @@ bool Step(Flow& flow, uint64_t hits) {
   return true;
 }
 
-// Outward normal, of length 1, of the disc in whose quadrant the ball is.
+// The outward unit normal of the disc in the ball's quadrant.
 template <typename Real>
 typename PairStateOf<Real>::Vector NormalAt(const typename PairStateOf<Real>::Vector& position) {
   using std::sqrt;
@@ -86,7 +87,7 @@ typename PairStateOf<Real>::Vector NormalAt(const typename PairStateOf<Real>::Ve
   return from_centre / Real(sqrt(from_centre.squaredNorm()));
 }
 
-// A start in double, on its wall and with a unit direction to the flow's own precision.
+// A start in double, moved onto its wall and with a unit direction in the flow's own precision.
 template <typename Real>
 PairStateOf<Real> OnWall(const PairGeometry& geometry, const PairState& start) {
   using std::sqrt;
@@ -99,8 +100,8 @@ PairStateOf<Real> OnWall(const PairGeometry& geometry, const PairState& start) {
   return state;
 }
 
-// The ball on a wall that would have come to `state` with its velocity reversed: mirrored at the
-// normal, so that it need not hit the wall it is on first.
+// The state from which the reversed orbit starts, for a ball on a wall. The reversed velocity is
+// reflected at the normal, so that the ball need not hit its present wall first.
 template <typename Real>
 PairStateOf<Real> Reversed(PairStateOf<Real> state) {
   const typename PairStateOf<Real>::Vector normal = NormalAt<Real>(state.position);

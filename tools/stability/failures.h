@@ -1,4 +1,4 @@
-// What can go wrong with an orbit, counted.
+// Counts of the failures of orbits.
 #ifndef BALLPISTON_TOOLS_STABILITY_FAILURES_H_
 #define BALLPISTON_TOOLS_STABILITY_FAILURES_H_
 
@@ -13,18 +13,18 @@ namespace ballpiston::stability {
 
 struct Failures {
   uint64_t orbits = 0;
-  uint64_t hits = 0;  // of the ball: on walls in the tables of the ball, on the piston in the other
+  uint64_t hits = 0;  // of the ball: on walls in the tables of the ball, else on the piston
 
-  uint64_t escapes = 0;         // orbits that left the cell, or are not a number any more
+  uint64_t escapes = 0;         // orbits that left the cell or became NaN
   uint64_t negative_times = 0;  // events before their predecessors
   uint64_t loops = 0;           // orbits that stand still, see tip_sequence.h
-  uint64_t inward = 0;          // hits after which the ball still flies into what it hit
-  uint64_t looked_back = 0;     // hits on the piston of which is known whether one was missed
+  uint64_t inward = 0;          // hits after which the ball still flies into the obstacle
+  uint64_t looked_back = 0;     // piston hits that were checked for a missed hit
   uint64_t missed = 0;          // the ball beyond the piston
   uint64_t phantoms = 0;        // contacts with the piston elsewhere
-  uint64_t beyond_walls = 0;    // pistons of a gas that come to a turn or a contact beyond a wall
+  uint64_t beyond_walls = 0;    // pistons of a gas at a turn or a contact beyond a wall
   double deepest = 0;           // inside a disc, of orbits that did not escape
-  double energy = kNoEnergy;    // worst |dE/E|, if it was looked at; infinite if that is no number
+  double energy = kNoEnergy;    // worst |dE/E|, if it was measured; infinite if NaN
 
   static constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 

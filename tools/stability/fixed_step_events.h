@@ -1,4 +1,4 @@
-// Flow of fixed time steps with the interface of the flows that know events.
+// The flow with fixed time steps, with the interface of the event-driven flows.
 #ifndef BALLPISTON_TOOLS_STABILITY_FIXED_STEP_EVENTS_H_
 #define BALLPISTON_TOOLS_STABILITY_FIXED_STEP_EVENTS_H_
 
@@ -18,7 +18,7 @@ class FixedStepEvents {
   FixedStepEvents(const PairGeometry& geometry, const PairState& start)
       : flow_(geometry, start, kTimeStep) {}
 
-  // What happens within one step is told one after the other, the rest in no time.
+  // Several events of one step are returned one after the other; the later ones take no time.
   Event Step() {
     double time = 0;
     if (!Anything()) {

@@ -1,4 +1,4 @@
-// Gas of fixed time steps with the interface of the gases that know events.
+// The gas with fixed time steps, with the interface of the event-driven gases.
 #ifndef BALLPISTON_TOOLS_STABILITY_FIXED_STEP_GAS_EVENTS_H_
 #define BALLPISTON_TOOLS_STABILITY_FIXED_STEP_GAS_EVENTS_H_
 
@@ -32,7 +32,7 @@ class FixedStepGasEvents {
     return IsEmpty() ? std::numeric_limits<double>::infinity() : pending_[told_].time;
   }
 
-  // What happens within one step is told one after the other.
+  // Several events of one step are returned one after the other.
   GasEvent Step() { return pending_[told_++]; }
 
   GasBall BallAt(int64_t ball, double /*time*/) const { return gas_.BallNow(ball); }

@@ -14,7 +14,7 @@ constexpr uint64_t kGasBatch = 256;
 
 using Shapes = std::vector<const char*>;
 
-// delta is each share of the gas's bound.
+// delta takes each share of the gas's bound.
 std::vector<GasGeometry> GasesAt(const std::vector<double>& rhos, const std::vector<double>& shares,
                                  const Shapes& shapes, GasEnds ends = GasEnds::kPeriodic) {
   std::vector<GasGeometry> geometries;
@@ -90,7 +90,7 @@ Failures RunGasCase(const GasCase& gas_case, const GasMethod& method, double eff
   const auto starts = static_cast<uint64_t>(
       std::ceil(static_cast<double>(gas_case.starts) * effort * method.share));
   for (const GasGeometry& geometry : gas_case.geometries) {
-    // A method that loops is not tried again at the same place.
+    // After a loop the method's remaining starts at this geometry are left out.
     const uint64_t loops = failures.loops;
     for (uint64_t first = 0; first < starts && failures.loops == loops; first += kGasBatch) {
       failures.Merge(

@@ -1,4 +1,4 @@
-// The places where methods fail that need a gas, and how each method does there.
+// The situations of a gas in which methods fail, and the failures of each method there.
 #ifndef BALLPISTON_TOOLS_STABILITY_GAS_CASES_H_
 #define BALLPISTON_TOOLS_STABILITY_GAS_CASES_H_
 
@@ -18,9 +18,9 @@ struct GasCase {
   std::vector<GasGeometry> geometries;
   DrawGasStart* start;
   uint64_t starts;  // for each geometry, in the full table
-  double flights;   // of a ball of speed 1, the time of each
-  double hot = 1;   // temperatures of thermal walls, where there are some; the fastest body's
-  double cold = 1;  // energy is 1/2
+  double flights;   // the duration of each run, in flights of a ball of speed 1
+  double hot = 1;   // temperatures of the thermal walls, if there are any; the energy of the
+  double cold = 1;  // fastest body is 1/2
 };
 
 const std::vector<GasCase>& GasCases();

@@ -35,7 +35,7 @@ std::vector<GasReplica> EnergyReplicas() {
   return replicas;
 }
 
-// In which each gas has so many exchanges, about.
+// The time in which each gas has about this number of exchanges.
 double TimeOf(double exchanges) {
   const GasGeometry gas = EnergyGas();
   return exchanges / (static_cast<double>(gas.contacts()) * GasExchangeRate(gas, 1));
@@ -91,7 +91,7 @@ void GasEnergyRun::Add(double error) {
 
 bool HasTrend(const GasEnergyRun& run) {
   const double mean = std::fabs(run.errors.mean);
-  // As a negation, so that a mean or a standard error that is not a number is a trend.
+  // Written as a negation, so that a mean or a standard error that is not a number is a trend.
   return !(mean <= 4 * run.errors.StandardError().value_or(0) || mean <= kUlp);
 }
 

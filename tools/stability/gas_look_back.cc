@@ -17,7 +17,7 @@ namespace {
 constexpr double kGasEpsilon = std::numeric_limits<double>::epsilon();
 constexpr uint64_t kNeighbourSeed = 25;
 
-// A neighbour of a start: every number is off by up to `most`.
+// A neighbouring start: every number is changed by at most `most`.
 GasState Moved(double most, const GasGeometry& geometry, GasState state, CounterRandom& random) {
   const auto off = [&] { return most * (2 * random.Uniform() - 1); };
   const double reach = geometry.reach();
@@ -64,7 +64,7 @@ Failures AsNeighboursTell(const GasGeometry& geometry, const GasReplica& replica
     }
   }
   Failures found;
-  // The neighbours differ from each other by at most twice what they differ from the middle.
+  // Two neighbours differ by at most twice their largest difference from the middle.
   if (nearest <= 1e4 * kGasEpsilon * middle.Total() + 2 * spread) return found;
   (reading.exchanges < middle.exchanges ? found.missed : found.phantoms) = 1;
   return found;
@@ -89,8 +89,8 @@ Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double
   static constexpr std::array<double, 1> kBeyondRounding = {64};
   static constexpr std::array<double, 4> kScales = {1, 4, 16, 64};
   Failures found = AsNeighboursTell(geometry, replica, time, reading, kBeyondRounding, 2);
-  // The middle is rounded too: in a tip, or where it grazes, an ulp decides and two tell too
-  // little.
+  // The middle has rounding errors too. In a tip, or for a grazing ball, an ulp decides, and two
+  // neighbours are not enough.
   if (found.Total() > 0) found = AsNeighboursTell(geometry, replica, time, reading, kScales, 500);
   found.looked_back = reading.exchanges;
   return found;

@@ -1,5 +1,5 @@
-// Looks at gases of an engine that tells energies only, by their meters: at the exchanges of a
-// short run, and at the energies at the end of any run.
+// Checks gases of an engine that reports only energies, through their meters: the exchanges of a
+// short run, and the energies at the end of any run.
 #ifndef BALLPISTON_TOOLS_STABILITY_GAS_LOOK_BACK_H_
 #define BALLPISTON_TOOLS_STABILITY_GAS_LOOK_BACK_H_
 
@@ -13,7 +13,7 @@
 
 namespace ballpiston::stability {
 
-// What a meter says of a gas at one time.
+// The reading of a gas's meter at one time.
 struct GasReading {
   std::vector<double> energies;  // by body
   uint64_t exchanges = 0;
@@ -23,15 +23,16 @@ struct GasReading {
 
 GasReading ReadingOf(const GasMeter& meter);
 
-// Compares the reading of a replica at `time` with that of the reference gas, from the same start
-// and from neighbours of it. Rounding grows with every hit, so `time` is that of some flights. A
-// difference counts if the engine differs from all neighbours by more than they differ from each
-// other: as missed, if the engine had fewer exchanges than the reference; else as a phantom.
+// Compares the reading of a replica at `time` with the readings of the reference gas, from the same
+// start and from neighbouring starts. Rounding errors grow with every hit: therefore `time` is the
+// duration of a few flights. A difference counts if the engine differs from all neighbours by more
+// than they differ from each other. It counts as missed if the engine had fewer exchanges than the
+// reference, else as a phantom.
 Failures LookBack(const GasGeometry& geometry, const GasReplica& replica, double time,
                   const GasReading& reading);
 
-// A replica that had the energy `start`: escapes, also if an energy is not a number; and, without
-// thermal walls, the error of the energy.
+// Checks a replica that started with the energy `start`. Counts escapes, also if an energy is not a
+// number, and, without thermal walls, the error of the energy.
 Failures LookAtEnergies(const GasGeometry& geometry, const GasMeter& meter, double start);
 
 }  // namespace ballpiston::stability

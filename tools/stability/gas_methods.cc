@@ -21,7 +21,7 @@ namespace {
 template <typename Gas>
 void RunGasWatched(const GasGeometry& geometry, const GasReplica& replica, double end,
                    Failures& failures) {
-  // Of a gas that does not stand still there are far fewer.
+  // A gas without a loop has far fewer events.
   constexpr uint64_t kMostEvents = 10'000'000;
   Gas gas(geometry, replica.state, replica.walls);
   GasWatch watch(geometry, replica.state, replica.walls, std::numeric_limits<double>::epsilon());
@@ -70,11 +70,12 @@ Failures RunLanesToTheEnd(const GasGeometry& geometry, std::span<const GasReplic
   return failures;
 }
 
-// The lanes tell nothing before they have come to the time that they are asked for. Replicas that
-// never come there are one loop.
+// The lanes report nothing before the requested time. Replicas that never reach this time count as
+// one loop.
 Failures RunLanes(const GasGeometry& geometry, std::span<const GasReplica> replicas,
                   double flights) {
-  // Seconds. It takes a tenth of one; on a machine that is slow it must not be taken for a loop.
+  // Seconds. Usually a tenth of a second is enough; a run on a slow machine must not count as a
+  // loop.
   constexpr unsigned kPatience = 60;
   const auto run = [&] { return RunLanesToTheEnd(geometry, replicas, flights); };
   return InOwnProcess(run, kPatience).value_or(Failures{.orbits = replicas.size(), .loops = 1});

@@ -1,4 +1,4 @@
-// The methods that run gases, behind one function each.
+// The methods that run gases. Each method is one function.
 #ifndef BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
 #define BALLPISTON_TOOLS_STABILITY_GAS_METHODS_H_
 
@@ -22,9 +22,9 @@ struct GasReplica {
 struct GasMethod {
   std::string name;
   double share;   // of a case's starts
-  bool promised;  // to show zeros everywhere
+  bool promised;  // the method promises zeros everywhere
 
-  // Each replica runs for the time of that many flights of a ball of speed 1.
+  // Each replica runs for the time of `flights` flights of a ball of speed 1.
   Failures (*run)(const GasGeometry& geometry, std::span<const GasReplica> replicas,
                   double flights);
 };

@@ -25,7 +25,7 @@ GasState AllAtRest(const GasGeometry& geometry) {
   return state;
 }
 
-// Velocities times `factor`.
+// Multiplies all velocities by `factor`.
 void Scale(double factor, GasState& state) {
   for (GasBall& ball : state.balls) ball.speed *= factor;
   for (GasPiston& piston : state.pistons) piston.velocity *= factor;
@@ -38,7 +38,7 @@ double LargestSpeed(const GasState& state) {
   return largest;
 }
 
-// Any gas, in which each body has the energy that `energy` draws.
+// A gas from AnyGas in which `energy` draws the energy of each body.
 template <typename DrawEnergy>
 GasState WithEnergies(const GasGeometry& geometry, CounterRandom& random,
                       const DrawEnergy& energy) {
@@ -83,7 +83,7 @@ GasState WithReversedVelocities(GasState state) {
   return state;
 }
 
-// Where the gas was some flights before.
+// The state of the gas some flights earlier.
 GasState EarlierBy(double flights, const GasGeometry& geometry, GasState state) {
   ReferenceGas gas(geometry, WithReversedVelocities(std::move(state)), ThermalWalls());
   const double time = flights * MeanFlight(geometry.pair());
@@ -91,7 +91,7 @@ GasState EarlierBy(double flights, const GasGeometry& geometry, GasState state) 
   return WithReversedVelocities(gas.StateAt(time));
 }
 
-// The piston in that direction, as far in the cell as it comes, and on its way there.
+// Moves the piston in this direction to its innermost position in the cell, on its way inward.
 void BringPiston(const GasGeometry& geometry, Direction direction, CounterRandom& random,
                  GasState& state) {
   const double left = std::fabs(RandomOffset(random)), sign = SignOf(direction);
@@ -140,7 +140,7 @@ GasState AimedAtTwoPistons(const GasGeometry& geometry, CounterRandom& random) {
   }
 }
 
-// A slow ball would come to its aim late, when rounding has grown.
+// A slow ball would reach the target late, after rounding errors have grown.
 GasState WithPair(DrawStart& draw, const GasGeometry& geometry, CounterRandom& random) {
   constexpr double kSlow = 0.4;
   for (;;) {

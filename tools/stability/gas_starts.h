@@ -1,5 +1,5 @@
-// Gases about to come where methods fail. The fastest body has about speed 1. Offsets as in
-// wall_starts.h.
+// Starts of gases just before situations in which methods fail. The fastest body has about speed 1.
+// wall_starts.h defines the offsets.
 #ifndef BALLPISTON_TOOLS_STABILITY_GAS_STARTS_H_
 #define BALLPISTON_TOOLS_STABILITY_GAS_STARTS_H_
 
@@ -12,7 +12,7 @@ namespace ballpiston::stability {
 
 using DrawGasStart = GasState(const GasGeometry& geometry, CounterRandom& random);
 
-// From the canonical ensemble.
+// A gas from the canonical ensemble.
 GasState AnyGas(const GasGeometry& geometry, CounterRandom& random);
 
 // One ball moves; the energies of all other bodies are offsets, or exactly 0.
@@ -20,15 +20,15 @@ GasState OneHotBall(const GasGeometry& geometry, CounterRandom& random);
 // The same for one piston.
 GasState OneHotPiston(const GasGeometry& geometry, CounterRandom& random);
 
-// Energies from 1 down to 1e-17, with an even law of their logarithms.
+// Energies from 1 to 1e-17, uniform in the logarithm.
 GasState AnyEnergies(const GasGeometry& geometry, CounterRandom& random);
 
-// A ball comes to a wall where two pistons that cross have their ends: at delta's bound, all four
-// meet at one point. For lattices.
+// A ball hits a wall at the point where the ends of two crossing pistons are: at the bound of
+// delta, all four meet at this point. For lattices.
 GasState AimedAtTwoPistons(const GasGeometry& geometry, CounterRandom& random);
 
-// The pair that `draw` draws, in the place of a ball and one of its pistons. All else is at rest:
-// balls in the middle of their cells, pistons on their edges, where no ball comes.
+// A ball and one of its pistons start as the pair that `draw` draws. All other bodies are at rest:
+// balls at the centres of their cells, pistons on their edges, out of the reach of the balls.
 GasState WithPair(DrawStart& draw, const GasGeometry& geometry, CounterRandom& random);
 
 template <DrawStart* draw>

@@ -10,8 +10,8 @@
 namespace ballpiston::stability {
 namespace {
 
-// A body's place is known to its time's rounding times its speed: an ulp of the time for each of
-// the few sums between two of its events.
+// The error of a body's position is the rounding error of its time multiplied by its speed. The
+// time has an ulp of error for each of the few sums between two events of the body.
 double PlaceSlack(double epsilon, double time, double speed) {
   constexpr double kSums = 8;
   return epsilon * (kPositionUlps + kSums * time * speed);
@@ -54,7 +54,7 @@ bool GasWatch::See(const GasEvent& event, const GasBall& ball, const GasPiston& 
   return goes_on;
 }
 
-// Up to the event, with the velocities from before.
+// Checks the motion up to the event, with the velocities before the event.
 void GasWatch::LookAtWay(const GasEvent& event, Failures& failures) const {
   if (event.ball >= 0) LookForMissed(event.ball, event.time, failures);
   if (event.piston < 0) return;

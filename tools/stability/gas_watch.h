@@ -1,9 +1,9 @@
-// Looks at a gas after each of its events, as long as a method tells them all.
+// Checks a gas after each of its events, for methods that report all events.
 //
-// Between two events of its own a body moves straight. So the watch carries every body from its
-// last event to the next one by itself, and looks there: whether the ball is beyond one of its
-// pistons, and whether the piston is beyond the ends of its way. At a contact both hold for the
-// whole time in between, because the gap of a ball and a piston changes evenly.
+// Between two of its events a body moves in a straight line. The watch moves every body from its
+// last event to its next event and checks there that the ball is not beyond one of its pistons, and
+// that the piston is not beyond the ends of its path. At a contact this check covers the whole time
+// between the two events, because the gap between a ball and a piston changes linearly.
 #ifndef BALLPISTON_TOOLS_STABILITY_GAS_WATCH_H_
 #define BALLPISTON_TOOLS_STABILITY_GAS_WATCH_H_
 
@@ -26,11 +26,11 @@ class GasWatch {
   GasWatch(const GasGeometry& geometry, const GasState& start, const ThermalWalls& walls,
            double epsilon);
 
-  // An event, and its ball and its piston after it; a body that the event does not have is ignored.
-  // False when the gas has come to a bad end.
+  // Checks an event, with its ball and its piston after the event; a body without part in the event
+  // is ignored. Returns false if the gas has failed and must not be continued.
   bool See(const GasEvent& event, const GasBall& ball, const GasPiston& piston, Failures& failures);
 
-  // |dE/E| of the whole gas since the start, without what thermal walls have given.
+  // |dE/E| of the whole gas since the start, without the energy from thermal walls.
   double EnergyError() const;
 
  private:
@@ -62,8 +62,8 @@ class GasWatch {
   std::vector<Ball> balls_;
   std::vector<Piston> pistons_;
   double start_energy_ = 0;
-  double given_ = 0;  // by thermal walls
-  double last_ = 0;   // the latest event
+  double given_ = 0;  // the energy from thermal walls
+  double last_ = 0;   // the time of the latest event
 };
 
 }  // namespace ballpiston::stability

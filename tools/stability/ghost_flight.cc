@@ -9,7 +9,7 @@
 namespace ballpiston::stability {
 namespace {
 
-// The piston's motion in time.
+// The piston's motion as a function of time.
 class PistonInTime {
  public:
   PistonInTime(const PairGeometry& geometry, const PairState& from)
@@ -19,7 +19,7 @@ class PistonInTime {
     return wave_.Position(std::fmod(phase_ + speed_ * time, Period()));
   }
 
-  // When it turns at its left wall for the first time after that; infinity if it rests.
+  // The time of the piston's first turn at its left wall after `time`; infinity if it rests.
   double NextLeftTurn(double time) const {
     if (speed_ == 0) return HUGE_VAL;
     const double way = phase_ + speed_ * time;
@@ -43,8 +43,8 @@ GhostFlight FlyAsGhost(const PairGeometry& geometry, const PairState& from, doub
                                 .ball_speed = 1,
                                 .piston = geometry.piston_right(),
                                 .piston_velocity = 0});
-  // Ball right of piston is a broken line in time, with its peaks where the ball hits a wall or the
-  // piston turns on the left.
+  // The distance of the ball to the right of the piston is piecewise linear in time. Its peaks are
+  // at the ball's wall hits and at the piston's left turns.
   double overlap = -HUGE_VAL, now = 0;
   for (;;) {
     const double x = ball.state().position.x();

@@ -1,4 +1,4 @@
-// The ball's flight through a piston that it does not feel: where the two really meet.
+// The flight of a ball that passes through the piston. It shows where the two really collide.
 #ifndef BALLPISTON_TOOLS_STABILITY_GHOST_FLIGHT_H_
 #define BALLPISTON_TOOLS_STABILITY_GHOST_FLIGHT_H_
 
@@ -8,11 +8,11 @@
 namespace ballpiston::stability {
 
 struct GhostFlight {
-  double overlap;  // the most the ball was right of the piston on the way; negative: never
-  double gap;      // by how much it is left of the piston at the end
+  double overlap;  // the largest distance of the ball to the right of the piston; negative: never
+  double gap;      // the distance of the ball to the left of the piston at the end
 };
 
-// Over that time; the ball has to move.
+// Moves the ball for this time. The ball must not be at rest.
 GhostFlight FlyAsGhost(const PairGeometry& geometry, const PairState& from, double time);
 
 }  // namespace ballpiston::stability

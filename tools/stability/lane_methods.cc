@@ -9,7 +9,7 @@
 namespace ballpiston::stability {
 namespace {
 
-constexpr size_t kBlock = 256;  // balls between calls of the engine: what a call costs is shared
+constexpr size_t kBlock = 256;  // balls per call of the engine; many balls share a call's cost
 
 std::vector<LaneFrame> OnTheirWalls(std::span<const PairState> starts) {
   std::vector<LaneFrame> frames;
@@ -49,7 +49,7 @@ PairState InCell(const LaneFrame& frame) {
 }  // namespace
 
 double SquaredLengthError(const LaneFrame& frame) {
-  // h^2 + e^2 is near 1/2: with the squares fused in, little is rounded.
+  // h^2 + e^2 is near 1/2. Fused multiply-add keeps the rounding error small.
   return 2 * std::fma(frame.h, frame.h, std::fma(frame.e, frame.e, -0.5));
 }
 

@@ -1,4 +1,4 @@
-// Balls flown in vector lanes by the engine's own flight.
+// Balls in vector lanes, moved by the engine's own flight.
 #ifndef BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
 #define BALLPISTON_TOOLS_STABILITY_LANE_METHODS_H_
 

@@ -1,5 +1,5 @@
-// Computes the stability tables: in each situation where methods fail, every engine in every
-// precision, and the naive methods. program.h describes the arguments and the exit status.
+// Computes the stability tables: the failures of every engine in every precision, and of the naive
+// methods, in each situation. program.h describes the arguments and the exit status.
 #include <iostream>
 #include <string>
 #include <vector>

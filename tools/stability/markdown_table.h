@@ -1,4 +1,4 @@
-// A table in Markdown, columns padded so that it reads as plain text too.
+// A table in Markdown. Its columns are padded, so that it is also readable as plain text.
 #ifndef BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
 #define BALLPISTON_TOOLS_STABILITY_MARKDOWN_TABLE_H_
 
@@ -12,7 +12,7 @@ class MarkdownTable {
  public:
   explicit MarkdownTable(std::vector<std::string> head) : rows_{std::move(head)} {}
 
-  // As many cells as the head has; the first `labels` columns are texts, the others numbers.
+  // A row has as many cells as the head. The first `labels` columns are texts, the others numbers.
   void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   std::string Text(size_t labels) const;
 
@@ -21,7 +21,7 @@ class MarkdownTable {
 };
 
 std::string CountText(uint64_t count);  // 1,234,567
-std::string ErrorText(double error);    // 1.2e-15; 0; - where there is none
+std::string ErrorText(double error);    // 1.2e-15; 0; - for NaN
 std::string SignedText(double value);   // +1.2e-15
 
 }  // namespace ballpiston::stability

@@ -37,7 +37,7 @@ absl::StatusOr<Target> FindTarget(const std::string& path) {
 
   struct stat old = {};
   if (stat(target.path.c_str(), &old) == 0) {
-    // Renaming a file to the name of, say, a device would remove the device.
+    // Renaming a file to the name of a device would remove the device.
     if (!S_ISREG(old.st_mode)) return CannotWrite(path, "it is not a regular file");
     if (faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0) {
       return CannotWrite(path, ErrorText(errno));

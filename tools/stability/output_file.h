@@ -1,5 +1,5 @@
-// Writes a text file as a whole: first under another name in the same folder, then it is renamed. A
-// reader finds the old file or the new one, never a part of one, even if the program is killed.
+// Writes a text file atomically: writes it under another name in the same folder, then renames it.
+// A reader finds the old file or the new file, never a partial file, even if the program is killed.
 #ifndef BALLPISTON_TOOLS_STABILITY_OUTPUT_FILE_H_
 #define BALLPISTON_TOOLS_STABILITY_OUTPUT_FILE_H_
 
@@ -13,7 +13,7 @@ namespace ballpiston::stability {
 // empty file in the folder and removes it.
 absl::Status CheckWritable(const std::string& path);
 
-// Creates or replaces the file `path`. A new file in place of an old one gets the old permissions.
+// Creates or replaces the file `path`. A file that replaces an old file gets its permissions.
 // If `path` is a symbolic link, the link stays, and the file that it points to is replaced. An
 // error names the path, and the old file is unchanged.
 absl::Status WriteWholeFile(const std::string& path, const std::string& text);

@@ -24,15 +24,15 @@ static_assert(std::is_trivially_copyable_v<Failures>, "it is sent as bytes");
   throw std::runtime_error(absl::StrCat(call, ": ", std::strerror(errno)));
 }
 
-// The soft limit sends SIGXCPU. A hard limit that is as low would send SIGKILL, as the system also
-// does when there is no memory left.
+// The soft limit sends SIGXCPU. A hard limit of the same value would send SIGKILL, which the system
+// also sends if there is no memory left.
 bool LimitProcessorTime(unsigned seconds) {
   const rlimit limit = {.rlim_cur = seconds, .rlim_max = rlim_t{seconds} + 1};
   return std::signal(SIGXCPU, SIG_DFL) != SIG_ERR && setrlimit(RLIMIT_CPU, &limit) == 0;
 }
 
-// A message this short is written at once. What `compute` throws must not pass through the copy of
-// the caller: noexcept makes it a crash.
+// The message is so short that a single write sends it. An exception of `compute` must not reach
+// the forked copy of the caller: noexcept turns it into a crash.
 [[noreturn]] void ComputeAndSend(const std::function<Failures()>& compute, unsigned seconds,
                                  int pipe) noexcept {
   if (!LimitProcessorTime(seconds)) {

@@ -1,4 +1,4 @@
-// Runs a computation that may never end, in a process of its own.
+// Runs a computation that may never end, in a separate process.
 #ifndef BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
 #define BALLPISTON_TOOLS_STABILITY_OWN_PROCESS_H_
 
@@ -9,9 +9,9 @@
 
 namespace ballpiston::stability {
 
-// Empty if the computation takes more than so many seconds of processor time. Throws
-// std::runtime_error if the process cannot be run, or ends for another reason without a result: by
-// a crash, or killed for want of memory. The program must have no other thread.
+// Empty if the computation takes more than `seconds` of processor time. Throws std::runtime_error
+// if the process cannot be run, or if it ends without a result for another reason (a crash, or no
+// memory). The program must have no other thread.
 std::optional<Failures> InOwnProcess(const std::function<Failures()>& compute, unsigned seconds);
 
 }  // namespace ballpiston::stability

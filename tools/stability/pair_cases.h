@@ -1,4 +1,4 @@
-// The places where methods fail that need the piston, and how each method does there.
+// The situations with a piston in which methods fail, and the failures of each method there.
 #ifndef BALLPISTON_TOOLS_STABILITY_PAIR_CASES_H_
 #define BALLPISTON_TOOLS_STABILITY_PAIR_CASES_H_
 
@@ -19,7 +19,7 @@ struct PairCase {
   std::vector<PairGeometry> geometries;
   PairState (*start)(const PairGeometry& geometry, CounterRandom& random);
   uint64_t starts;      // for each geometry, in the full table
-  uint64_t collisions;  // of each
+  uint64_t collisions;  // per start
 };
 
 const std::vector<PairCase>& PairCases();

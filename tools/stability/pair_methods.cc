@@ -23,13 +23,12 @@
 namespace ballpiston::stability {
 namespace {
 
-// With a batch of orbits, in seconds of processor time for each collision of theirs. An orbit that
-// goes on for longer has lost its piston: if it was aimed at it, a batch takes milliseconds.
+// The limit for a batch of orbits, in seconds of processor time per collision. An orbit that takes
+// longer has lost its piston: a batch of orbits that are aimed at the piston takes milliseconds.
 constexpr double kPatience = 10;
 
-// Ends orbits, of the thread that made it, that would never end. By that thread's processor time:
-// what else the machine has to do does not count. Nothing depends on it as long as no collision is
-// missed.
+// Ends the endless orbits of the thread that made it. It measures this thread's processor time, so
+// that other work of the machine does not count. If no collision is missed, it has no effect.
 class Watchdog {
  public:
   explicit Watchdog(double patience) {
@@ -76,7 +75,7 @@ Failures RunByEngine(const PairGeometry& geometry, std::span<const PairState> st
 template <typename Flow>
 void RunWatched(const PairGeometry& geometry, const PairState& start, uint64_t collisions,
                 Failures& failures) {
-  // A ball of speed 3e-9 lets the piston pass some 1e9 times on its way through the cell.
+  // While a ball of speed 3e-9 crosses the cell, the piston passes about 1e9 times.
   constexpr uint64_t kMostEvents = 10'000'000'000;
   Flow flow(geometry, RoundedTo<RealOf<Flow>>(start));
   PairWatch watch(geometry, kEpsilon<Flow>);

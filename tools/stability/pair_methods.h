@@ -1,4 +1,4 @@
-// The methods that run ball-piston pairs, behind one function each.
+// The methods that run ball-piston pairs. Each method is one function.
 #ifndef BALLPISTON_TOOLS_STABILITY_PAIR_METHODS_H_
 #define BALLPISTON_TOOLS_STABILITY_PAIR_METHODS_H_
 
@@ -16,10 +16,10 @@ namespace ballpiston::stability {
 struct PairMethod {
   std::string name;
   double share;           // of a case's starts
-  double smallest_delta;  // below, positions are not known well enough to ask
-  bool promised;          // to show zeros everywhere
+  double smallest_delta;  // below this delta positions are too inexact for the checks
+  bool promised;          // the method promises zeros everywhere
 
-  // Each pair runs for that many collisions of ball and piston.
+  // Each pair runs for `collisions` collisions of ball and piston.
   Failures (*run)(const PairGeometry& geometry, std::span<const PairState> starts,
                   uint64_t collisions);
 };

@@ -23,7 +23,7 @@ void Reverse(PairState& state) {
   state.piston_velocity = -state.piston_velocity;
 }
 
-// Where the pair was some wall hits before; none if ball and piston met in between.
+// The state of the pair some wall hits earlier; empty if ball and piston collided in between.
 std::optional<PairState> Before(const PairGeometry& geometry, PairState state) {
   Reverse(state);
   ReferenceFlow flow(geometry, state);
@@ -32,7 +32,8 @@ std::optional<PairState> Before(const PairGeometry& geometry, PairState state) {
     if (kind == EventKind::kBallPiston || kind == EventKind::kEscape) return std::nullopt;
     hits += kind == EventKind::kBallWall;
   }
-  // Half a flight on: on a wall it would not be plain whether it has been hit yet.
+  // Continue for half a flight: on a wall it would be unclear whether the wall has already been
+  // hit.
   state = flow.state();
   const double half = flow.Step().duration / 2;
   state.position += state.direction * (state.ball_speed * half);
@@ -63,7 +64,7 @@ double Clamped(const PairGeometry& geometry, double piston) {
   return std::clamp(piston, geometry.piston_left(), geometry.piston_right());
 }
 
-// `aim` makes states of the instant aimed at, until one of them comes from somewhere.
+// Calls `aim` for a state in the target situation until a state has an earlier state.
 template <typename Aim>
 PairState Backwards(const PairGeometry& geometry, const Aim& aim) {
   for (;;) {
@@ -74,13 +75,13 @@ PairState Backwards(const PairGeometry& geometry, const Aim& aim) {
   }
 }
 
-// Turned towards the wall of the quadrant, if need be.
+// Reverses the ball if it does not move towards the wall of its quadrant.
 void TurnToWall(PairState& state) {
   const Vector2d centre = {0.5, std::copysign(0.5, state.position.y())};
   if (state.direction.dot(state.position - centre) > 0) state.direction = -state.direction;
 }
 
-// After a collision on the surface, with speeds given: separating.
+// A state just after a collision on the surface, with the given speeds; ball and piston separate.
 PairState AfterCollision(const PairGeometry& geometry, double ball, double piston,
                          CounterRandom& random) {
   const Vector2d position = UniformOnCollisionSurface(geometry, random);
@@ -133,7 +134,7 @@ PairState AimedAtPiston(const PairGeometry& geometry, CounterRandom& random) {
   return Backwards(geometry, [&] {
     const Vector2d position = UniformOnCollisionSurface(geometry, random);
     PairState state = WithAnyVelocities(position, position.x(), random);
-    // Seen from a point that near the tip, the rest of the cell is near the axis.
+    // From a point so near the tip, the rest of the cell is in directions near the axis.
     state.direction = Vector2d(1, geometry.lambda() * (2 * random.Uniform() - 1)).normalized();
     return state;
   });

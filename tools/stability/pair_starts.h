@@ -1,7 +1,8 @@
-// Ball-piston pairs about to come where methods fail. Offsets as in wall_starts.h.
+// Starts of ball-piston pairs just before situations in which methods fail. wall_starts.h defines
+// the offsets.
 //
-// Most starts are made backwards: from the instant that is aimed at, the reversed velocities are
-// flown over a few wall hits, so that an engine is in full flight when it comes there.
+// Most starts are computed backwards: the state in the target situation is reversed and moved over
+// a few wall hits. In this way an engine makes a few hits before it reaches the situation.
 #ifndef BALLPISTON_TOOLS_STABILITY_PAIR_STARTS_H_
 #define BALLPISTON_TOOLS_STABILITY_PAIR_STARTS_H_
 
@@ -11,26 +12,26 @@
 
 namespace ballpiston::stability {
 
-// Any orbit: from the return map's invariant measure.
+// Any orbit, drawn from the invariant measure of the return map.
 PairState AnyCollision(const PairGeometry& geometry, CounterRandom& random);
 
-// The ball comes to the wall where the piston's end does, in the wedge between the two: wall and
-// piston at the same instant, give or take the offset.
+// The ball hits the wall at the end of the piston, in the wedge between the two: it hits wall and
+// piston at the same instant, up to the offset.
 PairState AimedAtPistonsEdge(const PairGeometry& geometry, CounterRandom& random);
 
-// The ball comes to the piston in the instant in which it turns at its left wall.
+// The ball hits the piston at the instant at which the piston turns at its left wall.
 PairState AimedAtPistonsTurn(const PairGeometry& geometry, CounterRandom& random);
 
-// The ball comes to the right tip when the piston does.
+// Ball and piston reach the right tip at the same instant.
 PairState AimedAtTipAndPiston(const PairGeometry& geometry, CounterRandom& random);
 
-// The ball comes to the piston anywhere: for small delta, where chance would not do it.
+// The ball hits the piston anywhere. For small delta, where random orbits rarely hit it.
 PairState AimedAtPiston(const PairGeometry& geometry, CounterRandom& random);
 
 // Just after a collision, within an offset of wall and piston in their wedge.
 PairState InTheWedge(const PairGeometry& geometry, CounterRandom& random);
 
-// Just after a collision, the ball's or the piston's energy an offset, or exactly 0.
+// Just after a collision. The energy of the ball (or piston) is an offset, or exactly 0.
 PairState SlowBall(const PairGeometry& geometry, CounterRandom& random);
 PairState SlowPiston(const PairGeometry& geometry, CounterRandom& random);
 

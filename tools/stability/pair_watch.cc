@@ -54,7 +54,8 @@ bool PairWatch::See(const PairState& state, EventKind kind, double duration, Fai
   failures.looked_back += kind == EventKind::kBallPiston;
   standstill_ = duration < short_ ? standstill_ + 1 : 0;
   failures.loops += standstill_ > longest_standstill_;
-  // Where a corner is worked off in no time, the ball may be beyond until its collision is told.
+  // In a corner several events happen at the same time. The ball may be beyond the piston until its
+  // collision is reported.
   const double beyond = state.position.x() - state.piston;
   const bool missed = duration > short_ && beyond > kPositionUlps * epsilon_ &&
                       beyond > ball_.Slack(state.position, state.direction);
@@ -110,14 +111,13 @@ void CollisionWatch::LookBack(const PairState& departure, const Contact& contact
   constexpr uint64_t kFewHits = 6;
   if (contact.ball_wall_hits > kFewHits || departure.ball_speed == 0) return;
   ++failures_.looked_back;
-  // The flight from which it is told is rounded too: where it grazes, two neighbours tell too
-  // little.
+  // The checking flight has rounding errors too. For a grazing ball two neighbours are not enough.
   Failures found = AsGhostsTell(departure, contact, 1);
   if (found.Total() > 0) found = AsGhostsTell(departure, contact, 8);
   failures_.Merge(found);
 }
 
-// By that flight and so many neighbours on each side.
+// Checks with this flight and the given number of neighbours on each side.
 Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact& contact,
                                       int neighbours) const {
   std::vector<double> overlaps, gaps, beyond;
@@ -128,8 +128,9 @@ Failures CollisionWatch::AsGhostsTell(const PairState& departure, const Contact&
     gaps.push_back(ghost.gap);
     beyond.push_back(-ghost.gap);
   }
-  // The piston's phase carries the rounding of all its way, and the time that of as many sums as
-  // there were events: of a slow ball millions, all rounded alike.
+  // The piston's phase has the rounding error of its whole path. The time has the rounding errors
+  // of as many sums as there were events: for a slow ball millions, all rounded in the same
+  // direction.
   const double way = std::fabs(departure.piston_velocity) * contact.time;
   const auto events = static_cast<double>(contact.ball_wall_hits + contact.piston_wall_hits);
   const double slack = epsilon_ * (1e4 * (1 + way) + events * way);

@@ -1,4 +1,5 @@
-// Looks at ball-piston pairs: after each event where a method tells it, else at each collision.
+// Checks ball-piston pairs: after each event if the method reports all events, else at each
+// collision.
 #ifndef BALLPISTON_TOOLS_STABILITY_PAIR_WATCH_H_
 #define BALLPISTON_TOOLS_STABILITY_PAIR_WATCH_H_
 
@@ -16,22 +17,24 @@
 
 namespace ballpiston::stability {
 
-// Events in a row that take no time. A corner of walls and piston is worked off in a few hits; a
-// tip into which the piston presses the ball takes a tip's sequence between any two of them.
+// The largest number of successive events without time between them. In a corner of walls and
+// piston there are a few hits. If the piston presses the ball into a tip, there is a tip sequence
+// between any two of these hits.
 uint64_t LongestStandstill(const PairGeometry& geometry);
 
-// How deep inside a disc a ball may be off the walls. There nothing tells by which cosine rounding
-// was magnified: the worst case, a ball that grazes, counts.
+// The permitted depth inside a disc of a ball that is not on a wall. There the cosine that
+// magnified the rounding error is unknown; therefore this is the depth for the worst case, a
+// grazing ball.
 double AnywhereSlack(double epsilon);
 
-// One orbit, every event of it.
+// Checks every event of one orbit.
 class PairWatch {
  public:
   PairWatch(const PairGeometry& geometry, double epsilon);
 
-  // The state after the event, before an exchange. False when the orbit came to a bad end.
+  // Checks the state after the event, before an exchange. False if the orbit has failed.
   bool See(const PairState& state, EventKind kind, double duration, Failures& failures);
-  // After an exchange.
+  // Checks the state after an exchange.
   void SeeExchanged(const PairState& state, Failures& failures);
 
  private:
@@ -42,11 +45,12 @@ class PairWatch {
   uint64_t standstill_ = 0;
 };
 
-// Many orbits of an engine that tells collisions only. Whether one was missed is seen by flying the
-// ball from the collision before, through the piston: neither may it be beyond the piston before
-// the engine's collision, nor elsewhere then. Rounding grows with every hit, so this is asked of
-// flights with few hits, and of them and of two neighbours to either side: what is out on all
-// three, by more than they differ, is no rounding.
+// Checks many orbits of an engine that reports only collisions. To find a missed collision, the
+// ball is moved from the previous collision through the piston. It must not be beyond the piston
+// before the engine's collision, and it must be at the piston at the engine's collision. Rounding
+// errors grow with every hit. Therefore only flights with few hits are checked, together with two
+// neighbouring flights, one on each side. A deviation of all three flights that is larger than
+// their differences is not a rounding error.
 class CollisionWatch : public NumberedOrbits {
  public:
   CollisionWatch(const PairGeometry& geometry, double epsilon, std::span<const PairState> starts,
@@ -55,7 +59,7 @@ class CollisionWatch : public NumberedOrbits {
   PairState Start(uint64_t orbit) override;
   AfterContact Meet(uint64_t orbit, const Contact& contact) override;
 
-  // Orbits that have not come to their end count as having missed the piston.
+  // An orbit that has not reached its end counts as a missed piston.
   Failures Finish();
 
  private:

@@ -17,8 +17,8 @@ constexpr char kSection[] = "stability";
 constexpr char kHelp[] =
     R"(usage: stability [--quick] [--out FILE | --into FILE]
 
-Runs every engine in every precision, and naive methods, in the situations where methods fail.
-Counts the failures and prints tables in Markdown. This takes some ten minutes on one core. The
+Runs every engine in every precision, and naive methods, in situations in which methods fail.
+Counts the failures and prints tables in Markdown. This takes about ten minutes on one core. The
 starts are fixed: the same program gives the same tables.
 
   --quick      run a thousandth of the starts: seconds instead of minutes
@@ -28,9 +28,9 @@ starts are fixed: the same program gives the same tables.
                  <!-- stability:end -->
   --help       print this text
 
-Exit status: 0 success; 1 an engine failed where it must not, or no method showed one kind of
-failure, or the tables cannot be computed or FILE be written; 2 wrong arguments. tools/stability/README.md explains what is
-counted.
+Exit status: 0 success; 1 an engine failed although it promises zeros, or no method showed one kind
+of failure, or the tables cannot be computed, or FILE cannot be written; 2 wrong arguments.
+tools/stability/README.md explains the counted failures.
 )";
 
 struct Options {
@@ -96,7 +96,7 @@ bool Deliver(const Options& options, const std::string& text, std::ostream& out,
   return false;
 }
 
-// Empty if it cannot be made; then `error` says why.
+// The report; empty if it cannot be made, and then the reason is written to `error`.
 std::optional<Report> Made(const std::function<Report(double effort)>& make_report, double effort,
                            std::ostream& error) {
   try {

@@ -2,11 +2,11 @@
 //
 //   stability [--quick] [--out FILE | --into FILE]
 //
-// The computation takes minutes, so the program first checks that FILE can be written. If FILE
-// cannot be written at the end, the tables go to standard output, so that they are not lost.
+// The computation takes minutes. Therefore the program first checks that FILE can be written. If
+// FILE cannot be written at the end, the tables go to standard output, so that they are not lost.
 //
-// Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (the tables
-// are written all the same), or if the report cannot be made (no tables); 2 for wrong arguments.
+// Exit status: 0 success; 1 if FILE cannot be written, or if the report has complaints (then the
+// tables are still written), or if the report cannot be made (no tables); 2 for wrong arguments.
 #ifndef BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 #define BALLPISTON_TOOLS_STABILITY_PROGRAM_H_
 

@@ -63,7 +63,7 @@ Results RunAll(double effort) {
   return results;
 }
 
-// What was promised and is not so, a sentence each.
+// One sentence for each broken promise.
 std::vector<std::string> BrokenPromises(const Results& results) {
   std::vector<std::string> broken;
   for (const auto* cases : {&results.ball, &results.pair, &results.gas}) {
@@ -86,7 +86,7 @@ std::vector<std::string> BrokenPromises(const Results& results) {
   return broken;
 }
 
-// A zero says something only if the same look has found failures elsewhere.
+// A zero proves something only if the same check has found failures of other methods.
 std::vector<std::string> BlindLooks(const Results& results) {
   Failures all;
   for (const auto* cases : {&results.ball, &results.pair, &results.gas}) {

@@ -9,8 +9,8 @@ namespace ballpiston::stability {
 
 struct Report {
   std::string text;  // Markdown
-  // A sentence for each broken promise of an engine (no failures, no loss of energy), and for each
-  // kind of failure that was found for no method: its zeros prove nothing.
+  // A sentence for each broken promise of an engine (no failures, no loss of energy). Also a
+  // sentence for each kind of failure that no method shows: the zeros of this kind prove nothing.
   std::vector<std::string> complaints;
 };
 

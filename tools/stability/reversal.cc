@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kReversalDelta = 0.1;
 constexpr uint64_t kReversalSeed = 22;
-constexpr size_t kEnough = 50;  // orbits, for a median to be shown
+constexpr size_t kEnough = 50;  // the smallest number of orbits for a median
 
 double Median(std::vector<double> values) {
   if (values.size() < kEnough) return std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
-// How far an orbit comes from its start when its velocity is reversed after some hits and it flies
-// back: what rounding is after twice that many hits.
+// The velocity of an orbit is reversed after some hits, and the orbit returns. Its distance from
+// its start is the rounding error of twice this number of hits.
 #ifndef BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
 #define BALLPISTON_TOOLS_STABILITY_REVERSAL_H_
 
@@ -17,11 +17,11 @@ struct Reversal {
   std::array<double, kReversalHits.size()> median;  // distance, in cells; NaN: too few orbits
 };
 
-// The ball alone, any orbits at the paper's radius.
+// The ball alone, for any orbits at the paper's radius.
 std::vector<Reversal> BallReversals(uint64_t orbits);
 
-// Ball and piston, from one collision back to the one before, by the number of wall hits between.
-// At the paper's radius and delta = 0.1.
+// Ball and piston, from one collision back to the previous collision, by the number of wall hits
+// between them. At the paper's radius and delta = 0.1.
 std::vector<Reversal> PairReversals(uint64_t orbits);
 
 }  // namespace ballpiston::stability

@@ -8,7 +8,7 @@
 namespace ballpiston::stability {
 namespace {
 
-// "0", or the kinds of failure that there were.
+// "0", or the counts of the failures with their letters.
 std::string Letters(const Failures& f) {
   if (f.orbits == 0) return "-";
   const std::pair<uint64_t, const char*> kinds[] = {
@@ -21,7 +21,7 @@ std::string Letters(const Failures& f) {
   return text.empty() ? "0" : text;
 }
 
-// The case's name only where it begins.
+// The case's name in its first row; empty in the others.
 std::string Group(const CaseResult& result, size_t row) { return row == 0 ? result.name : ""; }
 
 std::vector<std::string> HeadOfContacts() {

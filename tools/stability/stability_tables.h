@@ -22,12 +22,12 @@ struct MethodResult {
 
 struct CaseResult {
   std::string name;
-  std::vector<MethodResult> methods;  // the same ones in each case
+  std::vector<MethodResult> methods;  // the same methods in each case
 };
 
-// One row a case, one column a method, failures by letter.
+// One row per case, one column per method, failures by letter.
 std::string SummaryTable(const std::vector<CaseResult>& cases);
-// One row a case and method, one column a kind of failure.
+// One row per case and method, one column per kind of failure.
 std::string BallTable(const std::vector<CaseResult>& cases);
 std::string PairTable(const std::vector<CaseResult>& cases);
 std::string GasTable(const std::vector<CaseResult>& cases);

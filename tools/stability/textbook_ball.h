@@ -1,16 +1,17 @@
 // The ball of the textbook flows (textbook_flow.h, textbook_gas.h): the velocity is a vector, hit
-// times are roots of |q + v t - centre|^2 = rho^2, and a reflection is v - 2 (v.n) n. In none of
-// them |v| is kept: it drifts by rounding.
+// times are roots of |q + v t - centre|^2 = rho^2, and a reflection is v - 2 (v.n) n. None of these
+// flows restores |v|: it drifts by rounding.
 //
-// How the hit that is just over is kept from happening again:
+// The rules differ in how they prevent that the same hit is found again:
 //   kPositiveRoot  any root counts that is more than a threshold ahead. At a tip the next hit may
-//                  be nearer than that: it is passed over, and the ball leaves through the disc.
-//   kAnyRoot       the same without a threshold. Where rounding left the ball an ulp outside, the
-//                  disc just hit is hit again at once, and again: the orbit stands still.
-//   kApproaching   the first root of the discs that the ball approaches. Where rounding left the
-//                  ball inside a neighbouring disc that root is negative, and the ball goes back.
-//   kUnitSpeed     the disc just hit is excluded and times are clamped at 0, which would do; but
-//                  |v| = 1 is assumed in the hit time and not in the reflection. The error of |v|
+//                  be nearer than the threshold: the rule ignores it, and the ball leaves through
+//                  the disc.
+//   kAnyRoot       the same without a threshold. If rounding has left the ball an ulp outside, it
+//                  hits the same disc again at once, and again: the orbit stands still.
+//   kApproaching   the first root of the discs that the ball approaches. If rounding has left the
+//                  ball inside a neighbouring disc, this root is negative, and the ball moves back.
+//   kUnitSpeed     the disc just hit is excluded and times are clamped at 0, which would be enough.
+//                  But the hit time assumes |v| = 1, and the reflection does not. The error of |v|
 //                  goes into the position, from there back into |v|, and grows.
 #ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_BALL_H_
 #define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_BALL_H_
@@ -38,7 +39,7 @@ class TextbookBall {
 
   TextbookBall(double rho, const Eigen::Vector2d& position, const Eigen::Vector2d& velocity)
       : rho_(rho), q_(position), v_(velocity) {
-    // On a wall, it is the disc of the quadrant.
+    // A ball on a wall is on the disc in its quadrant.
     const int disc = (q_.x() > 0 ? 1 : 0) | (q_.y() > 0 ? 2 : 0);
     if ((q_ - Centre(disc)).norm() < rho + kOnDisc) last_disc_ = disc;
   }
@@ -54,7 +55,7 @@ class TextbookBall {
     return hit;
   }
 
-  // Ball and piston meet after closing this gap at this speed.
+  // The time in which ball and piston close this gap at this relative speed.
   static double TimeToMeet(double gap, double approach) {
     const double time = gap / approach;
     const bool by_root = rule == TextbookRule::kPositiveRoot || rule == TextbookRule::kAnyRoot;
@@ -101,7 +102,7 @@ class TextbookBall {
     return kNever;
   }
 
-  // From the foot of the perpendicular and the impact parameter, which are those of a unit vector.
+  // Computed from the foot of the perpendicular and the impact parameter, as for a unit vector.
   double TimeAtUnitSpeed(int disc, const Eigen::Vector2d& d) const {
     const double foot = -d.dot(v_), impact = v_.x() * d.y() - v_.y() * d.x();
     const double square = rho_ * rho_ - impact * impact;

@@ -1,5 +1,5 @@
-// The billiard flow as a textbook has it (textbook_ball.h says by which rules). Right to look at,
-// and each of its rules fails somewhere: what a stable flow has to be compared with.
+// The billiard flow as in a textbook (textbook_ball.h describes its rules). Each rule looks correct
+// and fails in some situation. A stable flow is compared with these rules.
 #ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
 #define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_FLOW_H_
 

@@ -1,5 +1,5 @@
-// A gas whose balls follow a textbook rule (textbook_ball.h): all bodies move from event to event,
-// and each time the next event is the first of all. For gases of a few cells.
+// A gas whose balls follow a textbook rule (textbook_ball.h). All bodies move from event to event;
+// the next event is the earliest event of all bodies. For gases of a few cells.
 #ifndef BALLPISTON_TOOLS_STABILITY_TEXTBOOK_GAS_H_
 #define BALLPISTON_TOOLS_STABILITY_TEXTBOOK_GAS_H_
 

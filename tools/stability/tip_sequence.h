@@ -1,11 +1,12 @@
-// How many hits in a row a tip permits: what tells a true cusp sequence from an orbit that stands
-// still.
+// The largest number of successive hits in a tip. It distinguishes a true cusp sequence from an
+// orbit that stands still.
 //
 // Two discs meet at a tip at angles +-theta to the axis, tan(theta) = lambda. Between straight
 // walls at that angle the orbit unfolds to a straight line, which crosses at most pi/(2 theta) of
-// their images; the discs open wider than their tangents, so with them it is no more. Flights much
-// shorter than the cell are flights between two neighbours near their tip. A longer row of them is
-// no orbit: it repeats its state, or rounding has carried it out of the cell.
+// their images. Between the discs there are no more hits, because the discs open wider than their
+// tangents. Flights much shorter than the cell are flights between two neighbouring discs near
+// their tip. A longer sequence of such flights is not an orbit: it repeats its state, or rounding
+// has moved it out of the cell.
 #ifndef BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
 #define BALLPISTON_TOOLS_STABILITY_TIP_SEQUENCE_H_
 

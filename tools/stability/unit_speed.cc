@@ -13,7 +13,7 @@ namespace {
 using UnitSpeedFlow = TextbookFlow<TextbookRule::kUnitSpeed>;
 
 uint64_t HitsBefore(const PairGeometry& geometry, const PairState& start) {
-  constexpr double kGone = 1e-3;  // inside a disc, in cells: no rounding any more
+  constexpr double kGone = 1e-3;  // depth inside a disc, in cells; far above rounding errors
   UnitSpeedFlow flow(geometry, start);
   for (uint64_t hits = 0;; ++hits) {
     if (flow.Step().kind == EventKind::kEscape) return hits;

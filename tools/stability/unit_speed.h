@@ -1,4 +1,4 @@
-// How long an orbit lasts whose hit times assume |v| = 1 while its reflections do not.
+// The lifetime of an orbit whose hit times assume |v| = 1 while its reflections do not.
 #ifndef BALLPISTON_TOOLS_STABILITY_UNIT_SPEED_H_
 #define BALLPISTON_TOOLS_STABILITY_UNIT_SPEED_H_
 
@@ -7,7 +7,8 @@
 
 namespace ballpiston::stability {
 
-// Wall hits before the escape, of so many orbits at the paper's radius, in ascending order.
+// The number of wall hits before the escape, for `orbits` orbits at the paper's radius, in
+// ascending order.
 std::vector<uint64_t> HitsBeforeEscape(uint64_t orbits);
 
 }  // namespace ballpiston::stability

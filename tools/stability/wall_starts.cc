@@ -19,9 +19,9 @@ Vector2d RandomCentre(CounterRandom& random) {
   return {x, 0.5 * RandomSign(random)};
 }
 
-// A point of the arc of the disc around `centre`; as a vector from there, of length 1. The arc is
-// seen from its centre at pi/4 +- (pi/4 - atan(lambda)), its tangent halves are uniform to within
-// some per cent of the angle's law.
+// A point of the arc of the disc around `centre`, as a unit vector from the centre. The arc has the
+// angles pi/4 +- (pi/4 - atan(lambda)). The tangent of the half angle is uniform, which agrees with
+// a uniform angle to within a few per cent.
 Vector2d RandomNormal(const PairGeometry& geometry, const Vector2d& centre, CounterRandom& random) {
   // tan(pi/8 - atan(lambda)/2) from tan(pi/4 - atan(lambda)) = tip/(1 - tip), as lambda = 1 - 2 tip
   const double whole = geometry.tip() / (1 - geometry.tip());
@@ -32,13 +32,13 @@ Vector2d RandomNormal(const PairGeometry& geometry, const Vector2d& centre, Coun
   return inward * cosine + Perpendicular(inward) * sine;
 }
 
-// The ball on the disc of its quadrant.
+// Whether the ball, on the disc in its quadrant, leaves the disc.
 bool LeavesWall(const Vector2d& position, const Vector2d& direction) {
   const Vector2d centre = {std::copysign(0.5, position.x()), std::copysign(0.5, position.y())};
   return direction.dot(position - centre) > 0;
 }
 
-// Where a ball from there hits the next wall.
+// The point where a ball from `position` hits the next wall.
 Vector2d WallAhead(const PairGeometry& geometry, const Vector2d& position,
                    const Vector2d& direction) {
   ReferenceFlow flow(geometry, BallAlone(geometry, position, direction));

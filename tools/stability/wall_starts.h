@@ -1,7 +1,7 @@
-// A ball alone, on a wall and about to leave it: anywhere, or aimed at where methods fail. The
-// piston rests at its right wall, out of the way.
+// A ball alone on a wall, with a velocity away from it: anywhere, or aimed at a situation in which
+// methods fail. The piston rests at its right wall, out of the ball's reach.
 //
-// Offsets from what is aimed at are +-10^-k, k = 3 ... 17, or exactly 0, one of 16 at random.
+// The offset from the target is +-10^-k, k = 3 ... 17, or exactly 0: one of 16 values at random.
 #ifndef BALLPISTON_TOOLS_STABILITY_WALL_STARTS_H_
 #define BALLPISTON_TOOLS_STABILITY_WALL_STARTS_H_
 
@@ -18,10 +18,10 @@ double RandomOffset(CounterRandom& random);
 PairState BallAlone(const PairGeometry& geometry, const Eigen::Vector2d& position,
                     const Eigen::Vector2d& direction);
 
-// Of all wall points by the angle at the disc's centre; directions by the cosine law.
+// A wall point, uniform in the angle at the disc's centre; the direction follows the cosine law.
 PairState AnywhereOnWall(const PairGeometry& geometry, CounterRandom& random);
 
-// From a wall in sight of a tip to that tip, the direction off by an offset.
+// From a wall in sight of a tip towards that tip; the direction has an offset.
 PairState AimedAtTip(const PairGeometry& geometry, CounterRandom& random);
 
 // Past a disc in sight with impact parameter rho (1 - offset).

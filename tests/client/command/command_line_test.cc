@@ -1,4 +1,4 @@
-// The whole program but its main function: how words are read, and what each verb prints.
+// The whole program without its main function: how words are read, and the output of each verb.
 #include "client/command/command_line.h"
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ TEST_F(CommandLineTest, HelpOfAVerbIsItsPage) {
   }
 }
 
-TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
+TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
   const Words mistakes[] = {{},
                             {"dance"},
                             {"server"},
@@ -110,7 +110,7 @@ TEST_F(CommandLineTest, MistakesExitWithTwoAndOneLine) {
   }
 }
 
-TEST_F(CommandLineTest, AMistakeIsNamed) {
+TEST_F(CommandLineTest, ErrorsNameTheWrongWord) {
   const std::pair<Words, std::string> mistakes[] = {
       {{"run", "first-hit", "--rho"}, "--rho needs a value (ballpiston help run shows its usage)"},
       {{"srver", "status"}, "'srver' is not a verb; verbs are "},
@@ -130,7 +130,7 @@ TEST_F(CommandLineTest, AMistakeIsNamed) {
   }
 }
 
-TEST_F(CommandLineTest, TheNameThatWasMeantIsSuggested) {
+TEST_F(CommandLineTest, ANearNameIsSuggested) {
   const std::pair<Words, std::string> mistakes[] = {
       {{"rnu"}, "run"},
       {{"srever", "start"}, "server"},
@@ -153,7 +153,7 @@ TEST_F(CommandLineTest, TheNameThatWasMeantIsSuggested) {
   }
 }
 
-TEST_F(CommandLineTest, AMessageIsShortHoweverLongTheWord) {
+TEST_F(CommandLineTest, MessagesShortenLongWords) {
   const std::string word(100'000, 'x');
   for (const Words& words : {Words{word},
                              {"run", word},
@@ -178,7 +178,7 @@ TEST_F(CommandLineTest, AfterTwoHyphensAllWordsAreArguments) {
   EXPECT_THAT(line->options.server_flags, ElementsAre("--data-dir", "x", "--workers", "2"));
 }
 
-// Hints repeat them: ballpiston watch JOB --server h:1 --tls
+// Hints contain these flags: ballpiston watch JOB --server h:1 --tls
 TEST_F(CommandLineTest, TheFlagsThatChooseTheServerAreKept) {
   const auto line = ParseCommandLine({"watch", "abc", "--tls", "-q", "--server=h:1"});
   ASSERT_TRUE(line.ok()) << line.status();
@@ -220,7 +220,7 @@ TEST_F(CommandLineTest, ErrorsAreRedOnATerminal) {
   EXPECT_THAT(err.str(), StartsWith("\x1b[1;31mballpiston:\x1b[0m 'dance'"));
 }
 
-// A server that answers with bytes that are no text; Protocol Buffers would log it.
+// The server answers with bytes that are not UTF-8. Protocol Buffers would log this.
 TEST_F(CommandLineTest, NoLibraryLogsToStandardError) {
   job().set_name("ensembleJobs/\xff");
   server_.Start();
@@ -255,7 +255,7 @@ TEST_F(CommandLineTest, TablesAreRequestedWithoutHistograms) {
   EXPECT_EQ(server_.ensemble.Asked().results[1].view(), v1::ListResultsRequest::FULL);
 }
 
-TEST_F(CommandLineTest, ResultOfAnActiveJobSaysSo) {
+TEST_F(CommandLineTest, ResultNotesThatAJobIsActive) {
   job().set_state(v1::EnsembleJob::RUNNING);
   job().mutable_progress()->set_points(9);
   server_.Start();
@@ -266,7 +266,7 @@ TEST_F(CommandLineTest, ResultOfAnActiveJobSaysSo) {
             "ballpiston: ensembleJobs/abc is still running: 1 of 9 points are finished\n");
 }
 
-TEST_F(CommandLineTest, AFailedJobExitsWithFourItsReasonAndWhatItFinished) {
+TEST_F(CommandLineTest, AFailedJobExitsWithFourAndPrintsItsReasonAndPoints) {
   job().set_state(v1::EnsembleJob::FAILED);
   job().mutable_error()->set_message("tolerance not reached within the budget: point 0");
   server_.ensemble.watches = {{{JobMessage(job(), "t")}, grpc::Status::OK}};
@@ -313,7 +313,7 @@ TEST_F(CommandLineTest, PinPrintsEachJobOnceItIsPinned) {
   server_.ensemble.jobs.push_back(job());
   job().set_name("ensembleJobs/d");
   server_.Start();
-  for (int i = 0; i < 2; ++i) {  // again: nothing changes
+  for (int i = 0; i < 2; ++i) {  // the second pin changes nothing
     const Outcome pinned = WithServer({"pin", "abc", "none", "d"});
     EXPECT_EQ(pinned.code, 5);
     EXPECT_EQ(pinned.out, "ensembleJobs/abc pinned\nensembleJobs/d pinned\n");
@@ -401,7 +401,7 @@ TEST_F(CommandLineTest, EscapedOrbitsAreReported) {
   EXPECT_THAT(WithServer({"result", "abc"}).err, HasSubstr("point 0: 3 orbits left the cell"));
 }
 
-TEST_F(CommandLineTest, PlanPrintsTheLadderAndMakesNoJob) {
+TEST_F(CommandLineTest, PlanPrintsTheLadderAndCreatesNoJob) {
   v1::PointPlan* point = server_.ensemble.plan.add_points();
   point->set_model(v1::EnsembleSpec::SPECTRUM);
   point->add_models()->set_model(v1::EnsembleSpec::SPECTRUM);
@@ -421,7 +421,7 @@ TEST_F(CommandLineTest, PlanPrintsTheLadderAndMakesNoJob) {
   EXPECT_TRUE(spec.verify());
 }
 
-TEST_F(CommandLineTest, AnInvalidQuestionExitsWithTwo) {
+TEST_F(CommandLineTest, AnInvalidSpecificationExitsWithTwo) {
   server_.ensemble.plan_end = InvalidSpec("spec.target.tolerance", "-1 is not in (0, 1)");
   server_.Start();
   const Outcome outcome = WithServer({"plan", "equilibrium", "--tolerance", "-1"});
@@ -499,7 +499,7 @@ TEST_F(CommandLineTest, AFigureWithoutTheVariableExitsWithTwo) {
   EXPECT_EQ(outcome.err, "ballpiston: --seconds: the figure mean-free-time has no such variable\n");
 }
 
-// The script in the folder is run with the flags as variables, and its exit code returned.
+// Runs the script in the folder with the flags as variables, and returns its exit code.
 TEST_F(CommandLineTest, FigureRunsTheScriptInItsFolder) {
   const std::string folder = home_.File("figures");
   Ballpiston({"figure", "mean-free-time", "--edit", "--out", folder});

@@ -26,7 +26,7 @@ Lines LinesOf(const std::string& text) { return absl::StrSplit(text, '\n', absl:
 
 class CompletionTest : public ProgramTest {
  protected:
-  // Of `completion words -- WORDS`.
+  // The output of `completion words -- WORDS`.
   static Lines Offers(std::vector<std::string> words) {
     words.insert(words.begin(), {"completion", "words", "--"});
     const Outcome outcome = Ballpiston(words);
@@ -114,8 +114,8 @@ TEST_F(CompletionTest, StartsNoServer) {
 
 // ---- the scripts ----
 
-// Each test runs a script in its shell, with a function in place of the program: it prints the
-// offers, and records the words that it was asked with.
+// Each test runs a script in its shell, with a function instead of the program. The function prints
+// the offers and records its arguments.
 class CompletionScriptTest : public ::testing::Test {
  protected:
   // Standard output of the shell. SCRIPT in the code stands for the script.
@@ -166,7 +166,7 @@ TEST_F(CompletionScriptTest, BashOffersFiles) {
       ElementsAre("compopt -o filenames", "spec one.json", "complete -F _ballpiston ballpiston"));
 }
 
-// The functions of zsh's completion are replaced by some that print their arguments.
+// Functions that print their arguments replace the functions of zsh's completion.
 std::string InZsh(const std::string& offers, const std::string& words, int index) {
   return std::string("compdef() { }; . $SCRIPT; OFFERS='") + offers + "'; words=(" + words +
          "); CURRENT=" + std::to_string(index) +

@@ -1,4 +1,4 @@
-// Where a flag's value comes from: the command line, the environment, the config file.
+// The sources of a flag's value: the command line, the environment, the config file.
 #include "client/command/config_file.h"
 
 #include <gmock/gmock.h>
@@ -118,13 +118,13 @@ TEST_F(ConfigFileTest, ATargetOnTheCommandLineKeepsTheEstimate) {
   EXPECT_EQ(line.options.spec.target().estimate(), "conductivity");
 }
 
-TEST_F(ConfigFileTest, AFlagOfOtherVerbsIsLeftToThem) {
+TEST_F(ConfigFileTest, FlagsOfOtherVerbsAreIgnored) {
   home_.WriteConfig("progress = \"bar\"\n[run]\nformat = \"csv\"\n");
   ASSERT_OK_AND_ASSIGN(const CommandLine line, ParseCommandLine({"list"}));
   EXPECT_EQ(line.options.format, Format::kTable);
 }
 
-TEST_F(ConfigFileTest, AMistakeNamesTheFile) {
+TEST_F(ConfigFileTest, ErrorsNameTheFile) {
   const std::string file = home_.File("ballpiston/config.toml");
   ExpectError("foramt = \"csv\"\n", file + ": 'foramt' is not a flag; did you mean format?");
   ExpectError("[run]\nlimit = 3\n", file + ": 'limit' is not a flag of run");

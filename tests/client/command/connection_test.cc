@@ -1,4 +1,4 @@
-// Which server a verb talks to, and what happens if it does not answer.
+// The server that a verb uses, and the errors if it does not answer.
 #include "client/command/connection.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// The channel itself attempts a call up to this many times, but not a delete.
+// The channel makes up to this number of attempts for a call, but only one for a delete.
 constexpr int kChannelAttempts = 4;
 
 class ConnectionTest : public ProgramTest {
@@ -72,7 +72,7 @@ TEST_F(ConnectionTest, FlagsOfTlsAreRejectedOverAUnixSocket) {
   }
 }
 
-TEST_F(ConnectionTest, APrivateServerThatIsLeavingGetsTheSameIdAgain) {
+TEST_F(ConnectionTest, ARetryToAPrivateServerHasTheSameRequestId) {
   StartPrivateServer(kChannelAttempts);
   const Outcome outcome = Ballpiston({"submit", "first-hit", "--rho", "0.53"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -82,7 +82,7 @@ TEST_F(ConnectionTest, APrivateServerThatIsLeavingGetsTheSameIdAgain) {
   EXPECT_EQ(asked.front().request_id(), asked.back().request_id());
 }
 
-// With another id the second cancel would find a job that has ended.
+// With a new request id the second cancel would fail, because the job has ended.
 TEST_F(ConnectionTest, ACancelIsRepeatedWithTheSameId) {
   StartPrivateServer(kChannelAttempts);
   const Outcome outcome = Ballpiston({"cancel", "abc"});
@@ -90,7 +90,7 @@ TEST_F(ConnectionTest, ACancelIsRepeatedWithTheSameId) {
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().cancel), kChannelAttempts + 1);
 }
 
-// After a lost answer a second delete would find no job.
+// If the first answer was lost, a second delete would report that the job does not exist.
 TEST_F(ConnectionTest, ADeleteIsNotRepeated) {
   StartPrivateServer(1);
   const Outcome outcome = Ballpiston({"delete", "abc"});
@@ -101,25 +101,25 @@ TEST_F(ConnectionTest, ADeleteIsNotRepeated) {
   EXPECT_EQ(server_.ensemble.Asked().remove.size(), 1u);
 }
 
-TEST_F(ConnectionTest, APrivateServerIsAskedTwiceAtMost) {
+TEST_F(ConnectionTest, APrivateServerGetsAtMostTwoAttempts) {
   StartPrivateServer(100);
   EXPECT_EQ(Ballpiston({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), 2 * kChannelAttempts);
 }
 
-TEST_F(ConnectionTest, ANamedServerIsAskedOnce) {
+TEST_F(ConnectionTest, ANamedServerGetsOneAttempt) {
   server_.ensemble.unavailable_attempts = kChannelAttempts;
   server_.Start();
   EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 3);
   EXPECT_EQ(std::ssize(server_.ensemble.Asked().create), kChannelAttempts);
 }
 
-TEST_F(ConnectionTest, StatusOfAPrivateServerIsThatOfTheRunningOne) {
+TEST_F(ConnectionTest, StatusConnectsToTheRunningPrivateServer) {
   StartPrivateServer();
   EXPECT_EQ(Ballpiston({"status"}).code, 0);
 }
 
-// The one that could be started is /bin/false; the message would quote its failure.
+// The server program is /bin/false. If it were started, the message would quote its failure.
 TEST_F(ConnectionTest, StatusStartsNoServer) {
   home_.UseAsPrivateServer(server_.Address());
   const Outcome outcome = Ballpiston({"status"});

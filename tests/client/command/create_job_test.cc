@@ -1,4 +1,4 @@
-// How a job is submitted: its request id, its options, answers from the store, limits.
+// Submission of a job: its request id, its options, answers from the store, limits.
 #include "client/command/create_job.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ class CreateJobTest : public ProgramTest {
   }
 };
 
-TEST_F(CreateJobTest, ResumedJobsOfOneQuestionHaveOneId) {
+TEST_F(CreateJobTest, ResumedJobsOfOneSpecificationHaveOneRequestId) {
   server_.server.status.set_engine_version("7");
   server_.Start();
   const std::string id = IdOfResumed({"first-hit", "--rho", "0.53"});
@@ -45,7 +45,7 @@ TEST_F(CreateJobTest, ResumedJobsOfOneQuestionHaveOneId) {
   EXPECT_NE(IdOfResumed({"first-hit", "--rho", "0.53"}), id);
 }
 
-TEST_F(CreateJobTest, AResumedJobThatWasLostIsFollowedByTheNextOne) {
+TEST_F(CreateJobTest, ResumeAfterAFailedOrCancelledJobCreatesANewJob) {
   server_.ensemble.created_states = {v1::EnsembleJob::FAILED, v1::EnsembleJob::CANCELLED,
                                      v1::EnsembleJob::CANCELLING, v1::EnsembleJob::QUEUED};
   server_.Start();
@@ -57,7 +57,7 @@ TEST_F(CreateJobTest, AResumedJobThatWasLostIsFollowedByTheNextOne) {
   EXPECT_NE(asked[2].request_id(), asked[3].request_id());
 }
 
-TEST_F(CreateJobTest, WithoutResumeEachJobHasItsId) {
+TEST_F(CreateJobTest, WithoutResumeEachJobHasANewRequestId) {
   server_.ensemble.created_states = {v1::EnsembleJob::FAILED};
   server_.Start();
   for (int i = 0; i < 2; ++i) EXPECT_EQ(WithServer({"submit", "first-hit"}).code, 0);
@@ -152,7 +152,7 @@ TEST_F(CreateJobTest, AFullShareOfTheStoreHasAHint) {
             "Delete jobs that are no longer needed: ballpiston list, ballpiston delete JOB\n");
 }
 
-// Such a request has more than gRPC's usual limit of 4 MiB; the server has one of its own.
+// Such a request is larger than gRPC's default limit of 4 MiB; the server has a different limit.
 TEST_F(CreateJobTest, LargeRequestsAreSent) {
   server_.largest_request = -1;
   server_.Start();

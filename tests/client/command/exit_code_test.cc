@@ -32,7 +32,7 @@ TEST(ExitCode, FollowsFromTheStatus) {
 
 absl::Status LimitOf(const std::string& reason) { return FromGrpc(LimitExceeded(reason, "text")); }
 
-TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
+TEST(ExitCode, DistinguishesATooLargeJobFromABusyServer) {
   for (const char* reason : {"TOO_MANY_POINTS", "TOO_MANY_SAMPLES"}) {
     EXPECT_EQ(ExitCodeOf(LimitOf(reason)), ExitCode::kUsage) << reason;
   }
@@ -43,7 +43,7 @@ TEST(ExitCode, TellsAJobThatIsTooLargeFromAServerThatIsBusy) {
   }
 }
 
-TEST(ExitCode, OfAProgramIsItsOwnOrFour) {
+TEST(ExitCode, OfAChildProgramIsItsStatusOrFour) {
   for (const int status : {0, 2, 3, 4, 5, 6, 130}) {
     EXPECT_EQ(static_cast<int>(ExitCodeOf(status)), status);
   }

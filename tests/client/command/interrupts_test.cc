@@ -26,8 +26,8 @@ sigset_t Signals() {
 }
 
 // If one thread does not block a signal, the signal ends the program. The mask is set before main,
-// so that all threads inherit it, those of the time limit and of gRPC too. The client constructs
-// Interrupts before it starts a thread.
+// so that all threads inherit it, also the threads of the time limit and of gRPC. The client
+// constructs Interrupts before it starts a thread.
 [[maybe_unused]] const bool kSignalsAreBlocked = [] {
   const sigset_t signals = Signals();
   return pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0;
@@ -35,7 +35,7 @@ sigset_t Signals() {
 
 void Send(int signal) { kill(getpid(), signal); }
 
-// The statements end the process; without a signal they would last for ever.
+// The statements end the process; without a signal they would never end.
 class InterruptsDeathTest : public ::testing::Test {
  protected:
   InterruptsDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
@@ -70,7 +70,7 @@ TEST_F(InterruptsDeathTest, TheInnermostFarewellRuns) {
       AllOf(HasSubstr("inner"), Not(HasSubstr("outer")), Not(HasSubstr("ended"))));
 }
 
-TEST_F(InterruptsDeathTest, AFarewellThatHangsDoesNotKeepTheProgram) {
+TEST_F(InterruptsDeathTest, TheProgramEndsDuringAHangingFarewell) {
   EXPECT_EXIT(
       {
         Interrupts interrupts;
@@ -83,7 +83,7 @@ TEST_F(InterruptsDeathTest, AFarewellThatHangsDoesNotKeepTheProgram) {
       ExitedWithCode(130), "");
 }
 
-// The scope's owner would destroy what the farewell uses.
+// After the scope its owner destroys objects that the farewell uses.
 TEST_F(InterruptsDeathTest, TheEndOfAScopeWaitsForItsFarewell) {
   EXPECT_EXIT(
       {

@@ -36,13 +36,15 @@ TEST(NumberList, LogarithmicRangeHasEvenRatios) {
   EXPECT_THAT(List("1e-3:1:4:log"), ElementsAre(1e-3, DoubleEq(1e-2), DoubleEq(1e-1), 1));
 }
 
-TEST(NumberList, RangeOfOneIsItsFirstEnd) { EXPECT_THAT(List("0.2:0.9:1"), ElementsAre(0.2)); }
+TEST(NumberList, RangeWithCountOneIsItsFirstEnd) {
+  EXPECT_THAT(List("0.2:0.9:1"), ElementsAre(0.2));
+}
 
 TEST(NumberList, CommasAndRangesMix) {
   EXPECT_THAT(List("0.1,0.2:0.3:3,7"), ElementsAre(0.1, 0.2, 0.25, 0.3, 7));
 }
 
-TEST(NumberList, RejectsWhatIsNotAListAndSaysWhy) {
+TEST(NumberList, RejectsOtherTextsWithAReason) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "'' is not a decimal number"},
       {",", "is not a decimal number"},

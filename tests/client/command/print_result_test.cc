@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The channel itself attempts a call up to this many times.
+// The channel makes up to this number of attempts for a call.
 constexpr int kAttemptsOfChannel = 4;
 
 // A job of five points on three pages; the first attempts to list the second page fail.
@@ -71,7 +71,7 @@ class PrintPointTest : public ProgramTest {
   }
 };
 
-TEST_F(PrintPointTest, EachFormatHasTheOnePoint) {
+TEST_F(PrintPointTest, EachFormatPrintsOnlyThePoint) {
   for (const std::string format : {"table", "csv", "json", "jsonl"}) {
     const Outcome one = WithServer({"result", "abc", "--point", "1", "--format", format});
     EXPECT_EQ(one.code, 0) << one.err;
@@ -82,7 +82,7 @@ TEST_F(PrintPointTest, EachFormatHasTheOnePoint) {
   EXPECT_THAT(server_.ensemble.Asked().results, testing::IsEmpty());
 }
 
-TEST_F(PrintPointTest, APointOfSeveralReadsAsAllDo) {
+TEST_F(PrintPointTest, ASinglePointHasTheSameFormatAsAllPoints) {
   server_.ensemble.points.erase(server_.ensemble.points.begin());
   for (const std::string format : {"table", "csv", "json", "jsonl"}) {
     EXPECT_EQ(WithServer({"result", "abc", "--point", "1", "--format", format}).out,
@@ -101,7 +101,7 @@ TEST_F(PrintPointTest, WithoutThePointOrTheJobExitsWithFiveAndNoOutput) {
   EXPECT_EQ(unknown.err, "ballpiston: no such job: ensembleJobs/none (JOB_NOT_FOUND)\n");
 }
 
-TEST_F(PrintPointTest, APointBelowZeroIsNotRequested) {
+TEST_F(PrintPointTest, ANegativePointIsRejected) {
   const Outcome outcome = WithServer({"result", "abc", "--point", "-1"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err, "ballpiston: --point: -1 is below 0\n");

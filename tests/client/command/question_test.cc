@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 class QuestionTest : public ::testing::Test {
  protected:
-  // Of `run WORDS`.
+  // The specification of `run WORDS`.
   static absl::StatusOr<v1::EnsembleSpec> Spec(const std::string& words) {
     const auto line = ParseCommandLine(absl::StrSplit("run " + words, ' ', absl::SkipEmpty()));
     return line.ok() ? SpecOf(line->options) : line.status();
@@ -70,7 +70,7 @@ TEST_F(QuestionTest, ExperimentsAreReadInBothSpellings) {
   }
 }
 
-TEST_F(QuestionTest, TheFirstMistakeIsNamed) {
+TEST_F(QuestionTest, TheFirstErrorIsNamed) {
   const std::pair<std::string, std::string> table[] = {
       {"", "name an EXPERIMENT (equilibrium, "},
       {"brownian", "EXPERIMENT: 'brownian' is not one of equilibrium, "},

@@ -24,7 +24,7 @@ class ReferenceTest : public ::testing::Test {
 };
 
 // To write it again: ballpiston help --format markdown >docs/command-line.md
-TEST_F(ReferenceTest, TheMarkdownReferenceIsThatOfTheDocumentation) {
+TEST_F(ReferenceTest, TheDocumentationHasTheCurrentReference) {
   const bool is_same = Ballpiston({"help", "--format", "markdown"}).out ==
                        Contents(SourcePath("docs/command-line.md"));
   EXPECT_TRUE(is_same) << "differs; write it again";
@@ -49,7 +49,7 @@ TEST_F(ReferenceTest, AFolderThatCannotBeWrittenExitsWithTwo) {
   EXPECT_THAT(outcome.err, StartsWith("ballpiston: --out: cannot write " + home_.File("file/")));
 }
 
-// roff takes a line that begins with . or ' as a command, and - for a hyphen.
+// roff reads a line that begins with . or ' as a command, and - as a hyphen.
 TEST_F(ReferenceTest, ManPagesHaveOnlyKnownCommands) {
   for (const Verb& verb : Verbs()) {
     for (const absl::string_view line : absl::StrSplit(ManPage(&verb), '\n')) {
@@ -62,7 +62,7 @@ TEST_F(ReferenceTest, ManPagesHaveOnlyKnownCommands) {
   EXPECT_THAT(Ballpiston({"help", "--format", "man", "run"}).out, HasSubstr(".B \\-\\-rho LIST\n"));
 }
 
-// But the title and the examples.
+// The title and the examples may be longer.
 TEST_F(ReferenceTest, LinesHaveAtMost80Columns) {
   for (const Verb& verb : Verbs()) {
     std::string page = TextPage(&verb);

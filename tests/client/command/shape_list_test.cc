@@ -26,22 +26,22 @@ TEST(ShapeList, ReadsChainsAndLattices) {
   EXPECT_THAT(Shapes("1,4x3,1000000x1"), ElementsAre("1", "4x3", "1000000x1"));
 }
 
-TEST(ShapeList, EachShapeHasOneSpelling) {
+TEST(ShapeList, EachShapeHasOneCanonicalForm) {
   EXPECT_THAT(Shapes("1e3,007,1e2x04"), ElementsAre("1000", "7", "100x4"));
 }
 
-TEST(ShapeList, RangeIsOneOfChains) {
+TEST(ShapeList, ARangeGivesChains) {
   EXPECT_THAT(Shapes("2:10:5,4x4"), ElementsAre("2", "4", "6", "8", "10", "4x4"));
   EXPECT_THAT(Shapes("8:1024:8:log"),
               ElementsAre("8", "16", "32", "64", "128", "256", "512", "1024"));
 }
 
-// The server says which numbers are permitted.
+// The server checks which numbers are permitted.
 TEST(ShapeList, AnyNumberIsRead) {
   EXPECT_THAT(Shapes("-3,0,0x5,1e15"), ElementsAre("-3", "0", "0x5", "1000000000000000"));
 }
 
-TEST(ShapeList, RejectsWhatIsNotAListAndSaysWhy) {
+TEST(ShapeList, RejectsOtherTextsWithAReason) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "'' is not a shape: write N, a chain of N cells, or NxM, a lattice"},
       {"4,", "'' is not a shape"},

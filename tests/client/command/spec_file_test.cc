@@ -54,7 +54,7 @@ TEST(SpecFile, ReadsTheParametersOfAGas) {
   }
 }
 
-TEST(SpecFile, RejectsWhatIsNotASpecification) {
+TEST(SpecFile, RejectsOtherTexts) {
   for (const char* text :
        {"", "   ", "null", "\"FIRST_HIT\"", "[]", "7", "{", "{]", "not json", "{\"sed\": 1}",
         "{\"grid\": {\"rho\": [\"x\"]}}", "{\"experiment\": \"NO_SUCH\"}",

@@ -46,14 +46,14 @@ TEST_F(TraceTest, SendsTheFlags) {
   EXPECT_EQ(asked.events(), 1000);
 }
 
-TEST_F(TraceTest, ByDefaultTheTemperatureIsTheServers) {
+TEST_F(TraceTest, WithoutATemperatureTheServersDefaultIsUsed) {
   server_.Start();
   EXPECT_EQ(WithServer({"trace", "--rho", "0.53", "--delta", "0.1", "--events", "3"}).code, 0);
   EXPECT_FALSE(server_.trace.asked.has_temperature());
   EXPECT_EQ(server_.trace.asked.cells(), "");
 }
 
-// What is absent is left out; an index or a time of 0 is not.
+// Absent fields are left out; an index or a time of 0 is printed.
 TEST_F(TraceTest, PrintsTheStartAndEachEventAsALine) {
   server_.Start();
   const Outcome outcome = WithServer(kTrace);
@@ -67,7 +67,7 @@ TEST_F(TraceTest, PrintsTheStartAndEachEventAsALine) {
   EXPECT_THAT(lines[0], HasSubstr("\"balls\":[{\"x\":0.5,"));
 }
 
-TEST_F(TraceTest, AnErrorAfterSomeLinesIsTold) {
+TEST_F(TraceTest, AnErrorAfterSomeLinesIsReported) {
   server_.trace.end = grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server is stopping");
   server_.Start();
   const Outcome outcome = WithServer(kTrace);

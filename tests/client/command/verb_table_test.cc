@@ -20,7 +20,8 @@ using ::testing::Ge;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-// Without the shell's redirections and pipes. ID stands for an id, which has no capitals.
+// The example's words without the shell's redirections and pipes. ID is replaced by an id, because
+// an id has no capitals.
 std::vector<std::string> WordsOf(const std::string& example) {
   std::vector<std::string> words = absl::StrSplit(example.substr(0, example.find(" |")), ' ');
   std::erase_if(words, [](const std::string& word) { return word.find('>') != std::string::npos; });
@@ -43,7 +44,7 @@ TEST(VerbTable, EveryExampleIsRead) {
 }
 
 // Texts are parts of sentences: they end without a full stop.
-TEST(VerbTable, EverythingHasAText) {
+TEST(VerbTable, EveryVerbAndFlagHasAText) {
   for (const Verb& verb : Verbs()) {
     std::vector<std::string> texts = {verb.summary};
     for (const Argument& argument : verb.arguments) texts.push_back(argument.text);
@@ -68,7 +69,7 @@ TEST(VerbTable, NamesAreUnique) {
   }
 }
 
-// A flag without a value is a switch; every other one has a name for its value in capitals.
+// A flag without a value is a switch. Every other flag has a name for its value, in capitals.
 TEST(VerbTable, ValuesHaveNamesInCapitals) {
   for (const Verb& verb : Verbs()) {
     for (const Flag* flag : FlagsOf(verb)) {

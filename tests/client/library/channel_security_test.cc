@@ -37,7 +37,7 @@ TEST(ChannelSecurity, ATokenIsNotSentWithoutTls) {
   }
 }
 
-TEST(ChannelSecurity, IsRejectedForASocket) {
+TEST(ChannelSecurity, SettingsAreRejectedForASocket) {
   EXPECT_OK(CheckSecurity({}, "unix:x"));
   EXPECT_THAT(CheckSecurity({.tls = true}, "unix:x"), StatusIs(kInvalid));
   EXPECT_THAT(CheckSecurity({.token_file = "f"}, "unix:x"), StatusIs(kInvalid));
@@ -109,7 +109,7 @@ TEST(ConnectionHint, OfAUnixSocketNamesTheFlagOfItsServer) {
   EXPECT_EQ(SocketHint("last error: UNKNOWN: unix:/run/s: No such file or directory"), "");
 }
 
-TEST(ConnectionHint, SaysWhatToTry) {
+TEST(ConnectionHint, AdvisesTheUser) {
   const ChannelSecurity plain, with_ca{.ca = "ca.pem"}, with_tls{.tls = true};
   const ChannelSecurity with_certificate{.tls = true, .certificate = "c.pem", .key = "k"};
   const struct {

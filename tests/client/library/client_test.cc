@@ -168,7 +168,7 @@ TEST_F(ClientTest, APointIsNamedByItsIndex) {
   EXPECT_EQ(ErrorReason(client.Point(kJobName, 3).status()), "RESULT_NOT_FOUND");
 }
 
-// The second of two would find no job.
+// A second delete would report that the job does not exist.
 TEST_F(ClientTest, ADeleteIsSentOnce) {
   server_.ensemble.unavailable_attempts = 1;
   EXPECT_THAT(StartServer().Delete(kJobName), StatusIs(absl::StatusCode::kUnavailable));

@@ -30,9 +30,9 @@ grpc::Status InvalidWith(const std::vector<Violation>& violations, int left_out 
   return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "summary", details.SerializeAsString());
 }
 
-TEST(ErrorText, OkIsOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
+TEST(ErrorText, OkStaysOk) { EXPECT_OK(FromGrpc(grpc::Status::OK)); }
 
-TEST(ErrorText, WithoutDetailsItIsTheMessage) {
+TEST(ErrorText, WithoutDetailsTheTextIsTheMessage) {
   const absl::Status status =
       FromGrpc(grpc::Status(grpc::StatusCode::UNAVAILABLE, "connection refused"));
   EXPECT_EQ(status, absl::UnavailableError("connection refused"));

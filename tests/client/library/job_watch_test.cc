@@ -36,7 +36,7 @@ WatchScript Succeeded(const std::string& token = "t") {
   return {{JobMessage(JobIn(Job::SUCCEEDED), token)}, grpc::Status::OK};
 }
 
-// A watch whose callbacks are recorded.
+// Records the callbacks of a watch.
 class JobWatch : public ::testing::Test {
  protected:
   JobWatch() {

@@ -34,7 +34,7 @@ using ::testing::StartsWith;
 // Runs with an empty HOME, and without the variables that choose the server.
 class LocalServerTest : public ::testing::Test {
  protected:
-  // A program that does what the shell script says.
+  // A program that runs the shell script.
   std::string Program(const std::string& script) const {
     const fs::path path = home_ / "program";
     WriteFile(path, std::string("#!/bin/sh\n") + script + "\n");
@@ -60,7 +60,7 @@ TEST_F(LocalServerTest, IsInTheStateFolderOfTheUser) {
 TEST_F(LocalServerTest, FollowsXdgStateHome) {
   state_home_.Set((home_ / "state").string());
   EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/state/ballpiston");
-  state_home_.Set("relative");  // has to be ignored, says the specification
+  state_home_.Set("relative");  // the XDG specification says: ignore it
   EXPECT_EQ(FindLocalServer()->folder, home_.string() + "/.local/state/ballpiston");
 }
 
@@ -89,7 +89,7 @@ TEST_F(LocalServerTest, ErrorNamesAStateFolderThatCannotBeMade) {
                                           HasSubstr(home_.string() + "/file/.local")));
 }
 
-TEST_F(LocalServerTest, TheProgramMayBeChosen) {
+TEST_F(LocalServerTest, TheEnvironmentCanSetTheProgram) {
   EXPECT_THAT(FindLocalServer()->program, EndsWith("ballpistond"));
   server_program_.Set("/opt/server");
   EXPECT_EQ(FindLocalServer()->program, "/opt/server");
@@ -148,7 +148,8 @@ void Await(const fs::path& file, const std::stop_token& stop) {
 }
 
 // The started program exits, because another server holds the folder. The client starts no second
-// program, but waits until that server listens. (It is given time for the mistake.)
+// program, but waits until that server listens. (The test waits long enough to detect a second
+// start.)
 TEST_F(LocalServerTest, WaitsForAnotherClientsServer) {
   FakeServer other;
   const FolderInUse in_use(home_);

@@ -43,7 +43,8 @@ TEST(ReattachPace, PausesStartAgainAfterAMessage) {
   EXPECT_LE(*pause, absl::Seconds(1.251));
 }
 
-// A pause of 1 s to 1.25 s that begins after 178 s ends within 3 min; one after 180 s does not.
+// A pause of 1 s to 1.25 s that begins after 178 s ends within 3 min. A pause that begins after 180
+// s ends too late.
 TEST(ReattachPace, GivesUpWhenTheNextAttemptWouldComeTooLate) {
   const WatchOptions options = ThreeMinutes();
   EXPECT_TRUE(ReattachPace(options, kStart).NextPause(kStart + seconds(178)));

@@ -21,8 +21,8 @@ TEST(RequestId, IsARandomUuid) {
   EXPECT_EQ(ids.size(), 1000u);
 }
 
-// A later version of the program has to make the same ids.
-TEST(RequestId, OfATextIsTheSameForEver) {
+// A later version of the program must make the same ids.
+TEST(RequestId, OfATextIsStable) {
   EXPECT_EQ(RequestIdFor(""), "cbf29ce4-8422-8325-9e37-79b97f4a7c15");
   EXPECT_EQ(RequestIdFor("question 0"), "f158c797-54ff-80dd-b8d7-5edcd5c77fad");
 }

@@ -81,8 +81,8 @@ TEST_F(ServerProcessTest, ErrorNamesAMissingProgram) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("cannot start /no/such/server")));
 }
 
-// Two clients may start one at the same time.
-TEST_F(ServerProcessTest, ASecondServerGivesTheAddressOfTheFirst) {
+// Two clients may start a server at the same time.
+TEST_F(ServerProcessTest, StartReturnsTheAddressOfAnEarlierServer) {
   ASSERT_OK_AND_ASSIGN(const std::string first, StartServer(Server()));
   EXPECT_THAT(StartServer(Server()), IsOkAndHolds(first));
   EXPECT_OK(StopServer(data_));
@@ -115,7 +115,7 @@ TEST_F(ServerProcessTest, WithoutAServerNothingIsStopped) {
   EXPECT_THAT(StopServer(data_), StatusIs(absl::StatusCode::kUnavailable));
 }
 
-TEST_F(ServerProcessTest, ALongLogIsPutAside) {
+TEST_F(ServerProcessTest, ALongLogIsRenamed) {
   const ServerProgram program = Program("echo new; exit 1");
   WriteFile(program.Log(), std::string(2 << 20, 'x'));
   EXPECT_THAT(StartServer(program), StatusIs(absl::StatusCode::kUnavailable,

@@ -38,7 +38,7 @@ std::string PrintedJobs(Format format, const std::string& principal = "", int pr
   return out.str();
 }
 
-// The text in the column results, in a table of this job and of one whose results stay.
+// The text in the column `results`, in a table of this job and a job whose results stay.
 std::string ResultsColumn(const std::string& job) {
   std::ostringstream out;
   PrintJobs({FromText<v1::EnsembleJob>("name: 'ensembleJobs/a' state: SUCCEEDED " + job),
@@ -87,7 +87,7 @@ TEST(JobList, TheTableHasPrioritiesIfThereAreAny) {
   EXPECT_THAT(table, Not(HasSubstr("ann")));
 }
 
-TEST(JobList, TheTableSaysWhatBecomesOfTheResults) {
+TEST(JobList, TheTableShowsTheExpiryOfResults) {
   EXPECT_EQ(ResultsColumn("pinned: true"), "pinned");
   EXPECT_EQ(ResultsColumn("results_expired: true " + Expiring(absl::Hours(-1))), "expired");
   EXPECT_EQ(ResultsColumn("pinned: true " + Expiring(absl::Hours(1))), "pinned");
@@ -99,12 +99,12 @@ TEST(JobList, TheTableSaysWhatBecomesOfTheResults) {
   for (const auto& [left, text] : table) EXPECT_EQ(ResultsColumn(Expiring(left)), text);
 }
 
-TEST(JobList, TheTableHasNoColumnForResultsThatStay) {
+TEST(JobList, TheTableOmitsTheColumnIfAllResultsStay) {
   EXPECT_EQ(ResultsColumn(""), "no column");
   EXPECT_EQ(ResultsColumn(Expiring(absl::Hours(24 * 7) + absl::Seconds(1))), "no column");
 }
 
-TEST(JobList, CsvAndJsonSayWhatBecomesOfTheResults) {
+TEST(JobList, CsvAndJsonShowTheExpiryOfResults) {
   const auto job = FromText<v1::EnsembleJob>(
       R"(pinned: true expire_time { seconds: 1700000000 } results_expired: true
          stored_bytes: 70048)");

@@ -22,13 +22,13 @@ std::string PrintedReasons(const ModelReasons& reasons) {
   return out.str();
 }
 
-TEST(ModelReasons, OneForAllPointsIsPrintedOnce) {
+TEST(ModelReasons, AReasonForAllPointsIsPrintedOnce) {
   ModelReasons reasons;
   for (const double delta : {0.1, 0.2}) reasons.Add(At(delta), Spec::CLOSED_FORM, "exact");
   EXPECT_EQ(PrintedReasons(reasons), "closed-form: exact\n");
 }
 
-TEST(ModelReasons, SeveralNameTheFirstPointAndCountTheOthers) {
+TEST(ModelReasons, SeveralReasonsNameTheirFirstPointAndCountTheOthers) {
   ModelReasons reasons;
   reasons.Add(At(0.0125), Spec::MARKOV, "off by 1e-3");
   reasons.Add(At(0.05), Spec::BILLIARD, "the limit is too far");

@@ -50,7 +50,7 @@ TEST(Measured, TheExactValueHasTheSameDigits) {
   EXPECT_EQ(Measured(21.63214, 0.1234).exact, "");
 }
 
-// The limit may be infinite where the estimate is small.
+// The limit can be infinite if the estimate is small.
 TEST(Measured, AnInfiniteExactValueHasNoDigits) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(Measured(1e-8, 1e-12, infinity).exact, "inf");
@@ -65,14 +65,14 @@ TEST(Measured, HasSixDigitsWithoutAnError) {
   EXPECT_EQ(Measured(1.0 / 3, 0.0).error, "0");
 }
 
-TEST(TwoDigits, RoundsAsTheErrorBesideAValue) {
+TEST(TwoDigits, RoundsAsTheErrorOfAMeasuredValue) {
   EXPECT_EQ(TwoDigits(0.1234), "0.12");
   EXPECT_EQ(TwoDigits(123.4), "123");
   EXPECT_EQ(TwoDigits(1.234e-5), "1.2e-05");
   EXPECT_EQ(TwoDigits(0), "0");
 }
 
-TEST(DurationText, HasTheUnitThatSuits) {
+TEST(DurationText, HasASuitableUnit) {
   EXPECT_EQ(DurationText(0), "0 s");
   EXPECT_EQ(DurationText(1e-10), "0.1 ns");
   EXPECT_EQ(DurationText(4.84e-9), "4.8 ns");
@@ -85,7 +85,7 @@ TEST(DurationText, HasTheUnitThatSuits) {
   EXPECT_EQ(DurationText(1e9), "32 y");
 }
 
-// Never 1000 µs, and as many digits as the durations beside it.
+// Never 1000 µs, and as many digits as neighbouring durations.
 TEST(DurationText, RoundsUpIntoTheNextUnit) {
   EXPECT_EQ(DurationText(999.4e-6), "999 µs");
   EXPECT_EQ(DurationText(999.6e-6), "1.0 ms");

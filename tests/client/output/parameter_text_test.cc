@@ -17,7 +17,7 @@ v1::PointParameters ParametersOf(const std::string& text) {
 constexpr char kAll[] =
     R"(epsilon: 0.25 exponent: 1 cells: "4x3" temperature: 1.00000000001 hot: 2 cold: 0)";
 
-TEST(ParameterText, NamesWhatThePointHas) {
+TEST(ParameterText, NamesTheParametersOfThePoint) {
   EXPECT_EQ(ParameterText(ParametersOf("")), "rho 0.53, delta 0.1");
   EXPECT_EQ(ParameterText(ParametersOf(kAll)),
             "rho 0.53, delta 0.1, epsilon 0.25, exponent 1, cells 4x3, temperature 1, hot 2, "
@@ -44,7 +44,7 @@ TEST(ParameterColumns, OfAGasAreThoseOfTheGrid) {
               ElementsAre("0.53", "0.1", "0.25", "1", "1.00000000001"));  // exact
 }
 
-TEST(ParametersShown, AreThoseThatSomePointHas) {
+TEST(ParametersShown, AreTheParametersOfAnyPoint) {
   ParametersShown shown;
   EXPECT_THAT(shown.Titles(), ElementsAre("rho", "delta"));
   shown.Include(ParametersOf("temperature: 0.5"));

@@ -23,7 +23,7 @@ v1::EnsembleSpec Question(const std::string& target = "tolerance: 1e-2 budget { 
   return FromText<v1::EnsembleSpec>("experiment: ENERGY_RELAXATION target {" + target + "}");
 }
 
-// The relaxation time near the limit, where the reduced models answer, and far from it.
+// The relaxation time near the limit, where the reduced models can be used, and far from it.
 constexpr char kLadders[] = R"(
     points {
       parameters { rho: 0.529561127988977 delta: 0.0125 }
@@ -54,7 +54,7 @@ std::string PrintedPlan(Format format, const v1::PlanEnsembleJobResponse& plan =
   return out.str();
 }
 
-TEST(PlanTable, HeadingNamesTheEstimateThatWasNamed) {
+TEST(PlanTable, HeadingNamesTheGivenEstimate) {
   EXPECT_THAT(PrintedPlan(Format::kTable, Plan(), Question("tolerance: 1e-2 estimate: 'current'")),
               StartsWith("energy-relaxation, estimate current, tolerance 0.01, 2 points"));
 }

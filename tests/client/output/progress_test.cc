@@ -56,7 +56,7 @@ TEST(ProgressMeter, HasNoRateAfterOneReading) {
   EXPECT_EQ(meter.Fraction(), 0.5);
 }
 
-// The rate of a job that was half done when the watch began is that of the watched half.
+// If half of a job was done when the watch began, its rate is the rate of the second half.
 TEST(ProgressMeter, MeasuresFromTheStartOfTheWatch) {
   ProgressMeter meter;
   meter.Update(Progress(50, 1e6, 0.5), kFirstReading);
@@ -139,7 +139,7 @@ v1::StatisticsSnapshot Snapshot() {
   return snapshot;
 }
 
-// A whole job, from its begin to its end.
+// A whole job, from its start to its end.
 std::string ReportOf(ProgressStyle style) {
   Reported report(style);
   report.reporter.OnJob(RunningJob());
@@ -152,8 +152,8 @@ std::string ReportOf(ProgressStyle style) {
   return report.Text();
 }
 
-// What a terminal shows, line by line. It knows the carriage return and the clearing of the rest of
-// a line.
+// The lines that a terminal shows. It interprets the carriage return and the clearing of the rest
+// of a line.
 std::vector<std::string> Screen(const std::string& text) {
   std::vector<std::string> lines = {""};
   size_t column = 0;
@@ -213,14 +213,14 @@ v1::StatisticsSnapshot WithFinishedPoints(int unfinished) {
   return snapshot;
 }
 
-// At the end of a job with one worker no point is being computed.
+// At the end of a job with one worker no point is running.
 TEST(ProgressBar, HasThePointThatFinishedLast) {
   Reported report(ProgressStyle::kBar);
   report.reporter.OnSnapshot(WithFinishedPoints(0));
   EXPECT_THAT(report.Text(), HasSubstr("tau_conditional 66.5"));
 }
 
-// Nothing of the bar may stay beside the first line, which is shorter.
+// The first line of the note is shorter than the bar; no part of the bar may remain.
 TEST(ProgressBar, ANoteClearsTheWholeBarFirst) {
   Reported report(ProgressStyle::kBar);
   report.reporter.OnSnapshot(Snapshot());
@@ -236,7 +236,7 @@ TEST(ProgressBar, ANoteClearsTheMessageOfALostConnection) {
   EXPECT_THAT(Screen(report.Text()), ElementsAre("a", ""));
 }
 
-// The farewell keeps its lock for the rest of the process, so all of this lives as long.
+// The farewell keeps its lock until the process ends. Therefore these objects are never destroyed.
 TEST(ProgressBar, IsNotDrawnAfterTheFarewell) {
   static auto& report = *new Reported(ProgressStyle::kBar);
   report.reporter.OnSnapshot(Snapshot());

@@ -67,7 +67,7 @@ std::vector<v1::PointResult> PointsOfTheLadder() {
             reason: "the limit is off by 7.3e-04")")};
 }
 
-// Of a gas between reservoirs.
+// A point of a gas between reservoirs.
 v1::EnsembleJob JobOfAGas() {
   v1::EnsembleJob job = FirstHitJob();
   *job.mutable_spec()->mutable_grid() =
@@ -252,7 +252,7 @@ TEST(ResultJsonl, HasALineForEachPoint) {
   EXPECT_THAT(text, HasSubstr("\n{\"index\":1,"));
 }
 
-TEST(ResultWriter, OnlyJsonAndCsvOfHistogramsOrCurvesAskForTheFullView) {
+TEST(ResultWriter, OnlyJsonAndCsvOfHistogramsOrCurvesRequestTheFullView) {
   EXPECT_EQ(ViewFor(Format::kCsvHistograms), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kCsvCurves), v1::ListResultsRequest::FULL);
   EXPECT_EQ(ViewFor(Format::kJson), v1::ListResultsRequest::FULL);

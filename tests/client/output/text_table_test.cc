@@ -38,7 +38,7 @@ TEST(TextTable, LineLiesAcrossAllColumns) {
 }
 
 // µ has two bytes.
-TEST(TextTable, CountsCharactersNotBytes) {
+TEST(TextTable, MeasuresWidthInCharacters) {
   TextTable table({{"work"}, {"n"}});
   table.AddRow({"120 µs", "1"});
   table.AddRow({"3.2 min", "2"});

@@ -17,7 +17,7 @@ TEST(FixedStepFlow, EnergyStaysExact) {
     const FixedSteps done = flow.Advance(1000);
     ASSERT_FALSE(done.lost);
     if (done.ball_piston) flow.ExchangeComponents();
-    // A few ulps a repair, which add up: 1e-11 is that of 3e4 repairs, all in one direction.
+    // Each repair has an error of a few ulps. 3e4 repairs with errors in one direction give 1e-11.
     ASSERT_LE(EnergyError(flow.state()), 1e-11) << "after " << i << " repairs";
   }
 }
@@ -45,13 +45,13 @@ TEST(FixedStepFlow, APistonBeyondItsWallIsFoldedBack) {
   EXPECT_EQ(flow.state().piston_velocity, -1);
 }
 
-TEST(FixedStepFlow, ABallThatHasPassedThePistonMeetsIt) {
+TEST(FixedStepFlow, ABallThatHasPassedThePistonCollides) {
   FixedStepFlow flow(
       kPaperPair, {.position = {0.1, 0}, .ball_speed = 0.8, .piston = 0.2, .piston_velocity = -0.6},
       0.02);
   const FixedSteps done = flow.Advance(1000);
   EXPECT_TRUE(done.ball_piston);
-  EXPECT_EQ(done.steps, 4);  // they meet at time 0.1/1.4, after 3.6 steps
+  EXPECT_EQ(done.steps, 4);  // they collide at time 0.1/1.4, after 3.6 steps
   flow.ExchangeComponents();
   EXPECT_DOUBLE_EQ(flow.state().ball_speed, 0.6);
   EXPECT_EQ(flow.state().direction.x(), -1);

@@ -23,7 +23,7 @@ int CountOf(EventKind kind, const std::vector<GasEvent>& events) {
   return count;
 }
 
-// A few ulps a repair; there are some 1e4.
+// Each repair has an error of a few ulps; there are about 1e4 repairs.
 TEST(FixedStepGas, KeepsItsEnergy) {
   for (const char* shape : {"1", "3", "1x1", "3x2"}) {
     const GasGeometry geometry = GasOf(kPaperRho, 0.2, shape);
@@ -41,7 +41,7 @@ TEST(FixedStepGas, KeepsItsEnergy) {
   }
 }
 
-// They meet after 3.6 steps, on the cell's axis.
+// Ball and piston collide after 3.6 steps, on the cell's axis.
 TEST(FixedStepGas, ABallThatHasPassedAPistonExchanges) {
   const GasGeometry geometry = GasOf(kPaperRho, 0.2, "3x3");
   for (const Direction direction :
@@ -87,7 +87,7 @@ TEST(FixedStepGas, ThermalWallsGiveNewSpeeds) {
       const bool is_thermal = event.piston == (was < 0 ? 0 : 2);
       (is_thermal ? changed : kept) += 1;
       ASSERT_LE(std::fabs(gas.PistonNow(event.piston).offset), geometry.reach());
-      if (was * now > 0) continue;  // it met a ball in the same step
+      if (was * now > 0) continue;  // it collided with a ball in the same step
       ASSERT_EQ(now == -was, !is_thermal);
     }
   }

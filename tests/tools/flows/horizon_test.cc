@@ -1,11 +1,12 @@
-// How long orbits agree with the exact one: both engines, in double and in single precision,
-// against the flow in 113 bits.
+// How long orbits agree with the exact orbit: both engines, in double and in single precision,
+// compared with the flow in 113 bits.
 //
-// The billiard is chaotic: a difference grows by the same factor a hit, on the median orbit. So an
-// engine that errs by about its unit of rounding in each flight parts from the exact orbit no later
-// than an exact flow whose start is off by that unit, and not much earlier: errors of up to 8 units
-// a flight (single_flight_test.cc), summed over the flights with the factor's geometric series,
-// some 2.5 a hit, are some 13 units at the start, or log 13/log 2.5 = 3 hits.
+// The billiard is chaotic: on the median orbit a difference grows by the same factor per hit, about
+// 2.5. Consider an engine with an error of about one rounding unit in each flight, and an exact
+// flow whose start is off by one unit. The engine parts from the exact orbit no later than this
+// flow, and not much earlier: errors of up to 8 units per flight (single_flight_test.cc), summed as
+// a geometric series with this factor, equal about 13 units at the start, or log 13/log 2.5 = 3
+// hits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ constexpr size_t kOrbits = 301;
 constexpr size_t kHits = 48;
 constexpr double kDoubleUnit = 0x1p-53, kSingleUnit = 0x1p-24;
 
-using Places = std::vector<Eigen::Vector2d>;  // of the ball, at its hits
+using Places = std::vector<Eigen::Vector2d>;  // the ball's positions at its hits
 
 std::vector<PairState> StartsOnWall(const PairGeometry& geometry) {
   std::vector<PairState> starts;
@@ -61,7 +62,7 @@ Places Flown(const PairGeometry& geometry, const PairStateOf<Real>& start) {
   return places;
 }
 
-// The exact orbit from a start beside: turned by an angle.
+// The exact orbit from a neighbouring start: its direction is turned by an angle.
 Places FlownBeside(const PairGeometry& geometry, const PairState& start, double angle) {
   auto beside = RoundedTo<Quadruple>(start);
   const auto direction = beside.direction;
@@ -83,8 +84,8 @@ Places FlownInLanes(const PairGeometry& geometry, const PairState& start, Fly fl
 struct Column {
   std::string name;
   std::function<Places(const PairState&)> orbit;
-  std::vector<double> distances = {};  // the median orbit's, hit by hit
-  size_t horizon = 0;                  // hits until that is kParted
+  std::vector<double> distances = {};  // of the median orbit, hit by hit
+  size_t horizon = 0;                  // hits until the distance is kParted
 };
 
 std::vector<Column> Columns(const PairGeometry& geometry) {
@@ -138,7 +139,7 @@ void Print(double rho, const std::vector<Column>& columns) {
 
 class Horizon : public testing::TestWithParam<double> {};
 
-TEST_P(Horizon, IsThatOfAnExactOrbitOffByTheUnitOfRounding) {
+TEST_P(Horizon, MatchesAnExactOrbitWhoseStartIsOffByOneRoundingUnit) {
   const double rho = GetParam();
   const PairGeometry geometry = GeometryAtShare(rho, 0.1);
   const std::vector<PairState> starts = StartsOnWall(geometry);

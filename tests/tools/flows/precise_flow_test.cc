@@ -17,9 +17,10 @@ PairState StartInEquilibrium(const PairGeometry& geometry, uint64_t sample) {
   return DrawFromFlowMeasure(geometry, random);
 }
 
-// The same billiard in every precision: a few flights from the same state, against 256 bits.
-// An error grows by some e a flight, e^8 = 3e3 in all, by more where an orbit grazes: it is looked
-// at in the geometric mean over orbits, in units of the precision's rounding.
+// The same billiard in every precision: a few flights from the same state, compared with 256 bits.
+// An error grows by about a factor of e per flight, e^8 = 3e3 in total, and by more on grazing
+// orbits. Therefore the test uses the geometric mean over orbits, in rounding units of the
+// precision.
 template <typename Real>
 double MeanErrorOverRounding() {
   constexpr int kOrbits = 50, kFlights = 8;
@@ -42,7 +43,7 @@ double MeanErrorOverRounding() {
 }
 
 TEST(PreciseFlow, ErrorsShrinkWithThePrecision) {
-  // Found: 160 to 300, with the scatter of 50 orbits, e^0.4, so a factor of ten leaves room.
+  // Measured: 160 to 300. The scatter of 50 orbits is a factor of e^0.4: a factor of ten is enough.
   for (const double error :
        {MeanErrorOverRounding<float>(), MeanErrorOverRounding<double>(),
         MeanErrorOverRounding<long double>(), MeanErrorOverRounding<Quadruple>()}) {
@@ -51,8 +52,8 @@ TEST(PreciseFlow, ErrorsShrinkWithThePrecision) {
   }
 }
 
-// In its own precision: the direction's length is 1 and the ball on the wall, to some roundings, as
-// soon as it has forgotten that it began as doubles.
+// In its own precision the direction has length 1 and the ball is on the wall, to a few rounding
+// errors, as soon as the rounding of the start to doubles has no effect any longer.
 template <typename Real>
 void ExpectHealthy(const PairGeometry& geometry, int events) {
   EventFlow<Real> flow(geometry, RoundedTo<Real>(StartInEquilibrium(geometry, 6)));

@@ -10,7 +10,7 @@
 namespace ballpiston::method_comparison {
 namespace {
 
-TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValue) {
+TEST(EnergyRelaxationRuns, RunsHaveTheRequestedOrbitsAndOtherOrbitsGiveOtherValues) {
   const EnergyRelaxationRuns runs(PaperGeometry(0.2), 5);
   for (const Method method : {Method::kLanes, Method::kMarkov}) {
     const PointEstimate run = runs.Run(method, RunOf(64));
@@ -24,7 +24,7 @@ TEST(EnergyRelaxationRuns, ARunHasTheOrbitsItWasAskedForAndOthersGiveAnotherValu
   }
 }
 
-// The relative error of n orbits is about 1/sqrt(n), so 5 % here: what is off by two would show.
+// The relative error of n orbits is about 1/sqrt(n), here 5 %: a wrong factor of two is detected.
 // False alarms: one in 15,000 seeds, and the seed is fixed.
 TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   for (const double delta : {0.2, 0.0125}) {
@@ -36,7 +36,7 @@ TEST(EnergyRelaxationRuns, TheJumpProcessAgreesWithTheSpectrum) {
   }
 }
 
-// The spectrum needs no samples, and its error is that of its discretisation.
+// The spectrum needs no samples; its error is the discretisation error.
 TEST(EnergyRelaxationRuns, TheSpectrumTakesNoSamples) {
   const EnergyRelaxationRuns runs(PaperGeometry(0.1), 0);
   const PointEstimate limit = runs.BySpectrum();

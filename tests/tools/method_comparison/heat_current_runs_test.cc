@@ -14,14 +14,14 @@ constexpr MethodVariant kSmallSteps = {Method::kFixedStep, 2e-3};
 
 HeatCurrentRuns Runs(double delta) { return {kPaperRho, delta, 7}; }
 
-// By how many combined standard errors a is above b.
+// (a - b) in units of the combined standard error.
 double Above(const PointEstimate& a, const PointEstimate& b) {
   return (a.value - b.value) / std::hypot(a.error, b.error);
 }
 
 double Off(const PointEstimate& a, const PointEstimate& b) { return std::fabs(Above(a, b)); }
 
-TEST(HeatCurrentRuns, ARunHasTheReplicasItWasAskedForAndOthersGiveAnotherValue) {
+TEST(HeatCurrentRuns, RunsHaveTheRequestedReplicasAndOtherReplicasGiveOtherValues) {
   const HeatCurrentRuns runs = Runs(0.2);
   for (const MethodVariant& variant : std::vector<MethodVariant>{
            {Method::kLanes}, {Method::kReference}, {Method::kMarkov}, kSmallSteps}) {
@@ -35,7 +35,7 @@ TEST(HeatCurrentRuns, ARunHasTheReplicasItWasAskedForAndOthersGiveAnotherValue) 
 }
 
 // A difference of four combined standard errors has 6e-5 false alarms, and the seed is fixed. The
-// errors are some 4 %. Small time steps are off by 2 %, the limit by 5 %.
+// errors are about 4 %. Small time steps have a bias of 2 %, the limit of 5 %.
 TEST(HeatCurrentRuns, AllMethodsAgree) {
   const HeatCurrentRuns runs = Runs(0.2);
   const PointEstimate reference = runs.Run({Method::kReference}, RunOf(256));
@@ -45,8 +45,8 @@ TEST(HeatCurrentRuns, AllMethodsAgree) {
   EXPECT_LT(Off(runs.Run({Method::kMarkov}, TruthOf(256)), reference), 4);
 }
 
-// By 5.9 %, measured with 65,536 replicas; these runs have a combined error of 1.0 %. One seed in
-// 500 would fail, and the seed is fixed.
+// The limit carries 5.9 % more, measured with 65,536 replicas. These runs have a combined error of
+// 1.0 %. One seed in 500 would fail, and the seed is fixed.
 TEST(HeatCurrentRuns, TheLimitCarriesMoreHeat) {
   const HeatCurrentRuns runs = Runs(0.2);
   const PointEstimate limit = runs.Run({Method::kMarkov}, RunOf(16384));
@@ -55,7 +55,7 @@ TEST(HeatCurrentRuns, TheLimitCarriesMoreHeat) {
   EXPECT_NEAR(limit.value / billiard.value, 1.059, 0.04);
 }
 
-// At 0.1 a ball may go a cell in a few steps: all replicas lose theirs.
+// With steps of 0.1 a ball crosses a cell in a few steps: all replicas lose their ball.
 TEST(HeatCurrentRuns, ReplicasThatLoseABallAreNotCounted) {
   const PointEstimate run = Runs(0.2).Run({Method::kFixedStep, 0.1}, RunOf(64));
   EXPECT_EQ(run.samples, 0u);

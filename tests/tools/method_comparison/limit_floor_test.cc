@@ -35,7 +35,7 @@ TEST(LimitFloor, ABiasIsResolvedFromTwoStandardErrorsOn) {
   EXPECT_EQ(bound.value, 0.4375 + 2 * 0.25);
 }
 
-// The billiard's own error is three times the floor, so it needs nine times the work.
+// The billiard's own error is three times the floor: it needs nine times the work.
 TEST(LimitFloor, TheBilliardsErrorFallsWithTheRootOfWork) {
   EXPECT_EQ(LimitFloorOf(Spectrum(0.125, 0), Billiard(1024, 2, 0.375)).work, 18);
 }

@@ -19,7 +19,7 @@ using ::testing::EndsWith;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-// The smallest comparison: some tenths of a second in all.
+// The smallest comparison: it takes a few tenths of a second.
 const MethodComparisonSpec kSmallestComparison = {.rho = kPaperRho,
                                                   .delta = 0.2,
                                                   .epsilon = 0.125,
@@ -62,11 +62,12 @@ auto KeyOf(const MethodMeasurement& m) {
 
 using CurveKey = decltype(KeyOf({}));
 
-TEST(MethodComparison, EveryMethodAnswersWhatItCan) {
+TEST(MethodComparison, EveryMethodComputesItsQuantities) {
   std::set<CurveKey> curves;
   for (const MethodMeasurement& m : Measurements()) curves.insert(KeyOf(m));
-  // Four time steps and six engines for each of the three, the closed form for two; the billiard,
-  // the two of the limit and its floor at each of two delta; three engines of the gas.
+  // For each of three quantities four time steps and six engines; for two quantities the closed
+  // form; at each of two delta the billiard, the two methods of the limit and its floor; three
+  // engines of the gas.
   EXPECT_EQ(curves.size(), 3 * 10 + 2 + 2 * 4 + 3);
   EXPECT_FALSE(curves.contains({Quantity::kTrajectory, 0.2, Method::kClosedForm, -0.0}));
   for (const double delta : kSmallestComparison.relaxation_deltas) {
@@ -80,7 +81,7 @@ TEST(MethodComparison, EveryMethodAnswersWhatItCan) {
   }
 }
 
-TEST(MethodComparison, CurvesComeOneAfterTheOtherWithMoreAndMoreSamples) {
+TEST(MethodComparison, CurvesAreInOrderWithIncreasingSamples) {
   const std::vector<MethodMeasurement>& all = Measurements();
   for (size_t i = 1; i < all.size() && all[i].quantity != Quantity::kLimitFloor; ++i) {
     const auto before = KeyOf(all[i - 1]), now = KeyOf(all[i]);
@@ -91,7 +92,7 @@ TEST(MethodComparison, CurvesComeOneAfterTheOtherWithMoreAndMoreSamples) {
   }
 }
 
-TEST(MethodComparison, WorkIsMeasuredAndErrorsAreTold) {
+TEST(MethodComparison, WorkIsMeasuredAndErrorsAreReported) {
   for (const MethodMeasurement& m : Measurements()) {
     EXPECT_TRUE(m.work || m.quantity == Quantity::kLimitFloor);
     EXPECT_GT(m.work.value_or(1), 0);
@@ -126,7 +127,7 @@ TEST(MethodComparison, FloorsComeLastByDescendingDelta) {
   }
 }
 
-// Some 60 measurements: one in 2e3 seeds would fail, and the seed is fixed.
+// About 60 measurements: one in 2e3 seeds would fail, and the seed is fixed.
 TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
   for (const MethodMeasurement& m : Measurements()) {
     if (m.method == Method::kFixedStep || m.method == Method::kClosedForm) continue;
@@ -138,7 +139,7 @@ TEST(MethodComparison, EnginesStayWithinTheirStatisticalErrors) {
   }
 }
 
-// How many rungs there are depends on the processor's mood; what is on them does not.
+// The number of rungs depends on the speed of the processor; their values do not.
 TEST(MethodComparison, ValuesFollowFromTheSpec) {
   std::map<std::tuple<CurveKey, uint64_t>, MethodMeasurement> first;
   for (const MethodMeasurement& m : Measurements()) first[{KeyOf(m), m.samples}] = m;
@@ -154,14 +155,14 @@ TEST(MethodComparison, ValuesFollowFromTheSpec) {
   EXPECT_GT(compared, 32);
 }
 
-// The spectrum has no scatter: its error is that of the truth, some thousand orbits here, which all
-// that is measured at this delta has at least, and the longer a run the closer it comes to it.
-TEST(MethodComparison, AnErrorOfARelaxationTimeHoldsThatOfTheTruth) {
+// The spectrum has no scatter: its error is the error of the truth (here about a thousand orbits).
+// Every measurement at this delta has at least this error, and approaches it in longer runs.
+TEST(MethodComparison, TheErrorOfARelaxationTimeIncludesTheErrorOfTheTruth) {
   const std::map<double, MethodMeasurement> spectra = Spectra();
   ASSERT_EQ(spectra.size(), 2u);
   for (const MethodMeasurement& m : Measurements()) {
     if (m.quantity != Quantity::kRelaxationTime || m.samples == 0) continue;
-    const double own = 1 / std::sqrt(static_cast<double>(m.samples));  // relatively, about
+    const double own = 1 / std::sqrt(static_cast<double>(m.samples));  // approximate relative error
     const double truth = spectra.at(m.delta).statistical_error;
     EXPECT_GT(m.statistical_error, 0.5 * std::hypot(own, truth));
     EXPECT_LT(m.statistical_error, 2 * std::hypot(own, truth));
@@ -171,16 +172,16 @@ TEST(MethodComparison, AnErrorOfARelaxationTimeHoldsThatOfTheTruth) {
   }
 }
 
-// By 15 % at delta = 0.3, 4 % at 0.2; the truths have errors of 2 % and 3 %. One seed in a thousand
-// would fail, and the seed is fixed.
+// The bias is 15 % at delta = 0.3 and 4 % at 0.2; the truths have errors of 2 % and 3 %. One seed
+// in a thousand would fail, and the seed is fixed.
 TEST(MethodComparison, TheLimitHasABiasThatFallsWithDelta) {
   std::map<double, MethodMeasurement> limit = Spectra();
   EXPECT_GT(limit[0.3].value, 3 * limit[0.3].statistical_error);
   EXPECT_LT(limit[0.2].value, limit[0.3].value);
 }
 
-// What it tells apart from the spectrum is its scatter alone: some tens of comparisons of 3 errors
-// each would fail for one seed in ten, of 4.5 for one in 2e3.
+// It differs from the spectrum only by its scatter. With a limit of 3 errors, the tens of
+// comparisons would fail for one seed in ten; with 4.5 errors for one seed in 2e3.
 TEST(MethodComparison, TheJumpProcessHasTheBiasOfTheSpectrum) {
   const std::map<double, MethodMeasurement> limit = Spectra();
   for (const MethodMeasurement& m : Measurements()) {
@@ -189,8 +190,8 @@ TEST(MethodComparison, TheJumpProcessHasTheBiasOfTheSpectrum) {
   }
 }
 
-// The truth of some 128 replicas has an error of 5 %, as the shortest run.
-TEST(MethodComparison, AnErrorOfAHeatCurrentHoldsThatOfTheTruth) {
+// The truth of about 128 replicas has an error of 5 %, the same as the shortest run.
+TEST(MethodComparison, TheErrorOfAHeatCurrentIncludesTheErrorOfTheTruth) {
   int runs = 0;
   for (const MethodMeasurement& m : Measurements()) {
     if (m.quantity != Quantity::kHeatCurrent) continue;
@@ -204,7 +205,7 @@ TEST(MethodComparison, AnErrorOfAHeatCurrentHoldsThatOfTheTruth) {
   EXPECT_GE(runs, 3);
 }
 
-TEST(MethodComparison, NoDeltaAsksForNoRelaxationTimesAndNoHeatCurrent) {
+TEST(MethodComparison, WithoutDeltasRelaxationTimesAndHeatCurrentAreLeftOut) {
   MethodComparisonSpec spec = kSmallestComparison;
   spec.relaxation_deltas = {};
   spec.gas_delta = 0;
@@ -241,7 +242,7 @@ TEST(MethodComparison, ViolationsNameFlagValueAndRange) {
   EXPECT_THAT(Violations(spec), ElementsAre(EndsWith("9 values; permitted: at most 8")));
 }
 
-// A delta of 0.21 is one of the pair, but not of the gas.
+// A delta of 0.21 is permitted for the pair, but not for the gas.
 TEST(MethodComparison, AGasDeltaThatIsNotPermittedIsAViolation) {
   for (const double delta : {-0.1, 0.21, 0.4, std::nan("")}) {
     EXPECT_THAT(Violations(WithField(&MethodComparisonSpec::gas_delta, delta)),
@@ -258,12 +259,12 @@ TEST(MethodComparison, TheDefaultDeltaOfTheGasIsPermitted) {
   EXPECT_EQ(DefaultGasDelta(0.3), 0);
 }
 
-TEST(MethodComparison, DefaultRelaxationDeltasAreThosePermitted) {
+TEST(MethodComparison, DefaultRelaxationDeltasArePermitted) {
   EXPECT_THAT(DefaultRelaxationDeltas(kPaperRho), ElementsAre(0.2, 0.1, 0.05, 0.025));
   EXPECT_THAT(DefaultRelaxationDeltas(0.65), ElementsAre(0.05, 0.025));
 }
 
-// The mean free time grows as 1/delta^2: what cannot be done in time is left out at once.
+// The mean free time grows as 1/delta^2. A delta that would take too long is left out at once.
 TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
   MethodComparisonSpec spec = kSmallestComparison;
   spec.relaxation_deltas = {1e-9, 0.2};
@@ -274,7 +275,7 @@ TEST(MethodComparison, ADeltaWhoseTruthTakesTooLongIsLeftOut) {
   EXPECT_EQ(deltas, std::set<double>{0.2});
 }
 
-TEST(MethodComparison, ARareCollisionLeavesOutWhatTakesTooLong) {
+TEST(MethodComparison, RareCollisionsLeaveOutSlowMethods) {
   std::set<Method> methods;
   for (const MethodMeasurement& m : Compare(WithField(&MethodComparisonSpec::delta, 1e-9))) {
     if (m.quantity == Quantity::kMeanFreeTime) methods.insert(m.method);

@@ -45,7 +45,7 @@ TEST(Program, PrintsARowForEachMeasurement) {
         "0.2,0.125,markov,0,heat-current,64,"}) {
     EXPECT_THAT(result.out, HasSubstr(rho + curve));
   }
-  EXPECT_EQ(result.err, "");  // no progress: standard error is no terminal
+  EXPECT_EQ(result.err, "");  // no progress: standard error is not a terminal
 }
 
 TEST(Program, AnEmptyListOfRelaxationDeltasIsTheDefault) {
@@ -67,7 +67,7 @@ TEST(Program, ProgressIsOneLineThatIsClearedAtTheEnd) {
   EXPECT_THAT(result.err, Not(HasSubstr("\n")));
 }
 
-// All rows are printed nevertheless.
+// All rows are still printed.
 TEST(Program, APanelWithoutRunsExitsWithOneAndNamesTheFlags) {
   const ProcessResult result =
       RunComparison({"--seconds=0.01", "--delta=1e-9", "--relaxation-delta=1e-9"});

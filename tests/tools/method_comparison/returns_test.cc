@@ -27,7 +27,7 @@ constexpr MethodAndSamples kEnginesAndSamples[] = {
 constexpr double kEpsilonOfReturns = 0.125;
 
 // 12 comparisons at 4.5 standard errors: one false alarm in 1e4 seeds, and the seed is fixed. The
-// bias of single precision is far below the 0.4% that these samples tell.
+// bias of single precision is far below the error of these samples, 0.4%.
 TEST(Returns, EnginesShowNoBias) {
   const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
   const std::vector<double> probabilities = IngoingProbabilities(kEpsilonOfReturns);
@@ -56,9 +56,9 @@ TEST(Returns, CoarseStepsShowABias) {
 }
 
 // The bias of the mean free time at two time steps, a factor of three apart, against the closed
-// form: some 12% and 4%, with standard errors of 0.5% and 0.4%. So the measured order has one of
-// 0.09, and 4.5 of them about 1 are exceeded by chance 7e-6 of the time (the seed is fixed). With
-// coarser steps still, the ball leaves the cell through the tips.
+// form: about 12% and 4%, with standard errors of 0.5% and 0.4%. Therefore the standard error of
+// the measured order is 0.09. The limit is 4.5 standard errors about 1, with 7e-6 false alarms (the
+// seed is fixed). With coarser steps the ball leaves the cell through the tips.
 TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
   const double exact = ConditionalMeanFreeTime(kPaperPair, kEpsilonOfReturns);
   const auto bias = [&](double step, uint64_t samples) {
@@ -72,7 +72,7 @@ TEST(Returns, TimeIsBiasedToFirstOrderInTheStep) {
   EXPECT_NEAR(std::log(coarse / fine) / std::log(3.0), 1, 4.5 * 0.09);
 }
 
-// A short orbit is the same to all precisions.
+// A short orbit is the same in all precisions.
 TEST(Returns, AllMethodsStartFromTheSameStates) {
   constexpr RandomStream kShort = {21, 15};
   const auto reference = RunReturns({Method::kReference}, kPaperPair, kEpsilonOfReturns, kShort, 1);

@@ -13,7 +13,8 @@ namespace {
 constexpr RandomStream kStreamOfTwins = {31, 7};
 constexpr size_t kTwins = 64;
 
-// Of the ball, a hit: growth of a displacement of 1e-60, which stays small.
+// The ball's Lyapunov exponent per hit, from the growth of a displacement of 1e-60, which stays
+// small.
 Moments LyapunovExponents() {
   constexpr int kHits = 60;
   const TwinOrbits twins(kPaperPair, {32, 7}, kTwins);
@@ -44,8 +45,9 @@ double CombinedError(const Moments& a, const Moments& b) {
   return std::hypot(*a.StandardError(), *b.StandardError());
 }
 
-// Each precision against the next: H' - H = (bits' - bits) log 2/L, with L measured apart. Three
-// comparisons at 4.5 combined standard errors, with a fixed seed; one in 5e4 seeds would fail.
+// Each precision against the next: H' - H = (bits' - bits) log 2/L, with a separate measurement of
+// L. Three comparisons at 4.5 combined standard errors, with a fixed seed; one in 5e4 seeds would
+// fail.
 TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
   const Moments exponents = LyapunovExponents();
   const double error_of_exponent = *exponents.StandardError() / exponents.mean;
@@ -64,8 +66,8 @@ TEST(TrajectoryHorizon, HorizonGrowsWithTheLogarithmOfThePrecision) {
   }
 }
 
-// From a relative error of 1e-16, some 32 hits.
-TEST(TrajectoryHorizon, LanesPartWhenTheReferenceDoes) {
+// A relative error of 1e-16 gives about 32 hits.
+TEST(TrajectoryHorizon, LanesPartAfterAsManyHitsAsTheReference) {
   const Moments reference = HorizonOfMethod(Method::kReference).hits,
                 lanes = HorizonOfMethod(Method::kLanes).hits;
   EXPECT_NEAR(reference.mean, 32, 2);
@@ -75,7 +77,7 @@ TEST(TrajectoryHorizon, LanesPartWhenTheReferenceDoes) {
   EXPECT_NEAR(lanes_single.mean, single.mean, 1 + 4.5 * CombinedError(lanes_single, single));
 }
 
-TEST(TrajectoryHorizon, SmallerStepsFollowLonger) {
+TEST(TrajectoryHorizon, SmallerStepsHaveALongerHorizon) {
   double before = -1;
   for (const double step : {1e-1, 1e-2, 1e-3, 1e-4}) {
     const double hits = HorizonOfMethod(Method::kFixedStep, step).hits.mean;
@@ -83,10 +85,10 @@ TEST(TrajectoryHorizon, SmallerStepsFollowLonger) {
     before = hits;
   }
   EXPECT_GT(before, 3);
-  EXPECT_LT(before, 8);  // log(1e-3/1e-4) and the hits that err less: far from any engine
+  EXPECT_LT(before, 8);  // log(1e-3/1e-4), and hits with smaller errors: far below any engine
 }
 
-TEST(TrajectoryHorizon, HitsFlownAreCounted) {
+TEST(TrajectoryHorizon, AllHitsAreCounted) {
   const TrajectoryHorizon horizon = HorizonOfMethod(Method::kLanes);
   EXPECT_EQ(horizon.hits.count, kTwins);
   EXPECT_EQ(horizon.wall_hits % kTwins, 0);
@@ -94,7 +96,7 @@ TEST(TrajectoryHorizon, HitsFlownAreCounted) {
   EXPECT_GT(horizon.seconds, 0);
 }
 
-TEST(TwinOrbits, PlacesLieOnTheOrbit) {
+TEST(TwinOrbits, PositionsAreOnTheOrbit) {
   TwinOrbits twins(kPaperPair, kStreamOfTwins, 1);
   EventFlow<TwinNumber> flow(kPaperPair, twins.Start(0));
   const Eigen::Vector2d start = RoundedTo<double>(twins.Start(0)).position;

@@ -1,6 +1,6 @@
-// The looks at collisions find what they look for: a watch is told less, or other, than an engine
-// that misses nothing has seen. That the looks at single hits find failures is seen from the naive
-// methods; the program itself complains of a look that has found none anywhere.
+// The checks of collisions find planted failures: a watch receives the collisions of a correct
+// engine with omissions or changes. The naive methods show that the checks of single hits find
+// failures: the program complains about a check that finds none for any method.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ std::vector<PairState> Starts() {
   return starts;
 }
 
-// Hands collisions on to a watch, changed.
+// Changes collisions and passes them to a watch.
 class Tampered : public NumberedOrbits {
  public:
   using Change = void (*)(Contact& contact);
@@ -55,19 +55,19 @@ Failures Watched(Tampered::Change change) {
   return watch.Finish();
 }
 
-TEST(Detectors, CollisionsAsTheyAreGiveNoFailure) {
+TEST(Detectors, UnchangedCollisionsGiveNoFailure) {
   const Failures failures = Watched([](Contact&) {});
   EXPECT_EQ(failures.hits, 2000u);
   EXPECT_GT(failures.looked_back, 300u);
   EXPECT_EQ(failures.Total(), 0u);
 }
 
-TEST(Detectors, ACollisionToldLateIsAPhantom) {
+TEST(Detectors, ALateCollisionIsAPhantom) {
   const Failures failures = Watched([](Contact& c) { c.time += 1e-6; });
   EXPECT_GT(failures.phantoms, 100u);
 }
 
-// From the start to the second collision in one: the ball goes through the piston in between.
+// One step from the start to the second collision: the ball passes through the piston in between.
 class EverySecond : public NumberedOrbits {
  public:
   EverySecond(CollisionWatch& watch, size_t orbits) : watch_(watch), first_(orbits) {}
@@ -90,7 +90,7 @@ class EverySecond : public NumberedOrbits {
   std::vector<Contact> first_;
 };
 
-TEST(Detectors, ACollisionNotToldIsMissed) {
+TEST(Detectors, AnOmittedCollisionIsMissed) {
   const std::vector<PairState> starts = Starts();
   CollisionWatch watch(Geometry(), kEpsilon, starts, 1);
   EverySecond source(watch, starts.size());
@@ -98,13 +98,13 @@ TEST(Detectors, ACollisionNotToldIsMissed) {
   EXPECT_GT(watch.Finish().missed, 10u);
 }
 
-TEST(Detectors, AnOrbitThatIsNotToldOfIsMissed) {
+TEST(Detectors, AnOmittedOrbitIsMissed) {
   const std::vector<PairState> starts = Starts();
   CollisionWatch watch(Geometry(), kEpsilon, starts, 1);
   EXPECT_EQ(watch.Finish().missed, 500u);
 }
 
-TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreSeen) {
+TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreDetected) {
   EXPECT_GT(Watched([](Contact& c) { c.state.direction = -c.state.direction; }).inward, 100u);
   EXPECT_GT(Watched([](Contact& c) { c.time = -c.time; }).negative_times, 100u);
   EXPECT_EQ(Watched([](Contact& c) { c.escaped = true; }).escapes, 500u);
@@ -112,7 +112,7 @@ TEST(Detectors, TurnedVelocitiesEscapesAndTimesAreSeen) {
   EXPECT_GT(Watched([](Contact& c) { c.state.ball_speed *= 1 + 1e-9; }).energy, 1e-10);
 }
 
-TEST(Detectors, AnEnergyErrorThatIsNotANumberIsInfiniteAndNoErrorIsNone) {
+TEST(Detectors, ANanEnergyErrorIsInfiniteAndAMissingErrorIsNan) {
   Failures looked;
   looked.Merge(Failures());
   EXPECT_TRUE(std::isnan(looked.energy));
@@ -148,12 +148,12 @@ class OnTheWall : public ::testing::Test {
   Failures failures_;
 };
 
-TEST_F(OnTheWall, ABallThatLeavesItIsWell) {
+TEST_F(OnTheWall, ALeavingBallGivesNoFailure) {
   EXPECT_TRUE(watch_.Hit(position_, normal_, 0.1, failures_));
   EXPECT_EQ(failures_.Total(), 0u);
 }
 
-TEST_F(OnTheWall, ABallThatHeadsInwardIsSeen) {
+TEST_F(OnTheWall, AnInwardBallIsDetected) {
   watch_.Hit(position_, -normal_, 0.1, failures_);
   EXPECT_EQ(failures_.inward, 1u);
 }
@@ -169,7 +169,7 @@ TEST_F(OnTheWall, TimesOfMinusAnUlpAreNegative) {
   EXPECT_EQ(failures_.negative_times, 1u);
 }
 
-// At rho = 0.6 the tips permit two hits in a row, and rounding a few more.
+// At rho = 0.6 the tips permit two successive hits, and rounding a few more.
 TEST_F(OnTheWall, ABallThatStaysIsALoop) {
   int hits = 0;
   while (watch_.Hit(position_, normal_, 0, failures_)) ASSERT_LT(++hits, 20);

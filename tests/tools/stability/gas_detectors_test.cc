@@ -1,5 +1,5 @@
-// The looks at gases find what they look for: a watch is told something else than the reference gas
-// has done, or an engine's reading is changed.
+// The checks of gases find planted failures: a watch receives changed events of the reference gas,
+// or an engine's reading is changed.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ GasReplica AReplica(const GasGeometry& geometry) {
   return {GasInEquilibrium(geometry, 1, 92, 0), ThermalWalls(geometry, 2, 1, random), random};
 }
 
-// What a watch is told of an event. A change that returns false withholds it.
+// Changes an event before the watch receives it. If the change returns false, the event is omitted.
 struct Told {
   GasEvent event;
   GasBall ball;
@@ -68,7 +68,7 @@ WatchedGas WatchGas(const GasGeometry& geometry, const Change& change, int event
 
 bool IsTold(EventKind kind, const Told& told) { return told.event.kind == kind; }
 
-TEST(GasDetectors, EventsAsTheyAreGiveNoFailure) {
+TEST(GasDetectors, UnchangedEventsGiveNoFailure) {
   for (const GasGeometry& geometry : {Ring(), Chain()}) {
     const WatchedGas watched = WatchGas(geometry, [](Told&) { return true; });
     EXPECT_GT(watched.failures.hits, 30u);
@@ -77,7 +77,7 @@ TEST(GasDetectors, EventsAsTheyAreGiveNoFailure) {
   }
 }
 
-TEST(GasDetectors, AnExchangeNotToldIsMissed) {
+TEST(GasDetectors, AnOmittedExchangeIsMissed) {
   const WatchedGas watched =
       WatchGas(Ring(), [](Told& told) { return !IsTold(EventKind::kBallPiston, told); });
   EXPECT_EQ(watched.failures.missed, 1u);  // then the watch ends
@@ -125,7 +125,7 @@ TEST(GasDetectors, BallsThatFlyIntoTheirWallAreInward) {
   EXPECT_GT(watched.failures.inward, 0u);
 }
 
-TEST(GasDetectors, EscapesAreSeen) {
+TEST(GasDetectors, EscapesAreDetected) {
   const auto escapes = [](const Change& change) {
     return WatchGas(Ring(), change).failures.escapes;
   };
@@ -156,7 +156,7 @@ TEST(GasDetectors, ABallThatStandsStillIsALoop) {
   EXPECT_GT(told, 50);
 }
 
-TEST(GasDetectors, EnergyFromNowhereIsAnError) {
+TEST(GasDetectors, AddedEnergyIsAnError) {
   const WatchedGas watched = WatchGas(Ring(), [](Told& told) {
     told.ball.speed *= 1 + 1e-9;
     return true;
@@ -164,7 +164,7 @@ TEST(GasDetectors, EnergyFromNowhereIsAnError) {
   EXPECT_GT(watched.energy_error, 1e-10);
 }
 
-// After a few flights, a reading of each of some gases.
+// A reading of each of several gases, after a few flights.
 class GasLookBack : public ::testing::Test {
  protected:
   static constexpr double kTime = 1.5;
@@ -185,7 +185,7 @@ class GasLookBack : public ::testing::Test {
   }
 };
 
-TEST_F(GasLookBack, ReadingsAsTheyAreGiveNoFailure) {
+TEST_F(GasLookBack, UnchangedReadingsGiveNoFailure) {
   const Failures failures = Look([](GasReading&) {});
   EXPECT_GT(failures.looked_back, 20u);
   EXPECT_EQ(failures.Total(), 0u);
@@ -212,7 +212,7 @@ TEST_F(GasLookBack, OtherEnergiesArePhantoms) {
   EXPECT_EQ(failures.missed, 0u);
 }
 
-TEST(GasDetectors, AnEnergyThatIsNoEnergyIsAnEscape) {
+TEST(GasDetectors, ANegativeInfiniteOrNanEnergyIsAnEscape) {
   const GasState state = AReplica(Ring()).state;
   const double start = GasMeter(Ring(), state).TotalEnergy();
   for (const double energy : {-1.0, std::nan(""), HUGE_VAL}) {
@@ -223,7 +223,7 @@ TEST(GasDetectors, AnEnergyThatIsNoEnergyIsAnEscape) {
   }
 }
 
-TEST(GasDetectors, OnlyAGasWithoutThermalWallsTellsItsEnergyError) {
+TEST(GasDetectors, OnlyAGasWithoutThermalWallsReportsItsEnergyError) {
   for (const GasGeometry& geometry : {Ring(), Chain()}) {
     GasMeter meter(geometry, AReplica(geometry).state);
     const double start = meter.TotalEnergy();
@@ -243,7 +243,7 @@ GasEnergyRun RunWithErrors(double mean, double scatter) {
   return run;
 }
 
-// 1e4 exchanges each: a walk of ulps goes some 2e-14 far.
+// 1e4 exchanges each: a random walk of ulps reaches about 2e-14.
 TEST(GasDetectors, ALossOfEnergyIsATrendOrMoreThanAWalk) {
   EXPECT_FALSE(LosesEnergy(RunWithErrors(0, 2e-14)));
   EXPECT_FALSE(HasTrend(RunWithErrors(1e-14, 2e-14)));
@@ -263,14 +263,14 @@ TEST(GasDetectors, AnEnergyErrorThatIsNotANumberIsATrendAndTheWorstError) {
   }
 }
 
-TEST(OwnProcess, GivesWhatWasComputed) {
+TEST(OwnProcess, ReturnsTheResult) {
   const auto failures = InOwnProcess([] { return Failures{.orbits = 3, .missed = 2}; }, 5);
   ASSERT_TRUE(failures.has_value());
   EXPECT_EQ(failures->orbits, 3u);
   EXPECT_EQ(failures->missed, 2u);
 }
 
-TEST(OwnProcess, EndsWhatNeverEnds) {
+TEST(OwnProcess, EndsAnEndlessComputation) {
   volatile bool for_ever = true;
   const auto endless = [&] {
     while (for_ever) {
@@ -280,7 +280,7 @@ TEST(OwnProcess, EndsWhatNeverEnds) {
   EXPECT_FALSE(InOwnProcess(endless, 1).has_value());
 }
 
-// SIGKILL is what the system sends when there is no memory left.
+// The system sends SIGKILL if there is no memory left.
 TEST(OwnProcess, AnyOtherEndWithoutAResultIsAnError) {
   const std::vector<std::function<void()>> ends = {[] { std::abort(); }, [] { raise(SIGKILL); },
                                                    [] { _exit(EXIT_SUCCESS); }, [] { throw 1; }};
@@ -293,7 +293,7 @@ TEST(OwnProcess, AnyOtherEndWithoutAResultIsAnError) {
   }
 }
 
-// As long as the object lives, no file can be opened.
+// While the object exists, no file can be opened.
 class NoMoreFiles {
  public:
   NoMoreFiles() {
@@ -315,7 +315,7 @@ TEST(OwnProcess, AProcessThatCannotBeStartedIsAnError) {
   EXPECT_THROW(InOwnProcess([] { return Failures(); }, 1), std::runtime_error);
 }
 
-// The inner process asks for more than the hard limit of the outer one. Only the superuser may
+// The inner process requests more than the hard limit of the outer process. Only the superuser may
 // raise a hard limit.
 TEST(OwnProcess, ALimitThatCannotBeSetIsAnError) {
   const auto has_failed = [] {

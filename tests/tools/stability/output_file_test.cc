@@ -68,7 +68,7 @@ void ExpectRefused(const std::string& path, const std::string& reason) {
   }
 }
 
-TEST_F(OutputFile, PlacesWhereNoFileCanBeAreRefused) {
+TEST_F(OutputFile, PathsThatCannotBeFilesAreRejected) {
   WriteFile(File("file"), "");
   ExpectRefused(File("missing/new.md"), "there is no folder " + File("missing"));
   ExpectRefused(File("file/new.md"), "there is no folder " + File("file"));
@@ -78,7 +78,7 @@ TEST_F(OutputFile, PlacesWhereNoFileCanBeAreRefused) {
   ExpectRefused("/proc/new.md", "");  // even root cannot create a file there
 }
 
-// Root can write everywhere, so the test runs as another user.
+// Root can write everywhere; therefore the test runs as another user.
 class OrdinaryUser {
  public:
   OrdinaryUser() : before_(geteuid()) {
@@ -94,7 +94,7 @@ class OrdinaryUser {
   uid_t before_;
 };
 
-TEST_F(OutputFile, WithoutPermissionItIsRefused) {
+TEST_F(OutputFile, AFileWithoutPermissionIsRejected) {
   WriteFile(File("old.md"), "old\n");
   ASSERT_EQ(chmod(File("old.md").c_str(), 0444), 0);
   ASSERT_EQ(chmod(folder_.path().c_str(), 0777), 0);  // the folder permits all, the file does not

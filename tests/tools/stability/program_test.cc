@@ -86,7 +86,7 @@ TEST_F(Program, QuickTakesAThousandthOfTheStarts) {
   EXPECT_THAT(efforts_, ElementsAre(1e-3));
 }
 
-TEST_F(Program, OutWritesANewFileAndTellsWhere) {
+TEST_F(Program, OutWritesANewFileAndPrintsItsPath) {
   EXPECT_EQ(Run({"--out", path_}), 0);
   EXPECT_EQ(Contents(path_), kTables);
   EXPECT_THAT(NamesIn(folder_.path()), ElementsAre("stability.md"));
@@ -109,7 +109,7 @@ TEST_F(Program, IntoReplacesTheSectionNamedStability) {
   EXPECT_EQ(error_.str(), "stability: the tables are in " + path_ + "\n");
 }
 
-TEST_F(Program, AFileThatCannotBeWrittenIsRefusedBeforeComputing) {
+TEST_F(Program, AnUnwritableFileIsRejectedBeforeTheComputation) {
   WriteFile(path_, "a page without the section\n");
   const std::vector<std::vector<std::string>> refused = {{"--out", folder_.File("missing/new.md")},
                                                          {"--out", "/proc/new.md"},
