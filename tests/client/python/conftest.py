@@ -167,4 +167,4 @@ def first_hits(shared_home: Home) -> Iterator[ballpiston.Result]:
     with pytest.MonkeyPatch.context() as patch:
         shared_home.enter(patch)
         with ballpiston.connect() as client:
-            yield client.run(**FIRST_HITS)
+            yield client.run(**FIRST_HITS, fresh=True)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import html
+import math
 
 import numpy as np
 import pytest
 
 import ballpiston
+from ballpiston.number_text import measured_text
 
 
 def test_a_name_gives_an_array_over_the_points(first_hits: ballpiston.Result) -> None:
@@ -139,6 +141,22 @@ def test_tables_show_values_with_their_errors(first_hits: ballpiston.Result) -> 
     assert "mean_hit_time" in text and "±" in text
     assert page.count("<tr>") == 5
     assert html.escape(first_hits.job_name) in page
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (21.63214, 0.1234, "21.63 ± 0.12"),
+        (21.63214, None, "21.6321"),
+        (21.63214, math.nan, "21.6321"),
+        (2663.489678, 8.1e-8, "2663.49 ± 8.1e-08"),
+        (0.0, 0.0, "0 ± 0"),
+        (-1.25e-6, 3e-7, "-1.25e-06 ± 3.0e-07"),
+        (12345678.0, 120.0, "1.234568e+07 ± 1.2e+02"),
+    ],
+)
+def test_a_value_has_the_digits_of_its_error(value: float, error: float, text: str) -> None:
+    assert measured_text(value, error) == text
 
 
 def test_closed_forms_are_arrays_over_pairs_and_energies(client: ballpiston.Client) -> None:

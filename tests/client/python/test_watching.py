@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
@@ -16,7 +16,7 @@ import ballpiston
 from ballpiston.errors import Unavailable
 from ballpiston.progress import Progress
 from ballpiston.v1 import ensemble_pb2
-from ballpiston.watch import Pauses, ReattachPace
+from ballpiston.watch import Pauses, ReattachPace, watch_job
 
 
 def streams(client: ballpiston.Client) -> float:
@@ -141,6 +141,54 @@ def test_a_watch_gives_up_after_the_configured_time() -> None:
     pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=10), now=0)
     assert pace.next_pause(now=5) is not None
     assert pace.next_pause(now=9.5) is None
+
+
+class ScriptedServer:
+    """In place of a connection: each watch gets the next list of messages, then the stream ends."""
+
+    def __init__(self, *streams: list[Any]) -> None:
+        self.streams = list(streams)
+        self.tokens: list[str] = []
+        self.ensembles = self
+
+    def WatchEnsembleJob(self, request: Any) -> Any:
+        self.tokens.append(request.resume_token)
+        return ScriptedStream(self.streams.pop(0) if self.streams else [])
+
+    def revive(self, wait: float) -> None:
+        raise Unavailable("cannot be started")
+
+
+class ScriptedStream(list[Any]):
+    def cancel(self) -> None:
+        pass
+
+
+def update(token: str, state: int) -> Any:
+    return ensemble_pb2.WatchEnsembleJobResponse(resume_token=token, job={"state": state})
+
+
+AT_ONCE = Pauses(first=0, longest=0, give_up_after=LIMIT)
+RUNNING, SUCCEEDED = ensemble_pb2.EnsembleJob.RUNNING, ensemble_pb2.EnsembleJob.SUCCEEDED
+
+
+def test_a_watch_passes_the_last_resume_token_on() -> None:
+    server: Any = ScriptedServer(
+        [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
+    )
+    job = watch_job(server, "ensembleJobs/1", Progress(None), AT_ONCE)
+    assert job.state == SUCCEEDED
+    assert server.tokens == ["", "b", "b"]
+
+
+def test_a_watch_that_gives_up_says_why() -> None:
+    with pytest.raises(Unavailable, match="gave up watching after 0 s.*ended the watch before"):
+        watch_job(
+            cast(Any, ScriptedServer()),
+            "ensembleJobs/1",
+            Progress(None),
+            Pauses(first=0.001, longest=0, give_up_after=0),
+        )
 
 
 def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:
