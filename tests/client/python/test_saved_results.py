@@ -97,8 +97,12 @@ def test_an_archive_has_the_names_and_shapes_of_its_layout(first_hits: ballpisto
     assert arrays["index"].tolist() == [0, 1, 2, 3]
     assert arrays["model"].tolist() == ["billiard"] * 4
     assert arrays["mean_hit_time_exact"].shape == (4,)
-    assert arrays["histogram_alpha_plus_counts"].shape[0] == 4
-    assert arrays["histogram_alpha_minus_lower"].shape == (4,)
+    for sign, suffix in ((+1, "plus"), (-1, "minus")):
+        histogram = first_hits.histogram("alpha", sigma=sign, point=2)
+        name = f"histogram_alpha_{suffix}"
+        assert arrays[f"{name}_counts"][2].tolist() == histogram.counts.tolist()
+        assert arrays[f"{name}_expected"][2].tolist() == histogram.expected.tolist()
+        assert arrays[f"{name}_upper"][2] == pytest.approx(histogram.edges[-1])
     assert arrays["curve_survival_time"].shape == arrays["curve_survival_value"].shape
     assert arrays["health_escapes"].tolist() == [0, 0, 0, 0]
     assert arrays["kl_divergence_cells"].shape == (4,)
