@@ -1,7 +1,8 @@
 """Fixtures: private servers in folders of their own, with the programs in the folder that the
 variable BALLPISTON_BIN names, and the package from PYTHONPATH:
 
-    BALLPISTON_BIN=build/release/bin PYTHONPATH=build/release/python python3 -m pytest tests/client/python
+    export BALLPISTON_BIN=build/release/bin PYTHONPATH=build/release/python
+    python3 -m pytest tests/client/python
 """
 
 from __future__ import annotations
