@@ -6,7 +6,7 @@ TEST_JOBS ?= $(shell nproc)
 PRESETS_PREFIX ?=
 STABILITY_OUT ?= stability.md
 
-TEST_PACKAGES := libgtest-dev libgmock-dev
+TEST_PACKAGES := libgtest-dev libgmock-dev python3-grpcio python3-numpy python3-pandas python3-pytest python3-tqdm python3-matplotlib
 AARCH64_PACKAGES := g++-aarch64-linux-gnu qemu-user libabsl-dev:arm64 libhwy-dev:arm64 libgtest-dev:arm64 libgmock-dev:arm64
 SLURM_PACKAGES := munge slurmctld slurmd slurm-client procps
 DEB_PACKAGES := debhelper dh-python help2man lintian

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <filesystem>
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,9 +36,10 @@ class FigureTest : public ::testing::Test {
   std::string Data(const std::string& name) const { return Contents(folder_ + "/" + name); }
   size_t LineCount(const std::string& name) const {
     const Words lines = absl::StrSplit(Data(name), '\n', absl::SkipEmpty());
-    return static_cast<size_t>(std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
-      return line[0] != '#';  // where the data come from
-    }));
+    return static_cast<size_t>(
+        std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
+          return line[0] != '#';  // where the data come from
+        }));
   }
   static bool HasGnuplot() {
     return RunProgram({.command = {"sh", "-c", "command -v gnuplot"}}).exit_code == 0;

@@ -24,7 +24,8 @@ _REVIVE_SECONDS = 10.0
 
 class Connection:
     """A channel to the server at `address`. `private`: the server is the user's private one, and
-    may be started again. `timeout` bounds each single call, in seconds. Safe to share between threads.
+    may be started again. `timeout` bounds each single call, in seconds. Safe to share between
+    threads.
     """
 
     def __init__(

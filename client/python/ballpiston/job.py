@@ -10,7 +10,14 @@ from typing import Any
 
 from ballpiston.connection import Connection
 from ballpiston.error_details import details_of, error_of
-from ballpiston.errors import Error, JobCancelled, JobFailed, JobNotSucceeded, ResultsExpired
+from ballpiston.errors import (
+    Error,
+    JobCancelled,
+    JobFailed,
+    JobNotSucceeded,
+    ResultsExpired,
+    Unavailable,
+)
 from ballpiston.progress import Progress, fraction_of, progress_on_screen
 from ballpiston.result import Result
 from ballpiston.spelling import spelling
@@ -133,6 +140,9 @@ class Job:
             self._follow(screen)
         except KeyboardInterrupt:
             print(_farewell(self.name), file=sys.stderr)
+            raise
+        except Unavailable as error:
+            error.args = (f"{error}\n{_farewell(self.name)}",)
             raise
         self._raise_unless_succeeded()
         return self.result()

@@ -42,7 +42,7 @@ def html_table(heading: str, points: Sequence[Any]) -> str:
 
 def _row(point: Any) -> Row:
     row = {
-        name: value if isinstance(value, str) else f"{value:.10g}"
+        name: value if isinstance(value, str) else f"{value:.6g}"
         for name, value in parameters_of(point).items()
     }
     row["model"] = spelling(spec_pb2.EnsembleSpec.Model, point.model)

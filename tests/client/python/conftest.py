@@ -1,0 +1,171 @@
+"""Fixtures: private servers in folders of their own, with the programs in the folder that the
+variable BALLPISTON_BIN names, and the package from PYTHONPATH:
+
+    export BALLPISTON_BIN=build/release/bin PYTHONPATH=build/release/python
+    python3 -m pytest tests/client/python
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import ballpiston
+
+PROJECT = Path(__file__).resolve().parents[3]
+LIMIT = 60.0  # seconds until a condition that does not come true fails a test
+
+# Variables of the user that runs the tests must not change them.
+FOREIGN = [
+    name for name in os.environ if name.startswith("BALLPISTON_") and name != "BALLPISTON_BIN"
+]
+
+
+def wait_until(condition: Callable[[], Any]) -> Any:
+    """The first true value of the condition."""
+    deadline = time.monotonic() + LIMIT
+    while time.monotonic() < deadline:
+        if value := condition():
+            return value
+        time.sleep(0.01)
+    pytest.fail("the condition did not come true")
+
+
+class Home:
+    """A user's private server, with its state in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        programs = os.environ.get("BALLPISTON_BIN")
+        assert programs, "the variable BALLPISTON_BIN has to name the folder of the programs"
+        self.programs = Path(programs).resolve()
+        self.folder = folder
+        self.variables = {
+            "BALLPISTON_PROGRAM": str(self.programs / "ballpiston"),
+            "HOME": str(folder),
+            "XDG_CONFIG_HOME": str(folder / "config"),
+            "XDG_RUNTIME_DIR": str(folder),
+            "XDG_STATE_HOME": str(folder),
+        }
+
+    def enter(self, patch: pytest.MonkeyPatch) -> None:
+        """Makes this the home of the test's process."""
+        for name in FOREIGN:
+            patch.delenv(name, raising=False)
+        for name, value in self.variables.items():
+            patch.setenv(name, value)
+
+    def command(self, *words: str) -> str:
+        """What the command line prints."""
+        program = str(self.programs / "ballpiston")
+        return subprocess.run(
+            [program, *words], check=True, stdout=subprocess.PIPE, text=True, timeout=LIMIT
+        ).stdout
+
+    def command_json(self, *words: str) -> Any:
+        return json.loads(self.command(*words, "--format", "json"))
+
+    def python(self, program: str, *arguments: str, **options: Any) -> subprocess.Popen[str]:
+        """Another process that runs a Python program."""
+        command = [sys.executable, "-c", program, *arguments]
+        return subprocess.Popen(command, stdout=-1, stderr=-1, text=True, **options)
+
+    def server_id(self) -> int | None:
+        """The process id of the server; None if none has started."""
+        with contextlib.suppress(OSError, ValueError):
+            return int((self.folder / "ballpiston" / "lock").read_text())
+        return None
+
+    def end_server(self, how: signal.Signals) -> None:
+        """Ends the server and waits until its process is gone."""
+        process = self.server_id()
+        if process is None:
+            return
+        with contextlib.suppress(ProcessLookupError):
+            handle = os.pidfd_open(process)
+            try:
+                os.kill(process, how)
+                poll = select.poll()
+                poll.register(handle, select.POLLIN)
+                assert poll.poll(LIMIT * 1000), "the server did not end"
+            finally:
+                os.close(handle)
+
+
+@pytest.fixture(scope="session")
+def shared_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
+    home = Home(tmp_path_factory.mktemp("home"))
+    yield home
+    home.end_server(signal.SIGTERM)
+
+
+@pytest.fixture(autouse=True)
+def home(shared_home: Home, monkeypatch: pytest.MonkeyPatch) -> Home:
+    """One server for all tests that do not end it."""
+    shared_home.enter(monkeypatch)
+    return shared_home
+
+
+@pytest.fixture
+def own_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Home]:
+    """A server that the test may end."""
+    home = Home(tmp_path)
+    home.enter(monkeypatch)
+    yield home
+    home.end_server(signal.SIGKILL)
+
+
+@pytest.fixture
+def client(home: Home) -> Iterator[ballpiston.Client]:
+    with ballpiston.connect() as client:
+        yield client
+
+
+# A few milliseconds of computing.
+FIRST_HITS: dict[str, Any] = {
+    "experiment": "first-hit",
+    "rho": 0.5296,
+    "delta": [0.1, 0.05],
+    "epsilon": 0.125,
+    "exponent": [1, 2],
+    "samples": 2000,
+    "seed": 7,
+}
+
+# Would take hours: tests cancel it.
+ENDLESS: dict[str, Any] = {
+    "experiment": "first-hit",
+    "rho": 0.5296,
+    "delta": 0.01,
+    "epsilon": 0.125,
+    "exponent": 1,
+    "samples": 1e11,
+}
+
+
+@pytest.fixture
+def endless(client: ballpiston.Client) -> Iterator[ballpiston.Job]:
+    """A job that runs; it is cancelled at the end of the test."""
+    job = client.submit(**ENDLESS, fresh=True)
+    yield job
+    if not job.has_ended:
+        job.cancel()
+
+
+@pytest.fixture(scope="session")
+def first_hits(shared_home: Home) -> Iterator[ballpiston.Result]:
+    """A result with histograms and curves, four points."""
+    with pytest.MonkeyPatch.context() as patch:
+        shared_home.enter(patch)
+        with ballpiston.connect() as client:
+            yield client.run(**FIRST_HITS, fresh=True)

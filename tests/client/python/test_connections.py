@@ -1,0 +1,202 @@
+"""Addresses, TLS, tokens and settings."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import Home, wait_until
+
+import ballpiston
+from ballpiston.channel_security import ChannelSecurity, check, credentials_of
+from ballpiston.connection_hint import connection_hint
+from ballpiston.private_server import find_private_server
+from ballpiston.server_address import grpc_target
+from ballpiston.settings import address_and_security
+
+
+def private(folder: Path, name: str, text: str, mode: int = 0o600) -> str:
+    path = folder / name
+    path.write_text(text)
+    path.chmod(mode)
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("address", "target"),
+    [
+        ("localhost:50051", "dns:///localhost:50051"),
+        ("[::1]:50051", "dns:///[::1]:50051"),
+        ("unix:/run/socket", "unix:/run/socket"),
+    ],
+)
+def test_an_address_is_a_host_with_a_port_or_a_socket(address: str, target: str) -> None:
+    assert grpc_target(address) == target
+
+
+@pytest.mark.parametrize(
+    "address", ["localhost", ":1", "a b:1", "::1:50051", "host:0", "host:65536", "host:x", "unix:"]
+)
+def test_other_texts_are_not_addresses(address: str) -> None:
+    with pytest.raises(ValueError, match="write host:port or unix:PATH"):
+        ballpiston.connect(address)
+
+
+def test_a_socket_path_has_at_most_100_bytes() -> None:
+    grpc_target("unix:" + "x" * 100)
+    with pytest.raises(ValueError, match="more than 100 bytes"):
+        grpc_target("unix:" + "x" * 101)
+
+
+def test_a_token_needs_tls() -> None:
+    with pytest.raises(ValueError, match="use TLS"):
+        check(ChannelSecurity(token="secret"), "host:1")
+    check(ChannelSecurity(token="secret", tls=True), "host:1")
+
+
+def test_a_socket_needs_neither_tls_nor_token() -> None:
+    with pytest.raises(ValueError, match="a Unix socket uses no TLS"):
+        ballpiston.connect("unix:/run/socket", tls=True)
+    with pytest.raises(ValueError, match="the private server needs no ca"):
+        ballpiston.connect(ca="ca.pem")
+
+
+def test_a_certificate_and_its_key_belong_together() -> None:
+    with pytest.raises(ValueError, match="together"):
+        ballpiston.connect("host:1", certificate="c.pem")
+
+
+def test_a_token_file_that_others_can_read_is_rejected(tmp_path: Path) -> None:
+    open_file = private(tmp_path, "token", "secret\n", 0o640)
+    with pytest.raises(ballpiston.PermissionDenied, match="mode 0640.*chmod 600") as caught:
+        ballpiston.connect("host:1", tls=True, token_file=open_file)
+    assert "secret" not in str(caught.value)
+    os.chmod(open_file, 0o600)
+    ballpiston.connect("host:1", tls=True, token_file=open_file).close()
+
+
+@pytest.mark.parametrize("text", ["", "two words", "x" * 257, "ä"])
+def test_a_token_is_one_word(text: str, tmp_path: Path) -> None:
+    file = private(tmp_path, "token", text)
+    with pytest.raises(ValueError, match="one word of 1 to 256 printable characters"):
+        credentials_of(ChannelSecurity(tls=True, token_file=file))
+
+
+def test_files_that_are_missing_or_not_pem_are_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="authority file .*missing.pem cannot be read"):
+        ballpiston.connect("host:1", ca=str(tmp_path / "missing.pem"))
+    with pytest.raises(ValueError, match="PEM"):
+        ballpiston.connect("host:1", ca=private(tmp_path, "ca.pem", "nothing"))
+
+
+def test_an_argument_wins_over_the_environment_and_that_over_the_config_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = (
+        'server = "config:1"\nca = "config.pem"\ntoken-file = "config.token"\n[run]\nseed = 3\n'
+    )
+    monkeypatch.setenv("BALLPISTON_CONFIG", private(tmp_path, "config.toml", config))
+    address, security = address_and_security({})
+    assert (address, security.ca, security.token_file) == ("config:1", "config.pem", "config.token")
+    monkeypatch.setenv("BALLPISTON_SERVER", "environment:1")
+    monkeypatch.setenv("BALLPISTON_CA", "environment.pem")
+    monkeypatch.setenv("BALLPISTON_TLS", "1")
+    monkeypatch.setenv("BALLPISTON_TOKEN", "secret")
+    address, security = address_and_security({"ca": "argument.pem", "token_file": "argument.token"})
+    assert (address, security.ca, security.tls) == ("environment:1", "argument.pem", True)
+    assert (security.token_file, security.token) == ("argument.token", "")
+    assert "secret" not in repr(address_and_security({})[1])
+    # Over a Unix socket the variables and the config file mean nothing.
+    assert address_and_security({"address": "unix:/s"}) == ("unix:/s", ChannelSecurity())
+
+
+def test_a_wrong_setting_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BALLPISTON_SERVER", "host:1")
+    monkeypatch.setenv("BALLPISTON_TLS", "perhaps")
+    with pytest.raises(ValueError, match="tls is 'perhaps'"):
+        ballpiston.connect()
+    monkeypatch.setenv("BALLPISTON_CONFIG", private(tmp_path, "config.toml", "server = "))
+    with pytest.raises(ValueError, match="config.toml cannot be used"):
+        ballpiston.connect()
+
+
+def test_no_program_and_no_server_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("BALLPISTON_PROGRAM")
+    monkeypatch.setattr("ballpiston.private_server._program_beside_package", lambda: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ballpiston.NoPrivateServer, match="install the package ballpiston"):
+        find_private_server()
+
+
+def test_a_server_that_does_not_answer_is_named(tmp_path: Path) -> None:
+    address = f"unix:{tmp_path}/socket"
+    with ballpiston.connect(address, timeout=10) as client:
+        with pytest.raises(ballpiston.Unavailable, match="no answer from the server at unix:"):
+            client.jobs()
+
+
+def test_hints_say_what_a_user_can_do() -> None:
+    tls = ChannelSecurity(ca="ca.pem")
+    assert "in ca.pem" in connection_hint("host:1", tls, "certificate verify failed")
+    assert "does not use TLS" in connection_hint("host:1", tls, "wrong version number")
+    assert "ca=FILE" in connection_hint("host:1", ChannelSecurity(), "Socket closed")
+    assert "--socket-mode" in connection_hint("unix:/s", ChannelSecurity(), "Permission denied")
+    assert connection_hint("host:1", ChannelSecurity(), "connection refused") == ""
+
+
+def make_certificate(folder: Path) -> None:
+    """server.pem, which is its own authority, and server.key."""
+    subprocess.run(
+        "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 1 "
+        "-subj /CN=localhost -addext subjectAltName=DNS:localhost "
+        "-keyout server.key -out server.pem".split(),
+        cwd=folder,
+        check=True,
+        stderr=subprocess.DEVNULL,
+    )
+    (folder / "server.key").chmod(0o600)
+
+
+@pytest.fixture
+def secure_address(home: Home, tmp_path: Path) -> Iterator[str]:
+    """A server with TLS; the file ada.token has a token for it."""
+    make_certificate(tmp_path)
+    program = str(home.programs / "ballpistond")
+    token = subprocess.run(
+        [program, "--access-file", "access", "--new-token", "ada:submit"],
+        cwd=tmp_path,
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    ).stdout
+    private(tmp_path, "ada.token", token)
+    flags = "--listen 127.0.0.1:0 --data-dir data --tls-certificate server.pem --tls-key server.key"
+    server = subprocess.Popen(
+        [program, *flags.split(), "--access-file", "access"], cwd=tmp_path, stderr=-3
+    )
+    written = tmp_path / "data" / "server.address"
+    wait_until(lambda: written.exists() and written.read_text().endswith("\n"))
+    yield written.read_text().strip().replace("127.0.0.1", "localhost")
+    server.terminate()
+    server.wait()
+
+
+def test_tls_and_a_token_reach_a_server_that_wants_them(
+    secure_address: str, tmp_path: Path
+) -> None:
+    ca, token_file = str(tmp_path / "server.pem"), str(tmp_path / "ada.token")
+    with ballpiston.connect(secure_address, ca=ca, token_file=token_file) as client:
+        status = client.status()
+        assert (status.principal, status.role) == ("ada", "submit")
+    with ballpiston.connect(secure_address, ca=ca) as client:
+        with pytest.raises(ballpiston.Unauthenticated) as caught:
+            client.status()
+        assert caught.value.reason == "CREDENTIALS_MISSING"
+    with ballpiston.connect(secure_address, tls=True) as client:
+        with pytest.raises(ballpiston.Unavailable, match="ca=FILE"):
+            client.status()

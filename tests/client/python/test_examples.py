@@ -1,0 +1,67 @@
+"""The examples run as they are."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import PROJECT
+
+import ballpiston
+
+EXAMPLES = PROJECT / "client" / "examples" / "python"
+
+
+def test_the_sweep_prints_a_table_and_saves_its_result(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, str(EXAMPLES / "sweep.py")],
+        cwd=tmp_path,
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert [line.split()[0] for line in done.stdout.splitlines()[1:]] == [
+        "delta",
+        "0.200",
+        "0.100",
+        "0.050",
+    ]
+    result = ballpiston.load(tmp_path / "sweep.json")
+    # The false-alarm rate of 5 sigma is 6e-7; the seed is fixed.
+    assert max(abs(result.z_score("mean_free_time_ball_piston"))) < 5
+
+
+def test_every_cell_of_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib").use("Agg")
+    monkeypatch.chdir(tmp_path)
+    notebook = json.loads((EXAMPLES / "figure.ipynb").read_text())
+    names: dict[str, object] = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == [] and cell["execution_count"] is None
+            exec("".join(cell["source"]), names)
+    assert "</svg>" in (tmp_path / "mean-free-times.svg").read_text()
+    result = ballpiston.load(tmp_path / "mean-free-times.json")
+    assert result == names["result"]
+    # 36 z-scores; the false-alarm rate of 5 sigma is 2e-5, and the seed is fixed.
+    assert max(abs(result.z_score("mean_free_time_conditional"))) < 5
+
+
+def test_the_notebook_is_valid() -> None:
+    nbformat = pytest.importorskip("nbformat")
+    nbformat.validate(nbformat.read(EXAMPLES / "figure.ipynb", as_version=4))
+
+
+def test_the_types_are_complete() -> None:
+    pytest.importorskip("mypy")
+    package = str(Path(ballpiston.__file__).parent)
+    config = str(PROJECT / "client" / "python" / "mypy.ini")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file", config, "--cache-dir=/dev/null", package],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout

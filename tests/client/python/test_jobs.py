@@ -1,0 +1,136 @@
+"""Jobs on a real server: submitted, watched, listed, cancelled, pinned, deleted."""
+
+from __future__ import annotations
+
+import uuid
+
+import numpy as np
+import pytest
+from conftest import ENDLESS, FIRST_HITS, Home, wait_until
+
+import ballpiston
+
+
+def test_a_submitted_job_succeeds_when_it_is_watched(client: ballpiston.Client) -> None:
+    job = client.submit(**FIRST_HITS, fresh=True)
+    result = job.watch()
+    assert job.state == "succeeded"
+    assert job.has_ended
+    assert len(result) == 4
+    assert result.job_name == job.name
+    assert job.created <= job.started <= job.ended
+
+
+def test_run_gives_the_result_at_once(client: ballpiston.Client) -> None:
+    result = client.run(**FIRST_HITS, progress=False)
+    assert result["mean_hit_time"].shape == (4,)
+
+
+def test_the_same_question_is_answered_from_the_store(client: ballpiston.Client) -> None:
+    first = client.run("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")
+    job = client.submit("equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard")
+    assert job.answered_from_store
+    assert job.name == first.job_name
+    assert job.watch().job.answered_from_store
+    again = client.submit(
+        "equilibrium", rho=0.53, delta=0.1, collisions=100, model="billiard", fresh=True
+    )
+    assert not again.answered_from_store
+    assert again.name != job.name
+
+
+def test_a_request_id_returns_the_original_job(client: ballpiston.Client) -> None:
+    identifier = str(uuid.uuid4())
+    first = client.submit(**FIRST_HITS, fresh=True, request_id=identifier)
+    assert client.submit(**FIRST_HITS, fresh=True, request_id=identifier).name == first.name
+
+
+def test_a_specification_can_be_asked_again(client: ballpiston.Client) -> None:
+    result = client.run(**FIRST_HITS)
+    again = client.run(result.specification, fresh=True)
+    assert again.job_name != result.job_name
+    np.testing.assert_array_equal(again["mean_hit_time"], result["mean_hit_time"])
+
+
+def test_a_job_is_found_by_its_name_and_by_its_id(client: ballpiston.Client) -> None:
+    job = client.submit(**FIRST_HITS)
+    assert client.job(job.name).name == job.name
+    assert client.job(job.name.removeprefix("ensembleJobs/")).name == job.name
+
+
+def test_jobs_are_listed_by_state_and_experiment(
+    client: ballpiston.Client, endless: ballpiston.Job
+) -> None:
+    client.run(**FIRST_HITS)
+    names = [job.name for job in client.jobs(state=["queued", "running"])]
+    assert names == [endless.name]
+    succeeded = client.jobs(state="succeeded", experiment="first-hit", limit=None)
+    assert succeeded and all(job.experiment == "first-hit" for job in succeeded)
+    assert len(client.jobs(limit=1)) == 1
+    assert client.jobs(limit=0) == []
+
+
+def test_a_cancelled_job_keeps_its_finished_points(
+    client: ballpiston.Client, endless: ballpiston.Job
+) -> None:
+    endless.cancel()
+    with pytest.raises(ballpiston.JobCancelled, match="cancelled") as caught:
+        endless.watch()
+    assert caught.value.job is endless
+    assert len(endless.result()) == 0
+
+
+def test_a_budget_that_is_too_short_for_the_tolerance_fails_the_job(
+    client: ballpiston.Client,
+) -> None:
+    question = {**FIRST_HITS, "samples": None, "tolerance": 1e-6, "budget": 0.02}
+    with pytest.raises(ballpiston.JobFailed) as caught:
+        client.run(**question)
+    assert caught.value.reason == "TOLERANCE_NOT_REACHED"
+    assert float(caught.value.metadata["reached"]) > 1e-6
+    assert "tolerance 1e-06 was not reached" in str(caught.value)
+    assert caught.value.job.state == "failed"
+    assert "tolerance" in caught.value.job.error
+    assert len(caught.value.job.result()) > 0
+
+
+def test_a_pinned_job_can_be_unpinned(client: ballpiston.Client) -> None:
+    job = client.submit(**FIRST_HITS)
+    job.watch()
+    assert job.pin().pinned
+    assert not job.pin(False).pinned
+
+
+def test_a_deleted_job_is_not_found(client: ballpiston.Client) -> None:
+    job = client.submit(**FIRST_HITS, fresh=True)
+    job.watch()
+    job.delete()
+    with pytest.raises(ballpiston.NotFound) as caught:
+        client.job(job.name)
+    assert caught.value.reason == "JOB_NOT_FOUND"
+
+
+def test_a_running_job_cannot_be_deleted(endless: ballpiston.Job) -> None:
+    with pytest.raises(ballpiston.FailedPrecondition) as caught:
+        endless.delete()
+    assert caught.value.reason == "JOB_STILL_ACTIVE"
+
+
+def test_a_notebook_shows_the_job_as_it_is_now(endless: ballpiston.Job) -> None:
+    wait_until(lambda: "running" in endless._repr_html_())
+    assert endless.name in repr(endless)
+
+
+def test_a_call_after_the_server_was_killed_starts_it_again(own_home: Home) -> None:
+    with ballpiston.connect() as client:
+        job = client.submit(**ENDLESS)
+        before = own_home.server_id()
+        own_home.end_server(9)
+        assert client.job(job.name).state in ("queued", "running")
+        assert own_home.server_id() != before
+        own_home.end_server(9)
+        job.cancel()
+        wait_until(lambda: job.has_ended)
+        own_home.end_server(9)
+        job.delete()
+        assert client.jobs() == []

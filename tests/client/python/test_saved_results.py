@@ -1,0 +1,166 @@
+"""Results in files, and that they are those of the command line."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import FIRST_HITS, Home
+
+import ballpiston
+
+
+def test_a_result_is_equal_after_it_was_saved_and_loaded(
+    first_hits: ballpiston.Result, tmp_path: Path
+) -> None:
+    first_hits.save(tmp_path / "saved.json")
+    loaded = ballpiston.load(tmp_path / "saved.json")
+    assert loaded == first_hits
+    assert loaded.specification == first_hits.specification
+    loaded.messages[0].estimates[0].value += 1e-9
+    assert loaded != first_hits
+
+
+def test_the_saved_document_is_that_of_the_command_line(
+    first_hits: ballpiston.Result, home: Home, tmp_path: Path
+) -> None:
+    first_hits.save(tmp_path / "saved.json")
+    saved = json.loads((tmp_path / "saved.json").read_text())
+    assert saved.pop("client_version") == ballpiston.__version__
+    printed = home.command_json("result", first_hits.job_name)
+    assert saved == printed
+
+
+def test_a_document_of_the_command_line_can_be_loaded(
+    first_hits: ballpiston.Result, home: Home, tmp_path: Path
+) -> None:
+    text = home.command("result", first_hits.job_name, "--format", "json")
+    (tmp_path / "printed.json").write_text(text)
+    assert ballpiston.load(tmp_path / "printed.json") == first_hits
+
+
+def test_the_numbers_are_those_of_the_command_line_bit_for_bit(home: Home) -> None:
+    flags = "--rho 0.5296 --delta 0.02:0.2:4 --epsilon 0.1,0.3 --samples 500 --seed 11"
+    printed = home.command(
+        "run",
+        "conditional-mean-free-time",
+        *flags.split(),
+        "--verify",
+        "--fresh",
+        "--format",
+        "csv",
+    )
+    name = "mean_free_time_conditional"
+    rows = [row for row in csv.DictReader(io.StringIO(printed)) if row["name"] == name]
+    with ballpiston.connect() as client:
+        result = client.run(
+            "conditional-mean-free-time",
+            rho=0.5296,
+            delta="0.02:0.2:4",
+            epsilon=[0.1, 0.3],
+            samples=500,
+            seed=11,
+            verify=True,
+            fresh=True,
+        )
+    columns = {
+        "delta": result.parameters["delta"],
+        "value": result[name],
+        "standard_error": result.error(name),
+        "exact": result.exact(name),
+    }
+    for title, column in columns.items():
+        assert [float(row[title]) for row in rows] == column.tolist(), title
+
+
+def test_an_archive_has_the_arrays_of_the_result(
+    first_hits: ballpiston.Result, tmp_path: Path
+) -> None:
+    first_hits.save(tmp_path / "saved.npz")
+    arrays = first_hits.arrays()
+    with np.load(tmp_path / "saved.npz") as archive:
+        assert set(archive) == set(arrays)
+        for name, array in arrays.items():
+            np.testing.assert_array_equal(archive[name], array)
+        provenance = json.loads(str(archive["provenance"]))
+    assert provenance["job"] == first_hits.job_name
+    assert provenance["client_version"] == ballpiston.__version__
+    assert provenance["spec"]["seed"] == "7"
+
+
+def test_an_archive_has_the_names_and_shapes_of_its_layout(first_hits: ballpiston.Result) -> None:
+    arrays = first_hits.arrays()
+    assert arrays["index"].tolist() == [0, 1, 2, 3]
+    assert arrays["model"].tolist() == ["billiard"] * 4
+    assert arrays["mean_hit_time_exact"].shape == (4,)
+    for sign, suffix in ((+1, "plus"), (-1, "minus")):
+        histogram = first_hits.histogram("alpha", sigma=sign, point=2)
+        name = f"histogram_alpha_{suffix}"
+        assert arrays[f"{name}_counts"][2].tolist() == histogram.counts.tolist()
+        assert arrays[f"{name}_expected"][2].tolist() == histogram.expected.tolist()
+        assert arrays[f"{name}_upper"][2] == pytest.approx(histogram.edges[-1])
+    assert arrays["curve_survival_time"].shape == arrays["curve_survival_value"].shape
+    assert arrays["health_escapes"].tolist() == [0, 0, 0, 0]
+    assert arrays["kl_divergence_cells"].shape == (4,)
+    assert arrays["provenance"].shape == ()
+
+
+def test_loading_an_archive_says_that_numpy_reads_it(
+    first_hits: ballpiston.Result, tmp_path: Path
+) -> None:
+    first_hits.save(tmp_path / "saved.npz")
+    with pytest.raises(ValueError, match="numpy.load reads it"):
+        ballpiston.load(tmp_path / "saved.npz")
+
+
+def test_loading_needs_no_server(
+    first_hits: ballpiston.Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first_hits.save(tmp_path / "saved.json")
+    monkeypatch.setenv("BALLPISTON_PROGRAM", "/does/not/exist")
+    assert len(ballpiston.load(tmp_path / "saved.json")) == 4
+
+
+def test_a_later_version_may_add_fields(first_hits: ballpiston.Result, tmp_path: Path) -> None:
+    first_hits.save(tmp_path / "saved.json")
+    document = json.loads((tmp_path / "saved.json").read_text())
+    document["points"][0]["of_a_later_version"] = 1
+    (tmp_path / "later.json").write_text(json.dumps(document))
+    assert ballpiston.load(tmp_path / "later.json") == first_hits
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"job": {}, "points": [1]}', '{"job": 1}'])
+def test_other_files_are_not_results(text: str, tmp_path: Path) -> None:
+    (tmp_path / "other.json").write_text(text)
+    with pytest.raises(ValueError, match="is not a saved result"):
+        ballpiston.load(tmp_path / "other.json")
+
+
+def test_the_end_of_the_name_decides_the_format(
+    first_hits: ballpiston.Result, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=".json or .npz"):
+        first_hits.save(tmp_path / "saved.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_result_of_an_unfinished_job_has_its_finished_points(
+    client: ballpiston.Client, endless: ballpiston.Job, tmp_path: Path
+) -> None:
+    result = endless.result()
+    assert len(result) == 0 and result.state in ("queued", "running")
+    result.save(tmp_path / "saved.json")
+    assert ballpiston.load(tmp_path / "saved.json") == result
+    assert result.to_frame().empty
+    assert "first-hit, 0 of 1 points" in repr(result)
+
+
+def test_a_result_holds_what_the_server_has(
+    client: ballpiston.Client, first_hits: ballpiston.Result
+) -> None:
+    assert client.job(first_hits.job_name).result() == first_hits
+    assert client.submit(**FIRST_HITS).specification == first_hits.specification

@@ -1,0 +1,207 @@
+"""Watches: through restarts of the server, interrupted, and what they show."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+from conftest import ENDLESS, FIRST_HITS, LIMIT, Home, wait_until
+
+import ballpiston
+from ballpiston.errors import Unavailable
+from ballpiston.progress import Progress
+from ballpiston.v1 import ensemble_pb2
+from ballpiston.watch import Pauses, ReattachPace, watch_job
+
+
+def streams(client: ballpiston.Client) -> float:
+    """Watches and traces in progress."""
+    return float(client.status().message.streams)
+
+
+def test_a_watch_goes_on_after_the_server_was_killed(own_home: Home) -> None:
+    with ballpiston.connect() as client, ballpiston.connect() as watching:
+        job = client.submit(**ENDLESS)
+        ends: list[BaseException] = []
+
+        def watch() -> None:
+            try:
+                watching.job(job.name).watch(progress=False)
+            except ballpiston.Error as error:
+                ends.append(error)
+
+        thread = threading.Thread(target=watch)
+        thread.start()
+        wait_until(lambda: job.state == "running" and streams(client) == 1)
+        killed = own_home.server_id()
+        own_home.end_server(signal.SIGKILL)
+        wait_until(lambda: own_home.server_id() != killed and streams(client) == 1)
+        assert ends == []
+        job.cancel()
+        thread.join(LIMIT)
+    assert [type(error) for error in ends] == [ballpiston.JobCancelled]
+
+
+def test_ctrl_c_ends_the_watch_and_leaves_the_job(
+    home: Home, client: ballpiston.Client, endless: ballpiston.Job
+) -> None:
+    program = "import ballpiston, sys; ballpiston.connect().job(sys.argv[1]).watch()"
+    watcher = home.python(program, endless.name)
+    wait_until(lambda: streams(client) == 1)
+    watcher.send_signal(signal.SIGINT)
+    _, message = watcher.communicate(timeout=LIMIT)
+    assert watcher.returncode != 0 and "KeyboardInterrupt" in message
+    assert f'The job goes on.\n  watch it again:  client.job("{endless.name}").watch()' in message
+    assert not endless.has_ended
+    wait_until(lambda: streams(client) == 0)
+
+
+def test_there_is_no_bar_where_nobody_looks(home: Home) -> None:
+    program = "import ballpiston; ballpiston.connect().run(**eval(input()))"
+    watcher = home.python(program, stdin=-1)
+    assert watcher.communicate(repr({**FIRST_HITS, "fresh": True}), LIMIT) == ("", "")
+
+
+@pytest.mark.parametrize("hidden", ["", "tqdm"])
+def test_a_terminal_shows_a_bar_unless_it_is_silenced(hidden: str, home: Home) -> None:
+    program = (
+        "import sys\n"
+        f"if '{hidden}': sys.modules['{hidden}'] = None\n"
+        "import ballpiston\n"
+        "client = ballpiston.connect()\n"
+        f"client.run(**{ {**FIRST_HITS, 'fresh': True} !r}, progress=sys.argv[1] == 'bar')"
+    )
+    assert "4/4 points" in on_a_terminal(program, "bar")
+    assert on_a_terminal(program, "silent") == ""
+
+
+def on_a_terminal(program: str, argument: str) -> str:
+    """What the program writes to a terminal."""
+    here, there = os.openpty()
+    command = [sys.executable, "-c", program, argument]
+    actions = [(os.POSIX_SPAWN_DUP2, there, 1), (os.POSIX_SPAWN_DUP2, there, 2)]
+    process = os.posix_spawn(sys.executable, command, os.environ, file_actions=actions)
+    os.close(there)
+    text = b""
+    try:
+        while part := os.read(here, 4096):
+            text += part
+    except OSError:  # the other side was closed
+        pass
+    os.close(here)
+    assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 0, text
+    return text.decode()
+
+
+class WrittenBar:
+    def __init__(self) -> None:
+        self.lines: list[tuple[float, str]] = []
+
+    def show(self, fraction: float, text: str) -> None:
+        self.lines.append((fraction, text))
+
+    def note(self, text: str) -> None:
+        self.lines.append((-1, text))
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_bar_shows_points_an_estimate_and_lost_connections() -> None:
+    bar = WrittenBar()
+    progress = Progress(bar)
+    snapshot: Any = ensemble_pb2.StatisticsSnapshot()
+    snapshot.progress.points, snapshot.progress.points_done = 4, 1
+    estimate = snapshot.points.add().estimates.add(name="mean_hit_time", value=57.663)
+    estimate.standard_error = 0.123
+    progress.on_snapshot(snapshot)
+    progress.on_disconnect(Unavailable("gone"), 0.2)
+    assert bar.lines == [
+        (0.25, "1/4 points  mean_hit_time 57.66 ± 0.12"),
+        (0.25, "1/4 points  no answer, retrying in 0.2 s"),
+    ]
+
+
+def test_pauses_double_until_the_server_is_heard() -> None:
+    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=1000), now=0)
+    for expected in (1, 2, 4, 4):
+        pause = pace.next_pause(now=0)
+        assert pause is not None and expected <= pause <= 1.25 * expected
+    pace.heard(now=10)
+    pause = pace.next_pause(now=10)
+    assert pause is not None and pause <= 1.25
+
+
+def test_a_watch_gives_up_after_the_configured_time() -> None:
+    pace = ReattachPace(Pauses(first=1, longest=4, give_up_after=10), now=0)
+    assert pace.next_pause(now=5) is not None
+    assert pace.next_pause(now=9.5) is None
+
+
+class ScriptedServer:
+    """In place of a connection: each watch gets the next list of messages, then the stream ends."""
+
+    def __init__(self, *streams: list[Any]) -> None:
+        self.streams = list(streams)
+        self.tokens: list[str] = []
+        self.ensembles = self
+
+    def WatchEnsembleJob(self, request: Any) -> Any:
+        self.tokens.append(request.resume_token)
+        return ScriptedStream(self.streams.pop(0) if self.streams else [])
+
+    def revive(self, wait: float) -> None:
+        raise Unavailable("cannot be started")
+
+
+class ScriptedStream(list[Any]):
+    def cancel(self) -> None:
+        pass
+
+
+def update(token: str, state: int) -> Any:
+    return ensemble_pb2.WatchEnsembleJobResponse(resume_token=token, job={"state": state})
+
+
+AT_ONCE = Pauses(first=0, longest=0, give_up_after=LIMIT)
+RUNNING, SUCCEEDED = ensemble_pb2.EnsembleJob.RUNNING, ensemble_pb2.EnsembleJob.SUCCEEDED
+
+
+def test_a_watch_passes_the_last_resume_token_on() -> None:
+    server: Any = ScriptedServer(
+        [update("a", RUNNING), update("b", RUNNING)], [], [update("c", SUCCEEDED)]
+    )
+    job = watch_job(server, "ensembleJobs/1", Progress(None), AT_ONCE)
+    assert job.state == SUCCEEDED
+    assert server.tokens == ["", "b", "b"]
+
+
+def test_a_watch_that_gives_up_says_why() -> None:
+    with pytest.raises(Unavailable, match="gave up watching after 0 s.*ended the watch before"):
+        watch_job(
+            cast(Any, ScriptedServer()),
+            "ensembleJobs/1",
+            Progress(None),
+            Pauses(first=0.001, longest=0, give_up_after=0),
+        )
+
+
+def test_a_watch_of_no_job_is_an_error(client: ballpiston.Client) -> None:
+    job = client.submit(**FIRST_HITS, fresh=True)
+    job.watch()
+    job.delete()
+    with pytest.raises(ballpiston.NotFound):
+        job.watch()
+
+
+def test_a_program_that_is_missing_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BALLPISTON_PROGRAM", str(tmp_path / "ballpiston"))
+    with pytest.raises(ballpiston.NoPrivateServer, match="cannot start the private server"):
+        ballpiston.connect()
