@@ -3,6 +3,7 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -32,6 +33,15 @@ struct Entry {
 class PointArray {
  public:
   void Set(size_t point, Entry entry) { entries_[point] = std::move(entry); }
+
+  bool HasNumbers() const {
+    for (const auto& [point, entry] : entries_) {
+      for (const auto& row : entry.rows) {
+        if (!std::all_of(row.begin(), row.end(), [](double x) { return std::isnan(x); })) return true;
+      }
+    }
+    return false;
+  }
 
   std::string Bytes(size_t points) const {
     size_t axes = 0, rows = 1, length = 1;
@@ -120,7 +130,9 @@ class NpzWriter : public ResultWriter {
 
   void End() override {
     std::map<std::string, std::string> files;
-    for (const auto& [name, array] : numbers_) files[name] = array.Bytes(points_);
+    for (const auto& [name, array] : numbers_) {
+      if (array.HasNumbers()) files[name] = array.Bytes(points_);
+    }
     for (auto& [name, texts] : texts_) {
       texts.resize(points_);
       files[name] = NpyBytes(texts, {points_});
@@ -201,25 +213,18 @@ class NpzWriter : public ResultWriter {
   void AddHistogramGroup(const std::string& name, const std::vector<const v1::Histogram*>& group) {
     const bool has_times = group.front()->has_time();
     Entry counts{.axes = has_times ? 2u : 1u}, expected = counts;
-    std::vector<double> lower, upper, times;
+    std::vector<double> times;
     for (const v1::Histogram* histogram : group) {
       counts.rows.emplace_back(histogram->counts().begin(), histogram->counts().end());
       const auto& probabilities = histogram->expected_probabilities();
       expected.rows.emplace_back(probabilities.begin(), probabilities.end());
-      lower.push_back(histogram->lower());
-      upper.push_back(histogram->upper());
       times.push_back(histogram->time());
     }
     numbers_[name + "_counts"].Set(points_, std::move(counts));
     numbers_[name + "_expected"].Set(points_, std::move(expected));
-    if (has_times) {
-      Set(name + "_lower", std::move(lower));
-      Set(name + "_upper", std::move(upper));
-      Set(name + "_time", std::move(times));
-    } else {
-      Set(name + "_lower", lower.front());
-      Set(name + "_upper", upper.front());
-    }
+    Set(name + "_lower", group.front()->lower());
+    Set(name + "_upper", group.front()->upper());
+    if (has_times) Set(name + "_time", std::move(times));
   }
 
   void AddCurves(const v1::PointResult& point) {

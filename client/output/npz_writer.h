@@ -1,5 +1,6 @@
 // A result as NumPy arrays: an archive of .npy files, which numpy.load reads. The first axis of
-// each array is the points. What does not exist is NaN, and shorter rows end with NaN.
+// each array is the points. What does not exist is NaN, and shorter rows end with NaN. An array of
+// NaN alone is left out.
 //
 //   index, rho, delta, ...       position in the grid, and the parameters; `cells` is text
 //   model, samples
@@ -9,7 +10,7 @@
 //   health_escapes, health_max_energy_error
 //   histogram_NAME_counts, _expected (points, bins), _lower, _upper (points); NAME ends with _plus
 //                                or _minus for the two signs sigma of an angle; if the histograms
-//                                have times, (points, times, bins), (points, times), and _time
+//                                have times, (points, times, bins), and _time (points, times)
 //   curve_NAME_time or _position, _value, _standard_error, _limit (points, length)
 //   provenance                   text: JSON with job, engine_version, client_version and spec
 #ifndef BALLPISTON_CLIENT_OUTPUT_NPZ_WRITER_H_

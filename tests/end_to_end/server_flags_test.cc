@@ -83,6 +83,7 @@ const char* const kFlags[] = {"listen",
                               "new-token",
                               "check",
                               "backup",
+                              "verify",
                               "version",
                               "help"};
 
