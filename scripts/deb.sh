@@ -14,6 +14,8 @@ rm -rf "$out"
 mkdir -p "$source"
 git archive HEAD | tar -x -C "$source"
 
+# Packages of debug symbols would be installed by `apt install build/deb/*.deb`.
+export DEB_BUILD_OPTIONS="noautodbgsym ${DEB_BUILD_OPTIONS:-}"
 # debhelper gives the build a home folder of its own, which would be without a compiler cache.
 export CCACHE_DIR=${CCACHE_DIR:-$HOME/.cache/ccache}
 if ! (cd "$source" && dpkg-buildpackage --unsigned-source --unsigned-changes) >"$out/build.log" 2>&1; then

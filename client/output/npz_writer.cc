@@ -37,7 +37,8 @@ class PointArray {
   bool HasNumbers() const {
     for (const auto& [point, entry] : entries_) {
       for (const auto& row : entry.rows) {
-        if (!std::all_of(row.begin(), row.end(), [](double x) { return std::isnan(x); })) return true;
+        if (!std::all_of(row.begin(), row.end(), [](double x) { return std::isnan(x); }))
+          return true;
       }
     }
     return false;
