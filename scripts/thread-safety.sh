@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly GENERATED=build/thread-safety
-readonly CLANG=(clang++ -std=c++20 -fsyntax-only -I. -isystem "$GENERATED" -isystem /usr/include/eigen3
+readonly CLANG=(clang++ -std=c++20 -fsyntax-only -I. -DBALLPISTON_VERSION='"0"' -isystem "$GENERATED" -isystem /usr/include/eigen3
                 -Wno-everything -Wthread-safety -Wthread-safety-beta)
 
 generate_messages() {
