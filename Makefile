@@ -78,7 +78,7 @@ fuzz: ## Run libFuzzer on every parser of requests, stored bytes and answers; FU
 	@cmake --build --preset fuzz
 	@scripts/fuzz.sh build/fuzz/bin
 
-deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (10 minutes)
+deb: ## Build the Debian packages of the last commit in build/deb, and check them with lintian (5 minutes)
 	@scripts/setup.sh $(DEB_PACKAGES)
 	@scripts/deb.sh build/deb
 

@@ -1,4 +1,5 @@
 // ballpiston run: submits a job, watches it and prints its result.
+#include "absl/strings/str_cat.h"
 #include "client/command/connection.h"
 #include "client/command/create_job.h"
 #include "client/command/follow_job.h"
@@ -20,6 +21,12 @@ VerbResult Run(const Options& options, Terminal& terminal) {
         }
         const auto end = FollowJob(connection, made->name(), StyleOf(options), terminal);
         if (!end.ok()) return end.status();
+        // A pipeline takes a file that exists for a complete one.
+        if (!options.save.empty() && end->state() != v1::EnsembleJob::SUCCEEDED) {
+          terminal.Note(absl::StrCat(options.save, " is not written; to save the finished points: ",
+                                     "ballpiston result ", made->name(), " --save ", options.save));
+          return ReportEnd(*end, terminal);
+        }
         return PrintResult(connection, made->name(), options, terminal,
                            made->answered_from_store());
       });

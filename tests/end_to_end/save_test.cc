@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/end_to_end/programs.h"
 
@@ -61,6 +62,19 @@ TEST_F(Save, AnUnusableFileIsRejectedBeforeAJobIsMade) {
     EXPECT_THAT(run.err, HasSubstr("--save: "));
   }
   EXPECT_EQ(Length(At(server.Json({"list"}), "jobs")), 0);
+}
+
+// A pipeline takes a file that exists for a complete one.
+TEST_F(Save, RunWritesNoFileIfTheJobFails) {
+  const TestServer server;
+  const ProcessResult failed = server.Client(
+      Joined({Split("run first-hit --rho 0.53 --delta 0.1 --epsilon 0.1 --exponent 1 --tolerance "
+                    "1e-6 --budget 0.1 --save"),
+              {File("a.json")}}));
+  EXPECT_THAT(failed, ExitsWith(4));
+  EXPECT_EQ(failed.out, "");
+  EXPECT_THAT(failed.err, HasSubstr("a.json is not written"));
+  EXPECT_EQ(NamesIn(folder_.path()), std::vector<std::string>());
 }
 
 }  // namespace
