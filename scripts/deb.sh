@@ -10,7 +10,7 @@ out=$(realpath -m "${1:-build/deb}")
 
 version=$(dpkg-parsechangelog --show-field Version)
 source=$out/ballpiston-$version
-rm -rf "$out"
+rm -rf "$out"/ballpiston-[0-9]* "$out"/*ballpiston*_*
 mkdir -p "$source"
 git archive HEAD | tar -x -C "$source"
 

@@ -24,6 +24,10 @@ mmdebstrap --variant=apt --skip=cleanup/reproducible \
   --customize-hook='install -d -o ballpiston -g ballpiston -m 700 "$1/var/lib/ballpiston"' \
   bookworm "$work/system.tar"
 
+if [[ -e $image && ! -e $image/oci-layout ]]; then
+  echo "oci: $image exists and is not an image" >&2
+  exit 1
+fi
 rm -rf "$image"
 umoci init --layout "$image"
 umoci new --image "$image:$version"

@@ -134,7 +134,7 @@ int Verify(const std::string& file) {
   const auto verified = VerifyResult(file, random);
   if (verified.ok()) return Print(*verified + "\n");
   LogError(verified.status().message());
-  return absl::IsInvalidArgument(verified.status()) ? kExitUsage : kExitDiffers;
+  return absl::IsDataLoss(verified.status()) ? kExitDiffers : kExitUsage;
 }
 
 std::string StoreIn(const CommandLine& line) {

@@ -1,5 +1,6 @@
 // ballpiston result: prints or saves a job's finished points, or one of them; verifies a saved
 // file.
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/command/ballpistond.h"
 #include "client/command/connection.h"
@@ -14,6 +15,14 @@ absl::Status Check(const Options& options) {
   }
   if (!options.verify_file.empty() && !options.jobs.empty()) {
     return absl::InvalidArgumentError("--verify: the file names its job; give no JOB");
+  }
+  if (!options.verify_file.empty() && !absl::EndsWith(options.verify_file, ".json")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--verify: ", options.verify_file, " is not a .json file that --save wrote"));
+  }
+  for (const char* flag : {"--save", "--point", "--format"}) {
+    if (options.verify_file.empty() || !options.given.contains(flag)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(flag, " has no effect with --verify"));
   }
   if (options.point.value_or(0) < 0) {
     return absl::InvalidArgumentError(absl::StrCat("--point: ", *options.point, " is below 0"));

@@ -127,7 +127,7 @@ const FlagGroup kGrid = {
      {"--delta", Grid(&v1::Grid::mutable_delta),
       "the piston's penetrations, 0 < delta <= (1 - lambda)/2"},
      {"--epsilon", Grid(&v1::Grid::mutable_epsilon),
-      "the piston's energies, 0 to 1/2; not used by energy-relaxation"},
+      "the piston's energies, 0 to 1/2; optional in energy-relaxation"},
      {"--exponent", Grid(&v1::Grid::mutable_exponent), "n of the outgoing law h^(n), 0 to 1000"},
      {"--cells", GridCells(),
       "shapes of the gas: N, a chain of N cells, or NxM, a lattice of N columns and M rows; at "
@@ -407,9 +407,8 @@ std::vector<Verb> JobVerbs() {
        &Watch},
       {"result",
        "print a job's result: the points that it has finished so far",
-       "With --verify no JOB is given, and no server is used. The exit code is 0 if the file is "
-       "what "
-       "the engine computes, and 4 if not.",
+       "With --verify no JOB is given, and no server is used. The exit code is 0 if what was "
+       "computed again is equal, and 4 if not.",
        {{Job(kJobs), "ensembleJobs/ID, or the ID alone", Argument::kOptional}},
        With({&kPoint, &kResultFormat, &kSave, &kVerify, &kServer}, {}),
        {"result ensembleJobs/ID", "result ID --save result.json", "result --verify result.json",

@@ -1,8 +1,11 @@
 #include "client/output/new_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -14,6 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+fs::perms UsualMode() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  return static_cast<fs::perms>(0666 & ~mask);
+}
+
 absl::Status CannotWrite(const std::string& flag, const std::string& path,
                          const std::string& reason) {
   return absl::InvalidArgumentError(absl::StrCat(flag, ": cannot write ", path, ": ", reason));
@@ -22,41 +31,57 @@ absl::Status CannotWrite(const std::string& flag, const std::string& path,
 }  // namespace
 
 absl::Status CheckNewFile(const std::string& flag, const std::string& path) {
-  const fs::path parent = fs::path(path).parent_path();
   std::error_code error;
   if (fs::is_directory(path, error)) return CannotWrite(flag, path, "this is a folder");
-  if (access(parent.empty() ? "." : parent.c_str(), W_OK | X_OK) == 0) return absl::OkStatus();
-  return CannotWrite(flag, path, std::strerror(errno));
+  const fs::path parent = fs::path(path).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  const bool is_special = fs::exists(path, error) && !fs::is_regular_file(path, error);
+  const int denied = is_special ? access(path.c_str(), W_OK) : access(folder.c_str(), W_OK | X_OK);
+  return denied == 0 ? absl::OkStatus() : CannotWrite(flag, path, std::strerror(errno));
 }
 
 NewFile::NewFile(std::string flag, std::string path)
-    : flag_(std::move(flag)), path_(std::move(path)) {
+    : flag_(std::move(flag)), path_(std::move(path)), descriptor_(Open()), buffer_(descriptor_) {
+  open_error_ = descriptor_ < 0 ? errno : 0;
+  out_.rdbuf(&buffer_);
+}
+
+// A pipe or a device itself, else a new file beside the old one that nobody else has made, with the
+// permissions that the complete file will have.
+int NewFile::Open() {
   std::error_code error;
   const bool exists = fs::exists(path_, error);
   file_ = exists ? fs::canonical(path_, error) : fs::path(path_);
-  const bool is_special = exists && !fs::is_regular_file(file_, error);
-  const std::string hidden = absl::StrCat(".", file_.filename().string(), ".", getpid());
-  part_ = is_special ? file_ : file_.parent_path() / hidden;
-  errno = 0;
-  out_.open(part_, std::ios::binary);
-  open_error_ = out_ ? 0 : errno;
+  if (exists && !fs::is_regular_file(file_, error)) {
+    return open(file_.c_str(), O_WRONLY | O_CLOEXEC);
+  }
+  const fs::perms mode = exists ? fs::status(file_, error).permissions() : UsualMode();
+  const std::string hidden = absl::StrCat(".", file_.filename().string(), ".XXXXXX");
+  std::string name = (file_.parent_path() / hidden).string();
+  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) return descriptor;
+  part_ = name;
+  fchmod(descriptor, static_cast<mode_t>(mode));
+  return descriptor;
 }
 
 NewFile::~NewFile() {
+  if (descriptor_ >= 0) close(descriptor_);
   std::error_code ignored;
-  if (part_ != file_) fs::remove(part_, ignored);
+  if (!part_.empty()) fs::remove(part_, ignored);
 }
 
 absl::Status NewFile::Keep() {
   if (open_error_ != 0) return CannotWrite(flag_, path_, std::strerror(open_error_));
-  errno = 0;
-  out_.close();
-  if (!out_) {
-    return CannotWrite(flag_, path_, errno != 0 ? std::strerror(errno) : "the disk may be full");
-  }
+  out_.flush();
+  if (buffer_.error() != 0) return CannotWrite(flag_, path_, std::strerror(buffer_.error()));
+  if (!out_) return CannotWrite(flag_, path_, "its content could not be made");
+  if (part_.empty()) return absl::OkStatus();
   std::error_code error;
-  if (part_ != file_) fs::rename(part_, file_, error);
-  return error ? CannotWrite(flag_, path_, error.message()) : absl::OkStatus();
+  fs::rename(part_, file_, error);
+  if (error) return CannotWrite(flag_, path_, error.message());
+  part_.clear();
+  return absl::OkStatus();
 }
 
 }  // namespace ballpiston::client

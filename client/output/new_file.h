@@ -4,11 +4,11 @@
 #define BALLPISTON_CLIENT_OUTPUT_NEW_FILE_H_
 
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 #include <string>
 
 #include "absl/status/status.h"
+#include "client/output/standard_output.h"
 
 namespace ballpiston::client {
 
@@ -31,11 +31,15 @@ class NewFile {
   absl::Status Keep();
 
  private:
+  int Open();
+
   const std::string flag_, path_;
   std::filesystem::path file_;  // `path_` without symbolic links
-  std::filesystem::path part_;  // hidden beside it, until Keep; the same for a pipe or a device
-  std::ofstream out_;
-  int open_error_;  // errno, or 0
+  std::filesystem::path part_;  // hidden beside it, until Keep; empty for a pipe or a device
+  int descriptor_;
+  int open_error_ = 0;  // errno
+  FileDescriptorBuffer buffer_;
+  std::ostream out_{nullptr};
 };
 
 }  // namespace ballpiston::client

@@ -41,6 +41,12 @@ std::string NpyBytes(const std::vector<double>& elements, const std::vector<size
   return bytes;
 }
 
+std::string NpyBytes(const std::vector<int64_t>& elements, const std::vector<size_t>& shape) {
+  std::string bytes = Header("<i8", shape);
+  for (const int64_t x : elements) Append(static_cast<uint64_t>(x), bytes);
+  return bytes;
+}
+
 std::string NpyBytes(const std::vector<std::string>& elements, const std::vector<size_t>& shape) {
   size_t longest = 1;
   for (const std::string& text : elements) longest = std::max(longest, text.size());

@@ -3,6 +3,7 @@
 #define BALLPISTON_CLIENT_OUTPUT_NPY_ARRAY_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace ballpiston::client {
 // The bytes of a file. `shape` has the length of each axis; without axes the array has one element.
 // There are as many elements as the shape says, the last axis varies fastest.
 std::string NpyBytes(const std::vector<double>& elements, const std::vector<size_t>& shape);
+std::string NpyBytes(const std::vector<int64_t>& elements, const std::vector<size_t>& shape);
 // Of texts in ASCII.
 std::string NpyBytes(const std::vector<std::string>& elements, const std::vector<size_t>& shape);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
@@ -138,6 +139,7 @@ class NpzWriter : public ResultWriter {
       texts.resize(points_);
       files[name] = NpyBytes(texts, {points_});
     }
+    files["index"] = NpyBytes(indices_, {points_});
     files["provenance"] = NpyBytes(std::vector<std::string>{provenance_}, {});
     Archive archive;
     for (const auto& [name, bytes] : files) archive.Add(name, bytes);
@@ -160,7 +162,7 @@ class NpzWriter : public ResultWriter {
 
   void AddParameters(const v1::PointResult& point) {
     const v1::PointParameters& p = point.parameters();
-    Set("index", point.index());
+    indices_.push_back(point.index());
     Set("rho", p.rho());
     Set("delta", p.delta());
     if (p.has_epsilon()) Set("epsilon", p.epsilon());
@@ -258,6 +260,7 @@ class NpzWriter : public ResultWriter {
   std::ostream& out_;
   std::string provenance_;
   size_t points_ = 0;
+  std::vector<int64_t> indices_;
   std::map<std::string, PointArray> numbers_;
   std::map<std::string, std::vector<std::string>> texts_;
 };

@@ -23,7 +23,7 @@
 
 namespace ballpiston::client {
 
-// Keeps all points until the end. If there is not enough memory for the archive, `out` fails.
+// Keeps all points until the end. If libzip cannot make the archive, `out` fails.
 std::unique_ptr<ResultWriter> NewNpzWriter(std::ostream& out);
 
 }  // namespace ballpiston::client

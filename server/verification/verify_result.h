@@ -2,9 +2,9 @@
 //
 // The file is a v1::SavedResult in JSON. The part is a random point, if it takes a few seconds:
 // then every number of the point is compared, and the digest of each chunk of samples. Of a longer
-// point it is a random chunk, which takes up to about a minute: then its digest is compared. The
-// probability that one call finds a single altered chunk is therefore one over the number of
-// chunks.
+// point it is a random chunk, which takes up to about a minute: then its digest is compared, and
+// nothing is said of the estimates. The probability that one call finds a single altered chunk is
+// therefore one over the number of chunks.
 #ifndef BALLPISTON_SERVER_VERIFICATION_VERIFY_RESULT_H_
 #define BALLPISTON_SERVER_VERIFICATION_VERIFY_RESULT_H_
 

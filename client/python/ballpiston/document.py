@@ -8,8 +8,7 @@
     ]}
 
 Messages have the protocol's own field names; fields with their default value are written too;
-64-bit integers are strings, as JSON of Protocol Buffers has it. The program does not write
-client_version.
+64-bit integers are strings, as JSON of Protocol Buffers has it.
 """
 
 from __future__ import annotations

@@ -204,7 +204,7 @@ def _within(name: str, value: object, least: int, most: int) -> int:
 
 def _set_duration(duration: Any, seconds: float) -> None:
     if not abs(seconds) <= 1e9:
-        raise ValueError(f"budget has to be a number of seconds up to 10^6, not {seconds!r}")
+        raise ValueError(f"budget has to be a number of seconds up to 10^9, not {seconds!r}")
     nanoseconds = round(seconds * _NANOSECONDS)
     sign = 1 if nanoseconds >= 0 else -1
     whole, rest = divmod(abs(nanoseconds), _NANOSECONDS)
