@@ -21,7 +21,7 @@ mmdebstrap --variant=apt --skip=cleanup/reproducible \
   --customize-hook="mkdir \"\$1/debs\" && cp $work/debs/*.deb \"\$1/debs\"" \
   --customize-hook='chroot "$1" sh -c "apt-get install --yes --no-install-recommends /debs/*.deb systemd-standalone-sysusers && systemd-sysusers"' \
   --customize-hook='rm -rf "$1/debs" "$1"/var/lib/apt/lists/* "$1"/var/cache/apt/*' \
-  --customize-hook='install -d -o ballpiston -g ballpiston -m 700 "$1/var/lib/ballpiston"' \
+  --customize-hook='chroot "$1" install -d -o ballpiston -g ballpiston -m 700 /var/lib/ballpiston' \
   bookworm "$work/system.tar"
 
 if [[ -e $image && ! -e $image/oci-layout ]]; then
