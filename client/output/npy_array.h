@@ -13,7 +13,7 @@ namespace ballpiston::client {
 // There are as many elements as the shape says, the last axis varies fastest.
 std::string NpyBytes(const std::vector<double>& elements, const std::vector<size_t>& shape);
 std::string NpyBytes(const std::vector<int64_t>& elements, const std::vector<size_t>& shape);
-// Of texts in ASCII.
+// The same for an array of ASCII texts.
 std::string NpyBytes(const std::vector<std::string>& elements, const std::vector<size_t>& shape);
 
 }  // namespace ballpiston::client

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// What one point adds to an array: a number, a row, or a row for each time.
+// The part of an array that belongs to one point: a number, a row, or a row for each time.
 struct Entry {
   std::vector<std::vector<double>> rows = {};
   size_t axes = 0;  // of the entry

@@ -11,7 +11,7 @@
 // c + e - u_y (1/2 - lambda/2) > 0, hits the disc at (1, 0). A ray above the tip hits this disc
 // only with a chord that lies between the tips:
 //   c1 > -rho, f1 > 0 and the chord's foot at height -u_x c1 < 1/2.
-// So four signs decide which disc is hit. Then, with the c' of this disc,
+// These four signs decide which disc is hit. With the c' of this disc,
 // s' = sqrt(rho^2 - c'^2), the length is f' - s', and the direction turns by the angle with
 //   cos = 1 - 2 s'^2/rho^2,   sin = -2 s' c'/rho^2.
 // In the frame of the disc (1, 1) the cell lies toward (-, -), so the frame turns by 180 degrees:

@@ -1,5 +1,5 @@
 // Many gases in vector lanes. Between its exchanges a ball's path does not depend on the pistons.
-// So in each time window all balls fly ahead, many at once (lane_visits.h). Every visit of a ball
+// In each time window all balls fly ahead, many at once (lane_visits.h). Every visit of a ball
 // to a piston's reach is compared with the piston's position, a triangle wave in time. The first
 // visit in which they meet is the ball's next contact. A queue holds the window's contacts in the
 // order of time. An exchange changes the path of its ball and the motion of its piston. So this

@@ -1,7 +1,7 @@
 // Uniform random numbers as a pure function of (seed, stream, sample, draw).
 //
 // Counter-based (Philox4x64-10 of Random123): key (seed, stream), counter (sample, draw/4, part).
-// So a sample's numbers do not depend on the machine, the time, or earlier computations.
+// The numbers of a sample do not depend on the machine, the time, or earlier computations.
 //   seed    the user's seed.
 //   stream  separates quantities that must be independent under one seed, e.g. points of a grid.
 //   sample  index of the sample within the stream.

@@ -27,7 +27,7 @@ from ballpiston.v1 import analytic_pb2, ensemble_pb2, server_pb2, spec_pb2, trac
 _COLLECTION = "ensembleJobs/"
 _PAGE = 1000
 
-# What a user can do about a limit, by the server's reason.
+# For each limit of the server, named by the reason of its error, advice for the user.
 _HINTS = {
     "TOO_MANY_POINTS": "Split the grid between several jobs.",
     "TOO_MANY_SAMPLES": "Ask for fewer at each point, or split the grid.",

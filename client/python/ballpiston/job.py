@@ -31,8 +31,8 @@ _GLANCE_SECONDS = 2.0  # for a notebook that shows a job
 class Job:
     """A job. `client.submit` and `client.job` make these objects; they hold no result.
 
-    Properties show the job as it was when the server was last asked, except `state`, which asks the
-    server until the job has ended. `refresh()` updates all of them.
+    The properties have the values of the server's last answer. Only `state` asks the server each
+    time, until the job has ended. `refresh()` asks the server and updates all properties.
 
     Attributes:
         message: the message ballpiston.v1.EnsembleJob, as last seen.
@@ -44,7 +44,7 @@ class Job:
         # The server says so in the answer to the submission only.
         self._is_from_store = bool(message.answered_from_store)
 
-    # What it is
+    # ---- properties ----
 
     @property
     def name(self) -> str:
@@ -110,7 +110,7 @@ class Job:
         """When it ended; None before that."""
         return self._time("end_time")
 
-    # What can be done
+    # ---- actions ----
 
     def refresh(self) -> Job:
         """Asks the server for the job as it is now."""

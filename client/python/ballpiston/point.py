@@ -12,7 +12,7 @@ from ballpiston.spelling import spelling
 from ballpiston.suggestion import did_you_mean
 from ballpiston.v1 import result_pb2, spec_pb2
 
-# Of the grid, in the order of its product.
+# The parameters of a grid. The last one varies fastest.
 PARAMETERS = ("rho", "delta", "epsilon", "exponent", "cells", "temperature", "hot", "cold")
 
 

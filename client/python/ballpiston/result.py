@@ -40,7 +40,7 @@ class Result:
         result[3]                           a Point
         len(result), result.names           points, names of the estimates
 
-    What does not exist at a point is NaN. Lengths are cells, masses are 1, the energy of a
+    A value that does not exist at a point is NaN. Lengths are cells, masses are 1, the energy of a
     ball-piston pair is 1/2.
 
     Attributes:
