@@ -1,9 +1,4 @@
 // The main function of all test programs.
-#include "gmock/gmock.h"
-#include "tests/support/time_limit.h"
+#include "tests/support/run_tests.h"
 
-int main(int argc, char** argv) {
-  testing::InitGoogleMock(&argc, argv);
-  ballpiston::LimitTestTimes(argv[0]);
-  return RUN_ALL_TESTS();
-}
+int main(int argc, char** argv) { return ballpiston::RunTests(argc, argv); }

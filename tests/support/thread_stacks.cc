@@ -21,7 +21,7 @@ namespace ballpiston {
 namespace {
 
 constexpr int kMaxDepth = 64;
-constexpr std::chrono::seconds kPatience(1);
+constexpr std::chrono::seconds kPatience(10);
 
 pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
