@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {

@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "tests/end_to_end/programs.h"
+#include "tests/support/await.h"
 
 namespace ballpiston {
 namespace {
@@ -57,7 +58,7 @@ class WebTest : public ::testing::Test {
     const std::vector<std::string> address =
         absl::StrSplit(line.substr(0, line.find('\n')), "/#token=");
     http_.emplace(address[0]);
-    http_->set_read_timeout(60);
+    http_->set_read_timeout(kPatience);
     host_ = address[0];
     token_ = address[1];
   }
@@ -194,8 +195,8 @@ TEST_F(WebTest, ReconnectsToAServerThatWasRestarted) {
   EXPECT_EQ(gone->status, 503);
   EXPECT_THAT(gone->body, HasSubstr("no answer from the server"));
   server_.Start();
-  int status = 0;  // the channel pauses before it connects again
-  while (status != 200) status = Post(method, "{}")->status;
+  // The channel pauses before it connects again.
+  AwaitThat([&] { return Post(method, "{}")->status == 200; });
 }
 
 // When a reader disconnects its call ends, so there is room for the next calls.
@@ -204,7 +205,7 @@ TEST_F(WebTest, AStreamEndsWhenItsReaderDisconnects) {
   const std::string body = Envelope(absl::StrCat("{\"name\": \"", name, "\"}"));
   for (int i = 0; i < 40; ++i) {  // more than the gateway has threads
     httplib::Client reader(host_);
-    reader.set_read_timeout(60);
+    reader.set_read_timeout(kPatience);
     httplib::Request request;
     request.method = "POST";
     request.path = std::string(kJobs) + "WatchEnsembleJob";

@@ -1,4 +1,5 @@
 #include "tests/server/unread_call.h"
+#include "tests/support/await.h"
 
 #include <chrono>
 #include <utility>
@@ -7,7 +8,7 @@ namespace ballpiston::server {
 
 UnreadCall::UnreadCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method)
     : stub_(channel) {
-  context_.set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(10));
+  context_.set_deadline(std::chrono::system_clock::now() + kPatience);
   call_ = stub_.PrepareCall(&context_, method, &queue_);
   call_->StartCall(this);
   Next();

@@ -16,6 +16,7 @@
 #include "tests/fault/torture/findings.h"
 #include "tests/fault/torture/questions.h"
 #include "tests/fault/torture/sizes.h"
+#include "tests/support/await.h"
 #include "tests/support/status_matchers.h"
 
 namespace ballpiston::torture {
@@ -44,7 +45,7 @@ class Told {
   // False if the watch has ended.
   bool Await(int count) {
     std::unique_lock lock(mutex_);
-    news_.wait(lock, [&] { return ended_ || count_ >= count; });
+    AwaitNotified(news_, lock, [&] { return ended_ || count_ >= count; });
     return count_ >= count;
   }
   int Count() {
