@@ -135,16 +135,18 @@ TEST_F(WebTest, HistogramsOfARunningPointFillUp) {
   };
   EXPECT_EQ(get("}")->status, 404);
   double before = 0;
-  for (int growths = 0; growths < 3;) {
+  int growths = 0;
+  AwaitThat([&] {
     const httplib::Result now = get(", \"unfinished\": true}");
-    if (now->status == 404) continue;  // no worker has begun
-    ASSERT_EQ(now->status, 200) << now->body;
+    if (now->status == 404) return false;  // no worker has begun
+    EXPECT_EQ(now->status, 200) << now->body;
     const auto point = ParseJson(now->body);
     EXPECT_EQ(CountsIn(point), At(point, "samples").number_value());
     EXPECT_EQ(Length(At(point, "histograms", 0, "expected_probabilities")), 1000);
     if (CountsIn(point) > before) ++growths;
     before = CountsIn(point);
-  }
+    return growths == 3 || HasFailure();
+  });
   EXPECT_EQ(get("}")->status, 404);
   EXPECT_THAT(server_.Client({"cancel", job}), ExitsWith(0));
 }

@@ -21,7 +21,7 @@ namespace ballpiston {
 namespace {
 
 constexpr int kMaxDepth = 64;
-constexpr std::chrono::seconds kPatience(1);
+constexpr std::chrono::seconds kTimeToAnswer(10);
 
 pid_t ThisThread() { return static_cast<pid_t>(syscall(SYS_gettid)); }
 
@@ -53,7 +53,7 @@ std::string NameOf(pid_t thread) {
 bool Record(Request& request) {
   asked = &request;
   if (syscall(SYS_tgkill, getpid(), request.thread, SIGRTMAX) != 0) return false;
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  const auto deadline = std::chrono::steady_clock::now() + kTimeToAnswer;
   while (request.depth == 0 && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::yield();
   }
