@@ -81,8 +81,8 @@ TEST_F(ServerVerbTest, StopIgnoresProcessesThatDoNotUseTheFolder) {
   const std::string lock = home_.File("data/lock");
   Process stranger({.command = {"sleep", "infinity"}});
   WriteFile(lock, std::to_string(stranger.pid()) + "\n");
-  Process holder(
-      {.command = {"flock", "--no-fork", lock, "sh", "-c", "echo locked >&2; exec sleep infinity"}});
+  Process holder({.command = {"flock", "--no-fork", lock, "sh", "-c",
+                              "echo locked >&2; exec sleep infinity"}});
   ASSERT_TRUE(holder.WaitForErr("locked"));
   const ProcessResult result = Server("stop", named_);
   EXPECT_THAT(result, ExitsWith(3));

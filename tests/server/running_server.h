@@ -44,12 +44,11 @@ struct TestServerOptions {
 };
 
 // Silent and old connections stay open.
-inline constexpr ConnectionTiming kOnlyClosedByAStop = {
-    .handshake = kNever,
-    .ping_interval = kNever,
-    .ping_timeout = kNever,
-    .certified_age = kNever,
-    .certified_age_grace = kNever};
+inline constexpr ConnectionTiming kOnlyClosedByAStop = {.handshake = kNever,
+                                                        .ping_interval = kNever,
+                                                        .ping_timeout = kNever,
+                                                        .certified_age = kNever,
+                                                        .certified_age_grace = kNever};
 
 // A channel, and frequent calls on it. Calls that do not return a status expect OK.
 class TestClient {

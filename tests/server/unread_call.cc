@@ -1,8 +1,9 @@
 #include "tests/server/unread_call.h"
-#include "tests/support/await.h"
 
 #include <chrono>
 #include <utility>
+
+#include "tests/support/await.h"
 
 namespace ballpiston::server {
 

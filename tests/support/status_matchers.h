@@ -35,7 +35,8 @@ absl::Status StatusOf(const Result& result) {
 inline std::string StatusText(const absl::Status& status) {
   const bool is_late = status.code() == absl::StatusCode::kDeadlineExceeded;
   return "whose status is " + status.ToString() +
-         (is_late ? "\n(a call of a test has this status if it has not ended after 15 minutes)" : "");
+         (is_late ? "\n(a call of a test has this status if it has not ended after 15 minutes)"
+                  : "");
 }
 
 MATCHER(IsOk, "") {

@@ -54,8 +54,9 @@ class AcceptanceTest : public testing::Test {
   ~AcceptanceTest() override { Stop(); }
 
   void Start() {
-    ASSERT_OK_AND_ASSIGN(
-        store_, Store::Open(folder_.File("store"), {.delay = std::chrono::milliseconds(1), .stall = kNever}));
+    ASSERT_OK_AND_ASSIGN(store_,
+                         Store::Open(folder_.File("store"),
+                                     {.delay = std::chrono::milliseconds(1), .stall = kNever}));
     pool_ = std::make_unique<ThreadPool>(2, Experiments());
     book_ = std::make_unique<JobBook>(*store_, limits_, pool_->scheduler(), [this] {
       std::lock_guard lock(mutex_);

@@ -44,11 +44,9 @@ class StoredLimitsTest : public testing::Test {
 
   void Start(const Limits& limits, ExperimentFactory factory = FakeExperiments()) {
     Stop();
-    ASSERT_OK_AND_ASSIGN(
-        store_,
-        Store::Open(
-            path_,
-            {.delay = std::chrono::milliseconds(1), .stall = kNever, .reserve_bytes = 0}));
+    ASSERT_OK_AND_ASSIGN(store_, Store::Open(path_, {.delay = std::chrono::milliseconds(1),
+                                                     .stall = kNever,
+                                                     .reserve_bytes = 0}));
     pool_ = std::make_unique<ThreadPool>(2, std::move(factory));
     book_ = std::make_unique<JobBook>(*store_, limits, pool_->scheduler(), nullptr);
     ASSERT_OK(book_->Resume());

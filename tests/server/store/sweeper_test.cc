@@ -23,7 +23,9 @@ constexpr int64_t kMiB = 1 << 20;
 
 class SweeperTest : public testing::Test {
  protected:
-  std::unique_ptr<Store> Open() { return *Store::Open(path_, {.stall = kNever, .readers = 1, .reserve_bytes = 0}); }
+  std::unique_ptr<Store> Open() {
+    return *Store::Open(path_, {.stall = kNever, .readers = 1, .reserve_bytes = 0});
+  }
   int64_t FileBytes() const { return static_cast<int64_t>(std::filesystem::file_size(path_)); }
 
   // 20 MB of details.
